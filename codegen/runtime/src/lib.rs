@@ -1,0 +1,2 @@
+//! What emitted code needs at run time.
+#![no_std]

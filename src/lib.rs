@@ -1,0 +1,1 @@
+//! Symbolic robot dynamics from a Denavit-Hartenberg table.

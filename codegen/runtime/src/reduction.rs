@@ -1,0 +1,162 @@
+//! Reduction of an angle modulo a quarter turn.
+
+use core::f64::consts::FRAC_2_PI;
+
+/// An angle x = quarter_turns * pi/2 + head + tail, with |head| <= pi/4 (1 + 1e-9) and `tail` at
+/// most half a unit in the last place of `head`. Only the two low bits of `quarter_turns` count.
+#[derive(Clone, Copy)]
+pub(crate) struct Reduced {
+    pub(crate) head: f64,
+    pub(crate) tail: f64,
+    pub(crate) quarter_turns: u64,
+}
+
+/// Up to here the three parts of pi/2 suffice: the number of quarter turns stays below 2^16.
+const ORDINARY_RANGE: f64 = 1e5;
+
+/// pi/2 in three parts. The first two have at most 37 bits, so that their products with a number
+/// of quarter turns below 2^16 are exact; together the three differ from pi/2 by 2^-130.
+const HALF_PI: [f64; 3] = [
+    f64::from_bits(0x3ff9_21fb_5444_0000),
+    f64::from_bits(0x3d86_8c23_4c4c_0000),
+    f64::from_bits(0x3b29_8a2e_0370_7345),
+];
+
+/// Adding and subtracting 1.5 * 2^52 rounds to the nearest integer, ties to even, and leaves that
+/// integer, modulo 2^51, in the low bits in between.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+/// Reduces any `f64`; infinities and NaN give NaN.
+#[inline]
+pub(crate) fn reduce(x: f64) -> Reduced {
+    if x.abs() <= ORDINARY_RANGE { reduce_ordinary(x) } else { reduce_large(x) }
+}
+
+/// Cody and Waite's reduction, for |x| <= [`ORDINARY_RANGE`].
+#[inline]
+fn reduce_ordinary(x: f64) -> Reduced {
+    let biased = x * FRAC_2_PI + ROUNDER;
+    let turns = biased - ROUNDER;
+    // Exact: both terms are multiples of 2^-53, and so is their difference, which is below 1.
+    let first = x - turns * HALF_PI[0];
+    let step = turns * HALF_PI[1];
+    let second = first - step;
+    // What rounding `second` lost. If |first| < |step| nothing was lost: then `second` is a
+    // multiple of 2^-73 below 2^-20.
+    let lost = (first - second) - step;
+    let correction = turns * HALF_PI[2] - lost;
+    let head = second - correction;
+    let tail = (second - head) - correction;
+    Reduced { head, tail, quarter_turns: biased.to_bits() }
+}
+
+/// The bits of 2/pi with weights 2^63 down to 2^-1216, so the first word is zero.
+const TWO_OVER_PI: [u64; 20] = [
+    0x0000_0000_0000_0000,
+    0xA2F9_836E_4E44_1529,
+    0xFC27_57D1_F534_DDC0,
+    0xDB62_9599_3C43_9041,
+    0xFE51_63AB_DEBB_C561,
+    0xB724_6E3A_424D_D2E0,
+    0x0649_2EEA_09D1_921C,
+    0xFE1D_EB1C_B129_A73E,
+    0xE882_35F5_2EBB_4484,
+    0xE99C_7026_B45F_7E41,
+    0x3991_D639_8353_39F4,
+    0x9C84_5F8B_BDF9_283B,
+    0x1FF8_97FF_DE05_980F,
+    0xEF2F_118B_5A0A_6D1F,
+    0x6D36_7ECF_27CB_09B7,
+    0x4F46_3F66_9E5F_EA2D,
+    0x7527_BAC7_EBE5_F17B,
+    0x3D07_39F7_8A52_92EA,
+    0x6BFB_5FB1_1F8D_5D08,
+    0x5603_3046_FC7B_6BAB,
+];
+
+/// pi/2, scaled by 2^63.
+const HALF_PI_SCALED: u64 = 0xC90F_DAA2_2168_C235;
+
+/// Payne and Hanek's reduction, for |x| > [`ORDINARY_RANGE`]: of the product x * 2/pi only those
+/// bits are formed that matter modulo 4, and enough below them that cancellation costs nothing.
+#[cold]
+#[inline(never)]
+fn reduce_large(x: f64) -> Reduced {
+    if !x.is_finite() {
+        return Reduced { head: f64::NAN, tail: 0.0, quarter_turns: 0 };
+    }
+    // |x| = significand * 2^exponent, with -36 <= exponent <= 971.
+    let bits = x.to_bits();
+    let exponent = ((bits >> 52) & 0x7ff) as i32 - 1075;
+    let significand = (bits & ((1 << 52) - 1)) | (1 << 52);
+
+    // |x| * 2/pi modulo 4, its 192 bits weighing 2^1 down to 2^-190; error below 2^-137.
+    let [high, middle, low] = multiply(significand, two_over_pi_from((62 + exponent) as usize));
+    let whole = high >> 62;
+    // The fraction in 192 bits of two's complement, hence in [-1/2, 1/2).
+    let fraction = [high << 2 | middle >> 62, middle << 2 | low >> 62, low << 2];
+    let round_up = fraction[0] >> 63;
+    let magnitude = if round_up == 1 { negate(fraction) } else { fraction };
+
+    // The magnitude as 64 leading bits, then the reduced angle as an integer below 2^128.
+    let (leading, zeros) = leading_bits(magnitude);
+    let angle = u128::from(leading) * u128::from(HALF_PI_SCALED);
+    let scale = power_of_two(-127 - zeros);
+    let above = (angle >> 75) as f64 * power_of_two(75) * scale;
+    let below = (angle & ((1 << 75) - 1)) as f64 * scale;
+    let head = above + below;
+    let tail = (above - head) + below;
+
+    let quarter_turns = whole + round_up;
+    let negative = x.is_sign_negative();
+    let flip = if negative != (round_up == 1) { -1.0 } else { 1.0 };
+    let quarter_turns = if negative { quarter_turns.wrapping_neg() } else { quarter_turns };
+    Reduced { head: flip * head, tail: flip * tail, quarter_turns }
+}
+
+/// Three words of 2/pi, from the bit `offset` of the table on.
+fn two_over_pi_from(offset: usize) -> [u64; 3] {
+    let (word, shift) = (offset / 64, offset % 64);
+    core::array::from_fn(|i| {
+        let pair = u128::from(TWO_OVER_PI[word + i]) << 64
+            | u128::from(TWO_OVER_PI.get(word + i + 1).copied().unwrap_or(0));
+        (pair << shift >> 64) as u64
+    })
+}
+
+/// The product modulo 2^192, most significant word first.
+fn multiply(factor: u64, [high, middle, low]: [u64; 3]) -> [u64; 3] {
+    let factor = u128::from(factor);
+    let p0 = factor * u128::from(low);
+    let p1 = factor * u128::from(middle) + (p0 >> 64);
+    let p2 = factor * u128::from(high) + (p1 >> 64);
+    [p2 as u64, p1 as u64, p0 as u64]
+}
+
+/// The negative modulo 2^192.
+fn negate([high, middle, low]: [u64; 3]) -> [u64; 3] {
+    let (low, borrow) = 0_u64.overflowing_sub(low);
+    let (middle, borrow) = {
+        let (difference, first) = 0_u64.overflowing_sub(middle);
+        let (difference, second) = difference.overflowing_sub(u64::from(borrow));
+        (difference, first || second)
+    };
+    [0_u64.wrapping_sub(high).wrapping_sub(u64::from(borrow)), middle, low]
+}
+
+/// The 64 bits from the first nonzero one on, and how many zeros stand before it (at most 127: a
+/// finite `f64` comes no closer to a multiple of pi/2).
+fn leading_bits([high, middle, low]: [u64; 3]) -> (u64, i32) {
+    let (value, skipped) = if high == 0 {
+        (u128::from(middle) << 64 | u128::from(low), 64)
+    } else {
+        (u128::from(high) << 64 | u128::from(middle), 0)
+    };
+    let zeros = value.leading_zeros() as i32;
+    ((value << zeros >> 64) as u64, skipped + zeros)
+}
+
+/// 2^exponent, for exponents of normal numbers.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
+}

@@ -1,0 +1,151 @@
+//! The scalar that emitted code is generic over.
+
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::sincos;
+
+/// A real number, or a pack of them, that emitted dynamics can be evaluated on.
+///
+/// An implementation keeps to three rules: the operators round like IEEE arithmetic, no method
+/// panics, and a pack does in each lane exactly what the single number does. Angles are in
+/// radians. `Default` is [`ZERO`](Scalar::ZERO).
+pub trait Scalar:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + 'static
+{
+    /// The number 0 (positive zero).
+    const ZERO: Self;
+    /// The number 1.
+    const ONE: Self;
+
+    /// The nearest `Self` to a constant of emitted code.
+    #[must_use]
+    fn from_f64(value: f64) -> Self;
+
+    /// `(sin self, cos self)`, for an angle in radians.
+    ///
+    /// Exactly odd and even: `sincos(-x) = (-sin x, cos x)`, and `sincos(-0.0) = (-0.0, 1.0)`.
+    /// Correct for every finite argument; infinities and NaN give `(NaN, NaN)`.
+    #[must_use]
+    fn sincos(self) -> (Self, Self);
+
+    /// The absolute value; clears the sign of zero.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// -1, 0 or +1 as `self` is negative, zero or positive; a zero keeps its sign, NaN stays NaN.
+    #[must_use]
+    fn sign(self) -> Self;
+
+    /// The lesser of the two; `self` if they are equal (so of two zeros the left one), NaN if
+    /// either is NaN: a fault is not clipped away.
+    #[must_use]
+    fn lesser(self, other: Self) -> Self;
+
+    /// The greater of the two; `self` if they are equal (so of two zeros the left one), NaN if
+    /// either is NaN: a fault is not clipped away.
+    #[must_use]
+    fn greater(self, other: Self) -> Self;
+
+    /// `then` if `left < right`, else `otherwise`; a comparison with NaN does not hold.
+    #[must_use]
+    fn select_less(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
+
+    /// `then` if `left <= right`, else `otherwise`; a comparison with NaN does not hold.
+    #[must_use]
+    fn select_less_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
+
+    /// `then` if `left = right`, else `otherwise`; a comparison with NaN does not hold.
+    #[must_use]
+    fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
+}
+
+/// What `f64` and `f32` do alike: everything but constants and the sine and cosine.
+macro_rules! comparisons_and_signs {
+    () => {
+        #[inline]
+        fn abs(self) -> Self {
+            // The inherent method, which the compiler prefers here.
+            self.abs()
+        }
+
+        #[inline]
+        fn sign(self) -> Self {
+            let not_positive = Self::select_less(self, 0.0, -1.0, self);
+            Self::select_less(0.0, self, 1.0, not_positive)
+        }
+
+        #[inline]
+        fn lesser(self, other: Self) -> Self {
+            // A NaN on the right fails the first comparison and is chosen by it.
+            let chosen = Self::select_less_equal(self, other, self, other);
+            Self::select_equal(self, self, chosen, self)
+        }
+
+        #[inline]
+        fn greater(self, other: Self) -> Self {
+            let chosen = Self::select_less_equal(other, self, self, other);
+            Self::select_equal(self, self, chosen, self)
+        }
+
+        #[inline]
+        fn select_less(left: Self, right: Self, then: Self, otherwise: Self) -> Self {
+            if left < right { then } else { otherwise }
+        }
+
+        #[inline]
+        fn select_less_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self {
+            if left <= right { then } else { otherwise }
+        }
+
+        #[inline]
+        fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self {
+            if left == right { then } else { otherwise }
+        }
+    };
+}
+
+impl Scalar for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    #[inline]
+    fn sincos(self) -> (Self, Self) {
+        sincos::sincos(self)
+    }
+
+    comparisons_and_signs!();
+}
+
+impl Scalar for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        value as f32
+    }
+
+    /// The `f64` result, rounded once more.
+    #[inline]
+    fn sincos(self) -> (Self, Self) {
+        let (sine, cosine) = sincos::sincos(f64::from(self));
+        (sine as f32, cosine as f32)
+    }
+
+    comparisons_and_signs!();
+}

@@ -1,1 +1,6 @@
-//! The symbolic compiler.
+//! The symbolic compiler: from a robot's Denavit-Hartenberg table to exact dynamics to optimised
+//! Rust.
+
+pub mod arena;
+pub mod expr;
+pub mod number;

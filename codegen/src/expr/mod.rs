@@ -1,0 +1,25 @@
+//! Exact expressions: a hash-consed graph that folds as it is built.
+//!
+//! Equal expressions are one node, so sharing is found while an algorithm runs and never searched
+//! for afterwards. Constants are exact rationals; nothing here knows a robot or a float.
+//!
+//! - [`Dag`]: the graph; its constructors (`add`, `mul`, `sin`, ...) apply the laws of `fold.rs`
+//! - [`Symbol`], [`SymbolClass`]: what an expression may depend on
+//! - [`derivative`], [`substitute`], [`free_symbols`]: passes over the graph, without recursion
+//! - [`evaluate`]: the value over any [`Ring`]: `f64`, rationals, residues modulo 2^61 - 1
+
+mod dag;
+mod diff;
+mod evaluate;
+mod fold;
+mod fold_functions;
+mod rings;
+mod substitute;
+mod symbol;
+
+pub use dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
+pub use diff::derivative;
+pub use evaluate::{EvaluateError, Ring, evaluate};
+pub use rings::{Floats, Rationals, Residues};
+pub use substitute::{free_symbols, substitute};
+pub use symbol::{ClassSet, Symbol, SymbolClass};

@@ -1,0 +1,357 @@
+//! The rings that expressions are evaluated over.
+
+use super::dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
+use super::evaluate::{EvaluateError, Ring};
+use crate::arena::Handle;
+use crate::number::{Rational, Residue, integer, to_f64};
+use num_traits::{Signed, ToPrimitive, Zero};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+
+/// Floating point, with the standard library's functions: for looking at values, never for
+/// deciding anything.
+pub struct Floats<F: Fn(&str) -> Option<f64>> {
+    value_of: F,
+}
+
+impl<F: Fn(&str) -> Option<f64>> Floats<F> {
+    /// `value_of` gives a symbol's value by its name.
+    pub fn new(value_of: F) -> Self {
+        Self { value_of }
+    }
+}
+
+impl<F: Fn(&str) -> Option<f64>> Ring for Floats<F> {
+    type Value = f64;
+
+    fn constant(&mut self, value: &Rational) -> Result<f64, EvaluateError> {
+        Ok(to_f64(value))
+    }
+    fn pi(&mut self) -> Result<f64, EvaluateError> {
+        Ok(std::f64::consts::PI)
+    }
+    fn symbol(&mut self, dag: &Dag, id: SymbolId) -> Result<f64, EvaluateError> {
+        let name = &dag.symbols()[id].name;
+        (self.value_of)(name).ok_or_else(|| EvaluateError::MissingSymbol(name.clone()))
+    }
+    fn neg(&mut self, a: &f64) -> f64 {
+        -a
+    }
+    fn add(&mut self, a: &f64, b: &f64) -> f64 {
+        a + b
+    }
+    fn sub(&mut self, a: &f64, b: &f64) -> f64 {
+        a - b
+    }
+    fn mul(&mut self, a: &f64, b: &f64) -> f64 {
+        a * b
+    }
+    fn div(&mut self, a: &f64, b: &f64) -> Result<f64, EvaluateError> {
+        if *b == 0.0 { Err(EvaluateError::DivisionByZero) } else { Ok(a / b) }
+    }
+    fn unary(
+        &mut self,
+        function: UnaryFunction,
+        (_, argument): (&Dag, ExprId),
+        values: &[Option<f64>],
+    ) -> Result<f64, EvaluateError> {
+        let x = values[argument.index()].expect("operands come first");
+        Ok(match function {
+            UnaryFunction::Sin => x.sin(),
+            UnaryFunction::Cos => x.cos(),
+            UnaryFunction::Tan => x.tan(),
+            UnaryFunction::Sqrt => x.sqrt(),
+            UnaryFunction::Exp => x.exp(),
+            UnaryFunction::Log => x.ln(),
+            UnaryFunction::Tanh => x.tanh(),
+            UnaryFunction::Abs => x.abs(),
+            UnaryFunction::Sign if x == 0.0 => 0.0,
+            UnaryFunction::Sign => x.signum(),
+        })
+    }
+    fn binary(&mut self, function: BinaryFunction, a: &f64, b: &f64) -> Result<f64, EvaluateError> {
+        Ok(match function {
+            BinaryFunction::Atan2 => a.atan2(*b),
+            BinaryFunction::Min => a.min(*b),
+            BinaryFunction::Max => a.max(*b),
+        })
+    }
+    fn select(&mut self, relation: Relation, sides: [&f64; 2], then: &f64, other: &f64) -> f64 {
+        if holds(relation, sides[0], sides[1]) { *then } else { *other }
+    }
+}
+
+/// The rational numbers. What leaves them is an error, never an approximation.
+pub struct Rationals<F: Fn(&str) -> Option<Rational>> {
+    value_of: F,
+}
+
+impl<F: Fn(&str) -> Option<Rational>> Rationals<F> {
+    /// `value_of` gives a symbol's value by its name.
+    pub fn new(value_of: F) -> Self {
+        Self { value_of }
+    }
+}
+
+impl<F: Fn(&str) -> Option<Rational>> Ring for Rationals<F> {
+    type Value = Rational;
+
+    fn constant(&mut self, value: &Rational) -> Result<Rational, EvaluateError> {
+        Ok(value.clone())
+    }
+    fn pi(&mut self) -> Result<Rational, EvaluateError> {
+        Err(EvaluateError::PiNotInRing)
+    }
+    fn symbol(&mut self, dag: &Dag, id: SymbolId) -> Result<Rational, EvaluateError> {
+        let name = &dag.symbols()[id].name;
+        (self.value_of)(name).ok_or_else(|| EvaluateError::MissingSymbol(name.clone()))
+    }
+    fn neg(&mut self, a: &Rational) -> Rational {
+        -a
+    }
+    fn add(&mut self, a: &Rational, b: &Rational) -> Rational {
+        a + b
+    }
+    fn sub(&mut self, a: &Rational, b: &Rational) -> Rational {
+        a - b
+    }
+    fn mul(&mut self, a: &Rational, b: &Rational) -> Rational {
+        a * b
+    }
+    fn div(&mut self, a: &Rational, b: &Rational) -> Result<Rational, EvaluateError> {
+        if b.is_zero() { Err(EvaluateError::DivisionByZero) } else { Ok(a / b) }
+    }
+    fn unary(
+        &mut self,
+        function: UnaryFunction,
+        (_, argument): (&Dag, ExprId),
+        values: &[Option<Rational>],
+    ) -> Result<Rational, EvaluateError> {
+        let x = values[argument.index()].clone().expect("operands come first");
+        let mut scratch = Dag::new();
+        let argument = scratch.constant(x);
+        let folded = scratch.unary(function, argument);
+        scratch.as_constant(folded).cloned().ok_or(EvaluateError::NotInRing(function))
+    }
+    fn binary(
+        &mut self,
+        function: BinaryFunction,
+        a: &Rational,
+        b: &Rational,
+    ) -> Result<Rational, EvaluateError> {
+        Ok(match function {
+            BinaryFunction::Min => a.min(b).clone(),
+            BinaryFunction::Max => a.max(b).clone(),
+            BinaryFunction::Atan2 if a.is_zero() && b.is_positive() => Rational::zero(),
+            BinaryFunction::Atan2 => return Err(EvaluateError::NotInRingBinary(function)),
+        })
+    }
+    fn select(
+        &mut self,
+        relation: Relation,
+        sides: [&Rational; 2],
+        then: &Rational,
+        otherwise: &Rational,
+    ) -> Rational {
+        if holds(relation, sides[0], sides[1]) { then.clone() } else { otherwise.clone() }
+    }
+}
+
+fn holds<T: PartialOrd>(relation: Relation, left: &T, right: &T) -> bool {
+    match relation {
+        Relation::Less => left < right,
+        Relation::LessEqual => left <= right,
+        Relation::Equal => left == right,
+    }
+}
+
+/// A random point over the field of residues modulo 2^61 - 1, made from a written seed.
+///
+/// A symbol's value depends on the seed and its name alone, so two graphs can be compared. Sines
+/// and cosines are points of the unit circle that obey the addition theorems: an angle is read as
+/// a whole-number combination of atoms, each atom has a random point, quarter turns are exact.
+/// What is no ring operation is opaque: a random residue for each (function, arguments).
+pub struct Residues {
+    seed: u64,
+    given: FxHashMap<String, Residue>,
+    unit_points: FxHashMap<(Residue, u64), [Residue; 2]>,
+}
+
+impl Residues {
+    /// The point of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self { seed, given: FxHashMap::default(), unit_points: FxHashMap::default() }
+    }
+
+    /// The same point, but with this value for the symbol `name`.
+    pub fn with(mut self, name: &str, value: Residue) -> Self {
+        self.given.insert(name.to_owned(), value);
+        self
+    }
+
+    /// (cos, sin) of the angle `argument`, by the addition theorems.
+    fn unit_point(
+        &mut self,
+        dag: &Dag,
+        argument: ExprId,
+        values: &[Option<Residue>],
+    ) -> Result<[Residue; 2], EvaluateError> {
+        let mut point = [Residue::ONE, Residue::ZERO];
+        for (atom, coefficient) in angle_atoms(dag, argument) {
+            let value = match atom {
+                Some(expr) => values[expr.index()].expect("operands come first"),
+                None => Residue::scrambled(self.seed, fnv("pi")),
+            };
+            let denominator = coefficient.denom().to_u64().unwrap_or(u64::MAX);
+            let mut factor = match (atom, denominator) {
+                // A quarter turn is exact: coefficients of pi are in halves.
+                (None, 1) => [-Residue::ONE, Residue::ZERO],
+                (None, 2) => [Residue::ZERO, Residue::ONE],
+                _ => self.random_unit_point(value, denominator),
+            };
+            if coefficient.is_negative() {
+                factor[1] = -factor[1];
+            }
+            let times = coefficient.numer().abs().to_u64().unwrap_or(u64::MAX);
+            for bit in (0..64 - times.leading_zeros()).map(|bit| times >> bit & 1) {
+                if bit == 1 {
+                    point = turned(point, factor);
+                }
+                factor = turned(factor, factor);
+            }
+        }
+        Ok(point)
+    }
+
+    fn random_unit_point(&mut self, value: Residue, denominator: u64) -> [Residue; 2] {
+        let seed = self.seed;
+        *self.unit_points.entry((value, denominator)).or_insert_with(|| {
+            let key = value.value() ^ denominator.rotate_left(40);
+            let t = Residue::scrambled(seed ^ 0x756e_6974, key);
+            let square = t * t;
+            // 1 + t^2 has no root: -1 is no square modulo 2^61 - 1, which is 3 modulo 4.
+            let inverse = (Residue::ONE + square).inverse().expect("-1 is not a square");
+            [(Residue::ONE - square) * inverse, (t + t) * inverse]
+        })
+    }
+
+    fn opaque(&self, label: &str, arguments: &[Residue]) -> Residue {
+        arguments.iter().fold(Residue::scrambled(self.seed, fnv(label)), |state, argument| {
+            Residue::scrambled(state.value(), argument.value())
+        })
+    }
+}
+
+/// The sum of two angles, as points (cos, sin).
+fn turned(a: [Residue; 2], b: [Residue; 2]) -> [Residue; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[1] * b[0] + a[0] * b[1]]
+}
+
+/// An angle as a combination of atoms with rational coefficients; `None` is the atom pi.
+fn angle_atoms(dag: &Dag, argument: ExprId) -> BTreeMap<Option<ExprId>, Rational> {
+    let mut atoms = BTreeMap::<Option<ExprId>, Rational>::new();
+    let mut pending = vec![(argument, integer(1))];
+    while let Some((expr, factor)) = pending.pop() {
+        match dag.node(expr) {
+            Node::Neg(a) => pending.push((a, -factor)),
+            Node::Add(a, b) => pending.extend([(a, factor.clone()), (b, factor)]),
+            Node::Sub(a, b) => pending.extend([(a, factor.clone()), (b, -factor)]),
+            Node::Mul(a, b) if dag.as_constant(a).is_some() => {
+                let k = dag.as_constant(a).expect("just seen");
+                pending.push((b, factor * k));
+            }
+            Node::Mul(a, b) if dag.as_constant(b).is_some() => {
+                let k = dag.as_constant(b).expect("just seen");
+                pending.push((a, factor * k));
+            }
+            Node::Pi => *atoms.entry(None).or_insert_with(Rational::zero) += factor,
+            // A rational number is a multiple of the atom 1.
+            Node::Constant(id) => {
+                let total = factor * dag.constant_value(id);
+                *atoms.entry(Some(dag.one())).or_insert_with(Rational::zero) += total;
+            }
+            _ => *atoms.entry(Some(expr)).or_insert_with(Rational::zero) += factor,
+        }
+    }
+    atoms.retain(|_, coefficient| !coefficient.is_zero());
+    atoms
+}
+
+fn fnv(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+impl Ring for Residues {
+    type Value = Residue;
+
+    fn constant(&mut self, value: &Rational) -> Result<Residue, EvaluateError> {
+        Residue::from_rational(value).ok_or(EvaluateError::DivisionByZero)
+    }
+    fn pi(&mut self) -> Result<Residue, EvaluateError> {
+        Ok(Residue::scrambled(self.seed, fnv("pi")))
+    }
+    fn symbol(&mut self, dag: &Dag, id: SymbolId) -> Result<Residue, EvaluateError> {
+        let name = &dag.symbols()[id].name;
+        let random = || Residue::scrambled(self.seed ^ 0x7379_6d62, fnv(name));
+        Ok(self.given.get(name).copied().unwrap_or_else(random))
+    }
+    fn neg(&mut self, a: &Residue) -> Residue {
+        -*a
+    }
+    fn add(&mut self, a: &Residue, b: &Residue) -> Residue {
+        *a + *b
+    }
+    fn sub(&mut self, a: &Residue, b: &Residue) -> Residue {
+        *a - *b
+    }
+    fn mul(&mut self, a: &Residue, b: &Residue) -> Residue {
+        *a * *b
+    }
+    fn div(&mut self, a: &Residue, b: &Residue) -> Result<Residue, EvaluateError> {
+        b.inverse().map(|inverse| *a * inverse).ok_or(EvaluateError::DivisionByZero)
+    }
+    fn unary(
+        &mut self,
+        function: UnaryFunction,
+        (dag, argument): (&Dag, ExprId),
+        values: &[Option<Residue>],
+    ) -> Result<Residue, EvaluateError> {
+        match function {
+            UnaryFunction::Sin => Ok(self.unit_point(dag, argument, values)?[1]),
+            UnaryFunction::Cos => Ok(self.unit_point(dag, argument, values)?[0]),
+            UnaryFunction::Tan => {
+                let [cos, sin] = self.unit_point(dag, argument, values)?;
+                self.div(&sin, &cos)
+            }
+            _ => {
+                let value = values[argument.index()].expect("operands come first");
+                Ok(self.opaque(&format!("{function:?}"), &[value]))
+            }
+        }
+    }
+    fn binary(
+        &mut self,
+        function: BinaryFunction,
+        a: &Residue,
+        b: &Residue,
+    ) -> Result<Residue, EvaluateError> {
+        // Min and max do not know the order of their arguments.
+        let (a, b) = match function {
+            BinaryFunction::Atan2 => (a, b),
+            BinaryFunction::Min | BinaryFunction::Max => (a.min(b), a.max(b)),
+        };
+        Ok(self.opaque(&format!("{function:?}"), &[*a, *b]))
+    }
+    fn select(
+        &mut self,
+        relation: Relation,
+        sides: [&Residue; 2],
+        then: &Residue,
+        otherwise: &Residue,
+    ) -> Residue {
+        let label = format!("{relation:?}");
+        self.opaque(&label, &[*sides[0], *sides[1], *then, *otherwise])
+    }
+}

@@ -3,4 +3,5 @@
 
 pub mod arena;
 pub mod expr;
+pub mod function;
 pub mod number;

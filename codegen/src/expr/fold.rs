@@ -241,7 +241,7 @@ impl Dag {
             // (-a)^n = a^n for even n, -(a^n) for odd n
             Node::Neg(inner) => {
                 let power = self.power(inner, n);
-                if n % 2 == 0 { power } else { self.neg(power) }
+                if n.is_multiple_of(2) { power } else { self.neg(power) }
             }
             // (a^m)^n = a^(m n)
             Node::Pow(base, m) => match m.checked_mul(n) {

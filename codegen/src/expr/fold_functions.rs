@@ -69,7 +69,7 @@ impl Dag {
         use UnaryFunction::{Cos, Sin};
         if function == UnaryFunction::Tan {
             let value = self.unary(function, a);
-            if turns % 2 == 0 {
+            if turns.is_multiple_of(2) {
                 return value;
             }
             // tan(a + pi/2) = -1/tan a
@@ -78,7 +78,7 @@ impl Dag {
         }
         // cos a = sin(a + pi/2)
         let turns = (turns + u8::from(function == Cos)) % 4;
-        let value = self.unary(if turns % 2 == 0 { Sin } else { Cos }, a);
+        let value = self.unary(if turns.is_multiple_of(2) { Sin } else { Cos }, a);
         if turns < 2 { value } else { self.neg(value) }
     }
 

@@ -1,0 +1,177 @@
+//! What a derived function is: its name, its arguments, its outputs with their shapes.
+//!
+//! The stages that derive make these, the stages that lower, count and emit read them.
+
+use crate::expr::ExprId;
+use std::fmt;
+
+/// The functions of a model, by the names used in JSON, flags and emitted code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FunctionName {
+    /// tau = D(q) qdd + C(q, qd) qd + G(q) + drive torques.
+    InverseDynamics,
+    /// D(q).
+    MassMatrix,
+    /// C(q, qd), the Christoffel one: dD/dt - 2 C is skew.
+    CoriolisMatrix,
+    /// G(q).
+    GravityVector,
+    /// C qd + G + drive torques that do not depend on qdd.
+    Bias,
+    /// D, C and G at once.
+    DynamicsTerms,
+    /// qdd of given torques.
+    ForwardDynamics,
+    /// D^-1 b for a given right-hand side b.
+    MassMatrixSolve,
+    /// dtau/dq and dtau/dqd of inverse dynamics (dtau/dqdd is D).
+    InverseDynamicsDerivatives,
+    /// dqdd/dq, dqdd/dqd and dqdd/dtau of forward dynamics: A and B of the linearisation.
+    ForwardDynamicsDerivatives,
+    /// Homogeneous transforms of all link frames.
+    LinkTransforms,
+    /// Geometric Jacobian of one link's frame; one function for each link.
+    LinkJacobian,
+    /// World positions of the contact points.
+    ContactPositions,
+    /// W^T = dh/dq of the contact points.
+    ContactJacobian,
+    /// (d/dt W^T) qd.
+    ContactBias,
+    /// World position of the centre of mass.
+    CenterOfMass,
+    /// d(centre of mass)/dq.
+    CenterOfMassJacobian,
+    /// Linear momentum, and angular momentum about the centre of mass.
+    Momentum,
+    /// Kinetic energy.
+    KineticEnergy,
+    /// Potential energy.
+    PotentialEnergy,
+}
+
+impl FunctionName {
+    /// Every function, in the order of listings.
+    pub const ALL: [Self; 20] = [
+        Self::InverseDynamics,
+        Self::MassMatrix,
+        Self::CoriolisMatrix,
+        Self::GravityVector,
+        Self::Bias,
+        Self::DynamicsTerms,
+        Self::ForwardDynamics,
+        Self::MassMatrixSolve,
+        Self::InverseDynamicsDerivatives,
+        Self::ForwardDynamicsDerivatives,
+        Self::LinkTransforms,
+        Self::LinkJacobian,
+        Self::ContactPositions,
+        Self::ContactJacobian,
+        Self::ContactBias,
+        Self::CenterOfMass,
+        Self::CenterOfMassJacobian,
+        Self::Momentum,
+        Self::KineticEnergy,
+        Self::PotentialEnergy,
+    ];
+
+    /// The name in JSON, flags and emitted code.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::InverseDynamics => "inverse_dynamics",
+            Self::MassMatrix => "mass_matrix",
+            Self::CoriolisMatrix => "coriolis_matrix",
+            Self::GravityVector => "gravity_vector",
+            Self::Bias => "bias",
+            Self::DynamicsTerms => "dynamics_terms",
+            Self::ForwardDynamics => "forward_dynamics",
+            Self::MassMatrixSolve => "mass_matrix_solve",
+            Self::InverseDynamicsDerivatives => "inverse_dynamics_derivatives",
+            Self::ForwardDynamicsDerivatives => "forward_dynamics_derivatives",
+            Self::LinkTransforms => "link_transforms",
+            Self::LinkJacobian => "link_jacobian",
+            Self::ContactPositions => "contact_positions",
+            Self::ContactJacobian => "contact_jacobian",
+            Self::ContactBias => "contact_bias",
+            Self::CenterOfMass => "center_of_mass",
+            Self::CenterOfMassJacobian => "center_of_mass_jacobian",
+            Self::Momentum => "momentum",
+            Self::KineticEnergy => "kinetic_energy",
+            Self::PotentialEnergy => "potential_energy",
+        }
+    }
+
+    /// The function of a name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|function| function.as_str() == name)
+    }
+}
+
+impl fmt::Display for FunctionName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// Which formulation of the portfolio a function was derived by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Form {
+    /// Recursions in frames on the joint axes.
+    Plain,
+    /// Recursions whose frames keep the orientation of a group of parallel axes.
+    Grouped,
+    /// Closed form, for robots of few joints.
+    Explicit,
+}
+
+/// An argument: a vector with one symbol for each joint variable.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Argument {
+    /// `q`, `qd`, `qdd`, `tau` or `b`.
+    pub name: &'static str,
+    /// The symbols, in the order of the joints.
+    pub symbols: Vec<ExprId>,
+}
+
+/// An output: an array of expressions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// The name of the array, as `mass_matrix` or `contact_positions`.
+    pub name: &'static str,
+    /// Its dimensions, outermost first: `[]` is a scalar, `[n]` a vector, `[r, c]` a matrix.
+    pub shape: Vec<usize>,
+    /// The entries, last index fastest (row-major).
+    pub entries: Vec<ExprId>,
+    /// One line that says what the entries are: frame, rows, columns, unit.
+    pub doc: String,
+}
+
+/// A derived function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Function {
+    /// Which function.
+    pub name: FunctionName,
+    /// Of which link, where there is one function for each link.
+    pub link: Option<String>,
+    /// The arguments, in the order of the call.
+    pub arguments: Vec<Argument>,
+    /// The outputs, in the order of the result.
+    pub outputs: Vec<Output>,
+    /// The formulation it was derived by.
+    pub form: Form,
+}
+
+impl Function {
+    /// The entries of all outputs, in order.
+    pub fn entries(&self) -> Vec<ExprId> {
+        self.outputs.iter().flat_map(|output| output.entries.iter().copied()).collect()
+    }
+
+    /// The name, with the link where there is one: `link_jacobian_foot`.
+    pub fn full_name(&self) -> String {
+        match &self.link {
+            Some(link) => format!("{}_{link}", self.name),
+            None => self.name.to_string(),
+        }
+    }
+}

@@ -4,4 +4,5 @@
 pub mod arena;
 pub mod expr;
 pub mod function;
+pub mod model;
 pub mod number;

@@ -1,0 +1,340 @@
+//! The checked model: a [`Robot`] cannot be wrong, so no later stage looks for faults.
+//!
+//! All expressions live in the robot's own [`Dag`]. Frames follow the declared [`Convention`];
+//! everything is in coherent SI units.
+
+use super::parameter::{Parameter, ParameterId};
+use super::tree::Tree;
+use crate::arena::PrimaryMap;
+use crate::expr::{Dag, ExprId};
+
+crate::handle!(
+    /// A link of a [`Robot`], in file order (the generated links of a floating base come first).
+    pub LinkId,
+    "l"
+);
+crate::handle!(
+    /// A contact point of a [`Robot`], in file order.
+    pub ContactId,
+    "c"
+);
+
+/// How a row of the Denavit-Hartenberg table is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Convention {
+    /// `Rz(theta) Tz(d) Tx(a) Rx(alpha)` (thesis 2.18): link frame at the far end of the link.
+    Standard,
+    /// `Rx(alpha) Tx(a) Rz(theta) Tz(d)` (Khalil, Craig): link frame on the joint axis.
+    Modified,
+}
+
+/// What the first joints of a robot stand on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Base {
+    /// Frame 0 is bolted to the world.
+    Fixed,
+    /// Six generated massless joints `base_z`, `base_x`, `base_y`, `base_yaw`, `base_roll`,
+    /// `base_pitch`: the virtual chain of thesis figure 2.3.
+    Floating,
+    /// Three generated joints `base_z`, `base_x`, `base_pitch`: motion in the world x-z plane.
+    PlanarFloating,
+}
+
+/// Which side of the gear the torques of a log stand on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TorqueSide {
+    /// Torque about the joint axis.
+    Joint,
+    /// Torque of the motor shaft, before the gear.
+    Motor,
+}
+
+/// The terms that the model has; all of them unless the file says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Terms {
+    /// `D qdd`.
+    pub inertia: bool,
+    /// `C qd`.
+    pub coriolis: bool,
+    /// `G`.
+    pub gravity: bool,
+    /// Viscous and Coulomb friction, joint damping.
+    pub friction: bool,
+    /// Reflected rotor inertia.
+    pub rotor: bool,
+}
+
+impl Terms {
+    /// Every term.
+    pub const ALL: Self =
+        Self { inertia: true, coriolis: true, gravity: true, friction: true, rotor: true };
+}
+
+/// The kind of a joint; its axis is z_(i-1) (standard) or z_i (modified).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointKind {
+    /// The variable adds to theta.
+    Revolute,
+    /// The variable adds to d.
+    Prismatic,
+    /// No variable: the row is a constant transform.
+    Fixed,
+}
+
+/// The symbols of a moving joint, named `q_LINK`, `qd_LINK`, `qdd_LINK`, `tau_LINK`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JointVariables {
+    /// Position [rad, m].
+    pub q: ExprId,
+    /// Rate [rad/s, m/s].
+    pub qd: ExprId,
+    /// Acceleration [rad/s^2, m/s^2].
+    pub qdd: ExprId,
+    /// Torque or force along the joint axis [N m, N].
+    pub tau: ExprId,
+}
+
+/// A linear spring across a joint, with torque `-stiffness (q - angle)` on the joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JointSpring {
+    /// Stiffness [N m/rad, N/m], `ks_LINK`.
+    pub stiffness: ExprId,
+    /// Position without torque [rad, m], `qs_LINK`.
+    pub angle: ExprId,
+}
+
+/// A row of the table. The entries are the constant parts: the variable of a moving joint adds to
+/// `theta` (revolute) or to `d` (prismatic).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Joint {
+    /// Which entry varies.
+    pub kind: JointKind,
+    /// Link length [m].
+    pub a: ExprId,
+    /// Link twist [rad].
+    pub alpha: ExprId,
+    /// Constant part of the link offset [m].
+    pub d: ExprId,
+    /// Constant part of the joint angle [rad].
+    pub theta: ExprId,
+    /// The joint's symbols; none for a fixed joint.
+    pub variables: Option<JointVariables>,
+    /// A spring across the joint, of passive and driven joints alike.
+    pub spring: Option<JointSpring>,
+    /// Viscous damping of a joint without a drive [N m s/rad, N s/m], `fv_LINK`.
+    pub damping: Option<ExprId>,
+}
+
+/// The point about which an inertia tensor is taken; its axes are always those of the link frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum About {
+    /// The centre of mass.
+    Com,
+    /// The origin of the link frame.
+    Origin,
+}
+
+/// Mass properties in the link frame of the robot's convention.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Body {
+    /// Mass [kg].
+    pub mass: ExprId,
+    /// Centre of mass [m].
+    pub com: [ExprId; 3],
+    /// Tensor entries xx, yy, zz, xy, xz, yz [kg m^2]; xy = -integral of x y dm.
+    pub inertia: [ExprId; 6],
+    /// The point of the tensor.
+    pub about: About,
+}
+
+/// Motor and gear of a joint (thesis 3.14-3.24). With a gear ratio, rotor inertia and friction are
+/// those of the motor shaft: on the joint side they count N^2, N^2 and |N| fold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Drive {
+    /// Motor turns per joint turn, `N_LINK`.
+    pub gear_ratio: Option<ExprId>,
+    /// Rotor inertia [kg m^2; kg for a prismatic joint without gear], `Ia_LINK`.
+    pub rotor_inertia: Option<ExprId>,
+    /// Viscous friction [N m s/rad], `fv_LINK`.
+    pub viscous: Option<ExprId>,
+    /// Coulomb friction [N m], `fc_LINK`.
+    pub coulomb: Option<ExprId>,
+    /// Constant torque that the joint needs besides everything else [N m], `off_LINK`; joint side.
+    pub offset: Option<ExprId>,
+    /// A spring between gear and joint.
+    pub series_elastic: Option<SeriesElastic>,
+    /// A spring that pushes one way only.
+    pub return_spring: Option<ReturnSpring>,
+}
+
+/// Spring and pulleys between gear and joint (thesis 3.18-3.24).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SeriesElastic {
+    /// Stiffness of the spring [N/m], `k_LINK`.
+    pub stiffness: ExprId,
+    /// Radius of the pulley on the gear side [m], `rm_LINK`.
+    pub motor_radius: ExprId,
+    /// Radius of the pulley on the joint side [m], `rl_LINK`.
+    pub load_radius: ExprId,
+}
+
+/// A one-sided spring across a joint: torque `-stiffness (q - angle)` on the joint while q is on
+/// the given side of `angle`, none on the other side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReturnSpring {
+    /// Stiffness [N m/rad], `kr_LINK`.
+    pub stiffness: ExprId,
+    /// Where the spring begins to act [rad], `qr_LINK`.
+    pub angle: ExprId,
+    /// The side on which it acts.
+    pub side: Side,
+}
+
+/// A side of an angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Where q is larger.
+    Above,
+    /// Where q is smaller.
+    Below,
+}
+
+/// Bounds of a joint, symbol-free expressions; none where the file gives none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Limits {
+    /// Lowest and highest position [rad, m].
+    pub position: Option<[ExprId; 2]>,
+    /// Largest speed, either way [rad/s, m/s].
+    pub velocity: Option<ExprId>,
+    /// Largest acceleration, either way [rad/s^2, m/s^2].
+    pub acceleration: Option<ExprId>,
+    /// Lowest and highest torque of the drive on the joint side [N m, N]; `[0, x]` for a drive
+    /// that can pull one way only.
+    pub torque: Option<[ExprId; 2]>,
+}
+
+/// A link with the joint that carries it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// The name of link and joint.
+    pub name: String,
+    /// The link that carries it; none if it stands on frame 0.
+    pub parent: Option<LinkId>,
+    /// The row of the table.
+    pub joint: Joint,
+    /// Bounds of the joint.
+    pub limits: Limits,
+    /// Mass properties; a link without body is massless.
+    pub body: Option<Body>,
+    /// Motor and gear; a joint without drive is passive.
+    pub drive: Option<Drive>,
+}
+
+/// A point fixed in a link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// The point's name.
+    pub name: String,
+    /// The link that carries it.
+    pub link: LinkId,
+    /// Its place in the link frame [m].
+    pub position: [ExprId; 3],
+}
+
+/// The ground: the half space below a plane in frame 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ground {
+    /// A point of the plane [m].
+    pub point: [ExprId; 3],
+    /// The direction away from the ground, of any length but 0.
+    pub normal: [ExprId; 3],
+}
+
+/// Where an added effect acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EffectPlace {
+    /// On one joint or link.
+    Link(LinkId),
+    /// At one contact point.
+    Contact(ContactId),
+    /// On the whole model.
+    Model,
+}
+
+/// An effect that a diagnosis, or a person, added to the model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AddedEffect {
+    /// The name of the effect's definition.
+    pub effect: String,
+    /// Where it acts.
+    pub at: EffectPlace,
+    /// Its parameters, by name; symbol-free values.
+    pub parameters: Vec<(String, ExprId)>,
+}
+
+/// A checked robot.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// The model's name, an identifier.
+    pub name: String,
+    /// What it is.
+    pub description: String,
+    /// Where its numbers come from.
+    pub source: String,
+    /// What was assumed where the source is silent.
+    pub assumptions: Vec<String>,
+    /// How rows are read.
+    pub convention: Convention,
+    /// What the first joints stand on.
+    pub base: Base,
+    /// Acceleration of free fall in frame 0 [m/s^2]: P = -sum m g.o.
+    pub gravity: [ExprId; 3],
+    /// The terms that the model has.
+    pub terms: Terms,
+    /// On which side of the gear the torques of its logs stand.
+    pub torque_side: TorqueSide,
+    /// Holds all symbols and expressions of the robot.
+    pub dag: Dag,
+    /// Every parameter: constants, then unknowns, in file order; then by link the body entries in
+    /// column order; then by link fv, fc, Ia, off and the other entries of joint and drive.
+    pub parameters: PrimaryMap<ParameterId, Parameter>,
+    /// The links; a parent always stands before its children.
+    pub links: PrimaryMap<LinkId, Link>,
+    /// Who carries whom.
+    pub tree: Tree,
+    /// The points that may touch the ground.
+    pub contacts: PrimaryMap<ContactId, Contact>,
+    /// The ground.
+    pub ground: Ground,
+    /// Points whose touching the ground is a fall (thesis 4.1).
+    pub bodies_that_must_not_touch: Vec<Contact>,
+    /// What was added to the rigid-body model.
+    pub effects: Vec<AddedEffect>,
+    /// A number that changes when the content of the file changes, and not when only its
+    /// whitespace, the order of keys or the writing of a number does.
+    pub hash: u64,
+}
+
+impl Robot {
+    /// The moving links with the symbols of their joints, in link order: row j of q, D, tau.
+    pub fn joints(&self) -> impl Iterator<Item = (LinkId, &JointVariables)> {
+        self.links
+            .iter()
+            .filter_map(|(id, link)| link.joint.variables.as_ref().map(|symbols| (id, symbols)))
+    }
+
+    /// Number of degrees of freedom.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.joints().count()
+    }
+
+    /// The link of that name.
+    pub fn find_link(&self, name: &str) -> Option<LinkId> {
+        self.links.iter().find(|(_, link)| link.name == name).map(|(id, _)| id)
+    }
+
+    /// The parameter of that name.
+    pub fn find_parameter(&self, name: &str) -> Option<ParameterId> {
+        self.parameters.iter().find(|(_, parameter)| parameter.name == name).map(|(id, _)| id)
+    }
+}

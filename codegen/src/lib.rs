@@ -6,3 +6,4 @@ pub mod expr;
 pub mod function;
 pub mod model;
 pub mod number;
+pub mod program;

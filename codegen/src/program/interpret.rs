@@ -1,0 +1,184 @@
+//! The reference interpreter: one sample at a time, over any scalar of the runtime.
+//!
+//! It computes through the same [`Scalar`] as emitted code, in the same order, so the two agree
+//! bit for bit.
+
+use super::tape::{Choice, Step, Tape};
+use super::{BinaryOperation, Code, Leaf, Program, Routine, UnaryOperation};
+use crate::expr::Relation;
+use denavit_runtime::{Scalar, Transcendental};
+use std::fmt;
+
+/// A slice whose length is not that of the argument, output or parameters it stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShapeMismatch {
+    /// What it stands for.
+    pub of: &'static str,
+    /// The length that it must have.
+    pub expected: usize,
+    /// The length that it has.
+    pub found: usize,
+}
+
+impl ShapeMismatch {
+    pub(super) fn check(
+        of: &'static str,
+        expected: usize,
+        found: usize,
+    ) -> Result<(), ShapeMismatch> {
+        if expected == found { Ok(()) } else { Err(Self { of, expected, found }) }
+    }
+}
+
+impl fmt::Display for ShapeMismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} values expected, {} given", self.of, self.expected, self.found)
+    }
+}
+
+impl std::error::Error for ShapeMismatch {}
+
+/// The values of the prelude for parameters in the order of [`Program::parameters`]; always in
+/// `f64`, because regrouped parameters mix magnitudes.
+pub fn prelude_values(program: &Program, parameters: &[f64]) -> Result<Vec<f64>, ShapeMismatch> {
+    ShapeMismatch::check("parameters", program.parameters.len(), parameters.len())?;
+    Ok(run(&program.prelude, |leaf| match leaf {
+        Leaf::Constant(value) => value,
+        Leaf::Parameter(row) => parameters[row],
+        Leaf::Prelude(_) | Leaf::Argument { .. } => unreachable!("no leaves of a prelude"),
+    }))
+}
+
+/// The outputs of code that runs once.
+pub(super) fn run<S: Transcendental>(code: &Code, leaf: impl FnMut(Leaf) -> S) -> Vec<S> {
+    let tape = Tape::new(code);
+    let mut registers: Vec<S> = tape.leaves.iter().copied().map(leaf).collect();
+    registers.resize(tape.registers, S::ZERO);
+    execute(&tape, &mut registers);
+    tape.outputs.iter().map(|&output| registers[output as usize]).collect()
+}
+
+/// A routine made ready to be called many times for one set of parameters.
+#[derive(Clone, Debug)]
+pub struct Evaluator<S> {
+    tape: Tape,
+    registers: Vec<S>,
+    /// Name and length of each argument.
+    arguments: Vec<(&'static str, usize)>,
+    /// For each leaf that is an argument: its register, the argument, the entry.
+    inputs: Vec<(usize, usize, usize)>,
+}
+
+impl<S: Transcendental> Evaluator<S> {
+    /// Makes `routine` ready, with the prelude's values as [`prelude_values`] gives them.
+    pub fn new(routine: &Routine, prelude: &[f64]) -> Self {
+        let tape = Tape::new(&routine.code);
+        let arguments = routine.arguments.iter().map(|a| (a.name, a.len)).collect();
+        let inputs = argument_leaves(&tape);
+        let mut registers = initial_registers(&tape, prelude);
+        registers.resize(tape.registers, S::ZERO);
+        Self { tape, registers, arguments, inputs }
+    }
+
+    /// Number of output entries.
+    pub fn outputs(&self) -> usize {
+        self.tape.outputs.len()
+    }
+
+    /// Calls the routine; the entries of all outputs, one after the other, go to `outputs`.
+    pub fn evaluate(&mut self, arguments: &[&[S]], outputs: &mut [S]) -> Result<(), ShapeMismatch> {
+        ShapeMismatch::check("arguments", self.arguments.len(), arguments.len())?;
+        for (&(name, len), argument) in self.arguments.iter().zip(arguments) {
+            ShapeMismatch::check(name, len, argument.len())?;
+        }
+        ShapeMismatch::check("outputs", self.tape.outputs.len(), outputs.len())?;
+        for &(register, argument, entry) in &self.inputs {
+            self.registers[register] = arguments[argument][entry];
+        }
+        execute(&self.tape, &mut self.registers);
+        for (output, &register) in outputs.iter_mut().zip(&self.tape.outputs) {
+            *output = self.registers[register as usize];
+        }
+        Ok(())
+    }
+}
+
+/// Register, argument and entry of each leaf that is an argument.
+pub(super) fn argument_leaves(tape: &Tape) -> Vec<(usize, usize, usize)> {
+    let inputs = tape.leaves.iter().enumerate().filter_map(|(register, leaf)| match *leaf {
+        Leaf::Argument { argument, entry } => Some((register, argument, entry)),
+        _ => None,
+    });
+    inputs.collect()
+}
+
+/// The leaves' registers: constants and prelude values set, arguments zero.
+pub(super) fn initial_registers<S: Scalar>(tape: &Tape, prelude: &[f64]) -> Vec<S> {
+    let leaf = |leaf: &Leaf| match *leaf {
+        Leaf::Constant(value) => S::from_f64(value),
+        Leaf::Prelude(row) => S::from_f64(prelude[row]),
+        Leaf::Argument { .. } | Leaf::Parameter(_) => S::ZERO,
+    };
+    tape.leaves.iter().map(leaf).collect()
+}
+
+fn execute<S: Transcendental>(tape: &Tape, registers: &mut [S]) {
+    for step in &tape.steps {
+        match *step {
+            Step::Unary(function, to, from) => {
+                registers[to as usize] = unary(function, registers[from as usize]);
+            }
+            Step::Binary(function, to, [left, right]) => {
+                let (a, b) = (registers[left as usize], registers[right as usize]);
+                registers[to as usize] = binary(function, a, b);
+            }
+            Step::SinCos([sine, cosine], angle) => {
+                let (s, c) = registers[angle as usize].sincos();
+                registers[sine as usize] = s;
+                registers[cosine as usize] = c;
+            }
+            Step::Select(to, choice) => {
+                let Choice { relation, sides, then, otherwise } = tape.choices[choice as usize];
+                let [left, right, then, otherwise] =
+                    [sides[0], sides[1], then, otherwise].map(|at| registers[at as usize]);
+                registers[to as usize] = select(relation, [left, right], then, otherwise);
+            }
+        }
+    }
+}
+
+#[inline]
+pub(super) fn unary<S: Transcendental>(function: UnaryOperation, a: S) -> S {
+    match function {
+        UnaryOperation::Neg => -a,
+        UnaryOperation::Tan => a.tangent(),
+        UnaryOperation::Sqrt => a.sqrt(),
+        UnaryOperation::Exp => a.exponential(),
+        UnaryOperation::Log => a.logarithm(),
+        UnaryOperation::Tanh => a.hyperbolic_tangent(),
+        UnaryOperation::Abs => a.abs(),
+        UnaryOperation::Sign => a.sign(),
+    }
+}
+
+#[inline]
+pub(super) fn binary<S: Transcendental>(function: BinaryOperation, a: S, b: S) -> S {
+    match function {
+        BinaryOperation::Add => a + b,
+        BinaryOperation::Sub => a - b,
+        BinaryOperation::Mul => a * b,
+        BinaryOperation::Div => a / b,
+        BinaryOperation::Atan2 => a.arctangent2(b),
+        BinaryOperation::Min => a.lesser(b),
+        BinaryOperation::Max => a.greater(b),
+    }
+}
+
+#[inline]
+pub(super) fn select<S: Scalar>(relation: Relation, sides: [S; 2], then: S, otherwise: S) -> S {
+    match relation {
+        Relation::Less => S::select_less(sides[0], sides[1], then, otherwise),
+        Relation::LessEqual => S::select_less_equal(sides[0], sides[1], then, otherwise),
+        Relation::Equal => S::select_equal(sides[0], sides[1], then, otherwise),
+    }
+}

@@ -1,0 +1,3 @@
+//! The tests of the compiler, one module for each stage.
+
+mod program;

@@ -1,0 +1,5 @@
+//! Lowering, scheduling, counting, interpreting.
+
+mod code;
+mod interpret;
+pub(crate) mod two_link;

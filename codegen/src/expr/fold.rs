@@ -21,7 +21,7 @@ impl Dag {
             // -(-a) = a
             Node::Neg(inner) => inner,
             // -(a - b) = b - a
-            Node::Sub(x, y) => self.intern(Node::Sub(y, x)),
+            Node::Sub(x, y) => self.sub(y, x),
             _ => self.intern(Node::Neg(a)),
         }
     }

@@ -7,19 +7,26 @@
 //! - [`Symbol`], [`SymbolClass`]: what an expression may depend on
 //! - [`derivative`], [`substitute`], [`free_symbols`]: passes over the graph, without recursion
 //! - [`evaluate`]: the value over any [`Ring`]: `f64`, rationals, residues modulo 2^61 - 1
+//! - [`Order`]: one order of expressions, whatever order they were made in
+//! - [`text`]: expressions as text, read and written
 
 mod dag;
 mod diff;
 mod evaluate;
 mod fold;
 mod fold_functions;
+mod order;
+#[cfg(test)]
+pub(crate) mod random;
 mod rings;
 mod substitute;
 mod symbol;
+pub mod text;
 
 pub use dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
 pub use diff::derivative;
 pub use evaluate::{EvaluateError, Ring, evaluate};
+pub use order::Order;
 pub use rings::{Floats, Rationals, Residues};
 pub use substitute::{free_symbols, substitute};
 pub use symbol::{ClassSet, Symbol, SymbolClass};

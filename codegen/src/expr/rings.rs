@@ -170,7 +170,8 @@ fn holds<T: PartialOrd>(relation: Relation, left: &T, right: &T) -> bool {
 /// A symbol's value depends on the seed and its name alone, so two graphs can be compared. Sines
 /// and cosines are points of the unit circle that obey the addition theorems: an angle is read as
 /// a whole-number combination of atoms, each atom has a random point, quarter turns are exact.
-/// What is no ring operation is opaque: a random residue for each (function, arguments).
+/// What is no ring operation is opaque: a random residue for each (function, arguments), odd where
+/// the function is odd, even where it is even.
 pub struct Residues {
     seed: u64,
     given: FxHashMap<String, Residue>,
@@ -199,6 +200,8 @@ impl Residues {
         let mut point = [Residue::ONE, Residue::ZERO];
         for (atom, coefficient) in angle_atoms(dag, argument) {
             let value = match atom {
+                // The atom 1 need not be a node below the angle.
+                Some(expr) if expr == dag.one() => Residue::ONE,
                 Some(expr) => values[expr.index()].expect("operands come first"),
                 None => Residue::scrambled(self.seed, fnv("pi")),
             };
@@ -223,16 +226,19 @@ impl Residues {
         Ok(point)
     }
 
+    /// A random point for an atom; opposite atoms have conjugate points.
     fn random_unit_point(&mut self, value: Residue, denominator: u64) -> [Residue; 2] {
         let seed = self.seed;
-        *self.unit_points.entry((value, denominator)).or_insert_with(|| {
+        let (value, is_opposite) = magnitude(value);
+        let [cos, sin] = *self.unit_points.entry((value, denominator)).or_insert_with(|| {
             let key = value.value() ^ denominator.rotate_left(40);
             let t = Residue::scrambled(seed ^ 0x756e_6974, key);
             let square = t * t;
             // 1 + t^2 has no root: -1 is no square modulo 2^61 - 1, which is 3 modulo 4.
             let inverse = (Residue::ONE + square).inverse().expect("-1 is not a square");
             [(Residue::ONE - square) * inverse, (t + t) * inverse]
-        })
+        });
+        [cos, if is_opposite { -sin } else { sin }]
     }
 
     fn opaque(&self, label: &str, arguments: &[Residue]) -> Residue {
@@ -240,6 +246,11 @@ impl Residues {
             Residue::scrambled(state.value(), argument.value())
         })
     }
+}
+
+/// One of a and -a, the same for both, and whether it is -a: what odd and even functions look at.
+fn magnitude(a: Residue) -> (Residue, bool) {
+    if a > -a { (-a, true) } else { (a, false) }
 }
 
 /// The sum of two angles, as points (cos, sin).
@@ -327,7 +338,13 @@ impl Ring for Residues {
             }
             _ => {
                 let value = values[argument.index()].expect("operands come first");
-                Ok(self.opaque(&format!("{function:?}"), &[value]))
+                let (value, negated) = match function {
+                    UnaryFunction::Abs => (magnitude(value).0, false),
+                    UnaryFunction::Tanh | UnaryFunction::Sign => magnitude(value),
+                    _ => (value, false),
+                };
+                let result = self.opaque(&format!("{function:?}"), &[value]);
+                Ok(if negated { -result } else { result })
             }
         }
     }

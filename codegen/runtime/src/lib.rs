@@ -1,4 +1,4 @@
-//! What emitted code needs at run time, and nothing else: a scalar, and one sine and cosine for all.
+//! What emitted code needs at run time: a scalar, and one sine and cosine for all.
 //!
 //! Emitted dynamics and the reference interpreter of `denavit-codegen` both compute through
 //! [`Scalar`]; that is why they agree **bit for bit**. Emitted code relies on the following.
@@ -17,7 +17,7 @@
 //!   computed: no emitted function branches on its numbers.
 //! - **No allocation, no panic, no `unsafe`**, and without features no dependency.
 //!
-//! Friction and other effects may need [`Transcendental`], behind the feature `libm`.
+//! Friction and other effects may need `Transcendental`, behind the feature `libm`.
 //!
 //! ```
 //! use denavit_runtime::Scalar;

@@ -2,12 +2,13 @@
 
 use core::f64::consts::FRAC_2_PI;
 
-/// An angle x = quarter_turns * pi/2 + head + tail, with |head| <= pi/4 (1 + 1e-9) and `tail` at
-/// most half a unit in the last place of `head`. Only the two low bits of `quarter_turns` count.
+/// An angle x = quarter_turns * pi/2 + head - excess, with |head| <= pi/4 (1 + 1e-9) and `excess`
+/// at most half a unit in the last place of `head`; x = -0 becomes (-0) - (+0). Only the two low
+/// bits of `quarter_turns` count.
 #[derive(Clone, Copy)]
 pub(crate) struct Reduced {
     pub(crate) head: f64,
-    pub(crate) tail: f64,
+    pub(crate) excess: f64,
     pub(crate) quarter_turns: u64,
 }
 
@@ -37,7 +38,8 @@ pub(crate) fn reduce(x: f64) -> Reduced {
 fn reduce_ordinary(x: f64) -> Reduced {
     let biased = x * FRAC_2_PI + ROUNDER;
     let turns = biased - ROUNDER;
-    // Exact: both terms are multiples of 2^-53, and so is their difference, which is below 1.
+    // Exact: unless `turns` is zero, both terms are multiples of 2^-53, and so is their
+    // difference, which is below 1.
     let first = x - turns * HALF_PI[0];
     let step = turns * HALF_PI[1];
     let second = first - step;
@@ -46,8 +48,8 @@ fn reduce_ordinary(x: f64) -> Reduced {
     let lost = (first - second) - step;
     let correction = turns * HALF_PI[2] - lost;
     let head = second - correction;
-    let tail = (second - head) - correction;
-    Reduced { head, tail, quarter_turns: biased.to_bits() }
+    let excess = correction - (second - head);
+    Reduced { head, excess, quarter_turns: biased.to_bits() }
 }
 
 /// The bits of 2/pi with weights 2^63 down to 2^-1216, so the first word is zero.
@@ -83,7 +85,7 @@ const HALF_PI_SCALED: u64 = 0xC90F_DAA2_2168_C235;
 #[inline(never)]
 fn reduce_large(x: f64) -> Reduced {
     if !x.is_finite() {
-        return Reduced { head: f64::NAN, tail: 0.0, quarter_turns: 0 };
+        return Reduced { head: f64::NAN, excess: 0.0, quarter_turns: 0 };
     }
     // |x| = significand * 2^exponent, with -36 <= exponent <= 971.
     let bits = x.to_bits();
@@ -96,7 +98,8 @@ fn reduce_large(x: f64) -> Reduced {
     // The fraction in 192 bits of two's complement, hence in [-1/2, 1/2).
     let fraction = [high << 2 | middle >> 62, middle << 2 | low >> 62, low << 2];
     let round_up = fraction[0] >> 63;
-    let magnitude = if round_up == 1 { negate(fraction) } else { fraction };
+    // The complement is the negative but for one unit in 192 bits, which is far below the error.
+    let magnitude = if round_up == 1 { fraction.map(|word| !word) } else { fraction };
 
     // The magnitude as 64 leading bits, then the reduced angle as an integer below 2^128.
     let (leading, zeros) = leading_bits(magnitude);
@@ -105,22 +108,21 @@ fn reduce_large(x: f64) -> Reduced {
     let above = (angle >> 75) as f64 * power_of_two(75) * scale;
     let below = (angle & ((1 << 75) - 1)) as f64 * scale;
     let head = above + below;
-    let tail = (above - head) + below;
+    let excess = (head - above) - below;
 
     let quarter_turns = whole + round_up;
     let negative = x.is_sign_negative();
     let flip = if negative != (round_up == 1) { -1.0 } else { 1.0 };
     let quarter_turns = if negative { quarter_turns.wrapping_neg() } else { quarter_turns };
-    Reduced { head: flip * head, tail: flip * tail, quarter_turns }
+    Reduced { head: flip * head, excess: flip * excess, quarter_turns }
 }
 
 /// Three words of 2/pi, from the bit `offset` of the table on.
 fn two_over_pi_from(offset: usize) -> [u64; 3] {
     let (word, shift) = (offset / 64, offset % 64);
     core::array::from_fn(|i| {
-        let pair = u128::from(TWO_OVER_PI[word + i]) << 64
-            | u128::from(TWO_OVER_PI.get(word + i + 1).copied().unwrap_or(0));
-        (pair << shift >> 64) as u64
+        let pair = join(TWO_OVER_PI[word + i], TWO_OVER_PI[word + i + 1]);
+        ((pair << shift) >> 64) as u64
     })
 }
 
@@ -133,27 +135,17 @@ fn multiply(factor: u64, [high, middle, low]: [u64; 3]) -> [u64; 3] {
     [p2 as u64, p1 as u64, p0 as u64]
 }
 
-/// The negative modulo 2^192.
-fn negate([high, middle, low]: [u64; 3]) -> [u64; 3] {
-    let (low, borrow) = 0_u64.overflowing_sub(low);
-    let (middle, borrow) = {
-        let (difference, first) = 0_u64.overflowing_sub(middle);
-        let (difference, second) = difference.overflowing_sub(u64::from(borrow));
-        (difference, first || second)
-    };
-    [0_u64.wrapping_sub(high).wrapping_sub(u64::from(borrow)), middle, low]
-}
-
 /// The 64 bits from the first nonzero one on, and how many zeros stand before it (at most 127: a
 /// finite `f64` comes no closer to a multiple of pi/2).
 fn leading_bits([high, middle, low]: [u64; 3]) -> (u64, i32) {
-    let (value, skipped) = if high == 0 {
-        (u128::from(middle) << 64 | u128::from(low), 64)
-    } else {
-        (u128::from(high) << 64 | u128::from(middle), 0)
-    };
+    let (value, skipped) =
+        if high == 0 { (join(middle, low), 64) } else { (join(high, middle), 0) };
     let zeros = value.leading_zeros() as i32;
-    ((value << zeros >> 64) as u64, skipped + zeros)
+    (((value << zeros) >> 64) as u64, skipped + zeros)
+}
+
+fn join(high: u64, low: u64) -> u128 {
+    u128::from(high) << 64 | u128::from(low)
 }
 
 /// 2^exponent, for exponents of normal numbers.

@@ -2,15 +2,15 @@
 
 use crate::reduction::{self, Reduced};
 
-/// Coefficients of r^3, r^5, .. r^13 in sin r. Minimax on |r| <= pi/4, weighted for relative
-/// error and refitted after each coefficient was rounded to `f64`: error 2^-57.9.
+/// Coefficients of r^3, r^5, .. r^13 in r - sin r. Minimax on |r| <= pi/4, weighted for relative
+/// error of the sine, and refitted after each coefficient was rounded to `f64`: error 2^-57.9.
 const SINE: [f64; 6] = [
-    -0.1666666666666663,
-    0.00833333333332184,
-    -0.00019841269829358528,
-    2.755731353851416e-6,
-    -2.505073438922155e-8,
-    1.589543328509913e-10,
+    0.1666666666666663,
+    -0.00833333333332184,
+    0.00019841269829358528,
+    -2.755731353851416e-6,
+    2.505073438922155e-8,
+    -1.589543328509913e-10,
 ];
 
 /// Coefficients of r^4, r^6, .. r^14 in cos r, found in the same way: error 2^-63.9.
@@ -26,39 +26,31 @@ const COSINE: [f64; 6] = [
 /// `(sin x, cos x)`.
 #[inline]
 pub(crate) fn sincos(x: f64) -> (f64, f64) {
-    let Reduced { head, tail, quarter_turns } = reduction::reduce(x);
-    turn(sine(head, tail), cosine(head, tail), quarter_turns)
-}
-
-/// sin(head + tail) for |head| <= pi/4, with `tail` below half a unit in the last place of `head`.
-#[inline]
-fn sine(head: f64, tail: f64) -> f64 {
+    let Reduced { head, excess, quarter_turns } = reduction::reduce(x);
     let square = head * head;
-    let cube = square * head;
-    let rest = horner_pair(square, [SINE[1], SINE[2], SINE[3], SINE[4], SINE[5]]);
-    // sin(h + t) = h + [t + S1 h^3 - t h^2/2 + rest h^5]: the bracket is small, h is added last.
-    head - ((square * (0.5 * tail - cube * rest) - tail) - cube * SINE[0])
-}
-
-/// cos(head + tail), under the same conditions.
-#[inline]
-fn cosine(head: f64, tail: f64) -> f64 {
-    let square = head * head;
+    let fourth = square * square;
     let half = 0.5 * square;
     let leading = 1.0 - half;
-    // 1 - leading is exact, so this is what rounding `leading` lost.
+
+    // sin(h - e) = h - [e cos h + h^3 S(h^2)]: the bracket is small, so h comes last; and -0 - 0
+    // is -0, whereas a sum would lose the sign of zero.
+    let bracket = excess * leading + square * head * polynomial(SINE, square, fourth);
+    let sine = head - bracket;
+
+    // cos(h - e) = 1 - h^2/2 + [h^4 C(h^2) + e sin h]; since 1 - `leading` is exact, `lost` is
+    // what rounding `leading` lost.
     let lost = (1.0 - leading) - half;
-    let [first, others @ ..] = COSINE;
-    let rest = square * square * (first + square * horner_pair(square, others));
-    leading + (lost + (rest - head * tail))
+    let bracket = fourth * polynomial(COSINE, square, fourth) + head * excess;
+    let cosine = leading + (lost + bracket);
+
+    turn(sine, cosine, quarter_turns)
 }
 
-/// a0 + a1 z + .. + a4 z^4 in two interleaved halves, which shortens the chain of waiting.
+/// a0 + a1 z + .. + a5 z^5 from z and z^2, in pairs: a shorter chain of waiting than Horner's.
 #[inline]
-fn horner_pair(z: f64, a: [f64; 5]) -> f64 {
-    let low = a[0] + z * (a[1] + z * a[2]);
-    let high = a[3] + z * a[4];
-    low + z * (z * z) * high
+fn polynomial(a: [f64; 6], z: f64, z_squared: f64) -> f64 {
+    let high = (a[2] + a[3] * z) + z_squared * (a[4] + a[5] * z);
+    (a[0] + a[1] * z) + z_squared * high
 }
 
 /// Turns the point (cosine, sine) by a number of quarter turns (modulo 4), without a branch:

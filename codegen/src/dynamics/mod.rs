@@ -10,6 +10,7 @@
 //! - `forward`: forward dynamics by factorising D, and by articulated bodies
 //! - `energy`: kinetic and potential energy, momentum
 //! - [`portfolio`]: every function of a model, the cheapest formulation of each
+//! - [`methods`]: the thesis's four derivations, which share nothing with the recursions
 
 mod articulated;
 mod candidate;
@@ -19,6 +20,7 @@ mod energy;
 mod forward;
 mod inverse;
 mod joint_torque;
+pub mod methods;
 mod motion;
 mod outputs;
 pub mod portfolio;

@@ -2,6 +2,7 @@
 //! Rust.
 
 pub mod arena;
+pub mod derive;
 pub mod dynamics;
 pub mod expr;
 pub mod function;

@@ -24,5 +24,3 @@ pub mod methods;
 mod motion;
 mod outputs;
 pub mod portfolio;
-
-pub use portfolio::functions;

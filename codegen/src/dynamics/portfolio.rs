@@ -1,28 +1,82 @@
 //! Every function of a model, each in its cheapest formulation.
 
 use super::candidate::Candidate;
-use super::joint_torque::joint_terms;
+use super::joint_torque::{JointTerms, joint_terms};
 use super::outputs;
 use crate::expr::{Dag, ExprId, Operations};
 use crate::function::{Argument, Form, Function, FunctionName, Output};
 use crate::kinematics::{Frames, Mechanism};
 use crate::model::Robot;
-use crate::regroup::regroup;
 
-/// Derives the functions of `wanted`, in that order; those that the robot cannot have (contacts of
-/// a robot without contact points) are left out. All expressions go to `dag`, a copy of the
-/// robot's own.
-pub fn functions(dag: &mut Dag, robot: &Robot, wanted: &[FunctionName]) -> Vec<Function> {
-    let mechanism = Mechanism::new(dag, robot);
-    let regrouped = regroup(dag, &mechanism);
-    let joints = joint_terms(dag, robot);
-    let plain = Frames::plain(dag, &regrouped);
-    let grouped = Frames::grouped(dag, &regrouped);
-    let candidate =
-        |frames| Candidate { robot, mechanism: &mechanism, frames, joints: joints.as_slice() };
-    let mut candidates = vec![(Form::Plain, candidate(&plain))];
-    candidates.extend(grouped.as_ref().map(|frames| (Form::Grouped, candidate(frames))));
-    wanted.iter().flat_map(|&name| derive(dag, robot, name, &candidates)).collect()
+/// All formulations of one robot.
+pub struct Portfolio<'a> {
+    robot: &'a Robot,
+    mechanism: &'a Mechanism,
+    /// The frames of each formulation, the plain one first.
+    forms: Vec<(Form, Frames)>,
+    joints: Vec<JointTerms>,
+}
+
+impl<'a> Portfolio<'a> {
+    /// The formulations of `robot`, whose moving bodies are `mechanism` (regrouped or not).
+    pub fn new(dag: &mut Dag, robot: &'a Robot, mechanism: &'a Mechanism) -> Self {
+        let mut forms = vec![(Form::Plain, Frames::plain(dag, mechanism))];
+        forms.extend(Frames::grouped(dag, mechanism).map(|frames| (Form::Grouped, frames)));
+        Self { robot, mechanism, forms, joints: joint_terms(dag, robot) }
+    }
+
+    /// The functions of a name: none if the robot cannot have it (contacts without contact
+    /// points), one for each link if it is of links.
+    pub fn derive(&self, dag: &mut Dag, name: FunctionName) -> Vec<Function> {
+        use FunctionName::{ContactBias, ContactJacobian, ContactPositions, LinkJacobian};
+        let robot = self.robot;
+        match name {
+            ContactPositions | ContactJacobian | ContactBias if robot.contacts.is_empty() => {
+                Vec::new()
+            }
+            LinkJacobian => robot
+                .links
+                .iter()
+                .map(|(id, link)| {
+                    let build = |dag: &mut Dag, candidate: &Candidate<'_>, _| {
+                        vec![outputs::link_jacobian(dag, candidate, id)]
+                    };
+                    self.cheapest(dag, (name, Some(link.name.clone())), &build)
+                })
+                .collect(),
+            _ => {
+                let build = |dag: &mut Dag, candidate: &Candidate<'_>, route| {
+                    outputs::outputs(dag, candidate, name, route)
+                };
+                vec![self.cheapest(dag, (name, None), &build)]
+            }
+        }
+    }
+
+    /// Builds every formulation by every route and keeps the one of the lowest price.
+    fn cheapest(
+        &self,
+        dag: &mut Dag,
+        (name, link): (FunctionName, Option<String>),
+        build: &dyn Fn(&mut Dag, &Candidate<'_>, Route) -> Vec<Output>,
+    ) -> Function {
+        let mut best: Option<(usize, Form, Vec<Output>)> = None;
+        for (form, frames) in &self.forms {
+            let (robot, mechanism) = (self.robot, self.mechanism);
+            let candidate = Candidate { robot, mechanism, frames, joints: &self.joints };
+            for &route in routes(name) {
+                let outputs = build(dag, &candidate, route);
+                let entries: Vec<ExprId> =
+                    outputs.iter().flat_map(|output| output.entries.iter().copied()).collect();
+                let price = Operations::count(dag, &entries).price();
+                if best.as_ref().is_none_or(|(lowest, ..)| price < *lowest) {
+                    best = Some((price, *form, outputs));
+                }
+            }
+        }
+        let (_, form, outputs) = best.expect("the plain formulation is always there");
+        Function { name, link, arguments: arguments(dag, self.robot, name), outputs, form }
+    }
 }
 
 /// A way to one function; the cheapest is kept.
@@ -46,61 +100,6 @@ fn routes(name: FunctionName) -> &'static [Route] {
         FunctionName::ForwardDynamics => &[Route::Factorised, Route::Articulated],
         _ => &[Route::Only],
     }
-}
-
-fn derive(
-    dag: &mut Dag,
-    robot: &Robot,
-    name: FunctionName,
-    candidates: &[(Form, Candidate<'_>)],
-) -> Vec<Function> {
-    let is_of_contacts = matches!(
-        name,
-        FunctionName::ContactPositions | FunctionName::ContactJacobian | FunctionName::ContactBias
-    );
-    if is_of_contacts && robot.contacts.is_empty() {
-        return Vec::new();
-    }
-    if name == FunctionName::LinkJacobian {
-        let links = robot.links.keys();
-        return links
-            .map(|link| {
-                let build = |dag: &mut Dag, candidate: &Candidate<'_>, _| {
-                    vec![outputs::link_jacobian(dag, candidate, link)]
-                };
-                let link = Some(robot.links[link].name.clone());
-                cheapest(dag, robot, (name, link), candidates, &build)
-            })
-            .collect();
-    }
-    let build = |dag: &mut Dag, candidate: &Candidate<'_>, route| {
-        outputs::outputs(dag, candidate, name, route)
-    };
-    vec![cheapest(dag, robot, (name, None), candidates, &build)]
-}
-
-/// Builds every formulation by every route and keeps the one of the lowest price.
-fn cheapest(
-    dag: &mut Dag,
-    robot: &Robot,
-    (name, link): (FunctionName, Option<String>),
-    candidates: &[(Form, Candidate<'_>)],
-    build: &dyn Fn(&mut Dag, &Candidate<'_>, Route) -> Vec<Output>,
-) -> Function {
-    let mut best: Option<(usize, Form, Vec<Output>)> = None;
-    for (form, candidate) in candidates {
-        for &route in routes(name) {
-            let outputs = build(dag, candidate, route);
-            let entries: Vec<ExprId> =
-                outputs.iter().flat_map(|output| output.entries.iter().copied()).collect();
-            let price = Operations::count(dag, &entries).price();
-            if best.as_ref().is_none_or(|(lowest, ..)| price < *lowest) {
-                best = Some((price, *form, outputs));
-            }
-        }
-    }
-    let (_, form, outputs) = best.expect("the plain formulation is always there");
-    Function { name, link, arguments: arguments(dag, robot, name), outputs, form }
 }
 
 /// The arguments of a function, in the order of the call.

@@ -15,7 +15,6 @@ mod diff;
 mod evaluate;
 mod fold;
 mod fold_functions;
-mod operations;
 mod order;
 #[cfg(test)]
 pub(crate) mod random;
@@ -27,8 +26,8 @@ pub mod text;
 pub use dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
 pub use diff::derivative;
 pub use evaluate::{EvaluateError, Ring, evaluate};
-pub use operations::Operations;
 pub use order::Order;
 pub use rings::{Floats, Rationals, Residues};
+pub(crate) use substitute::rebuild;
 pub use substitute::{free_symbols, substitute};
 pub use symbol::{ClassSet, Symbol, SymbolClass};

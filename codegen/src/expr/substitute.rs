@@ -23,7 +23,7 @@ pub fn substitute(
 }
 
 /// The node of `expr` made again from the images of its operands.
-fn rebuild(dag: &mut Dag, expr: ExprId, image: impl Fn(ExprId) -> ExprId) -> ExprId {
+pub(crate) fn rebuild(dag: &mut Dag, expr: ExprId, image: impl Fn(ExprId) -> ExprId) -> ExprId {
     match dag.node(expr) {
         Node::Constant(_) | Node::Pi | Node::Symbol(_) => expr,
         Node::Neg(a) => dag.neg(image(a)),

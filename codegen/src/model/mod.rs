@@ -1,10 +1,30 @@
 //! Robot models: a file is read, checked, and becomes a [`Robot`] that cannot be wrong.
+//!
+//! 1. `json`: text to values with places, within bounds
+//! 2. `file`: values to one type per object of the format (form)
+//! 3. `check`: every rule of the format (content)
+//! 4. [`robot`](Robot): what later stages see
+//!
+//! All faults are found in one run: [`ModelError`] lists them with file, line, column, JSON
+//! pointer, cause and hint. docs/model-file.md describes the format.
 
+mod check;
+mod fault;
+mod file;
+mod hash;
+mod inertia;
+mod json;
+mod message;
 mod parameter;
+mod reader;
+mod report;
 mod robot;
+mod spelling;
 mod tree;
 mod unit;
 
+pub use fault::{Cause, Fault, MAX_FAULTS, ModelError};
+pub use inertia::Unphysical;
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};
 pub use robot::{
     About, AddedEffect, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace, Ground,
@@ -13,3 +33,46 @@ pub use robot::{
 };
 pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};
+
+use json::{JsonCause, JsonError};
+use report::Report;
+
+/// The tag of a model file.
+pub const FORMAT: &str = "denavit-model/1";
+
+/// The JSON Schema (draft 2020-12) of a model file: its form, not its content.
+pub fn schema() -> &'static str {
+    include_str!("schema.json")
+}
+
+/// Reads a model file from its bytes. `file` is its name, for messages alone.
+pub fn read(file: &str, source: &[u8]) -> Result<Robot, ModelError> {
+    let mut report = Report::default();
+    let root = match json::parse(source) {
+        Ok(root) => root,
+        Err(JsonError { at, cause }) => {
+            report.push(at, Cause::from(cause));
+            return Err(report.into_error(file, source, None));
+        }
+    };
+    reader::find_duplicate_keys(&root, &mut report);
+    let robot = file::ModelFile::read(&root, &mut report)
+        .map(|model| check::check(&model, hash::content_hash(&root), &mut report));
+    match robot {
+        Some(robot) if report.is_empty() => Ok(robot),
+        _ => Err(report.into_error(file, source, Some(&root))),
+    }
+}
+
+impl From<JsonCause> for Cause {
+    fn from(cause: JsonCause) -> Self {
+        match cause {
+            JsonCause::TooLarge(bytes) => Self::FileTooLarge(bytes),
+            JsonCause::NotUtf8 => Self::NotUtf8,
+            JsonCause::ByteOrderMark => Self::ByteOrderMark,
+            JsonCause::TooDeep => Self::TooDeep,
+            JsonCause::TooManyValues => Self::TooManyValues,
+            JsonCause::Syntax(message) => Self::Syntax(message),
+        }
+    }
+}

@@ -77,6 +77,22 @@ pub enum JointEntry {
 }
 
 impl JointEntry {
+    /// The entries, in column order.
+    pub const ALL: [Self; 12] = [
+        Self::Viscous,
+        Self::Coulomb,
+        Self::RotorInertia,
+        Self::Offset,
+        Self::GearRatio,
+        Self::SeriesStiffness,
+        Self::MotorRadius,
+        Self::LoadRadius,
+        Self::ReturnStiffness,
+        Self::ReturnAngle,
+        Self::SpringStiffness,
+        Self::SpringAngle,
+    ];
+
     /// The part of the symbol before `_LINK`.
     pub const fn prefix(self) -> &'static str {
         match self {

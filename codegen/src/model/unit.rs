@@ -68,17 +68,24 @@ impl fmt::Display for Dimension {
                 return write!(f, "{name}");
             }
         }
-        let mut written = false;
-        for (&exponent, name) in self.0.iter().zip(BASE_NAMES) {
-            if exponent != 0 {
-                write!(f, "{}{name}", if written { " " } else { "" })?;
-                written = true;
-            }
-            if exponent != 0 && exponent != 1 {
-                write!(f, "^{exponent}")?;
-            }
+        let part = |sign: i8| {
+            let factors =
+                self.0.iter().zip(BASE_NAMES).filter(|(exponent, _)| *exponent * sign > 0);
+            let factors: Vec<String> = factors
+                .map(|(exponent, name)| match exponent.unsigned_abs() {
+                    1 => name.to_owned(),
+                    power => format!("{name}^{power}"),
+                })
+                .collect();
+            (factors.len(), factors.join(" "))
+        };
+        let ((above, numerator), (below, denominator)) = (part(1), part(-1));
+        write!(f, "{}", if above == 0 { "1" } else { &numerator })?;
+        match below {
+            0 => Ok(()),
+            1 => write!(f, "/{denominator}"),
+            _ => write!(f, "/({denominator})"),
         }
-        if written { Ok(()) } else { write!(f, "1") }
     }
 }
 
@@ -301,7 +308,8 @@ mod tests {
 
     #[test]
     fn dimensions_print_as_a_person_writes_them() {
-        let shown = ["kg m^2/s^2", "kg/s", "1", "N"].map(|text| dimension(text).to_string());
-        assert_eq!(shown, ["N m", "kg s^-1", "1", "N"]);
+        let shown = ["kg m^2/s^2", "m s^-2", "1", "N", "s^-1", "Pa"]
+            .map(|text| dimension(text).to_string());
+        assert_eq!(shown, ["N m", "m/s^2", "1", "N", "1/s", "kg/(m s^2)"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Rational;
 use num_bigint::BigInt;
-use num_traits::Zero;
+use num_traits::{Signed, Zero};
 use std::fmt;
 
 /// Digits and decimal exponent together may not describe a number longer than this: a file of ten
@@ -70,6 +70,23 @@ fn parse_exponent(text: &str) -> Result<i64, DecimalError> {
     text.parse::<i32>().map(i64::from).map_err(|_| DecimalError::TooLong)
 }
 
+/// A rational as a person reads it: an exact decimal where it is a short one, else a fraction.
+pub fn decimal_text(value: &Rational) -> String {
+    let mut scaled = value.clone();
+    for places in 0..=12 {
+        if scaled.is_integer() {
+            let digits = scaled.numer().magnitude().to_string();
+            let padded = format!("{digits:0>width$}", width = places + 1);
+            let (whole, fraction) = padded.split_at(padded.len() - places);
+            let sign = if value.is_negative() { "-" } else { "" };
+            let point = if places == 0 { "" } else { "." };
+            return format!("{sign}{whole}{point}{fraction}");
+        }
+        scaled *= Rational::from_integer(10.into());
+    }
+    value.to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{integer, ratio};
@@ -82,6 +99,13 @@ mod tests {
         assert_eq!(parse_decimal("2E3"), Ok(integer(2000)));
         assert_eq!(parse_decimal(".5"), Ok(ratio(1, 2)));
         assert_eq!(parse_decimal("0e300"), Ok(integer(0)));
+    }
+
+    #[test]
+    fn short_decimals_are_written_as_such() {
+        let texts = [ratio(3001, 20000), ratio(-1, 80), integer(-20), ratio(1, 3), integer(0)]
+            .map(|value| decimal_text(&value));
+        assert_eq!(texts, ["0.15005", "-0.0125", "-20", "1/3", "0"]);
     }
 
     #[test]

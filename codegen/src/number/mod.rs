@@ -3,7 +3,7 @@
 mod decimal;
 mod residue;
 
-pub use decimal::{DecimalError, MAX_DECIMAL_DIGITS, parse_decimal};
+pub use decimal::{DecimalError, MAX_DECIMAL_DIGITS, decimal_text, parse_decimal};
 pub use residue::Residue;
 
 /// An exact rational number (num-rational on num-bigint).

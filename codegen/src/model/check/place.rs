@@ -1,0 +1,117 @@
+//! Points in links, the ground, and the places of effects.
+
+use super::{Check, level_ground};
+use crate::arena::Handle;
+use crate::model::fault::Cause;
+use crate::model::file::{GroundFile, ModelFile, Name, PlaceFile, PointFile};
+use crate::model::robot::{AddedEffect, Contact, ContactId, EffectPlace, Ground, LinkId};
+use crate::model::spelling::{is_identifier, nearest};
+use crate::model::unit::Dimension;
+use num_traits::Zero;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+impl Check<'_> {
+    /// Points fixed in links; one whose link is not known stands nowhere and is left out.
+    pub(super) fn points(&mut self, points: &[PointFile]) -> Vec<Contact> {
+        points
+            .iter()
+            .filter_map(|point| {
+                let position = self.triple(&point.position, "a position", Dimension::LENGTH);
+                let link = self.find_link(&point.link)?;
+                Some(Contact { name: point.name.text.clone().into_owned(), link, position })
+            })
+            .collect()
+    }
+
+    /// Checks that the names of all points are names and differ.
+    pub(super) fn point_names(&mut self, file: &ModelFile) {
+        let mut seen = FxHashSet::default();
+        for point in file.contacts.iter().chain(&file.bodies_that_must_not_touch) {
+            let name = &point.name;
+            let text = name.text.clone().into_owned();
+            if !is_identifier(&text) {
+                // an empty name stands for a missing key, which was noted with the form
+                if !text.is_empty() {
+                    self.push(name.at, Cause::NotIdentifier(text));
+                }
+            } else if !seen.insert(text.clone()) {
+                self.push(name.at, Cause::DuplicateName(text, "another point"));
+            }
+        }
+    }
+
+    /// The ground's plane; level through the origin where the file says nothing.
+    pub(super) fn ground(&mut self, file: &GroundFile) -> Ground {
+        let mut ground = level_ground(&self.scope);
+        if file.point.is_some() {
+            ground.point = self.triple(&file.point, "a position", Dimension::LENGTH);
+        }
+        if file.normal.is_some() {
+            ground.normal = self.triple(&file.normal, "a direction", Dimension::NONE);
+            let is_zero = |entry| self.scope.dag.as_constant(entry).is_some_and(Zero::is_zero);
+            if ground.normal.into_iter().all(is_zero) {
+                self.push(file.at, Cause::ZeroNormal);
+            }
+        }
+        ground
+    }
+
+    /// Added effects.
+    pub(super) fn effects(&mut self, file: &ModelFile) -> Vec<AddedEffect> {
+        let contacts: FxHashMap<&str, usize> = file
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(index, contact)| (contact.name.text.as_ref(), index))
+            .collect();
+        let mut effects = Vec::new();
+        for effect in &file.effects {
+            let mut parameters = Vec::new();
+            for (name, scalar) in &effect.parameters {
+                let value = self.scope.number(scalar, self.report);
+                parameters.extend(value.map(|value| (name.clone(), value)));
+            }
+            if let Some(at) = self.effect_place(&effect.at, &contacts) {
+                effects.push(AddedEffect { effect: effect.effect.clone(), at, parameters });
+            }
+        }
+        effects
+    }
+
+    fn effect_place(
+        &mut self,
+        at: &PlaceFile,
+        contacts: &FxHashMap<&str, usize>,
+    ) -> Option<EffectPlace> {
+        match at {
+            PlaceFile::Model => Some(EffectPlace::Model),
+            PlaceFile::Link(name) => Some(EffectPlace::Link(self.find_link(name)?)),
+            PlaceFile::Contact(name) => {
+                if let Some(&index) = contacts.get(name.text.as_ref()) {
+                    return Some(EffectPlace::Contact(ContactId::from_index(index)));
+                }
+                let mut names: Vec<&str> = Vec::new();
+                if self.report.wants_hints() {
+                    names.extend(contacts.keys());
+                    names.sort_unstable();
+                }
+                let hint = nearest(&name.text, names).map(str::to_owned);
+                self.push(name.at, Cause::UnknownContact(name.text.clone().into_owned(), hint));
+                None
+            }
+        }
+    }
+
+    /// The link of that name; `base` is the moving end of a floating base.
+    fn find_link(&mut self, name: &Name) -> Option<LinkId> {
+        let id = match name.text.as_ref() {
+            "base" => self.base_tip(),
+            text => self.link_ids.get(text).copied(),
+        };
+        if id.is_none() && !name.text.is_empty() {
+            let hint = self.nearest_link(&name.text);
+            self.push(name.at, Cause::UnknownLink(name.text.clone().into_owned(), hint));
+        }
+        id
+    }
+}

@@ -1,0 +1,474 @@
+//! The file as it is written: one type per object of the format, nothing checked but the form.
+//!
+//! Reading never stops at a fault: it notes it, puts something harmless in its place and goes on,
+//! so that one answer lists everything. Nobody sees what was put there: a robot is handed out only
+//! if no fault was noted.
+
+use super::fault::Cause;
+use super::json::Json;
+use super::message::EFFECT_PLACE;
+use super::reader::{Fields, Word};
+use super::report::Report;
+use super::robot::{About, Base, Convention, JointKind, Side, Terms, TorqueSide};
+use std::borrow::Cow;
+
+/// A text with its place.
+#[derive(Clone, Debug)]
+pub(super) struct Name<'a> {
+    pub(super) text: Cow<'a, str>,
+    pub(super) at: usize,
+}
+
+/// A number or an expression, with its place.
+#[derive(Clone, Debug)]
+pub(super) struct Scalar<'a> {
+    pub(super) text: Cow<'a, str>,
+    pub(super) at: usize,
+}
+
+/// A parameter: its value and what the file says about it.
+#[derive(Clone, Debug)]
+pub(super) struct Entry<'a> {
+    pub(super) value: Option<Scalar<'a>>,
+    pub(super) std: Option<Scalar<'a>>,
+    pub(super) known: Option<bool>,
+    pub(super) at: usize,
+}
+
+/// A constant or an unknown.
+#[derive(Clone, Debug)]
+pub(super) struct Declaration<'a> {
+    pub(super) name: Name<'a>,
+    pub(super) value: Option<Scalar<'a>>,
+    pub(super) std: Option<Scalar<'a>>,
+    pub(super) unit: Option<Name<'a>>,
+    pub(super) doc: String,
+}
+
+/// The base with the body that it may carry.
+#[derive(Clone, Debug)]
+pub(super) struct BaseFile<'a> {
+    pub(super) kind: Base,
+    pub(super) body: Option<BodyFile<'a>>,
+}
+
+/// A link.
+#[derive(Clone, Debug)]
+pub(super) struct LinkFile<'a> {
+    pub(super) at: usize,
+    pub(super) name: Name<'a>,
+    pub(super) parent: Option<Name<'a>>,
+    pub(super) joint: JointFile<'a>,
+    pub(super) limits: LimitsFile<'a>,
+    pub(super) body: Option<BodyFile<'a>>,
+}
+
+/// A row of the table: a, alpha, d, theta in this order.
+#[derive(Clone, Debug)]
+pub(super) struct JointFile<'a> {
+    pub(super) kind: JointKind,
+    pub(super) row: [Option<Scalar<'a>>; 4],
+    /// Stiffness and angle.
+    pub(super) spring: Option<[Option<Entry<'a>>; 2]>,
+    pub(super) damping: Option<Entry<'a>>,
+    pub(super) at: usize,
+}
+
+/// The bounds of a joint; a single number stands for both ends.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LimitsFile<'a> {
+    pub(super) position: Option<[Scalar<'a>; 2]>,
+    pub(super) velocity: Option<Scalar<'a>>,
+    pub(super) acceleration: Option<Scalar<'a>>,
+    pub(super) torque: Option<TorqueFile<'a>>,
+    /// Where they stand, if they are given.
+    pub(super) at: Option<usize>,
+}
+
+/// A bound of the torque: one number for both ways, or both ends.
+#[derive(Clone, Debug)]
+pub(super) enum TorqueFile<'a> {
+    Symmetric(Scalar<'a>),
+    Range([Scalar<'a>; 2]),
+}
+
+/// Mass properties: the ten entries in column order.
+#[derive(Clone, Debug)]
+pub(super) struct BodyFile<'a> {
+    pub(super) entries: [Option<Entry<'a>>; 10],
+    pub(super) about: About,
+    /// Where a triangle violation is accepted.
+    pub(super) accepts_triangle_violation: Option<usize>,
+    pub(super) at: usize,
+}
+
+/// Motor and gear.
+#[derive(Clone, Debug)]
+pub(super) struct DriveFile<'a> {
+    pub(super) link: Name<'a>,
+    pub(super) gear_ratio: Option<Entry<'a>>,
+    pub(super) rotor_inertia: Option<Entry<'a>>,
+    pub(super) viscous: Option<Entry<'a>>,
+    pub(super) coulomb: Option<Entry<'a>>,
+    pub(super) offset: Option<Entry<'a>>,
+    /// Stiffness, motor radius, load radius.
+    pub(super) series_elastic: Option<[Option<Entry<'a>>; 3]>,
+    /// Stiffness and angle.
+    pub(super) return_spring: Option<([Option<Entry<'a>>; 2], Side)>,
+}
+
+/// A point fixed in a link.
+#[derive(Clone, Debug)]
+pub(super) struct PointFile<'a> {
+    pub(super) name: Name<'a>,
+    pub(super) link: Name<'a>,
+    pub(super) position: Option<[Scalar<'a>; 3]>,
+}
+
+/// The ground's plane.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GroundFile<'a> {
+    pub(super) point: Option<[Scalar<'a>; 3]>,
+    pub(super) normal: Option<[Scalar<'a>; 3]>,
+    pub(super) at: usize,
+}
+
+/// Where an effect acts.
+#[derive(Clone, Debug)]
+pub(super) enum PlaceFile<'a> {
+    Link(Name<'a>),
+    Contact(Name<'a>),
+    Model,
+}
+
+/// An added effect.
+#[derive(Clone, Debug)]
+pub(super) struct EffectFile<'a> {
+    pub(super) effect: String,
+    pub(super) at: PlaceFile<'a>,
+    pub(super) parameters: Vec<(String, Scalar<'a>)>,
+}
+
+/// The whole file.
+#[derive(Clone, Debug)]
+pub(super) struct ModelFile<'a> {
+    pub(super) name: Name<'a>,
+    pub(super) description: String,
+    pub(super) source: String,
+    pub(super) assumptions: Vec<String>,
+    pub(super) convention: Convention,
+    pub(super) gravity: Option<[Scalar<'a>; 3]>,
+    pub(super) terms: Terms,
+    pub(super) torque_side: TorqueSide,
+    pub(super) constants: Vec<Declaration<'a>>,
+    pub(super) unknowns: Vec<Declaration<'a>>,
+    pub(super) base: BaseFile<'a>,
+    pub(super) links: Vec<LinkFile<'a>>,
+    /// Where the list of links stands.
+    pub(super) links_at: usize,
+    pub(super) drives: Vec<DriveFile<'a>>,
+    pub(super) contacts: Vec<PointFile<'a>>,
+    pub(super) ground: GroundFile<'a>,
+    pub(super) bodies_that_must_not_touch: Vec<PointFile<'a>>,
+    pub(super) effects: Vec<EffectFile<'a>>,
+}
+
+const CONVENTIONS: Word<Convention> = Word {
+    what: "convention",
+    known: &["standard", "modified"],
+    values: &[Convention::Standard, Convention::Modified],
+};
+const TORQUE_SIDES: Word<TorqueSide> = Word {
+    what: "torque side",
+    known: &["joint", "motor"],
+    values: &[TorqueSide::Joint, TorqueSide::Motor],
+};
+const BASES: Word<Base> = Word {
+    what: "base",
+    known: &["fixed", "floating", "planar_floating"],
+    values: &[Base::Fixed, Base::Floating, Base::PlanarFloating],
+};
+const JOINT_KINDS: Word<JointKind> = Word {
+    what: "joint type",
+    known: &["revolute", "prismatic", "fixed"],
+    values: &[JointKind::Revolute, JointKind::Prismatic, JointKind::Fixed],
+};
+const ABOUT: Word<About> = Word {
+    what: "point of reference",
+    known: &["com", "origin"],
+    values: &[About::Com, About::Origin],
+};
+const SIDES: Word<Side> =
+    Word { what: "side", known: &["above", "below"], values: &[Side::Above, Side::Below] };
+const TERMS: Word<usize> = Word {
+    what: "term",
+    known: &["inertia", "coriolis", "gravity", "friction", "rotor"],
+    values: &[0, 1, 2, 3, 4],
+};
+const MODEL: Word<()> = Word { what: EFFECT_PLACE, known: &["model"], values: &[()] };
+
+const MODEL_KEYS: &[&str] = &[
+    "format",
+    "name",
+    "description",
+    "source",
+    "assumptions",
+    "convention",
+    "gravity",
+    "terms",
+    "torque_side",
+    "constants",
+    "unknowns",
+    "base",
+    "links",
+    "drives",
+    "contacts",
+    "ground",
+    "bodies_that_must_not_touch",
+    "effects",
+];
+
+impl<'a> ModelFile<'a> {
+    /// Reads the form of a whole file; none if it is no object at all.
+    pub(super) fn read(json: &Json<'a>, report: &mut Report) -> Option<Self> {
+        let fields = Fields::of(json, MODEL_KEYS, report)?;
+        fields.format(report);
+        Some(Self {
+            name: fields.name("name", report),
+            description: fields.text_or_empty("description", report),
+            source: fields.text_or_empty("source", report),
+            assumptions: fields.texts("assumptions", report),
+            convention: fields.required_word("convention", &CONVENTIONS, report),
+            gravity: fields.required_triple("gravity", report),
+            terms: read_terms(&fields, report),
+            torque_side: fields
+                .word("torque_side", &TORQUE_SIDES, report)
+                .unwrap_or(TorqueSide::Joint),
+            constants: read_declarations(&fields, "constants", &["value", "unit", "doc"], report),
+            unknowns: read_declarations(
+                &fields,
+                "unknowns",
+                &["value", "std", "unit", "doc"],
+                report,
+            ),
+            base: read_base(&fields, report),
+            links: fields.required_items("links", report, read_link),
+            links_at: fields.get("links").map_or(fields.at(), |links| links.start),
+            drives: fields.members("drives", report, read_drive),
+            contacts: fields.items("contacts", report, read_point),
+            ground: fields
+                .get("ground")
+                .map_or_else(GroundFile::default, |json| read_ground(json, report)),
+            bodies_that_must_not_touch: fields.items(
+                "bodies_that_must_not_touch",
+                report,
+                read_point,
+            ),
+            effects: fields.items("effects", report, read_effect),
+        })
+    }
+}
+
+fn read_terms(fields: &Fields<'_, '_>, report: &mut Report) -> Terms {
+    if fields.get("terms").is_none() {
+        return Terms::ALL;
+    }
+    let mut has = [false; 5];
+    fields.items("terms", report, |json, report| {
+        TERMS.read(json, report).map(|index| has[index] = true)
+    });
+    let [inertia, coriolis, gravity, friction, rotor] = has;
+    Terms { inertia, coriolis, gravity, friction, rotor }
+}
+
+fn read_declarations<'a>(
+    fields: &Fields<'_, 'a>,
+    key: &'static str,
+    known: &'static [&'static str],
+    report: &mut Report,
+) -> Vec<Declaration<'a>> {
+    fields.members(key, report, |name, json, report| {
+        let mut declaration =
+            Declaration { name, value: None, std: None, unit: None, doc: String::new() };
+        if Fields::is_scalar(json) {
+            declaration.value = Fields::scalar_of(json, report);
+            return Some(declaration);
+        }
+        let fields = Fields::of(json, known, report)?;
+        declaration.value = fields.scalar("value", report);
+        declaration.std = fields.scalar("std", report);
+        declaration.unit = fields.text("unit", report);
+        declaration.doc = fields.text_or_empty("doc", report);
+        Some(declaration)
+    })
+}
+
+fn read_base<'a>(fields: &Fields<'_, 'a>, report: &mut Report) -> BaseFile<'a> {
+    let fixed = BaseFile { kind: Base::Fixed, body: None };
+    let Some(json) = fields.get("base") else { return fixed };
+    if Fields::is_text(json) {
+        return BaseFile { kind: BASES.read(json, report).unwrap_or(Base::Fixed), body: None };
+    }
+    let Some(inner) = Fields::of(json, &["type", "body"], report) else { return fixed };
+    let kind = inner.required_word("type", &BASES, report);
+    BaseFile { kind, body: inner.get("body").and_then(|json| read_body(json, report)) }
+}
+
+fn read_link<'a>(json: &Json<'a>, report: &mut Report) -> Option<LinkFile<'a>> {
+    let fields = Fields::of(json, &["name", "parent", "joint", "limits", "body"], report)?;
+    Some(LinkFile {
+        at: fields.at(),
+        name: fields.name("name", report),
+        parent: fields.text("parent", report),
+        joint: read_joint(&fields, report),
+        limits: fields.get("limits").and_then(|json| read_limits(json, report)).unwrap_or_default(),
+        body: fields.get("body").and_then(|json| read_body(json, report)),
+    })
+}
+
+fn read_joint<'a>(link: &Fields<'_, 'a>, report: &mut Report) -> JointFile<'a> {
+    const KEYS: &[&str] = &["type", "a", "alpha", "d", "theta", "spring", "damping"];
+    let mut joint = JointFile {
+        kind: JointKind::Revolute,
+        row: [None, None, None, None],
+        spring: None,
+        damping: None,
+        at: link.at(),
+    };
+    let Some(json) = link.require("joint", report) else { return joint };
+    let Some(fields) = Fields::of(json, KEYS, report) else { return joint };
+    joint.at = json.start;
+    joint.kind = fields.required_word("type", &JOINT_KINDS, report);
+    joint.row = ["a", "alpha", "d", "theta"].map(|key| fields.scalar(key, report));
+    joint.spring = fields.get("spring").and_then(|json| {
+        let spring = Fields::of(json, &["stiffness", "angle"], report)?;
+        Some([spring.required_entry("stiffness", report), spring.entry("angle", report)])
+    });
+    joint.damping = fields.entry("damping", report);
+    joint
+}
+
+fn read_limits<'a>(json: &Json<'a>, report: &mut Report) -> Option<LimitsFile<'a>> {
+    let fields = Fields::of(json, &["position", "velocity", "acceleration", "torque"], report)?;
+    let torque = fields.get("torque").and_then(|json| {
+        if Fields::is_scalar(json) {
+            Fields::scalar_of(json, report).map(TorqueFile::Symmetric)
+        } else {
+            Fields::tuple_of(json, report).map(TorqueFile::Range)
+        }
+    });
+    Some(LimitsFile {
+        position: fields.get("position").and_then(|json| Fields::tuple_of(json, report)),
+        velocity: fields.scalar("velocity", report),
+        acceleration: fields.scalar("acceleration", report),
+        torque,
+        at: Some(json.start),
+    })
+}
+
+fn read_body<'a>(json: &Json<'a>, report: &mut Report) -> Option<BodyFile<'a>> {
+    const KEYS: &[&str] = &["mass", "com", "inertia", "about", "accept_triangle_violation"];
+    const TENSOR: &[&str] = &["xx", "yy", "zz", "xy", "xz", "yz"];
+    let fields = Fields::of(json, KEYS, report)?;
+    let mass = fields.entry("mass", report);
+    let [x, y, z] = match fields.get("com") {
+        Some(json) => Fields::entries_of(json, report).map_or([None, None, None], |c| c.map(Some)),
+        None => [None, None, None],
+    };
+    let about = fields.word("about", &ABOUT, report);
+    let mut tensor: [Option<Entry<'a>>; 6] = Default::default();
+    if let Some(json) = fields.get("inertia") {
+        fields.require("about", report);
+        if let Some(inertia) = Fields::of(json, TENSOR, report) {
+            tensor = std::array::from_fn(|entry| inertia.entry(TENSOR[entry], report));
+        }
+    }
+    let [xx, yy, zz, xy, xz, yz] = tensor;
+    let accepted = fields.text("accept_triangle_violation", report);
+    Some(BodyFile {
+        entries: [mass, x, y, z, xx, yy, zz, xy, xz, yz],
+        about: about.unwrap_or(About::Com),
+        accepts_triangle_violation: accepted.map(|reason| reason.at),
+        at: json.start,
+    })
+}
+
+fn read_drive<'a>(link: Name<'a>, json: &Json<'a>, report: &mut Report) -> Option<DriveFile<'a>> {
+    const KEYS: &[&str] = &[
+        "gear_ratio",
+        "rotor_inertia",
+        "viscous",
+        "coulomb",
+        "offset",
+        "series_elastic",
+        "return_spring",
+    ];
+    let fields = Fields::of(json, KEYS, report)?;
+    let series_elastic = fields.get("series_elastic").and_then(|json| {
+        const KEYS: &[&str] = &["stiffness", "motor_radius", "load_radius"];
+        let spring = Fields::of(json, KEYS, report)?;
+        Some(std::array::from_fn(|entry| spring.required_entry(KEYS[entry], report)))
+    });
+    let return_spring = fields.get("return_spring").and_then(|json| {
+        let spring = Fields::of(json, &["stiffness", "angle", "side"], report)?;
+        let side = spring.word("side", &SIDES, report).unwrap_or(Side::Above);
+        let stiffness = spring.required_entry("stiffness", report);
+        Some(([stiffness, spring.entry("angle", report)], side))
+    });
+    Some(DriveFile {
+        link,
+        gear_ratio: fields.entry("gear_ratio", report),
+        rotor_inertia: fields.entry("rotor_inertia", report),
+        viscous: fields.entry("viscous", report),
+        coulomb: fields.entry("coulomb", report),
+        offset: fields.entry("offset", report),
+        series_elastic,
+        return_spring,
+    })
+}
+
+fn read_point<'a>(json: &Json<'a>, report: &mut Report) -> Option<PointFile<'a>> {
+    let fields = Fields::of(json, &["name", "link", "position"], report)?;
+    Some(PointFile {
+        name: fields.name("name", report),
+        link: fields.name("link", report),
+        position: fields.required_triple("position", report),
+    })
+}
+
+fn read_ground<'a>(json: &Json<'a>, report: &mut Report) -> GroundFile<'a> {
+    let Some(fields) = Fields::of(json, &["point", "normal"], report) else {
+        return GroundFile::default();
+    };
+    GroundFile {
+        point: fields.get("point").and_then(|json| Fields::tuple_of(json, report)),
+        normal: fields.get("normal").and_then(|json| Fields::tuple_of(json, report)),
+        at: json.start,
+    }
+}
+
+fn read_effect<'a>(json: &Json<'a>, report: &mut Report) -> Option<EffectFile<'a>> {
+    let fields = Fields::of(json, &["effect", "at", "parameters"], report)?;
+    let at = fields.require("at", report).map_or(PlaceFile::Model, |json| {
+        if Fields::is_text(json) {
+            let _ = MODEL.read(json, report);
+            return PlaceFile::Model;
+        }
+        let place = Fields::of(json, &["link", "contact"], report);
+        let Some(place) = place else { return PlaceFile::Model };
+        if place.get("link").is_some() && place.get("contact").is_some() {
+            report.push(json.start, Cause::TwoPlaces);
+        }
+        match place.text("contact", report) {
+            Some(contact) => PlaceFile::Contact(contact),
+            None => PlaceFile::Link(place.name("link", report)),
+        }
+    });
+    Some(EffectFile {
+        effect: fields.name("effect", report).text.into_owned(),
+        at,
+        parameters: fields.members("parameters", report, |name, json, report| {
+            Some((name.text.into_owned(), Fields::scalar_of(json, report)?))
+        }),
+    })
+}

@@ -84,6 +84,11 @@ impl<K: Handle, V> PrimaryMap<K, V> {
         self.rows.iter()
     }
 
+    /// The rows, in order, to change.
+    pub fn values_mut(&mut self) -> std::slice::IterMut<'_, V> {
+        self.rows.iter_mut()
+    }
+
     /// Handles with their rows, in order.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (K, &V)> + ExactSizeIterator {
         self.rows.iter().enumerate().map(|(index, row)| (K::from_index(index), row))

@@ -2,8 +2,13 @@
 //! Rust.
 
 pub mod arena;
+pub mod derive;
+pub mod dynamics;
 pub mod expr;
 pub mod function;
+pub mod kinematics;
 pub mod model;
 pub mod number;
 pub mod program;
+pub mod regroup;
+pub mod spatial;

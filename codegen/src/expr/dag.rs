@@ -280,23 +280,24 @@ impl Dag {
         self.classes(expr).is_run_time()
     }
 
-    /// Which nodes the outputs reach, as a table over all nodes.
-    pub fn reachable(&self, outputs: &[ExprId]) -> Vec<bool> {
-        let mut marked = vec![false; self.nodes.len()];
-        outputs.iter().for_each(|output| marked[output.index()] = true);
-        for index in (0..self.nodes.len()).rev() {
-            if marked[index] {
-                let node = self.nodes[ExprId::from_index(index)];
-                node.for_each_operand(|operand| marked[operand.index()] = true);
-            }
-        }
-        marked
-    }
-
-    /// The reachable nodes, operands before users.
+    /// The nodes that the outputs reach, operands before users. The time grows with these, not with
+    /// the graph.
     pub fn topological(&self, outputs: &[ExprId]) -> Vec<ExprId> {
-        let marked = self.reachable(outputs);
-        self.nodes.keys().filter(|expr| marked[expr.index()]).collect()
+        let mut marked = vec![false; self.nodes.len()];
+        let mut reached = Vec::new();
+        let mut visit = |expr: ExprId, pending: &mut Vec<ExprId>| {
+            if !std::mem::replace(&mut marked[expr.index()], true) {
+                pending.push(expr);
+            }
+        };
+        let mut pending = Vec::new();
+        outputs.iter().for_each(|&output| visit(output, &mut pending));
+        while let Some(expr) = pending.pop() {
+            reached.push(expr);
+            self.nodes[expr].for_each_operand(|operand| visit(operand, &mut pending));
+        }
+        reached.sort_unstable();
+        reached
     }
 
     /// Stores a node as it is, or finds it. Only the constructors of `fold.rs` call this: a node

@@ -115,8 +115,17 @@ impl Dag {
                 .common_summand(a, b)
                 .or_else(|| self.common_parameter_factor(a, b, true))
                 .or_else(|| self.gather_terms(a, b, true))
-                .unwrap_or_else(|| self.intern(Node::Sub(a, b))),
+                .unwrap_or_else(|| self.ordered_difference(a, b)),
         }
+    }
+
+    /// a - b = -(b - a): one of the two is kept, so that both share their operation.
+    fn ordered_difference(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a < b {
+            return self.intern(Node::Sub(a, b));
+        }
+        let difference = self.intern(Node::Sub(b, a));
+        self.intern(Node::Neg(difference))
     }
 
     /// `a b`.

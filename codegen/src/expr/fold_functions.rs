@@ -29,8 +29,6 @@ impl Dag {
         }
         let negated = match self.node(a) {
             Node::Neg(inner) => Some(inner),
-            // one of a - b and b - a is canonical
-            Node::Sub(x, y) if x > y => Some(self.neg(a)),
             _ => None,
         };
         match (function, negated) {

@@ -15,6 +15,7 @@ mod diff;
 mod evaluate;
 mod fold;
 mod fold_functions;
+mod operations;
 mod order;
 #[cfg(test)]
 pub(crate) mod random;
@@ -26,6 +27,7 @@ pub mod text;
 pub use dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
 pub use diff::derivative;
 pub use evaluate::{EvaluateError, Ring, evaluate};
+pub use operations::Operations;
 pub use order::Order;
 pub use rings::{Floats, Rationals, Residues};
 pub(crate) use substitute::rebuild;

@@ -368,7 +368,9 @@ impl Ring for Residues {
         then: &Residue,
         otherwise: &Residue,
     ) -> Residue {
-        let label = format!("{relation:?}");
-        self.opaque(&label, &[*sides[0], *sides[1], *then, *otherwise])
+        // The sides decide as a coin would, so that a selection keeps what holds of both branches:
+        // it is linear in them, and its square is the selection of the squares.
+        let coin = self.opaque(&format!("{relation:?}"), &[*sides[0], *sides[1]]);
+        if coin.value().is_multiple_of(2) { *then } else { *otherwise }
     }
 }

@@ -1,0 +1,106 @@
+//! Baking: the values of the model in place of its parameter symbols.
+
+use crate::expr::{ExprId, substitute};
+use crate::model::{Body, Drive, Joint, Robot};
+use rustc_hash::FxHashMap;
+use std::fmt;
+
+/// Parameters without a value, which cannot be baked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BakeError {
+    /// The model.
+    pub model: String,
+    /// The parameters' names, in parameter order.
+    pub parameters: Vec<String>,
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: these parameters have no value to bake in: {}\n  hint: give each a value in the \
+             model file, or derive the tunable flavour",
+            self.model,
+            self.parameters.join(", ")
+        )
+    }
+}
+
+impl std::error::Error for BakeError {}
+
+/// The robot with the default value of every parameter in place of its symbol. Values are exact,
+/// so a zero folds everything that it multiplies.
+pub fn bake(robot: &Robot) -> Result<Robot, BakeError> {
+    let mut values: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+    let mut missing = Vec::new();
+    for parameter in robot.parameters.values() {
+        match parameter.default {
+            Some(value) => _ = values.insert(parameter.symbol, value),
+            None => missing.push(parameter.name.clone()),
+        }
+    }
+    if !missing.is_empty() {
+        return Err(BakeError { model: robot.name.clone(), parameters: missing });
+    }
+    let mut baked = robot.clone();
+    let mut dag = std::mem::take(&mut baked.dag);
+    for_each_expression(&mut baked, &mut |expr| {
+        *expr = substitute(&mut dag, &[*expr], &values)[0];
+    });
+    baked.dag = dag;
+    Ok(baked)
+}
+
+/// Every expression of the equations of motion.
+fn for_each_expression(robot: &mut Robot, visit: &mut dyn FnMut(&mut ExprId)) {
+    robot.gravity.iter_mut().for_each(&mut *visit);
+    for link in robot.links.values_mut() {
+        visit_joint(&mut link.joint, visit);
+        if let Some(Body { mass, com, inertia, about: _ }) = &mut link.body {
+            visit(mass);
+            com.iter_mut().chain(inertia).for_each(&mut *visit);
+        }
+        if let Some(drive) = &mut link.drive {
+            visit_drive(drive, visit);
+        }
+    }
+    for contact in robot.contacts.values_mut().chain(&mut robot.bodies_that_must_not_touch) {
+        contact.position.iter_mut().for_each(&mut *visit);
+    }
+    let ground = &mut robot.ground;
+    ground.point.iter_mut().chain(&mut ground.normal).for_each(&mut *visit);
+}
+
+fn visit_joint(joint: &mut Joint, visit: &mut dyn FnMut(&mut ExprId)) {
+    let Joint { kind: _, a, alpha, d, theta, variables: _, spring, damping } = joint;
+    [a, alpha, d, theta].into_iter().chain(damping).for_each(&mut *visit);
+    if let Some(spring) = spring {
+        visit(&mut spring.stiffness);
+        visit(&mut spring.angle);
+    }
+}
+
+fn visit_drive(drive: &mut Drive, visit: &mut dyn FnMut(&mut ExprId)) {
+    let Drive {
+        gear_ratio,
+        rotor_inertia,
+        viscous,
+        coulomb,
+        offset,
+        series_elastic,
+        return_spring,
+    } = drive;
+    [gear_ratio, rotor_inertia, viscous, coulomb, offset]
+        .into_iter()
+        .flatten()
+        .for_each(&mut *visit);
+    if let Some(elastic) = series_elastic {
+        [&mut elastic.stiffness, &mut elastic.motor_radius, &mut elastic.load_radius]
+            .into_iter()
+            .for_each(&mut *visit);
+    }
+    if let Some(spring) = return_spring {
+        visit(&mut spring.stiffness);
+        visit(&mut spring.angle);
+    }
+}

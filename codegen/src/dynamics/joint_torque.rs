@@ -1,0 +1,99 @@
+//! What a joint needs besides the rigid bodies: friction, springs, the inertia of its rotor.
+//!
+//! All on the joint side. With a gear ratio N, rotor inertia and viscous friction of the motor
+//! shaft count N^2 fold and Coulomb friction |N| fold (thesis 3.14-3.17). A series-elastic joint
+//! feels its spring instead: rotor and motor friction are then the motor's own equation (3.22).
+
+use crate::expr::{Dag, ExprId, Relation, UnaryFunction};
+use crate::model::{Link, Robot, Side};
+use rustc_hash::FxHashMap;
+
+/// The terms of one joint.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointTerms {
+    /// Reflected rotor inertia, which adds to the diagonal of D [kg m^2, kg].
+    pub(super) rotor: ExprId,
+    /// Friction, damping, springs and offset: what the drive must give besides [N m, N].
+    pub(super) torque: ExprId,
+    /// Elastic energy of the joint's springs [J].
+    pub(super) energy: ExprId,
+}
+
+/// The terms of every joint, in joint order.
+pub(super) fn joint_terms(dag: &mut Dag, robot: &Robot) -> Vec<JointTerms> {
+    robot.joints().map(|(link, _)| terms_of(dag, robot, &robot.links[link])).collect()
+}
+
+fn terms_of(dag: &mut Dag, robot: &Robot, link: &Link) -> JointTerms {
+    let joint = &link.joint;
+    let variables = joint.variables.expect("joints() lists moving joints");
+    let drive = link.drive.unwrap_or_default();
+    let stiff = drive.series_elastic.is_none();
+    let gear = drive.gear_ratio.unwrap_or_else(|| dag.one());
+    let square = dag.mul(gear, gear);
+    let mut rotor = dag.zero();
+    if let Some(inertia) = drive.rotor_inertia.filter(|_| stiff && robot.terms.rotor) {
+        rotor = dag.mul(square, inertia);
+    }
+    let mut torque = dag.zero();
+    let mut energy = dag.zero();
+    if robot.terms.friction {
+        if let Some(viscous) = drive.viscous.filter(|_| stiff) {
+            let reflected = dag.mul(square, viscous);
+            torque = add_product(dag, torque, reflected, variables.qd);
+        }
+        if let Some(coulomb) = drive.coulomb.filter(|_| stiff) {
+            let size = dag.unary(UnaryFunction::Abs, gear);
+            let reflected = dag.mul(size, coulomb);
+            let sign = dag.unary(UnaryFunction::Sign, variables.qd);
+            torque = add_product(dag, torque, reflected, sign);
+        }
+        if let Some(damping) = joint.damping {
+            torque = add_product(dag, torque, damping, variables.qd);
+        }
+    }
+    if let Some(spring) = joint.spring {
+        let stretch = dag.sub(variables.q, spring.angle);
+        (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, stretch);
+    }
+    if let Some(spring) = drive.return_spring {
+        let zero = dag.zero();
+        let stretch = dag.sub(variables.q, spring.angle);
+        let sides = match spring.side {
+            Side::Above => (spring.angle, variables.q),
+            Side::Below => (variables.q, spring.angle),
+        };
+        let active = dag.select(Relation::Less, sides, stretch, zero);
+        (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, active);
+    }
+    if let Some(offset) = drive.offset {
+        torque = dag.add(torque, offset);
+    }
+    JointTerms { rotor, torque, energy }
+}
+
+fn add_product(dag: &mut Dag, sum: ExprId, a: ExprId, b: ExprId) -> ExprId {
+    let product = dag.mul(a, b);
+    dag.add(sum, product)
+}
+
+/// Torque k x and energy k x^2 / 2 (thesis 2.8) of a linear spring.
+fn add_spring(
+    dag: &mut Dag,
+    (torque, energy): (ExprId, ExprId),
+    stiffness: ExprId,
+    stretch: ExprId,
+) -> (ExprId, ExprId) {
+    let torque = add_product(dag, torque, stiffness, stretch);
+    let square = dag.mul(stretch, stretch);
+    let half = dag.constant(crate::number::ratio(1, 2));
+    let half_stiffness = dag.mul(half, stiffness);
+    (torque, add_product(dag, energy, half_stiffness, square))
+}
+
+/// The derivative of a joint's own torque by one of its own variables.
+pub(super) fn slope(dag: &mut Dag, torque: ExprId, variable: ExprId) -> ExprId {
+    let mut seeds = FxHashMap::default();
+    seeds.insert(variable, dag.one());
+    crate::expr::derivative(dag, &[torque], &seeds)[0]
+}

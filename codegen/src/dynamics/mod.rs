@@ -1,0 +1,26 @@
+//! Equations of motion by recursion over the bodies.
+//!
+//! Every recursion runs in the [`Frames`](crate::kinematics::Frames) it is given, so that the plain
+//! and the grouped formulation are the same code. Inertia is the pseudo-inertia throughout.
+//!
+//! - `motion`: velocities and accelerations, base to tip
+//! - `inverse`: inverse dynamics, bias, gravity (recursive Newton-Euler in pseudo-inertia form)
+//! - `composite`: composite inertias; D and G from them
+//! - `coriolis`: C (Christoffel) and the derivatives of inverse dynamics from composites
+//! - `forward`: forward dynamics by factorising D, and by articulated bodies
+//! - `energy`: kinetic and potential energy, momentum
+//! - [`portfolio`]: every function of a model, the cheapest formulation of each
+//! - [`methods`]: the thesis's four derivations, which share nothing with the recursions
+
+mod articulated;
+mod candidate;
+mod composite;
+mod coriolis;
+mod energy;
+mod forward;
+mod inverse;
+mod joint_torque;
+pub mod methods;
+mod motion;
+mod outputs;
+pub mod portfolio;

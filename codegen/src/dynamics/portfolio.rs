@@ -1,0 +1,141 @@
+//! Every function of a model, each in its cheapest formulation.
+
+use super::candidate::Candidate;
+use super::joint_torque::{JointTerms, joint_terms};
+use super::outputs;
+use crate::expr::{Dag, ExprId, Operations};
+use crate::function::{Argument, Form, Function, FunctionName, Output};
+use crate::kinematics::{Frames, Mechanism};
+use crate::model::Robot;
+
+/// All formulations of one robot.
+pub struct Portfolio<'a> {
+    robot: &'a Robot,
+    mechanism: &'a Mechanism,
+    /// The frames of each formulation, the plain one first.
+    forms: Vec<(Form, Frames)>,
+    joints: Vec<JointTerms>,
+}
+
+impl<'a> Portfolio<'a> {
+    /// The formulations of `robot`, whose moving bodies are `mechanism` (regrouped or not).
+    pub fn new(dag: &mut Dag, robot: &'a Robot, mechanism: &'a Mechanism) -> Self {
+        let mut forms = vec![(Form::Plain, Frames::plain(dag, mechanism))];
+        forms.extend(Frames::grouped(dag, mechanism).map(|frames| (Form::Grouped, frames)));
+        Self { robot, mechanism, forms, joints: joint_terms(dag, robot) }
+    }
+
+    /// The functions of a name: none if the robot cannot have it (contacts without contact
+    /// points), one for each link if it is of links.
+    pub fn derive(&self, dag: &mut Dag, name: FunctionName) -> Vec<Function> {
+        use FunctionName::{ContactBias, ContactJacobian, ContactPositions, LinkJacobian};
+        let robot = self.robot;
+        match name {
+            ContactPositions | ContactJacobian | ContactBias if robot.contacts.is_empty() => {
+                Vec::new()
+            }
+            LinkJacobian => robot
+                .links
+                .iter()
+                .map(|(id, link)| {
+                    let build = |dag: &mut Dag, candidate: &Candidate<'_>, _| {
+                        vec![outputs::link_jacobian(dag, candidate, id)]
+                    };
+                    self.cheapest(dag, (name, Some(link.name.clone())), &build)
+                })
+                .collect(),
+            _ => {
+                let build = |dag: &mut Dag, candidate: &Candidate<'_>, route| {
+                    outputs::outputs(dag, candidate, name, route)
+                };
+                vec![self.cheapest(dag, (name, None), &build)]
+            }
+        }
+    }
+
+    /// Builds every formulation by every route and keeps the one of the lowest price.
+    fn cheapest(
+        &self,
+        dag: &mut Dag,
+        (name, link): (FunctionName, Option<String>),
+        build: &dyn Fn(&mut Dag, &Candidate<'_>, Route) -> Vec<Output>,
+    ) -> Function {
+        let mut best: Option<(usize, Form, Vec<Output>)> = None;
+        for (form, frames) in &self.forms {
+            let (robot, mechanism) = (self.robot, self.mechanism);
+            let candidate = Candidate { robot, mechanism, frames, joints: &self.joints };
+            for &route in routes(name) {
+                let outputs = build(dag, &candidate, route);
+                let entries: Vec<ExprId> =
+                    outputs.iter().flat_map(|output| output.entries.iter().copied()).collect();
+                let price = Operations::count(dag, &entries).price();
+                if best.as_ref().is_none_or(|(lowest, ..)| price < *lowest) {
+                    best = Some((price, *form, outputs));
+                }
+            }
+        }
+        let (_, form, outputs) = best.expect("the plain formulation is always there");
+        Function { name, link, arguments: arguments(dag, self.robot, name), outputs, form }
+    }
+}
+
+/// A way to one function; the cheapest is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Route {
+    /// There is one way only.
+    Only,
+    /// G from composite inertias.
+    Composites,
+    /// G by inverse dynamics at rest.
+    Recursion,
+    /// D factorised.
+    Factorised,
+    /// Articulated bodies.
+    Articulated,
+}
+
+fn routes(name: FunctionName) -> &'static [Route] {
+    match name {
+        FunctionName::GravityVector => &[Route::Composites, Route::Recursion],
+        FunctionName::ForwardDynamics => &[Route::Factorised, Route::Articulated],
+        _ => &[Route::Only],
+    }
+}
+
+/// The arguments of a function, in the order of the call.
+fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec<Argument> {
+    use FunctionName as F;
+    let names: &[&'static str] = match name {
+        F::InverseDynamics | F::InverseDynamicsDerivatives => &["q", "qd", "qdd"],
+        F::ForwardDynamics | F::ForwardDynamicsDerivatives => &["q", "qd", "tau"],
+        F::CoriolisMatrix
+        | F::Bias
+        | F::DynamicsTerms
+        | F::ContactBias
+        | F::Momentum
+        | F::KineticEnergy => &["q", "qd"],
+        F::MassMatrixSolve => &["q", "b"],
+        F::MassMatrix
+        | F::GravityVector
+        | F::LinkTransforms
+        | F::LinkJacobian
+        | F::ContactPositions
+        | F::ContactJacobian
+        | F::CenterOfMass
+        | F::CenterOfMassJacobian
+        | F::PotentialEnergy => &["q"],
+    };
+    names
+        .iter()
+        .map(|&argument| {
+            let symbols = robot.joints().map(|(link, variables)| match argument {
+                "q" => variables.q,
+                "qd" => variables.qd,
+                "qdd" => variables.qdd,
+                "tau" => variables.tau,
+                _ => outputs::right_side(dag, &robot.links[link].name),
+            });
+            Argument { name: argument, symbols: symbols.collect() }
+        })
+        .collect()
+}

@@ -1,0 +1,13 @@
+//! From the rows of the table to moving bodies and their frames.
+//!
+//! - [`Mechanism`]: the rigid bodies that move, links on fixed rows merged into their carriers
+//! - [`Frames`]: one frame for each body, in which the recursions run
+//! - `world`: positions, rotations and Jacobians in frame 0
+
+mod frames;
+mod mechanism;
+mod world;
+
+pub use frames::{Frame, Frames};
+pub use mechanism::{Mechanism, MovingBody, Placement};
+pub use world::{World, center_of_mass_column};

@@ -118,6 +118,28 @@ impl Node {
             }
         }
     }
+
+    /// The same operation on the images of the operands; not folded.
+    pub(super) fn map_operands(self, image: impl Fn(ExprId) -> ExprId) -> Self {
+        match self {
+            Self::Constant(_) | Self::Pi | Self::Symbol(_) => self,
+            Self::Neg(a) => Self::Neg(image(a)),
+            Self::Add(a, b) => Self::Add(image(a), image(b)),
+            Self::Sub(a, b) => Self::Sub(image(a), image(b)),
+            Self::Mul(a, b) => Self::Mul(image(a), image(b)),
+            Self::Div(a, b) => Self::Div(image(a), image(b)),
+            Self::Pow(a, n) => Self::Pow(image(a), n),
+            Self::Unary(function, a) => Self::Unary(function, image(a)),
+            Self::Binary(function, a, b) => Self::Binary(function, image(a), image(b)),
+            Self::Select { relation, left, right, then, otherwise } => Self::Select {
+                relation,
+                left: image(left),
+                right: image(right),
+                then: image(then),
+                otherwise: image(otherwise),
+            },
+        }
+    }
 }
 
 /// The graph. Build with its constructors (`add`, `mul`, ...), which fold and share.

@@ -3,8 +3,9 @@
 //! What every law here obeys: it is exact (true for all values for which both sides are defined),
 //! it terminates (the right side is smaller, or moves a sign outwards, or gathers parameters), and
 //! it never adds operations to run-time code, even if the operands are shared with other users.
-//! Each law has a test named after it in `fold_tests.rs`; the laws of functions stand in
-//! `fold_functions.rs` under the same rules.
+//! (Counted are multiplications, additions, divisions and functions; negations are free.) Each law has its cases under its own
+//! name in `tests/fixtures/fold`, and `fold_tests.rs` sees to it that none is missing; the laws of
+//! functions stand in `fold_functions.rs` under the same rules.
 
 use super::dag::{Dag, ExprId, Node, UnaryFunction};
 use num_traits::Signed;
@@ -13,6 +14,24 @@ use num_traits::Signed;
 const MAX_POWER_BITS: u64 = 4096;
 
 impl Dag {
+    /// The expression of a node whose operands may be anything: applies the laws.
+    pub(super) fn make(&mut self, node: Node) -> ExprId {
+        match node {
+            Node::Constant(_) | Node::Pi | Node::Symbol(_) => self.intern(node),
+            Node::Neg(a) => self.neg(a),
+            Node::Add(a, b) => self.add(a, b),
+            Node::Sub(a, b) => self.sub(a, b),
+            Node::Mul(a, b) => self.mul(a, b),
+            Node::Div(a, b) => self.div(a, b),
+            Node::Pow(a, n) => self.power(a, n),
+            Node::Unary(function, a) => self.unary(function, a),
+            Node::Binary(function, a, b) => self.binary(function, a, b),
+            Node::Select { relation, left, right, then, otherwise } => {
+                self.select(relation, (left, right), then, otherwise)
+            }
+        }
+    }
+
     /// `-a`.
     pub fn neg(&mut self, a: ExprId) -> ExprId {
         match self.node(a) {
@@ -35,7 +54,7 @@ impl Dag {
         if b == self.zero() {
             return a;
         }
-        // k + l is a constant
+        // k + l = m
         if let (Some(x), Some(y)) = (self.as_constant(a), self.as_constant(b)) {
             return self.constant(x + y);
         }
@@ -84,7 +103,7 @@ impl Dag {
         if a == b {
             return self.zero();
         }
-        // k - l is a constant
+        // k - l = m
         if let (Some(x), Some(y)) = (self.as_constant(a), self.as_constant(b)) {
             return self.constant(x - y);
         }
@@ -92,6 +111,12 @@ impl Dag {
         if let Some(value) = self.as_constant(b).filter(|value| value.is_negative()) {
             let positive = self.constant(-value.clone());
             return self.add(a, positive);
+        }
+        // (-k) - a = -(k + a)
+        if let Some(value) = self.as_constant(a).filter(|value| value.is_negative()) {
+            let positive = self.constant(-value.clone());
+            let sum = self.add(positive, b);
+            return self.neg(sum);
         }
         match (self.node(a), self.node(b)) {
             // a - (-b) = a + b
@@ -119,11 +144,12 @@ impl Dag {
         }
     }
 
-    /// a - b = -(b - a): one of the two is kept, so that both share their operation.
+    /// One of two opposite differences is kept, so that both share their operation.
     fn ordered_difference(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a < b {
             return self.intern(Node::Sub(a, b));
         }
+        // a - b = -(b - a)
         let difference = self.intern(Node::Sub(b, a));
         self.intern(Node::Neg(difference))
     }
@@ -141,7 +167,7 @@ impl Dag {
         if b == self.one() {
             return a;
         }
-        // k l is a constant
+        // k l = m
         if let (Some(x), Some(y)) = (self.as_constant(a), self.as_constant(b)) {
             return self.constant(x * y);
         }
@@ -165,9 +191,11 @@ impl Dag {
                 let product = self.mul(a, y);
                 self.neg(product)
             }
-            // a a = a^2, a^m a = a^(m+1), a^m a^n = a^(m+n)
+            // a a = a^2
             _ if a == b => self.pow(a, 2),
+            // a^m a^n = a^(m+n)
             (Node::Pow(x, n), Node::Pow(y, m)) if x == y => self.pow_sum(x, n, m),
+            // a^m a = a^(m+1)
             (Node::Pow(x, n), _) if x == b => self.pow_sum(x, n, 1),
             (_, Node::Pow(y, m)) if y == a => self.pow_sum(y, m, 1),
             _ => self
@@ -195,16 +223,17 @@ impl Dag {
             return self.mul(inverse, a);
         }
         match (self.node(a), self.node(b)) {
-            // (-a) / b = -(a / b) and a / (-b) = -(a / b)
+            // (-a) / b = -(a / b)
             (Node::Neg(x), _) => {
                 let quotient = self.div(x, b);
                 self.neg(quotient)
             }
+            // a / (-b) = -(a / b)
             (_, Node::Neg(y)) => {
                 let quotient = self.div(a, y);
                 self.neg(quotient)
             }
-            // a / p = a (1/p): the division moves to the prelude
+            // a / p = a (1/p)
             _ if self.is_run_time(a) && !self.is_run_time(b) => {
                 let one = self.one();
                 let inverse = self.intern(Node::Div(one, b));
@@ -237,7 +266,7 @@ impl Dag {
             return a;
         }
         match self.node(a) {
-            // k^n is a constant (while it is short)
+            // k^n = m, while that is short
             Node::Constant(id) => {
                 let value = self.constant_value(id);
                 let bits = value.numer().bits().max(value.denom().bits());
@@ -247,7 +276,7 @@ impl Dag {
                 let value = num_traits::pow(value.clone(), n as usize);
                 self.constant(value)
             }
-            // (-a)^n = a^n for even n, -(a^n) for odd n
+            // (-a)^n = +-(a^n)
             Node::Neg(inner) => {
                 let power = self.power(inner, n);
                 if n.is_multiple_of(2) { power } else { self.neg(power) }
@@ -281,9 +310,10 @@ impl Dag {
         }
     }
 
-    /// (a + b) - (a + c) = b - c, and the same with differences.
+    /// Differences of sums that share a summand.
     fn common_summand(&mut self, a: ExprId, b: ExprId) -> Option<ExprId> {
         match (self.node(a), self.node(b)) {
+            // (a + b) - (a + c) = b - c
             (Node::Add(x, y), Node::Add(u, v)) => {
                 let (rest, other) = if x == u {
                     (y, v)
@@ -314,8 +344,8 @@ impl Dag {
         }
     }
 
-    /// a p + a q = a (p + q), where p and q are parameters (or missing, that is 1): the sum moves
-    /// to the prelude. Between parameters, where p and q are constants.
+    /// Where p and q are parameters (or missing, that is 1), so that the sum moves to the prelude.
+    /// Between parameters, where p and q are constants.
     fn common_parameter_factor(&mut self, a: ExprId, b: ExprId, minus: bool) -> Option<ExprId> {
         let run_time = self.is_run_time(a) && self.is_run_time(b);
         let one = self.one();
@@ -333,6 +363,7 @@ impl Dag {
         let (left, right) = (split(self, a), split(self, b));
         for (x, p) in left {
             for (y, q) in right {
+                // a p + a q = a (p + q), a p - a q = a (p - q)
                 if x == y {
                     let sum = if minus { self.sub(p, q) } else { self.add(p, q) };
                     return Some(self.mul(x, sum));
@@ -342,8 +373,8 @@ impl Dag {
         None
     }
 
-    /// (a + p) + q = a + (p + q), where p and q are parameters: the sum moves to the prelude.
-    /// Between parameters, where p and q are constants or multiples of pi.
+    /// Where p and q are parameters, so that their sum moves to the prelude. Between parameters,
+    /// where p and q are constants or multiples of pi.
     fn gather_terms(&mut self, a: ExprId, b: ExprId, minus: bool) -> Option<ExprId> {
         let run_time = self.is_run_time(a) || self.is_run_time(b);
         let fixed = |dag: &Self, e: ExprId| match run_time {
@@ -355,7 +386,8 @@ impl Dag {
             (true, false) => (b, a, false),
             _ => return None,
         };
-        // The value is `s sum + t p`, with s and t each +1 or -1.
+        // (a + p) + q = a + (p + q), and so with differences
+        // The value is `s sum + t p`, with s and t each +1 or -1:
         let (s, t) = (sum_first || !minus, !sum_first || !minus);
         let (x, q, plus_q, plus_x) = match self.node(sum) {
             Node::Add(x, q) if fixed(self, q) && !fixed(self, x) => (x, q, true, true),
@@ -370,8 +402,8 @@ impl Dag {
         Some(if s == plus_x { self.add(x, parameters) } else { self.sub(parameters, x) })
     }
 
-    /// (a p) q = a (p q), where p and q are parameters: the product moves to the prelude. Between
-    /// parameters, where p and q are constants.
+    /// Where p and q are parameters, so that their product moves to the prelude. Between parameters,
+    /// where p and q are constants.
     fn gather_factors(&mut self, a: ExprId, b: ExprId) -> Option<ExprId> {
         let run_time = self.is_run_time(a) || self.is_run_time(b);
         let fixed = |dag: &Self, e: ExprId| match run_time {
@@ -388,6 +420,7 @@ impl Dag {
             Node::Mul(q, x) if fixed(self, q) => (x, q),
             _ => return None,
         };
+        // (a p) q = a (p q)
         let parameters = self.mul(p, q);
         Some(self.mul(x, parameters))
     }

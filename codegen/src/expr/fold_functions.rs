@@ -3,6 +3,8 @@
 use super::dag::{BinaryFunction, Dag, ExprId, Node, Relation, UnaryFunction};
 use crate::number::{Rational, integer};
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 impl Dag {
     /// `sin(a)`.
@@ -22,8 +24,9 @@ impl Dag {
             return self.constant(value);
         }
         if matches!(function, Sin | Cos | Tan) {
-            // sin(a + k pi/2) is +-sin a or +-cos a, and so for cos and tan
-            if let Some((rest, turns)) = self.split_quarter_turns(a) {
+            // sin(a + k pi/2) and cos(a + k pi/2) are +-sin a or +-cos a
+            // tan(a + k pi) = tan a
+            if let Some((rest, turns)) = self.split_quarter_turns(a, function == Tan) {
                 return self.shifted(function, rest, turns);
             }
         }
@@ -32,12 +35,12 @@ impl Dag {
             _ => None,
         };
         match (function, negated) {
-            // sin, tan, tanh and sign are odd: f(-a) = -f(a)
+            // f(-a) = -f(a) for sin, tan, tanh, sign
             (Sin | Tan | Tanh | Sign, Some(inner)) => {
                 let value = self.unary(function, inner);
                 self.neg(value)
             }
-            // cos and abs are even: f(-a) = f(a)
+            // f(-a) = f(a) for cos, abs
             (Cos | Abs, Some(inner)) => self.unary(function, inner),
             (Sin | Cos | Tan | Tanh | Sign | Abs | Sqrt | Exp | Log, _) => {
                 self.intern(Node::Unary(function, a))
@@ -62,52 +65,93 @@ impl Dag {
         self.intern(Node::Binary(BinaryFunction::Atan2, y, x))
     }
 
-    /// A function of `a + turns pi/2`.
+    /// A function of `a + turns pi/2`; for the tangent `turns` is even.
     fn shifted(&mut self, function: UnaryFunction, a: ExprId, turns: u8) -> ExprId {
-        use UnaryFunction::{Cos, Sin};
-        if function == UnaryFunction::Tan {
-            let value = self.unary(function, a);
-            if turns.is_multiple_of(2) {
-                return value;
-            }
-            // tan(a + pi/2) = -1/tan a
-            let minus_one = self.integer(-1);
-            return self.div(minus_one, value);
+        use UnaryFunction::{Cos, Sin, Tan};
+        if function == Tan {
+            return self.unary(function, a);
         }
-        // cos a = sin(a + pi/2)
+        // cos a is sin(a + pi/2)
         let turns = (turns + u8::from(function == Cos)) % 4;
         let value = self.unary(if turns.is_multiple_of(2) { Sin } else { Cos }, a);
         if turns < 2 { value } else { self.neg(value) }
     }
 
-    /// `a = rest + k pi/2` with the whole number k taken modulo 4; `None` if k is 0.
-    fn split_quarter_turns(&mut self, a: ExprId) -> Option<(ExprId, u8)> {
-        let (mut half_pis, mut rest) = (Rational::zero(), Vec::new());
-        let mut pending = vec![(a, false)];
-        while let Some((expr, minus)) = pending.pop() {
-            match self.node(expr) {
-                Node::Neg(x) => pending.push((x, !minus)),
-                Node::Add(x, y) => pending.extend([(y, minus), (x, minus)]),
-                Node::Sub(x, y) => pending.extend([(y, !minus), (x, minus)]),
-                _ => match self.half_pis(expr) {
-                    Some(count) if minus => half_pis -= count,
-                    Some(count) => half_pis += count,
-                    None => rest.push((expr, minus)),
-                },
-            }
+    /// `a = rest + k pi/2` with the whole number k (an even one if `half_turns`) taken modulo 4;
+    /// `None` if k is 0. The sums below `a` are made again without their multiples of pi, each as
+    /// it was grouped: no addition is new unless the angle is used as a number too.
+    fn split_quarter_turns(&mut self, a: ExprId, half_turns: bool) -> Option<(ExprId, u8)> {
+        let nodes = self.additive_nodes(a);
+        if nodes.iter().all(|&expr| self.half_pis(expr).is_none()) {
+            return None;
         }
-        let whole = half_pis.floor();
+        let mut stripped: FxHashMap<ExprId, (ExprId, Rational)> = FxHashMap::default();
+        for expr in nodes {
+            let split = self.without_pi(expr, &stripped);
+            stripped.insert(expr, split);
+        }
+        let (mut rest, half_pis) = stripped.remove(&a)?;
+        let step = integer(if half_turns { 2 } else { 1 });
+        let whole = (&half_pis / &step).floor() * step;
         if whole.is_zero() {
             return None;
         }
-        let turns = num_integer_mod_4(&whole);
+        let turns = quarter_turns(&whole);
         let pi = self.pi();
         let fraction = self.constant((half_pis - whole) / integer(2));
-        let mut sum = self.mul(fraction, pi);
-        for (expr, minus) in rest {
-            sum = if minus { self.sub(sum, expr) } else { self.add(sum, expr) };
+        let angle = self.mul(fraction, pi);
+        rest = self.add(rest, angle);
+        Some((rest, turns))
+    }
+
+    /// The sums below `a` and their terms, operands first.
+    fn additive_nodes(&self, a: ExprId) -> Vec<ExprId> {
+        let (mut pending, mut nodes) = (BTreeSet::from([a]), Vec::new());
+        // Users have larger handles than operands.
+        while let Some(expr) = pending.pop_last() {
+            nodes.push(expr);
+            let node = self.node(expr);
+            if matches!(node, Node::Neg(_) | Node::Add(..) | Node::Sub(..)) {
+                node.for_each_operand(|operand| {
+                    pending.insert(operand);
+                });
+            }
         }
-        Some((sum, turns))
+        nodes.reverse();
+        nodes
+    }
+
+    /// `expr = rest + k pi/2`, given the same for the operands of sums.
+    fn without_pi(
+        &mut self,
+        expr: ExprId,
+        stripped: &FxHashMap<ExprId, (ExprId, Rational)>,
+    ) -> (ExprId, Rational) {
+        let split = |operand: ExprId| {
+            let (rest, count) = &stripped[&operand];
+            (*rest, count.clone())
+        };
+        let (node, count) = match self.node(expr) {
+            Node::Neg(x) => {
+                let (rest, count) = split(x);
+                (Node::Neg(rest), -count)
+            }
+            Node::Add(x, y) => {
+                let ((left, k), (right, l)) = (split(x), split(y));
+                (Node::Add(left, right), k + l)
+            }
+            Node::Sub(x, y) => {
+                let ((left, k), (right, l)) = (split(x), split(y));
+                (Node::Sub(left, right), k - l)
+            }
+            _ => {
+                return match self.half_pis(expr) {
+                    Some(count) => (self.zero(), count),
+                    None => (expr, Rational::zero()),
+                };
+            }
+        };
+        (self.make(node), count)
     }
 
     /// The rational k for which the expression is `k pi/2`.
@@ -137,7 +181,7 @@ impl Dag {
         if a == b {
             return a;
         }
-        // min(k, l) and max(k, l) are constants
+        // min(k, l) = k or l, max(k, l) = k or l
         if let (Some(x), Some(y)) = (self.as_constant(a), self.as_constant(b)) {
             return if (x < y) == (function == BinaryFunction::Min) { a } else { b };
         }
@@ -156,11 +200,12 @@ impl Dag {
         if then == otherwise {
             return then;
         }
-        // select(a < a, x, y) = y; select(a <= a, x, y) = select(a == a, x, y) = x
+        // select(a < a, x, y) = y
+        // select(a <= a, x, y) = select(a == a, x, y) = x
         if left == right {
             return if relation == Relation::Less { otherwise } else { then };
         }
-        // a condition between constants is decided
+        // select(k < l, x, y) = x or y
         if let (Some(x), Some(y)) = (self.as_constant(left), self.as_constant(right)) {
             let holds = match relation {
                 Relation::Less => x < y,
@@ -177,8 +222,9 @@ impl Dag {
 fn unary_of(function: UnaryFunction, value: &Rational) -> Option<Rational> {
     use UnaryFunction::{Abs, Cos, Exp, Log, Sign, Sin, Sqrt, Tan, Tanh};
     match function {
-        // sin 0 = tan 0 = tanh 0 = 0, cos 0 = exp 0 = 1
+        // sin 0 = tan 0 = tanh 0 = 0
         Sin | Tan | Tanh if value.is_zero() => Some(Rational::zero()),
+        // cos 0 = exp 0 = 1
         Cos | Exp if value.is_zero() => Some(Rational::one()),
         // log 1 = 0
         Log if value.is_one() => Some(Rational::zero()),
@@ -187,13 +233,16 @@ fn unary_of(function: UnaryFunction, value: &Rational) -> Option<Rational> {
             let root = Rational::new(value.numer().sqrt(), value.denom().sqrt());
             (&root * &root == *value).then_some(root)
         }
+        // abs k = |k|
         Abs => Some(value.abs()),
+        // sign k = -1, 0 or 1
         Sign => Some(value.signum()),
         Sin | Cos | Tan | Sqrt | Exp | Log | Tanh => None,
     }
 }
 
-fn num_integer_mod_4(whole: &Rational) -> u8 {
+/// A whole number modulo 4.
+pub(super) fn quarter_turns(whole: &Rational) -> u8 {
     let four = integer(4);
     let rest = whole - (whole / &four).floor() * &four;
     rest.to_u8().expect("a whole number modulo 4 is 0, 1, 2 or 3")

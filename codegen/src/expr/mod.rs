@@ -15,8 +15,12 @@ mod diff;
 mod evaluate;
 mod fold;
 mod fold_functions;
+#[cfg(test)]
+mod fold_tests;
 mod operations;
 mod order;
+#[cfg(test)]
+mod pass_tests;
 #[cfg(test)]
 pub(crate) mod random;
 mod rings;

@@ -1,16 +1,22 @@
 //! Random graphs for tests: a recipe of steps, each of which applies an operation to results of
 //! earlier ones, so that proptest can shrink it and operands come to be shared.
 
-use super::dag::{BinaryFunction, Dag, ExprId, Relation, UnaryFunction};
+use super::dag::{BinaryFunction, Dag, ExprId, Node, Relation, UnaryFunction};
 use super::symbol::SymbolClass;
 use crate::number::ratio;
 use proptest::prelude::*;
 
 /// One step: an operation (by number) and the earlier results it takes (by number).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct Step {
     operation: Operation,
     operands: [u8; 4],
+}
+
+impl std::fmt::Debug for Step {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:?}{:?}", self.operation, self.operands)
+    }
 }
 
 /// What a step does.
@@ -21,7 +27,8 @@ enum Operation {
     Sub,
     Mul,
     Div,
-    Pow(i32),
+    Inverse,
+    Pow(u32),
     Unary(UnaryFunction),
     Binary(BinaryFunction),
     Select(Relation),
@@ -52,7 +59,7 @@ fn operations(kind: Kind) -> BoxedStrategy<Operation> {
         4 => Just(Operation::Add),
         4 => Just(Operation::Sub),
         6 => Just(Operation::Mul),
-        1 => (0..4i32).prop_map(Operation::Pow),
+        1 => (2..4u32).prop_map(Operation::Pow),
     ];
     let trigonometric = prop::sample::select(vec![Sin, Cos]).prop_map(Operation::Unary);
     let unary = prop::sample::select(vec![Tan, Sqrt, Exp, Log, Tanh, Abs, Sign]);
@@ -66,7 +73,8 @@ fn operations(kind: Kind) -> BoxedStrategy<Operation> {
             16 => ring,
             4 => trigonometric,
             2 => Just(Operation::Div),
-            1 => (-3..70i32).prop_map(Operation::Pow),
+            1 => (2..70u32).prop_map(Operation::Pow),
+            1 => Just(Operation::Inverse),
             3 => unary.prop_map(Operation::Unary),
             1 => binary.prop_map(Operation::Binary),
             1 => relation.prop_map(Operation::Select),
@@ -96,31 +104,40 @@ fn atoms(dag: &mut Dag, kind: Kind) -> Vec<ExprId> {
     atoms
 }
 
-/// Follows a recipe through the folding constructors; answers all results. Steps that would divide
-/// by the constant 0 are left out.
-pub(crate) fn build(dag: &mut Dag, kind: Kind, recipe: &[Step]) -> Vec<ExprId> {
+/// Follows a recipe, each node made by `make`; answers all results. Steps that would divide by the
+/// constant 0 are left out.
+pub(crate) fn build(
+    dag: &mut Dag,
+    kind: Kind,
+    recipe: &[Step],
+    make: fn(&mut Dag, Node) -> ExprId,
+) -> Vec<ExprId> {
     let mut results = atoms(dag, kind);
     let first = results.len();
+    let (zero, one) = (dag.zero(), dag.one());
     for step in recipe {
         // Later results are taken more often than earlier ones: deep graphs.
         let [a, b, c, d] = step.operands.map(|number| {
             let back = usize::from(number) * usize::from(number) * results.len() / (256 * 256);
             results[results.len() - 1 - back]
         });
-        let zero = dag.zero();
-        results.push(match step.operation {
-            Operation::Neg => dag.neg(a),
-            Operation::Add => dag.add(a, b),
-            Operation::Sub => dag.sub(a, b),
-            Operation::Mul => dag.mul(a, b),
+        let node = match step.operation {
+            Operation::Neg => Node::Neg(a),
+            Operation::Add => Node::Add(a, b),
+            Operation::Sub => Node::Sub(a, b),
+            Operation::Mul => Node::Mul(a, b),
             Operation::Div if b == zero => continue,
-            Operation::Div => dag.div(a, b),
-            Operation::Pow(n) if n < 0 && a == zero => continue,
-            Operation::Pow(n) => dag.pow(a, n),
-            Operation::Unary(function) => dag.unary(function, a),
-            Operation::Binary(function) => dag.binary(function, a, b),
-            Operation::Select(relation) => dag.select(relation, (a, b), c, d),
-        });
+            Operation::Div => Node::Div(a, b),
+            Operation::Inverse if a == zero => continue,
+            Operation::Inverse => Node::Div(one, a),
+            Operation::Pow(n) => Node::Pow(a, n),
+            Operation::Unary(function) => Node::Unary(function, a),
+            Operation::Binary(function) => Node::Binary(function, a, b),
+            Operation::Select(relation) => {
+                Node::Select { relation, left: a, right: b, then: c, otherwise: d }
+            }
+        };
+        results.push(make(dag, node));
     }
     results.split_off(first)
 }

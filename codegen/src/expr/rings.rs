@@ -2,6 +2,7 @@
 
 use super::dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
 use super::evaluate::{EvaluateError, Ring};
+use super::fold_functions::quarter_turns;
 use crate::arena::Handle;
 use crate::number::{Rational, Residue, integer, to_f64};
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -205,13 +206,17 @@ impl Residues {
                 Some(expr) => values[expr.index()].expect("operands come first"),
                 None => Residue::scrambled(self.seed, fnv("pi")),
             };
+            let mut coefficient = coefficient;
+            if atom.is_none() {
+                // Quarter turns are exact: pi is taken modulo pi/2.
+                let quarters = (&coefficient * integer(2)).floor();
+                coefficient -= &quarters / integer(2);
+                for _ in 0..quarter_turns(&quarters) {
+                    point = turned(point, [Residue::ZERO, Residue::ONE]);
+                }
+            }
             let denominator = coefficient.denom().to_u64().unwrap_or(u64::MAX);
-            let mut factor = match (atom, denominator) {
-                // A quarter turn is exact: coefficients of pi are in halves.
-                (None, 1) => [-Residue::ONE, Residue::ZERO],
-                (None, 2) => [Residue::ZERO, Residue::ONE],
-                _ => self.random_unit_point(value, denominator),
-            };
+            let mut factor = self.random_unit_point(value, denominator);
             if coefficient.is_negative() {
                 factor[1] = -factor[1];
             }
@@ -226,8 +231,11 @@ impl Residues {
         Ok(point)
     }
 
-    /// A random point for an atom; opposite atoms have conjugate points.
+    /// A random point for an atom; that of 0 is 1, and opposite atoms have conjugate points.
     fn random_unit_point(&mut self, value: Residue, denominator: u64) -> [Residue; 2] {
+        if value == Residue::ZERO {
+            return [Residue::ONE, Residue::ZERO];
+        }
         let seed = self.seed;
         let (value, is_opposite) = magnitude(value);
         let [cos, sin] = *self.unit_points.entry((value, denominator)).or_insert_with(|| {
@@ -261,20 +269,28 @@ fn turned(a: [Residue; 2], b: [Residue; 2]) -> [Residue; 2] {
 /// An angle as a combination of atoms with rational coefficients; `None` is the atom pi.
 fn angle_atoms(dag: &Dag, argument: ExprId) -> BTreeMap<Option<ExprId>, Rational> {
     let mut atoms = BTreeMap::<Option<ExprId>, Rational>::new();
-    let mut pending = vec![(argument, integer(1))];
-    while let Some((expr, factor)) = pending.pop() {
+    // Users have larger handles than operands: what is taken last is complete, and each node is
+    // taken once, however often it is shared.
+    let mut pending = BTreeMap::from([(argument, integer(1))]);
+    while let Some((expr, factor)) = pending.pop_last() {
+        let mut push = |operand: ExprId, factor: Rational| {
+            *pending.entry(operand).or_insert_with(Rational::zero) += factor;
+        };
         match dag.node(expr) {
-            Node::Neg(a) => pending.push((a, -factor)),
-            Node::Add(a, b) => pending.extend([(a, factor.clone()), (b, factor)]),
-            Node::Sub(a, b) => pending.extend([(a, factor.clone()), (b, -factor)]),
-            Node::Mul(a, b) if dag.as_constant(a).is_some() => {
-                let k = dag.as_constant(a).expect("just seen");
-                pending.push((b, factor * k));
+            Node::Neg(a) => push(a, -factor),
+            Node::Add(a, b) => {
+                push(a, factor.clone());
+                push(b, factor);
             }
-            Node::Mul(a, b) if dag.as_constant(b).is_some() => {
-                let k = dag.as_constant(b).expect("just seen");
-                pending.push((a, factor * k));
+            Node::Sub(a, b) => {
+                push(a, factor.clone());
+                push(b, -factor);
             }
+            Node::Mul(a, b) => match (dag.as_constant(a), dag.as_constant(b)) {
+                (Some(k), _) => push(b, factor * k),
+                (_, Some(k)) => push(a, factor * k),
+                _ => *atoms.entry(Some(expr)).or_insert_with(Rational::zero) += factor,
+            },
             Node::Pi => *atoms.entry(None).or_insert_with(Rational::zero) += factor,
             // A rational number is a multiple of the atom 1.
             Node::Constant(id) => {

@@ -24,20 +24,8 @@ pub fn substitute(
 
 /// The node of `expr` made again from the images of its operands.
 pub(crate) fn rebuild(dag: &mut Dag, expr: ExprId, image: impl Fn(ExprId) -> ExprId) -> ExprId {
-    match dag.node(expr) {
-        Node::Constant(_) | Node::Pi | Node::Symbol(_) => expr,
-        Node::Neg(a) => dag.neg(image(a)),
-        Node::Add(a, b) => dag.add(image(a), image(b)),
-        Node::Sub(a, b) => dag.sub(image(a), image(b)),
-        Node::Mul(a, b) => dag.mul(image(a), image(b)),
-        Node::Div(a, b) => dag.div(image(a), image(b)),
-        Node::Pow(a, n) => dag.power(image(a), n),
-        Node::Unary(function, a) => dag.unary(function, image(a)),
-        Node::Binary(function, a, b) => dag.binary(function, image(a), image(b)),
-        Node::Select { relation, left, right, then, otherwise } => {
-            dag.select(relation, (image(left), image(right)), image(then), image(otherwise))
-        }
-    }
+    let node = dag.node(expr).map_operands(image);
+    dag.make(node)
 }
 
 /// The symbols that the outputs depend on, in the order of their making.

@@ -165,7 +165,10 @@ fn the_recursions_agree_with_the_methods() {
             method.gravity,
             method.inverse_dynamics,
         ];
-        let functions = crate::dynamics::functions(&mut dag, &robot, &wanted);
+        let mechanism = crate::kinematics::Mechanism::new(&mut dag, &robot);
+        let portfolio = crate::dynamics::portfolio::Portfolio::new(&mut dag, &robot, &mechanism);
+        let functions: Vec<_> =
+            wanted.iter().flat_map(|&name| portfolio.derive(&mut dag, name)).collect();
         assert_eq!(functions.len(), wanted.len());
         for (function, expected) in functions.iter().zip(&expected) {
             for seed in SEEDS {

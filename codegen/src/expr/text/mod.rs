@@ -26,6 +26,8 @@ mod print;
 mod tests;
 
 pub use error::{ParseCause, ParseError};
+#[cfg(test)]
+pub(super) use parse::parse_with;
 pub use parse::{MAX_CONSTANT_BITS, MAX_EXPONENT, MAX_TEXT_BYTES, parse};
 pub use print::{Printed, print, print_with_intermediates};
 

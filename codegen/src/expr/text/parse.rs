@@ -3,7 +3,7 @@
 use super::error::{ParseCause, ParseError};
 use super::lexer::{Lexer, Token};
 use super::{Function, PI};
-use crate::expr::dag::{Dag, ExprId, Relation};
+use crate::expr::dag::{Dag, ExprId, Node, Relation};
 use crate::number::parse_decimal;
 use num_traits::{Signed, ToPrimitive};
 
@@ -24,11 +24,21 @@ pub fn parse(
     text: &str,
     resolve: &mut dyn FnMut(&mut Dag, &str) -> Option<ExprId>,
 ) -> Result<ExprId, ParseError> {
+    parse_with(dag, text, resolve, Dag::make)
+}
+
+/// [`parse`], with `make` in place of the folding constructor of nodes.
+pub(in crate::expr) fn parse_with(
+    dag: &mut Dag,
+    text: &str,
+    resolve: &mut dyn FnMut(&mut Dag, &str) -> Option<ExprId>,
+    make: fn(&mut Dag, Node) -> ExprId,
+) -> Result<ExprId, ParseError> {
     if text.len() > MAX_TEXT_BYTES {
         return Err(ParseError::new(0, ParseCause::TextTooLong));
     }
     let mut parser =
-        Parser { dag, lexer: Lexer::new(text), values: Vec::new(), pending: Vec::new() };
+        Parser { dag, make, lexer: Lexer::new(text), values: Vec::new(), pending: Vec::new() };
     let mut expects_operand = true;
     loop {
         let (start, token) = parser.lexer.next()?;
@@ -88,6 +98,7 @@ struct Call {
 
 struct Parser<'a, 'd> {
     dag: &'d mut Dag,
+    make: fn(&mut Dag, Node) -> ExprId,
     lexer: Lexer<'a>,
     values: Vec<ExprId>,
     pending: Vec<Pending>,
@@ -240,23 +251,21 @@ impl Parser<'_, '_> {
             let cause = ParseCause::ArgumentCount { function: function.name(), expected, found };
             return Err(ParseError::new(offset, cause));
         }
-        let value = match function {
-            Function::Unary(function) => {
-                let a = self.pop_value();
-                self.dag.unary(function, a)
-            }
+        let node = match function {
+            Function::Unary(function) => Node::Unary(function, self.pop_value()),
             Function::Binary(function) => {
                 let (b, a) = (self.pop_value(), self.pop_value());
-                self.dag.binary(function, a, b)
+                Node::Binary(function, a, b)
             }
             Function::Select => {
                 let (otherwise, then) = (self.pop_value(), self.pop_value());
                 let (right, left) = (self.pop_value(), self.pop_value());
                 let (relation, exchanged) = call.relation.expect("seen at the first comma");
-                let sides = if exchanged { (right, left) } else { (left, right) };
-                self.dag.select(relation, sides, then, otherwise)
+                let (left, right) = if exchanged { (right, left) } else { (left, right) };
+                Node::Select { relation, left, right, then, otherwise }
             }
         };
+        let value = (self.make)(self.dag, node);
         self.values.push(value);
         Ok(())
     }
@@ -291,7 +300,7 @@ impl Parser<'_, '_> {
                     self.apply(operator, a, b).map_err(|cause| ParseError::new(offset, cause))?;
                 (value, offset)
             }
-            _ => (self.dag.neg(b), 0),
+            _ => ((self.make)(self.dag, Node::Neg(b)), 0),
         };
         if let Some(constant) = self.dag.as_constant(value)
             && constant.numer().bits().max(constant.denom().bits()) > MAX_CONSTANT_BITS
@@ -303,26 +312,34 @@ impl Parser<'_, '_> {
     }
 
     fn apply(&mut self, operator: Operator, a: ExprId, b: ExprId) -> Result<ExprId, ParseCause> {
-        let dag = &mut *self.dag;
-        match operator {
-            Operator::Add => Ok(dag.add(a, b)),
-            Operator::Sub => Ok(dag.sub(a, b)),
-            Operator::Mul => Ok(dag.mul(a, b)),
-            Operator::Div if b == dag.zero() => Err(ParseCause::DivisionByZero),
-            Operator::Div => Ok(dag.div(a, b)),
-            Operator::Pow => {
-                let exponent = dag.as_constant(b).filter(|value| value.is_integer());
-                let exponent = exponent.ok_or(ParseCause::ExponentNotWhole)?;
-                if exponent.abs() > crate::number::integer(i64::from(MAX_EXPONENT)) {
-                    return Err(ParseCause::ExponentTooLarge);
-                }
-                let exponent = exponent.to_i32().expect("just seen to be small");
-                if a == dag.zero() && exponent < 0 {
-                    return Err(ParseCause::DivisionByZero);
-                }
-                Ok(dag.pow(a, exponent))
-            }
+        let node = match operator {
+            Operator::Add => Node::Add(a, b),
+            Operator::Sub => Node::Sub(a, b),
+            Operator::Mul => Node::Mul(a, b),
+            Operator::Div if b == self.dag.zero() => return Err(ParseCause::DivisionByZero),
+            Operator::Div => Node::Div(a, b),
+            Operator::Pow => return self.apply_power(a, b),
+        };
+        Ok((self.make)(self.dag, node))
+    }
+
+    fn apply_power(&mut self, a: ExprId, b: ExprId) -> Result<ExprId, ParseCause> {
+        let one = self.dag.one();
+        let exponent = self.dag.as_constant(b).filter(|value| value.is_integer());
+        let exponent = exponent.ok_or(ParseCause::ExponentNotWhole)?;
+        if exponent.abs() > crate::number::integer(i64::from(MAX_EXPONENT)) {
+            return Err(ParseCause::ExponentTooLarge);
         }
+        let exponent = exponent.to_i32().expect("just seen to be small");
+        if a == self.dag.zero() && exponent < 0 {
+            return Err(ParseCause::DivisionByZero);
+        }
+        let power = match exponent.unsigned_abs() {
+            0 => one,
+            1 => a,
+            n => (self.make)(self.dag, Node::Pow(a, n)),
+        };
+        Ok(if exponent < 0 { (self.make)(self.dag, Node::Div(one, power)) } else { power })
     }
 
     fn pop_value(&mut self) -> ExprId {

@@ -11,9 +11,9 @@ use num_traits::{One, Signed};
 /// The text of an expression.
 ///
 /// What is promised: parsed in the same graph, the text gives the same handle; parsed in another
-/// graph, an expression that is equal (its sums and products may be stored with other operands
-/// first, and the sign of an odd function's argument may differ). The text itself depends on the
-/// structure of the expression alone, not on the order in which the graph was built.
+/// graph, an expression that is equal (of `a - b` and `b - a` another one may be stored there). The
+/// order of the text depends on the structure of the expression alone, not on that in which the
+/// graph was built.
 ///
 /// It holds where each symbol's name [is one](super::is_symbol_name), constants are within
 /// [`MAX_CONSTANT_BITS`](super::MAX_CONSTANT_BITS), no constant is raised to a power beyond
@@ -195,9 +195,19 @@ impl Printer<'_> {
                 push_denominator(value, pieces);
             }
             Node::Pi => pieces.push(Task::Text(PI)),
-            Node::Neg(a) => pieces.extend([Task::Text("-"), Task::Expr(a, Level::Product)]),
+            Node::Neg(a) => match self.dag.node(a) {
+                // One of two opposite differences is stored; a name hides what it is.
+                Node::Sub(x, y) if self.names[a].is_none() => {
+                    infix(pieces, (y, Level::Sum), " - ", (x, Level::Product));
+                }
+                _ => pieces.extend([Task::Text("-"), Task::Expr(a, Level::Product)]),
+            },
             Node::Add(a, b) => {
-                let [first, second] = self.arranged(a, b, Level::Sum);
+                let [first, second] = match self.dag.as_constant(a) {
+                    Some(_) => [b, a],
+                    None if self.dag.as_constant(b).is_some() => [a, b],
+                    None => self.arranged(a, b, Level::Sum),
+                };
                 infix(pieces, (first, Level::Sum), " + ", (second, Level::Product));
             }
             Node::Sub(a, b) => infix(pieces, (a, Level::Sum), " - ", (b, Level::Product)),

@@ -61,7 +61,7 @@ fn texts_are_printed_with_the_brackets_they_need() {
         "-3/2",
         "a - 3/2",
         "-3/2/b",
-        "-3 - a",
+        "-(a + 3)",
         "sqrt(a)/tan(b)",
         "atan2(b, a)",
         "min(a, b)*max(a, b)",
@@ -273,7 +273,7 @@ proptest! {
     #[test]
     fn what_is_printed_is_read_back(recipe in recipes(Kind::Any, 40)) {
         let mut dag = Dag::new();
-        for expr in build(&mut dag, Kind::Any, &recipe) {
+        for expr in build(&mut dag, Kind::Any, &recipe, Dag::make) {
             let printed = print_with_intermediates(&dag, &[expr], 20_000);
             if !printed.bindings.is_empty() {
                 continue;

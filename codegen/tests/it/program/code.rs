@@ -64,7 +64,8 @@ fn parameters_alone_are_computed_once_in_the_prelude_of_all_functions() {
     // four products with qdd, two with h and h itself, 2 qd1 qd2 + qd2^2, qd1^2, two weights.
     assert_eq!(run_time(mass), (1, 3, 0, 0, 1));
     let (mul, add, neg, div, sincos) = run_time(torque);
-    assert!(mul <= 16 && add <= 13 && (neg, div, sincos) == (0, 0, 3), "{torque:?}");
+    // One of two opposite differences is stored, so the other is its negation.
+    assert!(mul <= 16 && add <= 13 && neg <= 1 && (div, sincos) == (0, 3), "{torque:?}");
     for routine in &program.routines {
         let only_prelude = routine.code.leaves.values().all(|leaf| match leaf {
             Leaf::Parameter(_) => false,

@@ -1,8 +1,13 @@
 //! Model files: the shipped ones, broken ones, and whatever a fuzzer makes of them.
 
 mod broken;
+mod fuzz;
+mod parameters;
+mod pose;
 mod schema;
+mod shipped;
 
+use denavit_codegen::model::{self, Robot};
 use std::path::{Path, PathBuf};
 
 fn package() -> &'static Path {
@@ -27,4 +32,18 @@ fn shipped_models() -> Vec<(String, String)> {
         .collect();
     models.sort();
     models
+}
+
+/// A robot from the text of its model.
+fn robot_of(name: &str, text: &str) -> Robot {
+    match model::read(name, text.as_bytes()) {
+        Ok(robot) => robot,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A shipped robot.
+fn shipped(name: &str) -> Robot {
+    let path = package().join("../models").join(format!("{name}.json"));
+    robot_of(name, &std::fs::read_to_string(path).expect("a shipped model"))
 }

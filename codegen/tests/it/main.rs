@@ -1,4 +1,7 @@
 //! The tests of the compiler, one module for each stage.
 
+mod methods;
 mod model;
+mod models;
 mod program;
+mod thesis;

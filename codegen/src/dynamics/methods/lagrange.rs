@@ -19,17 +19,17 @@ use crate::spatial::{Matrix, Vector, dot};
 /// The energies of a robot, and its dissipation function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Energies {
-    /// Kinetic energy of the bodies [J].
+    /// Kinetic energy of the bodies, in joules.
     pub bodies: ExprId,
-    /// Kinetic energy of the rotors about their axes: `1/2 Ia (N qd)^2` each [J].
+    /// Kinetic energy of the rotors about their axes: `1/2 Ia (N qd)^2` each, in joules.
     pub rotors: ExprId,
-    /// Potential energy of gravity, `-sum m g . o_c` with the acceleration g of free fall [J].
+    /// Potential energy of gravity in joules, `-sum m g . o_c` with g the acceleration of free fall.
     pub gravity: ExprId,
-    /// Potential energy of springs across joints (2.8) [J].
+    /// Potential energy of springs across joints (2.8), in joules.
     pub springs: ExprId,
-    /// Potential of the constant offsets of the drives [J].
+    /// Potential of the constant offsets of the drives, in joules.
     pub offsets: ExprId,
-    /// Dissipation function R [W]: the non-conservative forces of friction are -dR/dqd.
+    /// Dissipation function R, in watts: the non-conservative forces of friction are -dR/dqd.
     pub dissipation: ExprId,
 }
 

@@ -2,12 +2,9 @@
 
 use super::linear::{add_lists, apply_rows, inner};
 use super::{Method, MethodResult, derive, newton_euler};
-use crate::arena::{Handle, PrimaryMap};
-use crate::expr::{Dag, ExprId, Residues, SymbolClass, evaluate, substitute};
-use crate::model::{
-    About, Base, Body, Convention, Drive, Ground, Joint, JointKind, JointSpring, JointVariables,
-    Limits, Link, LinkId, ReturnSpring, Robot, SeriesElastic, Side, Terms, TorqueSide, Tree,
-};
+use crate::arena::Handle;
+use crate::expr::{Dag, ExprId, Residues, evaluate, free_symbols, substitute};
+use crate::model::{Convention, JointKind, JointVariables, Robot, Terms, read};
 use crate::number::Residue;
 use crate::spatial::{Vector, cross, dot};
 use rustc_hash::FxHashMap;
@@ -15,107 +12,11 @@ use rustc_hash::FxHashMap;
 const SEEDS: [u64; 4] = [1, 2, 3, 4];
 
 /// A turning trunk with two branches: one slides, ends in a fixed link and turns again; the other
-/// turns. Every length, twist and inertia is a symbol.
+/// turns and slides. All entries are symbols.
 fn tree_robot(convention: Convention) -> Robot {
-    let mut dag = Dag::new();
-    let kinds = [
-        ("trunk", None, JointKind::Revolute, Some(About::Com)),
-        ("slide", Some(0), JointKind::Prismatic, Some(About::Origin)),
-        ("bolted", Some(1), JointKind::Fixed, Some(About::Com)),
-        ("wrist", Some(2), JointKind::Revolute, Some(About::Com)),
-        ("arm", Some(0), JointKind::Revolute, None),
-        ("hand", Some(4), JointKind::Prismatic, Some(About::Com)),
-    ];
-    let links: PrimaryMap<LinkId, Link> = kinds
-        .iter()
-        .map(|&(name, parent, kind, about)| link(&mut dag, name, parent, kind, about))
-        .collect();
-    let parents: Vec<_> = links.values().map(|link| link.parent).collect();
-    let zero = dag.zero();
-    Robot {
-        name: "tree".to_owned(),
-        description: String::new(),
-        source: String::new(),
-        assumptions: Vec::new(),
-        convention,
-        base: Base::Fixed,
-        gravity: ["gx", "gy", "gz"].map(|name| dag.symbol(name, SymbolClass::Geometry)),
-        terms: Terms::ALL,
-        torque_side: TorqueSide::Joint,
-        parameters: PrimaryMap::new(),
-        tree: Tree::new(&parents),
-        links,
-        contacts: PrimaryMap::new(),
-        ground: Ground { point: [zero; 3], normal: [zero, zero, dag.one()] },
-        bodies_that_must_not_touch: Vec::new(),
-        effects: Vec::new(),
-        hash: 0,
-        dag,
-    }
-}
-
-fn link(
-    dag: &mut Dag,
-    name: &str,
-    parent: Option<usize>,
-    kind: JointKind,
-    about: Option<About>,
-) -> Link {
-    let mut symbol = |prefix: &str, class| dag.symbol(&format!("{prefix}_{name}"), class);
-    let variables = (kind != JointKind::Fixed).then(|| JointVariables {
-        q: symbol("q", SymbolClass::Configuration),
-        qd: symbol("qd", SymbolClass::Rate),
-        qdd: symbol("qdd", SymbolClass::Acceleration),
-        tau: symbol("tau", SymbolClass::Effort),
-    });
-    let [a, alpha, d, theta] =
-        ["a", "alpha", "d", "theta"].map(|prefix| symbol(prefix, SymbolClass::Geometry));
-    let mut of_drive = |prefix: &str| symbol(prefix, SymbolClass::Drive);
-    let drive = drive(name, &mut of_drive);
-    let spring =
-        (name == "slide").then(|| JointSpring { stiffness: of_drive("ks"), angle: of_drive("qs") });
-    let damping = (name == "slide").then(|| of_drive("fv"));
-    let body = about.map(|about| Body {
-        mass: symbol("m", SymbolClass::Inertia),
-        com: ["cx", "cy", "cz"].map(|prefix| symbol(prefix, SymbolClass::Inertia)),
-        inertia: ["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"]
-            .map(|prefix| symbol(prefix, SymbolClass::Inertia)),
-        about,
-    });
-    let joint = Joint { kind, a, alpha, d, theta, variables, spring, damping };
-    let parent = parent.map(LinkId::from_index);
-    Link { name: name.to_owned(), parent, joint, limits: Limits::default(), body, drive }
-}
-
-/// The trunk has a stiff gear train, the wrist a series spring, the hand a motor without gear.
-fn drive(name: &str, symbol: &mut dyn FnMut(&str) -> ExprId) -> Option<Drive> {
-    let motor = |symbol: &mut dyn FnMut(&str) -> ExprId| Drive {
-        rotor_inertia: Some(symbol("Ia")),
-        viscous: Some(symbol("fv")),
-        coulomb: Some(symbol("fc")),
-        offset: Some(symbol("off")),
-        ..Drive::default()
-    };
-    let mut return_spring =
-        |side| Some(ReturnSpring { stiffness: symbol("kr"), angle: symbol("qr"), side });
-    match name {
-        "trunk" => {
-            let return_spring = return_spring(Side::Above);
-            Some(Drive { gear_ratio: Some(symbol("N")), return_spring, ..motor(symbol) })
-        }
-        "wrist" => {
-            let return_spring = return_spring(Side::Below);
-            let series_elastic = Some(SeriesElastic {
-                stiffness: symbol("k"),
-                motor_radius: symbol("rm"),
-                load_radius: symbol("rl"),
-            });
-            let gear_ratio = Some(symbol("N"));
-            Some(Drive { gear_ratio, series_elastic, return_spring, ..motor(symbol) })
-        }
-        "hand" => Some(motor(symbol)),
-        _ => None,
-    }
+    let file = include_str!("../../../tests/fixtures/every_joint.json");
+    let robot = read("every_joint.json", file.as_bytes()).expect("the file has no faults");
+    Robot { convention, ..robot }
 }
 
 fn values(dag: &Dag, outputs: &[ExprId], seed: u64) -> Vec<Residue> {
@@ -151,50 +52,26 @@ fn the_methods_agree_on_every_kind_of_joint_in_both_conventions() {
     }
 }
 
-#[test]
-fn the_recursions_agree_with_the_methods() {
-    use crate::function::FunctionName as F;
-    let wanted = [F::MassMatrix, F::CoriolisMatrix, F::GravityVector, F::InverseDynamics];
-    for convention in [Convention::Standard, Convention::Modified] {
-        let robot = tree_robot(convention);
-        let mut dag = robot.dag.clone();
-        let method = derive(&mut dag, &robot, Method::DhLagrange);
-        let expected = [
-            method.mass_matrix.concat(),
-            method.coriolis_matrix.concat(),
-            method.gravity,
-            method.inverse_dynamics,
-        ];
-        let mechanism = crate::kinematics::Mechanism::new(&mut dag, &robot);
-        let portfolio = crate::dynamics::portfolio::Portfolio::new(&mut dag, &robot, &mechanism);
-        let functions: Vec<_> =
-            wanted.iter().flat_map(|&name| portfolio.derive(&mut dag, name)).collect();
-        assert_eq!(functions.len(), wanted.len());
-        for (function, expected) in functions.iter().zip(&expected) {
-            for seed in SEEDS {
-                let [ours, theirs] =
-                    [&function.entries(), expected].map(|list| values(&dag, list, seed));
-                assert_eq!(ours, theirs, "{}, {convention:?}", function.full_name());
-            }
-        }
-    }
+/// D qdd + C qd + G and what the drives ask for.
+fn sum_of_terms(dag: &mut Dag, robot: &Robot, result: &MethodResult) -> Vec<ExprId> {
+    let pick = |pick: fn(&JointVariables) -> ExprId| -> Vec<ExprId> {
+        robot.joints().map(|(_, variables)| pick(variables)).collect()
+    };
+    let (qd, qdd) = (pick(|joint| joint.qd), pick(|joint| joint.qdd));
+    let accelerated = apply_rows(dag, &result.mass_matrix, &qdd);
+    let moving = apply_rows(dag, &result.coriolis_matrix, &qd);
+    [moving, result.gravity.clone(), result.drive_torque.clone()]
+        .iter()
+        .fold(accelerated, |sum, part| add_lists(dag, &sum, part))
 }
 
 #[test]
 fn inverse_dynamics_is_the_sum_of_its_terms() {
     let robot = tree_robot(Convention::Standard);
     let mut dag = robot.dag.clone();
-    let pick = |pick: fn(&JointVariables) -> ExprId| -> Vec<ExprId> {
-        robot.joints().map(|(_, variables)| pick(variables)).collect()
-    };
-    let (qd, qdd) = (pick(|joint| joint.qd), pick(|joint| joint.qdd));
     for method in Method::ALL {
         let result = derive(&mut dag, &robot, method);
-        let mut sum = apply_rows(&mut dag, &result.mass_matrix, &qdd);
-        let moving = apply_rows(&mut dag, &result.coriolis_matrix, &qd);
-        for part in [moving, result.gravity, result.drive_torque] {
-            sum = add_lists(&mut dag, &sum, &part);
-        }
+        let sum = sum_of_terms(&mut dag, &robot, &result);
         for seed in SEEDS {
             let expected = values(&dag, &sum, seed);
             assert_eq!(values(&dag, &result.inverse_dynamics, seed), expected, "{method}");
@@ -221,8 +98,12 @@ fn a_model_without_a_term_has_zeros_in_its_place() {
             assert_eq!(vanishes(&result.mass_matrix.concat()), !terms.inertia, "{method}");
             assert_eq!(vanishes(&result.coriolis_matrix.concat()), !terms.coriolis, "{method}");
             assert_eq!(vanishes(&result.gravity), !terms.gravity, "{method}");
+            let sum = sum_of_terms(&mut dag, &robot, &result);
+            let [torque, sum] =
+                [&result.inverse_dynamics, &sum].map(|list| values(&dag, list, SEEDS[0]));
+            assert_eq!(torque, sum, "{method}, {terms:?}");
             let classes = |wanted: &str| {
-                let symbols = crate::expr::free_symbols(&dag, &result.inverse_dynamics);
+                let symbols = free_symbols(&dag, &result.inverse_dynamics);
                 symbols.iter().any(|&id| dag.symbols()[id].name.starts_with(wanted))
             };
             assert_eq!(classes("Ia_"), terms.rotor, "{method}");

@@ -8,6 +8,7 @@
 //! - `composite`: composite inertias; D and G from them
 //! - `coriolis`: C (Christoffel) and the derivatives of inverse dynamics from composites
 //! - `forward`: forward dynamics by factorising D, and by articulated bodies
+//! - `explicit`: closed forms of small robots
 //! - `energy`: kinetic and potential energy, momentum
 //! - [`portfolio`]: every function of a model, the cheapest formulation of each
 //! - [`methods`]: the thesis's four derivations, which share nothing with the recursions
@@ -17,6 +18,7 @@ mod candidate;
 mod composite;
 mod coriolis;
 mod energy;
+mod explicit;
 mod forward;
 mod inverse;
 mod joint_torque;

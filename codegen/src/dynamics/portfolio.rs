@@ -1,12 +1,16 @@
 //! Every function of a model, each in its cheapest formulation.
 
 use super::candidate::Candidate;
+use super::explicit::explicit;
 use super::joint_torque::{JointTerms, joint_terms};
 use super::outputs;
 use crate::expr::{Dag, ExprId, Operations};
 use crate::function::{Argument, Form, Function, FunctionName, Output};
 use crate::kinematics::{Frames, Mechanism};
 use crate::model::Robot;
+
+/// Closed forms grow exponentially with the joints: beyond three they never pay.
+const MAX_EXPLICIT_JOINTS: usize = 3;
 
 /// All formulations of one robot.
 pub struct Portfolio<'a> {
@@ -68,10 +72,18 @@ impl<'a> Portfolio<'a> {
                 let outputs = build(dag, &candidate, route);
                 let entries: Vec<ExprId> =
                     outputs.iter().flat_map(|output| output.entries.iter().copied()).collect();
-                let price = Operations::count(dag, &entries).price();
-                if best.as_ref().is_none_or(|(lowest, ..)| price < *lowest) {
-                    best = Some((price, *form, outputs));
+                let mut keep = |dag: &Dag, form: Form, outputs: Vec<Output>| {
+                    let price = price(dag, &outputs);
+                    if best.as_ref().is_none_or(|(lowest, ..)| price < *lowest) {
+                        best = Some((price, form, outputs));
+                    }
+                };
+                if frames.len() <= MAX_EXPLICIT_JOINTS {
+                    if let Some(closed) = explicit(dag, &entries) {
+                        keep(dag, Form::Explicit, with_entries(&outputs, &closed));
+                    }
                 }
+                keep(dag, *form, outputs);
             }
         }
         let (_, form, outputs) = best.expect("the plain formulation is always there");
@@ -100,6 +112,24 @@ fn routes(name: FunctionName) -> &'static [Route] {
         FunctionName::ForwardDynamics => &[Route::Factorised, Route::Articulated],
         _ => &[Route::Only],
     }
+}
+
+fn price(dag: &Dag, outputs: &[Output]) -> usize {
+    let entries: Vec<ExprId> =
+        outputs.iter().flat_map(|output| output.entries.iter().copied()).collect();
+    Operations::count(dag, &entries).price()
+}
+
+/// The same outputs with other entries, in order.
+fn with_entries(outputs: &[Output], entries: &[ExprId]) -> Vec<Output> {
+    let mut rest = entries.iter().copied();
+    outputs
+        .iter()
+        .map(|output| {
+            let entries = rest.by_ref().take(output.entries.len()).collect();
+            Output { entries, ..output.clone() }
+        })
+        .collect()
 }
 
 /// The arguments of a function, in the order of the call.

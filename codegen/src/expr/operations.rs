@@ -67,11 +67,12 @@ impl Operations {
         self.mul + self.add
     }
 
-    /// What formulations are compared by: multiplications, additions and divisions, one each;
-    /// negations and sines break ties. Machines differ in the rest.
+    /// What formulations are compared by, in sixteenths of an operation: multiplications,
+    /// additions and divisions count one each; sine with cosine as much as 16 (it takes about 20
+    /// of them); changes of sign, which mostly vanish, break ties.
     pub const fn price(&self) -> usize {
         let arithmetic = self.mul + self.add + self.div + self.sqrt + self.select + self.other;
-        16 * arithmetic + self.neg + 2 * self.sincos
+        16 * (arithmetic + 16 * self.sincos) + self.neg
     }
 }
 

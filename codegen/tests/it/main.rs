@@ -1,7 +1,11 @@
 //! The tests of the compiler, one module for each stage.
 
+mod counts;
+mod engine_values;
+mod laws;
 mod methods;
 mod model;
 mod models;
 mod program;
+mod robots;
 mod thesis;

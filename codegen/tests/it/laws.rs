@@ -1,0 +1,424 @@
+//! Laws of mechanics, exactly, at random points modulo 2^61 - 1, on every shipped robot. Each law
+//! ties results of different recursions to each other, or to symbolic derivatives of energies.
+
+use crate::robots::{fixture, load, shipped};
+use denavit_codegen::derive::{Derivation, Flavour, derive};
+use denavit_codegen::expr::{ExprId, Residues, derivative, evaluate};
+use denavit_codegen::function::FunctionName::{self, *};
+use denavit_codegen::model::{JointVariables, Robot};
+use denavit_codegen::number::Residue;
+use rustc_hash::FxHashMap;
+
+const SEEDS: [u64; 2] = [1, 20_091_001];
+
+/// A derived robot with what the laws need.
+struct Derived {
+    name: String,
+    derivation: Derivation,
+    joints: Vec<JointVariables>,
+}
+
+impl Derived {
+    fn new(robot: &Robot, wanted: &[FunctionName]) -> Self {
+        let derivation = derive(robot, Flavour::Tunable, wanted).unwrap();
+        let joints = robot.joints().map(|(_, variables)| *variables).collect();
+        Self { name: robot.name.clone(), derivation, joints }
+    }
+
+    /// Entries of one output of a function; of all outputs without a name.
+    fn entries(&self, function: FunctionName, output: &str) -> Vec<ExprId> {
+        let function = self.derivation.functions.iter().find(|made| made.name == function).unwrap();
+        function.outputs.iter().find(|made| made.name == output).unwrap().entries.clone()
+    }
+
+    fn values(&self, entries: &[ExprId], seed: u64) -> Vec<Residue> {
+        evaluate(&self.derivation.dag, entries, &mut Residues::new(seed)).unwrap()
+    }
+
+    fn symbols(&self, of: fn(&JointVariables) -> ExprId) -> Vec<ExprId> {
+        self.joints.iter().map(of).collect()
+    }
+
+    /// Derivatives of `entries` by every symbol of `by`: `result[j][i]` is d entry_i / d by_j.
+    fn gradient(&mut self, entries: &[ExprId], by: &[ExprId]) -> Vec<Vec<ExprId>> {
+        let dag = &mut self.derivation.dag;
+        by.iter()
+            .map(|&symbol| {
+                let seeds = FxHashMap::from_iter([(symbol, dag.one())]);
+                derivative(dag, entries, &seeds)
+            })
+            .collect()
+    }
+
+    /// The derivative with respect to time: q moves at qd, qd at qdd.
+    fn time_derivative(&mut self, entries: &[ExprId]) -> Vec<ExprId> {
+        let seeds =
+            self.joints.iter().flat_map(|joint| [(joint.q, joint.qd), (joint.qd, joint.qdd)]);
+        derivative(&mut self.derivation.dag, entries, &seeds.collect())
+    }
+}
+
+/// Every shipped robot, and one with nothing but skew axes.
+fn robots() -> Vec<Robot> {
+    let mut robots: Vec<Robot> = shipped().iter().map(|name| load(name)).collect();
+    robots.push(fixture("general_6r.json"));
+    robots
+}
+
+/// Runs `law` on every robot with the functions that it needs.
+fn for_each_robot(wanted: &[FunctionName], law: impl Fn(&mut Derived)) {
+    robots().iter().for_each(|robot| law(&mut Derived::new(robot, wanted)));
+}
+
+/// `A x` for a row-major square matrix.
+fn apply(matrix: &[Residue], vector: &[Residue]) -> Vec<Residue> {
+    matrix.chunks(vector.len()).map(|row| dot(row, vector)).collect()
+}
+
+fn dot(a: &[Residue], b: &[Residue]) -> Residue {
+    a.iter().zip(b).fold(Residue::ZERO, |sum, (&x, &y)| sum + x * y)
+}
+
+fn add(a: &[Residue], b: &[Residue]) -> Vec<Residue> {
+    a.iter().zip(b).map(|(&x, &y)| x + y).collect()
+}
+
+#[test]
+fn inverse_dynamics_is_d_qdd_plus_bias() {
+    for_each_robot(&[InverseDynamics, MassMatrix, Bias], |robot| {
+        for seed in SEEDS {
+            let qdd = robot.values(&robot.symbols(|joint| joint.qdd), seed);
+            let d = robot.values(&robot.entries(MassMatrix, "mass_matrix"), seed);
+            let bias = robot.values(&robot.entries(Bias, "bias"), seed);
+            let tau = robot.values(&robot.entries(InverseDynamics, "tau"), seed);
+            assert_eq!(tau, add(&apply(&d, &qdd), &bias), "{}", robot.name);
+        }
+    });
+}
+
+#[test]
+fn bias_is_c_qd_plus_g_plus_the_joints_own_torques() {
+    for_each_robot(&[Bias, CoriolisMatrix, GravityVector, DynamicsTerms], |robot| {
+        // Friction, springs and offsets: what is left of the bias at rest without gravity is found
+        // by taking the rigid part away, so it must not depend on other joints' variables.
+        let own: Vec<ExprId> = robot.entries(Bias, "bias");
+        for seed in SEEDS {
+            let qd = robot.values(&robot.symbols(|joint| joint.qd), seed);
+            let c = robot.values(&robot.entries(CoriolisMatrix, "coriolis_matrix"), seed);
+            let g = robot.values(&robot.entries(GravityVector, "gravity_vector"), seed);
+            let rigid = add(&apply(&c, &qd), &g);
+            let bias = robot.values(&own, seed);
+            let fused_c = robot.values(&robot.entries(DynamicsTerms, "coriolis_matrix"), seed);
+            assert_eq!(c, fused_c, "{}: fused C", robot.name);
+            let passive = robot.derivation.robot.links.values().all(|link| {
+                link.drive.is_none() && link.joint.spring.is_none() && link.joint.damping.is_none()
+            });
+            if passive {
+                assert_eq!(bias, rigid, "{}", robot.name);
+            }
+        }
+    });
+}
+
+#[test]
+fn forward_dynamics_inverts_inverse_dynamics() {
+    for_each_robot(&[ForwardDynamics, MassMatrix, Bias, MassMatrixSolve], |robot| {
+        for seed in SEEDS {
+            let d = robot.values(&robot.entries(MassMatrix, "mass_matrix"), seed);
+            let bias = robot.values(&robot.entries(Bias, "bias"), seed);
+            let qdd = robot.values(&robot.entries(ForwardDynamics, "qdd"), seed);
+            let tau = robot.values(&robot.symbols(|joint| joint.tau), seed);
+            assert_eq!(add(&apply(&d, &qdd), &bias), tau, "{}", robot.name);
+            let solve = robot.derivation.functions.iter().find(|f| f.name == MassMatrixSolve);
+            let right = robot.values(&solve.unwrap().arguments[1].symbols.clone(), seed);
+            let x = robot.values(&robot.entries(MassMatrixSolve, "x"), seed);
+            assert_eq!(apply(&d, &x), right, "{}: D x = b", robot.name);
+        }
+    });
+}
+
+#[test]
+fn d_is_the_hessian_of_the_kinetic_energy() {
+    for_each_robot(&[MassMatrix, KineticEnergy], |robot| {
+        let energy = robot.entries(KineticEnergy, "kinetic_energy");
+        let rates = robot.symbols(|joint| joint.qd);
+        let momenta: Vec<ExprId> = robot.gradient(&energy, &rates).concat();
+        let hessian = robot.gradient(&momenta, &rates).concat();
+        let d = robot.entries(MassMatrix, "mass_matrix");
+        for seed in SEEDS {
+            assert_eq!(robot.values(&d, seed), robot.values(&hessian, seed), "{}", robot.name);
+        }
+    });
+}
+
+#[test]
+fn ddot_minus_2c_is_skew_and_c_is_christoffel() {
+    for_each_robot(&[MassMatrix, CoriolisMatrix], |robot| {
+        let n = robot.joints.len();
+        let d = robot.entries(MassMatrix, "mass_matrix");
+        let rate = robot.time_derivative(&d);
+        let slopes = robot.gradient(&d, &robot.symbols(|joint| joint.q));
+        let half = Residue::new(2).inverse().unwrap();
+        for seed in SEEDS {
+            let c = robot.values(&robot.entries(CoriolisMatrix, "coriolis_matrix"), seed);
+            let rate = robot.values(&rate, seed);
+            let qd = robot.values(&robot.symbols(|joint| joint.qd), seed);
+            let slopes: Vec<_> = slopes.iter().map(|slope| robot.values(slope, seed)).collect();
+            for i in 0..n {
+                for j in 0..n {
+                    let (ij, ji) = (i * n + j, j * n + i);
+                    let skew = rate[ij] - c[ij] - c[ij] + rate[ji] - c[ji] - c[ji];
+                    assert_eq!(skew, Residue::ZERO, "{}: skew {i} {j}", robot.name);
+                    let christoffel = (0..n).fold(Residue::ZERO, |sum, k| {
+                        let symbol = slopes[k][ij] + slopes[j][i * n + k] - slopes[i][j * n + k];
+                        sum + half * symbol * qd[k]
+                    });
+                    assert_eq!(c[ij], christoffel, "{}: C {i} {j}", robot.name);
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn g_is_the_gradient_of_the_potential_energy_of_gravity() {
+    for_each_robot(&[GravityVector, PotentialEnergy, Bias], |robot| {
+        let energy = robot.entries(PotentialEnergy, "potential_energy");
+        let slope = robot.gradient(&energy, &robot.symbols(|joint| joint.q)).concat();
+        let g = robot.entries(GravityVector, "gravity_vector");
+        for seed in SEEDS {
+            let (slope, g) = (robot.values(&slope, seed), robot.values(&g, seed));
+            for (i, (link, _)) in robot.derivation.robot.joints().enumerate() {
+                let link = &robot.derivation.robot.links[link];
+                let has_spring = link.joint.spring.is_some()
+                    || link.drive.is_some_and(|drive| drive.return_spring.is_some());
+                if !has_spring {
+                    assert_eq!(slope[i], g[i], "{}: joint {}", robot.name, link.name);
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn power_of_the_torques_is_the_rate_of_the_energy() {
+    // Without friction: tau . qd = d/dt (T + P), springs and rotors included.
+    for name in shipped() {
+        let mut model = load(&name);
+        model.terms.friction = false;
+        for link in model.links.values_mut() {
+            if let Some(drive) = &mut link.drive {
+                drive.offset = None;
+            }
+        }
+        let wanted = [InverseDynamics, KineticEnergy, PotentialEnergy];
+        let mut robot = Derived::new(&model, &wanted);
+        let kinetic = robot.entries(KineticEnergy, "kinetic_energy");
+        let potential = robot.entries(PotentialEnergy, "potential_energy");
+        let rates = robot.time_derivative(&[kinetic[0], potential[0]]);
+        // A one-sided spring is a selection, opaque modulo p: only its side matters.
+        let has_selection = model
+            .links
+            .values()
+            .any(|link| link.drive.is_some_and(|drive| drive.return_spring.is_some()));
+        if has_selection {
+            continue;
+        }
+        for seed in SEEDS {
+            let tau = robot.values(&robot.entries(InverseDynamics, "tau"), seed);
+            let qd = robot.values(&robot.symbols(|joint| joint.qd), seed);
+            let rates = robot.values(&rates, seed);
+            assert_eq!(dot(&tau, &qd), rates[0] + rates[1], "{name}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_inverse_dynamics_are_its_symbolic_derivatives() {
+    for_each_robot(&[InverseDynamics, InverseDynamicsDerivatives], |robot| {
+        let tau = robot.entries(InverseDynamics, "tau");
+        type Of = fn(&JointVariables) -> ExprId;
+        let cases: [(&str, Of); 2] = [("dtau_dq", |joint| joint.q), ("dtau_dqd", |joint| joint.qd)];
+        for (output, of) in cases {
+            let n = robot.joints.len();
+            let columns = robot.gradient(&tau, &robot.symbols(of));
+            let fast = robot.entries(InverseDynamicsDerivatives, output);
+            for seed in SEEDS {
+                let fast = robot.values(&fast, seed);
+                for (j, column) in columns.iter().enumerate() {
+                    let column = robot.values(column, seed);
+                    let own: Vec<_> = (0..n).map(|i| fast[i * n + j]).collect();
+                    assert_eq!(own, column, "{}: {output}, column {j}", robot.name);
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn derivatives_of_forward_dynamics_follow_from_the_implicit_equation() {
+    // tau = ID(q, qd, FD(q, qd, tau)): D dqdd/dq = -dID/dq at qdd = FD, and so on.
+    for_each_robot(&[ForwardDynamicsDerivatives, ForwardDynamics, MassMatrix, Bias], |robot| {
+        if robot.joints.len() > 12 {
+            return; // TUlip is checked numerically with the emitted code
+        }
+        let n = robot.joints.len();
+        let qdd = robot.entries(ForwardDynamics, "qdd");
+        type Of = fn(&JointVariables) -> ExprId;
+        let cases: [(&str, Of); 3] = [
+            ("dqdd_dq", |joint| joint.q),
+            ("dqdd_dqd", |joint| joint.qd),
+            ("dqdd_dtau", |joint| joint.tau),
+        ];
+        for (output, of) in cases {
+            let columns = robot.gradient(&qdd, &robot.symbols(of));
+            let fast = robot.values(&robot.entries(ForwardDynamicsDerivatives, output), SEEDS[0]);
+            for (j, column) in columns.iter().enumerate() {
+                let column = robot.values(column, SEEDS[0]);
+                let own: Vec<_> = (0..n).map(|i| fast[i * n + j]).collect();
+                assert_eq!(own, column, "{}: {output}, column {j}", robot.name);
+            }
+        }
+    });
+}
+
+#[test]
+fn contact_jacobian_and_bias_are_derivatives_of_the_positions() {
+    for_each_robot(&[ContactPositions, ContactJacobian, ContactBias], |robot| {
+        if robot.derivation.functions.is_empty() {
+            return;
+        }
+        let n = robot.joints.len();
+        let h = robot.entries(ContactPositions, "contact_positions");
+        let columns = robot.gradient(&h, &robot.symbols(|joint| joint.q));
+        let velocity = robot.time_derivative(&h);
+        let acceleration = robot.time_derivative(&velocity);
+        for seed in SEEDS {
+            let jacobian = robot.values(&robot.entries(ContactJacobian, "contact_jacobian"), seed);
+            for (j, column) in columns.iter().enumerate() {
+                let column = robot.values(column, seed);
+                let own: Vec<_> = (0..h.len()).map(|row| jacobian[row * n + j]).collect();
+                assert_eq!(own, column, "{}: column {j}", robot.name);
+            }
+            let qdd = robot.values(&robot.symbols(|joint| joint.qdd), seed);
+            let bias = robot.values(&robot.entries(ContactBias, "contact_bias"), seed);
+            let total = add(&apply(&jacobian, &qdd), &bias);
+            assert_eq!(total, robot.values(&acceleration, seed), "{}", robot.name);
+        }
+    });
+}
+
+#[test]
+fn link_jacobians_are_derivatives_of_the_link_transforms() {
+    for_each_robot(&[LinkTransforms, LinkJacobian], |robot| {
+        let n = robot.joints.len();
+        let transforms = robot.entries(LinkTransforms, "link_transforms");
+        let columns = robot.gradient(&transforms, &robot.symbols(|joint| joint.q));
+        let seed = SEEDS[0];
+        let at = robot.values(&transforms, seed);
+        let columns: Vec<_> = columns.iter().map(|column| robot.values(column, seed)).collect();
+        let jacobians: Vec<_> = robot
+            .derivation
+            .functions
+            .iter()
+            .filter(|function| function.name == LinkJacobian)
+            .map(|function| robot.values(&function.entries(), seed))
+            .collect();
+        assert_eq!(jacobians.len() * 12, at.len());
+        for (link, jacobian) in jacobians.iter().enumerate() {
+            let entry = |values: &[Residue], row: usize, column: usize| {
+                values[12 * link + 4 * row + column]
+            };
+            for j in 0..n {
+                for k in 0..3 {
+                    assert_eq!(jacobian[k * n + j], entry(&columns[j], k, 3), "{}", robot.name);
+                }
+                // dR/dq R^T = [w]x
+                let spin = |a: usize, b: usize| {
+                    (0..3).fold(Residue::ZERO, |sum, c| {
+                        sum + entry(&columns[j], a, c) * entry(&at, b, c)
+                    })
+                };
+                let w = [spin(2, 1), spin(0, 2), spin(1, 0)];
+                for k in 0..3 {
+                    assert_eq!(jacobian[(3 + k) * n + j], w[k], "{}: link {link}", robot.name);
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn the_centre_of_mass_carries_the_momentum_and_the_potential_energy() {
+    for_each_robot(
+        &[CenterOfMass, CenterOfMassJacobian, Momentum, KineticEnergy, PotentialEnergy],
+        |robot| {
+            let n = robot.joints.len();
+            let com = robot.entries(CenterOfMass, "center_of_mass");
+            let columns = robot.gradient(&com, &robot.symbols(|joint| joint.q));
+            let velocity = robot.time_derivative(&com);
+            let jacobian = robot.entries(CenterOfMassJacobian, "center_of_mass_jacobian");
+            let total = total_mass(robot);
+            for seed in SEEDS {
+                let jacobian = robot.values(&jacobian, seed);
+                for (j, column) in columns.iter().enumerate() {
+                    let own: Vec<_> = (0..3).map(|k| jacobian[k * n + j]).collect();
+                    assert_eq!(own, robot.values(column, seed), "{}", robot.name);
+                }
+                let mass = robot.values(&[total], seed)[0];
+                let linear = robot.values(&robot.entries(Momentum, "linear_momentum"), seed);
+                let velocity = robot.values(&velocity, seed);
+                let carried: Vec<_> = velocity.iter().map(|&v| mass * v).collect();
+                assert_eq!(linear, carried, "{}", robot.name);
+            }
+        },
+    );
+}
+
+/// The sum of the masses of all links that move.
+fn total_mass(robot: &mut Derived) -> ExprId {
+    let model = robot.derivation.robot.clone();
+    let dag = &mut robot.derivation.dag;
+    let mut total = dag.zero();
+    for (id, link) in model.links.iter() {
+        let moves = model.tree.path(id).iter().any(|&on| model.links[on].joint.variables.is_some());
+        if let Some(body) = link.body.filter(|_| moves) {
+            total = dag.add(total, body.mass);
+        }
+    }
+    total
+}
+
+#[test]
+fn momentum_of_a_free_robot_obeys_newton_and_euler() {
+    // The first six equations of a floating base without base torques: dp/dt = m g, and the
+    // angular momentum about the centre of mass does not change without contact.
+    let model = load("tulip");
+    let mut robot = Derived::new(&model, &[Momentum, InverseDynamics, CenterOfMassJacobian]);
+    let linear = robot.entries(Momentum, "linear_momentum");
+    let angular = robot.entries(Momentum, "angular_momentum");
+    let linear_rate = robot.time_derivative(&linear);
+    let angular_rate = robot.time_derivative(&angular);
+    let total = total_mass(&mut robot);
+    let gravity = robot.derivation.robot.gravity;
+    for seed in SEEDS {
+        let tau = robot.values(&robot.entries(InverseDynamics, "tau"), seed);
+        let rate = robot.values(&linear_rate, seed);
+        let mass = robot.values(&[total], seed)[0];
+        let g = robot.values(&gravity, seed);
+        // The base slides along z, x, y of the world: its forces are the rate of p minus weight.
+        for (row, axis) in [(0, 2), (1, 0), (2, 1)] {
+            assert_eq!(tau[row], rate[axis] - mass * g[axis], "force {axis}");
+        }
+        // Yaw, the first turning joint, is about the world's z axis through the base point o: its
+        // torque is the rate of L about o along z, that is dLc/dt + (c - o) x (dp/dt - m g).
+        let jacobian = robot.entries(CenterOfMassJacobian, "center_of_mass_jacobian");
+        let jacobian = robot.values(&jacobian, seed);
+        let n = robot.joints.len();
+        // Column of yaw: z x (c - o) = (-(c - o)_y, (c - o)_x, 0).
+        let (x, y) = (jacobian[n + 3], -jacobian[3]);
+        let force = |axis: usize| rate[axis] - mass * g[axis];
+        let spin = robot.values(&angular_rate, seed)[2];
+        assert_eq!(tau[3], spin + x * force(1) - y * force(0), "yaw");
+    }
+}

@@ -23,7 +23,8 @@ pub struct Energies {
     pub bodies: ExprId,
     /// Kinetic energy of the rotors about their axes: `1/2 Ia (N qd)^2` each, in joules.
     pub rotors: ExprId,
-    /// Potential energy of gravity in joules, `-sum m g . o_c` with g the acceleration of free fall.
+    /// Potential energy of gravity in joules: `-sum m g . o_c`, with g the acceleration of free
+    /// fall.
     pub gravity: ExprId,
     /// Potential energy of springs across joints (2.8), in joules.
     pub springs: ExprId,

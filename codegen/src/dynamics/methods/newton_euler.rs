@@ -21,11 +21,11 @@ use crate::expr::Dag;
 use crate::model::{Convention, JointKind, JointVariables, Link, LinkId, Robot};
 use crate::spatial::{Matrix, Vector, add, cross, scale, subtract, transpose, zero};
 
-/// A link as Newton and Euler see it. World coordinates; the reference point is the centre of
-/// mass, for a link without body its origin.
+/// A link as Newton and Euler see it. World coordinates in SI units; the reference
+/// point is the centre of mass, for a link without body its origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinkMotion {
-    /// Position of the reference point [m].
+    /// Position of the reference point.
     pub position: Vector,
     /// Link coordinates to world coordinates.
     pub rotation: Matrix,
@@ -42,11 +42,11 @@ pub struct LinkMotion {
 /// What the carrying link does to the carried one through their joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointWrench {
-    /// The point of the joint, fixed in the carried link [m].
+    /// The point of the joint, fixed in the carried link.
     pub point: Vector,
     /// Direction of the joint axis.
     pub axis: Vector,
-    /// Force on the carried link [N].
+    /// Force on the carried link.
     pub force: Vector,
     /// Moment on the carried link about the point of the joint [N m].
     pub moment: Vector,

@@ -6,7 +6,7 @@
 //!
 //! The thesis stops in the plane, where each body has one angle. In space three angles have no
 //! derivative that is an angular velocity, so the rows of T that belong to a body's orientation are
-//! those of its *geometric* Jacobian: T = [d x / d q; Jw] with w = Jw qd. The rows of positions stay
+//! those of its *geometric* Jacobian: T = (dx/dq; Jw) with w = Jw qd. The rows of positions stay
 //! what they are. The Euler equation then brings what the plane has not: the mass matrix
 //! `diag(m 1, R I R^T)` turns with the body, and the gyroscopic moment `w x R I R^T w` joins F.
 

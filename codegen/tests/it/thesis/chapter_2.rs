@@ -242,20 +242,20 @@ fn eq_2_52_and_2_53_forget_the_impulse() {
     let after = before.map(|rate| case.dag.mul(minus_e, rate));
     let jump = [0, 1].map(|k| case.dag.sub(after[k], before[k]));
     let momentum = times(&mut case, d, jump);
-    // the impulse that D (qd+ - qd-) = W Lambda asks for, by Cramer's rule
-    let dag = &mut case.dag;
+    // the impulse that D (qd+ - qd-) = W Lambda asks for, by Cramer's rule: numerators and det W
     let minor = |dag: &mut Dag, [a, b]: [ExprId; 2], [c, d]: [ExprId; 2]| {
         let (ad, bc) = (dag.mul(a, d), dag.mul(b, c));
         dag.sub(ad, bc)
     };
-    let determinant = minor(dag, w[0], w[1]);
     let columns = transposed(w);
-    let numerators = [minor(dag, momentum, columns[1]), minor(dag, columns[0], momentum)];
-    let impulse = numerators.map(|numerator| dag.div(numerator, determinant));
+    let impulse =
+        [minor(&mut case.dag, momentum, columns[1]), minor(&mut case.dag, columns[0], momentum)];
+    let determinant = minor(&mut case.dag, w[0], w[1]);
 
-    // (2.52): D qd+ = D qd-
+    // (2.52): D qd+ = D qd-, times det W
     let held = times(&mut case, w, impulse);
-    let [d_after, d_before] = [after, before].map(|rates| times(&mut case, d, rates));
+    let [d_after, d_before] = [after, before]
+        .map(|rates| times(&mut case, d, rates).map(|entry| case.dag.mul(determinant, entry)));
     let corrected = [0, 1].map(|k| case.dag.add(d_before[k], held[k]));
     case.misprint(&d_before, &corrected, &d_after);
     // (2.53), second row: W^T qd+ = -e W qd-, which for a single contact row has no meaning

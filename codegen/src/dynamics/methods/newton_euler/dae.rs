@@ -11,12 +11,12 @@ use crate::expr::{Dag, ExprId, SymbolClass};
 use crate::model::{Convention, Joint, JointKind, Link, Robot};
 use crate::spatial::{Matrix, Vector, add, cross, dot, scale, subtract, transpose, zero};
 
-/// The coordinates of a free link, as symbols. World coordinates; the reference point is the centre
-/// of mass, for a link without body its origin. Kinematics: `d/dt position = velocity` and
-/// `d/dt rotation = angular_velocity x (each column)`.
+/// The coordinates of a free link, as symbols. World coordinates in SI units; the reference point
+/// is the centre of mass, for a link without body its origin. Kinematics: `d/dt position =
+/// velocity` and `d/dt rotation = angular_velocity x (each column)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodySymbols {
-    /// Position of the reference point [m], `p1_LINK` ..
+    /// Position of the reference point, `p1_LINK` ..
     pub position: Vector,
     /// Link coordinates to world coordinates, `r11_LINK` ..
     pub rotation: Matrix,
@@ -154,7 +154,8 @@ fn add_efforts(dag: &mut Dag, robot: &Robot, bodies: &[BodySymbols], forces: &mu
 
 /// How a joint sits in its two links, in their own coordinates.
 struct Attachment {
-    /// The point of the joint in the parent, from its reference point; of a sliding joint, at q = 0.
+    /// The point of the joint in the parent, from its reference point; of a sliding joint where
+    /// q = 0.
     parent_point: Vector,
     /// The point of the joint in the link, from its reference point.
     own_point: Vector,

@@ -151,7 +151,7 @@ pub enum Cause {
     ValueNotKnown(String, String),
     /// A division by 0, at least with the values that the file gives; holds the expression.
     DivisionByZero(String),
-    /// All expressions together are longer than the limit, which it holds [bytes].
+    /// All expressions together are longer than the limit, which it holds (bytes).
     TooMuchText(usize),
     /// Not a finite number; holds the text.
     NotFinite(String),

@@ -23,9 +23,9 @@ pub enum Unphysical {
     Triangle {
         /// The names of the three entries, the large one first.
         entries: [&'static str; 3],
-        /// The large moment about the centre of mass [kg m^2].
+        /// The large moment about the centre of mass (kg m^2).
         moment: String,
-        /// The sum of the other two [kg m^2].
+        /// The sum of the other two (kg m^2).
         sum: String,
     },
     /// The diagonal would do, but the products of inertia are too large for it.
@@ -95,8 +95,8 @@ pub(super) fn about_com(
 
 const ENTRIES: [&str; 3] = ["Ixx", "Iyy", "Izz"];
 
-/// Finds the plainest reason why no body has this mass [kg] and this tensor about its centre of
-/// mass (xx, yy, zz, xy, xz, yz [kg m^2]), if there is one. Neither mass nor inertia is in order.
+/// Finds the plainest reason why no body has this mass (kg) and this tensor about its centre of
+/// mass (xx, yy, zz, xy, xz, yz (kg m^2)), if there is one. Neither mass nor inertia is in order.
 pub(super) fn find_fault(mass: &Rational, inertia: &[Rational; 6]) -> Option<Unphysical> {
     if mass.is_zero() {
         let has_inertia = inertia.iter().any(|entry| !entry.is_zero());

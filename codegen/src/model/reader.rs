@@ -5,7 +5,7 @@ use super::fault::Cause;
 use super::file::{Entry, Name, Scalar};
 use super::json::{Json, Value};
 use super::report::Report;
-use super::spelling::nearest;
+use crate::expr::text::nearest;
 use std::borrow::Cow;
 
 /// The words that may stand in a place, each with its meaning.

@@ -84,22 +84,22 @@ pub enum JointKind {
 /// The symbols of a moving joint, named `q_LINK`, `qd_LINK`, `qdd_LINK`, `tau_LINK`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointVariables {
-    /// Position [rad, m].
+    /// Position (rad, m).
     pub q: ExprId,
-    /// Rate [rad/s, m/s].
+    /// Rate (rad/s, m/s).
     pub qd: ExprId,
-    /// Acceleration [rad/s^2, m/s^2].
+    /// Acceleration (rad/s^2, m/s^2).
     pub qdd: ExprId,
-    /// Torque or force along the joint axis [N m, N].
+    /// Torque or force along the joint axis (N m, N).
     pub tau: ExprId,
 }
 
 /// A linear spring across a joint, with torque `-stiffness (q - angle)` on the joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JointSpring {
-    /// Stiffness [N m/rad, N/m], `ks_LINK`.
+    /// Stiffness (N m/rad, N/m), `ks_LINK`.
     pub stiffness: ExprId,
-    /// Position without torque [rad, m], `qs_LINK`.
+    /// Position without torque (rad, m), `qs_LINK`.
     pub angle: ExprId,
 }
 
@@ -109,19 +109,19 @@ pub struct JointSpring {
 pub struct Joint {
     /// Which entry varies.
     pub kind: JointKind,
-    /// Link length [m].
+    /// Link length (m).
     pub a: ExprId,
-    /// Link twist [rad].
+    /// Link twist (rad).
     pub alpha: ExprId,
-    /// Constant part of the link offset [m].
+    /// Constant part of the link offset (m).
     pub d: ExprId,
-    /// Constant part of the joint angle [rad].
+    /// Constant part of the joint angle (rad).
     pub theta: ExprId,
     /// The joint's symbols; none for a fixed joint.
     pub variables: Option<JointVariables>,
     /// A spring across the joint, of passive and driven joints alike.
     pub spring: Option<JointSpring>,
-    /// Viscous damping of a joint without a drive [N m s/rad, N s/m], `fv_LINK`.
+    /// Viscous damping of a joint without a drive (N m s/rad, N s/m), `fv_LINK`.
     pub damping: Option<ExprId>,
 }
 
@@ -137,11 +137,11 @@ pub enum About {
 /// Mass properties in the link frame of the robot's convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Body {
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: ExprId,
-    /// Centre of mass [m].
+    /// Centre of mass (m).
     pub com: [ExprId; 3],
-    /// Tensor entries xx, yy, zz, xy, xz, yz [kg m^2]; xy = -integral of x y dm.
+    /// Tensor entries xx, yy, zz, xy, xz, yz (kg m^2); xy = -integral of x y dm.
     pub inertia: [ExprId; 6],
     /// The point of the tensor.
     pub about: About,
@@ -153,13 +153,13 @@ pub struct Body {
 pub struct Drive {
     /// Motor turns per joint turn, `N_LINK`.
     pub gear_ratio: Option<ExprId>,
-    /// Rotor inertia [kg m^2; kg for a prismatic joint without gear], `Ia_LINK`.
+    /// Rotor inertia (kg m^2; kg for a prismatic joint without gear), `Ia_LINK`.
     pub rotor_inertia: Option<ExprId>,
-    /// Viscous friction [N m s/rad], `fv_LINK`.
+    /// Viscous friction (N m s/rad), `fv_LINK`.
     pub viscous: Option<ExprId>,
-    /// Coulomb friction [N m], `fc_LINK`.
+    /// Coulomb friction (N m), `fc_LINK`.
     pub coulomb: Option<ExprId>,
-    /// Constant torque that the joint needs besides everything else [N m], `off_LINK`; joint side.
+    /// Constant torque that the joint needs besides everything else (N m), `off_LINK`; joint side.
     pub offset: Option<ExprId>,
     /// A spring between gear and joint.
     pub series_elastic: Option<SeriesElastic>,
@@ -170,11 +170,11 @@ pub struct Drive {
 /// Spring and pulleys between gear and joint (thesis 3.18-3.24).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SeriesElastic {
-    /// Stiffness of the spring [N/m], `k_LINK`.
+    /// Stiffness of the spring (N/m), `k_LINK`.
     pub stiffness: ExprId,
-    /// Radius of the pulley on the gear side [m], `rm_LINK`.
+    /// Radius of the pulley on the gear side (m), `rm_LINK`.
     pub motor_radius: ExprId,
-    /// Radius of the pulley on the joint side [m], `rl_LINK`.
+    /// Radius of the pulley on the joint side (m), `rl_LINK`.
     pub load_radius: ExprId,
 }
 
@@ -182,9 +182,9 @@ pub struct SeriesElastic {
 /// the given side of `angle`, none on the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReturnSpring {
-    /// Stiffness [N m/rad], `kr_LINK`.
+    /// Stiffness (N m/rad), `kr_LINK`.
     pub stiffness: ExprId,
-    /// Where the spring begins to act [rad], `qr_LINK`.
+    /// Where the spring begins to act (rad), `qr_LINK`.
     pub angle: ExprId,
     /// The side on which it acts.
     pub side: Side,
@@ -202,13 +202,13 @@ pub enum Side {
 /// Bounds of a joint, symbol-free expressions; none where the file gives none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Limits {
-    /// Lowest and highest position [rad, m].
+    /// Lowest and highest position (rad, m).
     pub position: Option<[ExprId; 2]>,
-    /// Largest speed, either way [rad/s, m/s].
+    /// Largest speed, either way (rad/s, m/s).
     pub velocity: Option<ExprId>,
-    /// Largest acceleration, either way [rad/s^2, m/s^2].
+    /// Largest acceleration, either way (rad/s^2, m/s^2).
     pub acceleration: Option<ExprId>,
-    /// Lowest and highest torque of the drive on the joint side [N m, N]; `[0, x]` for a drive
+    /// Lowest and highest torque of the drive on the joint side (N m, N); `[0, x]` for a drive
     /// that can pull one way only.
     pub torque: Option<[ExprId; 2]>,
 }
@@ -237,14 +237,14 @@ pub struct Contact {
     pub name: String,
     /// The link that carries it.
     pub link: LinkId,
-    /// Its place in the link frame [m].
+    /// Its place in the link frame (m).
     pub position: [ExprId; 3],
 }
 
 /// The ground: the half space below a plane in frame 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ground {
-    /// A point of the plane [m].
+    /// A point of the plane (m).
     pub point: [ExprId; 3],
     /// The direction away from the ground, of any length but 0.
     pub normal: [ExprId; 3],
@@ -287,7 +287,7 @@ pub struct Robot {
     pub convention: Convention,
     /// What the first joints stand on.
     pub base: Base,
-    /// Acceleration of free fall in frame 0 [m/s^2]: P = -sum m g.o.
+    /// Acceleration of free fall in frame 0 (m/s^2): P = -sum m g.o.
     pub gravity: [ExprId; 3],
     /// The terms that the model has.
     pub terms: Terms,

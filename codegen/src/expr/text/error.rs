@@ -159,7 +159,7 @@ fn did_you_mean(name: &str) -> String {
 const LONGEST_NAME_FOR_HINTS: usize = 64;
 
 /// The candidate that the fewest typing errors turn into `name`, if they are few for its length.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
@@ -172,6 +172,8 @@ pub(super) fn nearest<'a>(
         .filter(|candidate| candidate.len() <= LONGEST_NAME_FOR_HINTS)
         .map(|candidate| (typing_errors(name.as_bytes(), candidate.as_bytes()), candidate))
         .filter(|(errors, candidate)| *errors <= limit && *errors < candidate.len().max(2))
+        // every letter is one error away from every other: no reason to think it was meant
+        .filter(|(errors, candidate)| *errors < name.len() || candidate.eq_ignore_ascii_case(name))
         .min()
         .map(|(_, candidate)| candidate)
 }

@@ -25,6 +25,7 @@ mod print;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use error::nearest;
 pub use error::{ParseCause, ParseError};
 #[cfg(test)]
 pub(super) use parse::parse_with;

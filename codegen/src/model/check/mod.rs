@@ -18,10 +18,11 @@ use super::file::{ModelFile, Scalar};
 use super::parameter::{Parameter, ParameterId};
 use super::report::Report;
 use super::robot::{Ground, Link, LinkId, Robot};
-use super::spelling::{is_identifier, nearest};
+use super::spelling::is_identifier;
 use super::unit::Dimension;
 use crate::arena::PrimaryMap;
 use crate::expr::ExprId;
+use crate::expr::text::nearest;
 use rustc_hash::FxHashMap;
 use scope::Scope;
 

@@ -2,10 +2,11 @@
 
 use super::{Check, level_ground};
 use crate::arena::Handle;
+use crate::expr::text::nearest;
 use crate::model::fault::Cause;
 use crate::model::file::{GroundFile, ModelFile, Name, PlaceFile, PointFile};
 use crate::model::robot::{AddedEffect, Contact, ContactId, EffectPlace, Ground, LinkId};
-use crate::model::spelling::{is_identifier, nearest};
+use crate::model::spelling::is_identifier;
 use crate::model::unit::Dimension;
 use num_traits::Zero;
 use rustc_hash::{FxHashMap, FxHashSet};

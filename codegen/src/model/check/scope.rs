@@ -1,12 +1,12 @@
 //! Names and expressions: what is declared, and the reading of everything that refers to it.
 
 use super::measure::{Facts, Measure, NodeFault, approximate};
+use crate::expr::text::nearest;
 use crate::expr::text::{self, ParseCause};
 use crate::expr::{Dag, ExprId, SymbolClass, free_symbols};
 use crate::model::fault::Cause;
 use crate::model::file::Scalar;
 use crate::model::report::Report;
-use crate::model::spelling::nearest;
 use crate::model::unit::Dimension;
 use crate::number::{DecimalError, Rational, parse_decimal};
 use rustc_hash::FxHashMap;

@@ -1,13 +1,14 @@
 //! Who carries whom: names of links, parents, cycles, and the generated links of a floating base.
 
 use super::Check;
+use crate::expr::text::nearest;
 use crate::expr::{ExprId, SymbolClass};
 use crate::model::fault::Cause;
 use crate::model::file::{LinkFile, ModelFile};
 use crate::model::robot::{
     Base, Convention, Joint, JointKind, JointVariables, Limits, Link, LinkId,
 };
-use crate::model::spelling::{is_identifier, nearest};
+use crate::model::spelling::is_identifier;
 use crate::number::ratio;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};

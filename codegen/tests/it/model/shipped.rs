@@ -48,10 +48,12 @@ fn the_first_example_of_the_format_page_is_in_order() {
     assert_eq!(robot_of("pendulum", example.expect("an example")).name, "pendulum");
 }
 
-/// The rows of the arms as (a, quarter turns of alpha, d), lengths by name.
+/// A row of a table: a, quarter turns of alpha, d; lengths by name.
+type Row = (&'static str, i32, &'static str);
+
 #[test]
 fn arms_have_the_tables_that_operation_counts_are_compared_on() {
-    let tables: [(&str, &[(&str, i32, &str)]); 6] = [
+    let tables: [(&str, &[Row]); 6] = [
         (
             "puma560",
             &[

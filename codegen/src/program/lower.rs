@@ -2,6 +2,7 @@
 
 use super::interpret::run;
 use super::schedule::schedule;
+use super::sign::absorb_signs;
 use super::verify::verify;
 use super::{
     ArgumentShape, BinaryOperation, Code, Instruction, Leaf, Operation, OutputShape, Program,
@@ -63,6 +64,7 @@ pub fn lower(dag: &Dag, functions: &[Function]) -> Result<Program, LowerError> {
             let prelude = rows.get(&expr).map(|&row| Leaf::Prelude(row));
             prelude.or_else(|| places.get(&expr).copied())
         });
+        absorb_signs(&mut code);
         code.instructions = schedule(&code);
         check_constants(&code).ok_or_else(|| not_finite(&function.full_name()))?;
         routines.push(routine(function, code));

@@ -14,6 +14,7 @@ mod cost;
 mod interpret;
 mod lower;
 mod schedule;
+mod sign;
 mod tape;
 mod verify;
 

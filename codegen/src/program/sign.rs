@@ -1,0 +1,122 @@
+//! Changes of sign, put where they cost nothing.
+//!
+//! The graph keeps one of `a - b` and `b - a` and negates it for the other. Here a negation is
+//! taken back into the difference below it, through products and quotients that nothing else uses.
+
+use super::{BinaryOperation, Code, Instruction, Operation, Slot, UnaryOperation};
+use crate::arena::Handle;
+
+/// How far a sign is followed down through products.
+const MAX_DEPTH: usize = 12;
+
+/// The same code with fewer negations. Values do not change, not in the last bit: `b - a` is
+/// exactly `-(a - b)` in floating point, and so are products and quotients of a changed sign.
+pub(super) fn absorb_signs(code: &mut Code) {
+    let mut signs = Signs::new(code);
+    for index in 0..code.instructions.len() {
+        let Some((result, operand)) = negation(&code.instructions[index]) else { continue };
+        if signs.flip(code, operand, MAX_DEPTH) {
+            signs.renamed[result.index()] = Some(operand);
+        }
+    }
+    signs.finish(code);
+}
+
+/// Result and operand of a negation.
+fn negation(instruction: &Instruction) -> Option<(Slot, Slot)> {
+    match *instruction {
+        Instruction::Value {
+            result,
+            operation: Operation::Unary(UnaryOperation::Neg, operand),
+        } => Some((result, operand)),
+        _ => None,
+    }
+}
+
+struct Signs {
+    uses: Vec<u32>,
+    /// The instruction that assigns each slot.
+    made_by: Vec<Option<usize>>,
+    /// Results of negations that now are what they negated.
+    renamed: Vec<Option<Slot>>,
+}
+
+impl Signs {
+    fn new(code: &Code) -> Self {
+        let mut made_by = vec![None; code.slots];
+        for (index, instruction) in code.instructions.iter().enumerate() {
+            instruction.for_each_result(|result| made_by[result.index()] = Some(index));
+        }
+        Self { uses: code.uses(), made_by, renamed: vec![None; code.slots] }
+    }
+
+    /// Makes the instruction of `slot`, which one operand uses, give the opposite value.
+    fn flip(&self, code: &mut Code, slot: Slot, depth: usize) -> bool {
+        let Some(index) = self.made_by[slot.index()] else { return false };
+        if self.uses[slot.index()] != 1 || depth == 0 {
+            return false;
+        }
+        let Instruction::Value { operation: Operation::Binary(kind, a, b), .. } =
+            code.instructions[index]
+        else {
+            return false;
+        };
+        match kind {
+            BinaryOperation::Sub => {
+                set_operation(code, index, Operation::Binary(BinaryOperation::Sub, b, a));
+                true
+            }
+            BinaryOperation::Mul | BinaryOperation::Div => {
+                self.flip(code, a, depth - 1) || self.flip(code, b, depth - 1)
+            }
+            _ => false,
+        }
+    }
+
+    /// Drops the negations that were absorbed and closes the gaps in the numbering.
+    fn finish(&self, code: &mut Code) {
+        let is_absorbed = |instruction: &Instruction| {
+            negation(instruction).is_some_and(|(result, _)| self.renamed[result.index()].is_some())
+        };
+        code.instructions.retain(|instruction| !is_absorbed(instruction));
+        let mut number: Vec<Option<Slot>> = vec![None; code.slots];
+        let mut slots = 0;
+        let mut assign = |slot: Slot| {
+            number[slot.index()] = Some(Slot::from_index(slots));
+            slots += 1;
+        };
+        code.leaves.keys().for_each(&mut assign);
+        code.instructions.iter().for_each(|instruction| instruction.for_each_result(&mut assign));
+        code.slots = slots;
+        let renumbered = |slot: Slot| {
+            let slot = self.renamed[slot.index()].unwrap_or(slot);
+            number[slot.index()].expect("what is used is assigned")
+        };
+        code.instructions.iter_mut().for_each(|step| renumber(step, &renumbered));
+        code.outputs.iter_mut().for_each(|output| *output = renumbered(*output));
+    }
+}
+
+fn set_operation(code: &mut Code, index: usize, new: Operation) {
+    if let Instruction::Value { operation, .. } = &mut code.instructions[index] {
+        *operation = new;
+    }
+}
+
+fn renumber(instruction: &mut Instruction, number: &dyn Fn(Slot) -> Slot) {
+    match instruction {
+        Instruction::SinCos { sine, cosine, angle } => {
+            [sine, cosine, angle].into_iter().for_each(|slot| *slot = number(*slot));
+        }
+        Instruction::Value { result, operation } => {
+            *result = number(*result);
+            match operation {
+                Operation::Unary(_, a) => *a = number(*a),
+                Operation::Binary(_, a, b) => [a, b].into_iter().for_each(|s| *s = number(*s)),
+                Operation::Select { sides: [left, right], then, otherwise, .. } => {
+                    [left, right, then, otherwise].into_iter().for_each(|s| *s = number(*s));
+                }
+            }
+        }
+    }
+}

@@ -159,10 +159,7 @@ fn did_you_mean(name: &str) -> String {
 const LONGEST_NAME_FOR_HINTS: usize = 64;
 
 /// The candidate that the fewest typing errors turn into `name`, if they are few for its length.
-pub(crate) fn nearest<'a>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.len() > LONGEST_NAME_FOR_HINTS {
         return None;
     }

@@ -25,8 +25,7 @@ mod print;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use error::nearest;
-pub use error::{ParseCause, ParseError};
+pub use error::{ParseCause, ParseError, nearest};
 #[cfg(test)]
 pub(super) use parse::parse_with;
 pub use parse::{MAX_CONSTANT_BITS, MAX_EXPONENT, MAX_TEXT_BYTES, parse};

@@ -1,0 +1,220 @@
+//! `denavit derive`: the equations of motion as text.
+
+mod equations;
+
+use super::Answer;
+use super::failure::Failure;
+use super::files::read_model;
+use super::json::{Ordered, write_json};
+use super::options::ModelArgument;
+use super::progress::Progress;
+use clap::{Args, ValueEnum};
+use denavit::dynamics::methods::Method;
+use denavit::expr::Operations;
+use denavit::expr::text::print_with_intermediates;
+use denavit::report::{Align, Table};
+use equations::{Equations, Part};
+use serde::Serialize;
+use std::io::Write;
+
+/// Equations with more nodes than this are not read by people: they get a summary instead.
+const READABLE_NODES: usize = 700;
+
+/// Entries that are longer than this altogether, in nodes, are written with intermediates.
+const PLAIN_NODES: u64 = 200;
+
+/// Derive the equations of motion: D qdd + C qd + G = tau
+///
+/// Small robots are printed in full, large ones as a summary. Parameters stay symbols.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit derive double_pendulum
+  denavit derive double_pendulum --method lagrange
+  denavit derive scara --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// How: by the recursions that emitted code uses, or in one of the thesis's four ways
+    #[arg(long, value_enum, value_name = "METHOD", default_value = "recursive")]
+    method: MethodName,
+    /// Print JSON: every entry as text, with intermediates where they are long
+    #[arg(long)]
+    json: bool,
+}
+
+/// A way to derive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Recursions over the bodies, regrouped parameters
+    Recursive,
+    /// Lagrange-Euler on Denavit-Hartenberg frames (thesis 2.2.4)
+    DhLagrange,
+    /// Lagrange-Euler from energies (2.2.2)
+    Lagrange,
+    /// Newton-Euler with explicit joint constraints (2.2.1)
+    NewtonEuler,
+    /// TMT with the geometric Jacobian (2.2.3)
+    Tmt,
+}
+
+impl MethodName {
+    /// The thesis's method; none for the recursions.
+    fn method(self) -> Option<Method> {
+        match self {
+            Self::Recursive => None,
+            Self::DhLagrange => Some(Method::DhLagrange),
+            Self::Lagrange => Some(Method::Lagrange),
+            Self::NewtonEuler => Some(Method::NewtonEuler),
+            Self::Tmt => Some(Method::Tmt),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct DeriveJson<'a> {
+    model: &'a str,
+    method: &'static str,
+    joints: &'a [String],
+    functions: Ordered<PartJson<'a>>,
+    intermediates: Vec<IntermediateJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct PartJson<'a> {
+    symbol: &'static str,
+    shape: &'a [usize],
+    entries: &'a [String],
+}
+
+#[derive(Serialize)]
+struct IntermediateJson<'a> {
+    name: &'a str,
+    expression: &'a str,
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let robot = read_model(&arguments.model.model)?;
+    let progress = Progress::new();
+    progress.show(&format!("deriving {}", robot.name));
+    let equations = match arguments.method.method() {
+        None => Equations::recursive(&robot),
+        Some(method) => Equations::by_method(&robot, method),
+    };
+    drop(progress);
+    if arguments.json {
+        write_answer(out, &equations)?;
+    } else {
+        write!(out, "{}: {}, method {}", equations.model, equations.law(), equations.method)?;
+        writeln!(out, "\n\njoints: {}", numbered(&equations.joints))?;
+        match equations.nodes() > READABLE_NODES {
+            true => write_summary(out, &equations)?,
+            false => write_in_full(out, &equations)?,
+        }
+    }
+    Ok(Answer::Done)
+}
+
+fn numbered(joints: &[String]) -> String {
+    let named = joints.iter().enumerate().map(|(index, name)| format!("{} {name}", index + 1));
+    named.collect::<Vec<_>>().join(", ")
+}
+
+fn write_answer(out: &mut dyn Write, equations: &Equations) -> Result<(), Failure> {
+    let entries: Vec<_> =
+        equations.parts.iter().flat_map(|part| part.entries.iter().copied()).collect();
+    let printed = print_with_intermediates(&equations.dag, &entries, PLAIN_NODES);
+    let mut texts = &printed.outputs[..];
+    let mut functions = Vec::new();
+    for part in &equations.parts {
+        let (own, rest) = texts.split_at(part.entries.len());
+        let json = PartJson { symbol: part.symbol, shape: &part.shape, entries: own };
+        functions.push((part.name.to_owned(), json));
+        texts = rest;
+    }
+    let bindings = printed.bindings.iter();
+    let json = DeriveJson {
+        model: &equations.model,
+        method: equations.method,
+        joints: &equations.joints,
+        functions: Ordered(functions),
+        intermediates: bindings
+            .map(|(name, expression)| IntermediateJson { name, expression })
+            .collect(),
+    };
+    write_json(out, &json)
+}
+
+/// D, C, G and the drives' torque; tau is what they add up to.
+fn write_in_full(out: &mut dyn Write, equations: &Equations) -> Result<(), Failure> {
+    let zero = equations.dag.zero();
+    let terms: Vec<&Part> = equations.parts.iter().filter(|part| part.symbol != "tau").collect();
+    let entries: Vec<_> = terms.iter().flat_map(|part| part.entries.iter().copied()).collect();
+    let printed = print_with_intermediates(&equations.dag, &entries, PLAIN_NODES);
+    let mut texts = printed.outputs.iter();
+    for part in terms {
+        let own: Vec<&String> = texts.by_ref().take(part.entries.len()).collect();
+        writeln!(out)?;
+        if part.entries.iter().all(|&entry| entry == zero) {
+            writeln!(out, "{} = 0", part.symbol)?;
+            continue;
+        }
+        for (index, text) in own.into_iter().enumerate() {
+            if let Some(left) = left_side(part, index) {
+                writeln!(out, "{left} = {text}")?;
+            }
+        }
+    }
+    if !printed.bindings.is_empty() {
+        writeln!(out, "\nwhere")?;
+    }
+    for (name, text) in &printed.bindings {
+        writeln!(out, "{name} = {text}")?;
+    }
+    Ok(())
+}
+
+/// The name of an entry; of a symmetric pair both names, and none for the second of them.
+fn left_side(part: &Part, index: usize) -> Option<String> {
+    let symbol = part.symbol;
+    let [rows, columns] = part.shape[..] else {
+        return Some(format!("{symbol}[{}]", index + 1));
+    };
+    let (row, column) = (index / columns, index % columns);
+    let name = |row: usize, column: usize| format!("{symbol}[{},{}]", row + 1, column + 1);
+    let mirrored = column * columns + row;
+    let is_pair = rows == columns && row != column && part.is_symmetric();
+    match (is_pair, row > column) {
+        (true, true) => None,
+        (true, false) if part.entries[mirrored] == part.entries[index] => {
+            Some(format!("{} = {}", name(row, column), name(column, row)))
+        }
+        _ => Some(name(row, column)),
+    }
+}
+
+fn write_summary(out: &mut dyn Write, equations: &Equations) -> Result<(), Failure> {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("function", Left),
+        ("form", Left),
+        ("mul", Right),
+        ("add", Right),
+        ("sincos", Right),
+        ("nodes", Right),
+        ("time", Right),
+    ]);
+    for part in &equations.parts {
+        let Operations { mul, add, sincos, .. } = Operations::count(&equations.dag, &part.entries);
+        let nodes = equations.dag.topological(&part.entries).len();
+        let mut row = vec![format!("{} {}", part.symbol, part.name), part.form.to_owned()];
+        row.extend([mul, add, sincos, nodes].map(|count| count.to_string()));
+        row.push(part.time.map_or(String::new(), |time| format!("{:.1} ms", 1e3 * time)));
+        table.push(row);
+    }
+    writeln!(out, "\n{table}")?;
+    if let Some(total) = equations.time {
+        writeln!(out, "derived in {:.1} ms", 1e3 * total)?;
+    }
+    Ok(writeln!(out, "too large to be read here; --json has every entry")?)
+}

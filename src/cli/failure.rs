@@ -1,0 +1,130 @@
+//! Why a command stops: always the input's or the system's fault, with the way out.
+
+use denavit::derive::BakeError;
+use denavit::model::ModelError;
+use denavit::program::LowerError;
+use std::fmt;
+use std::io;
+
+/// Why a command stops before its answer.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The model file is wrong.
+    Model(ModelError),
+    /// Neither a file nor a shipped model has this name; holds the name, the shipped model that was
+    /// meant, perhaps, and whether it can only be a file.
+    NoModel { name: String, nearest: Option<&'static str>, is_path: bool },
+    /// A file cannot be read.
+    Read { file: String, error: io::Error },
+    /// A file is larger than any model.
+    TooLarge { file: String, limit: u64 },
+    /// A file cannot be written.
+    Write { file: String, error: io::Error },
+    /// Values are missing that the baked flavour needs.
+    Bake(BakeError),
+    /// A model holds numbers that no computer arithmetic holds; holds model and cause.
+    Lower(String, LowerError),
+    /// The model has none of the functions asked for.
+    NoFunction { model: String, asked: Vec<String> },
+    /// The answer cannot be written to standard output.
+    Stdout(io::Error),
+}
+
+/// Errors of writing that are not turned into another failure are those of standard output.
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Stdout(error)
+    }
+}
+
+impl From<serde_json::Error> for Failure {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Stdout(error.into())
+    }
+}
+
+impl Failure {
+    /// Whether the reader of our output has gone, which is no fault of anybody.
+    pub(crate) fn is_closed_pipe(&self) -> bool {
+        matches!(self, Self::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+
+    fn hint(&self) -> Option<String> {
+        Some(match self {
+            Self::NoModel { nearest: Some(nearest), .. } => {
+                format!("`{nearest}` is a shipped model")
+            }
+            Self::NoModel { is_path: false, .. } => {
+                let names: Vec<_> = denavit::shipped::MODELS.iter().map(|m| m.name).collect();
+                format!("give the path of a model file, or one of {}", names.join(", "))
+            }
+            Self::NoModel { .. } => "check the path".to_owned(),
+            Self::Read { error, .. } if error.kind() == io::ErrorKind::IsADirectory => {
+                "give the path of one model file in it".to_owned()
+            }
+            Self::Read { error, .. } if error.kind() == io::ErrorKind::PermissionDenied => {
+                "check the permissions of the file and of its directories".to_owned()
+            }
+            Self::TooLarge { .. } => "a model is a table of some kilobytes: check the path".into(),
+            Self::Write { error, .. } => match error.kind() {
+                io::ErrorKind::NotFound => "make the directory first".to_owned(),
+                io::ErrorKind::IsADirectory => "give the path of a file in it".to_owned(),
+                io::ErrorKind::NotADirectory => "a part of the path is a file".to_owned(),
+                io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                    "choose a place where you may write".to_owned()
+                }
+                _ => return None,
+            },
+            Self::Lower(..) => "check the exponents of the numbers in the model".to_owned(),
+            Self::NoFunction { .. } => "contacts are declared under \"contacts\"".to_owned(),
+            Self::Model(_) | Self::Read { .. } | Self::Bake(_) | Self::Stdout(_) => return None,
+        })
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            // place and hint are part of these
+            Self::Model(error) => write!(f, "{error}")?,
+            Self::Bake(error) => write!(f, "{error}")?,
+            Self::NoModel { name, is_path: true, .. } => {
+                write!(f, "{name}: there is no such file")?
+            }
+            Self::NoModel { name, is_path: false, .. } => {
+                write!(f, "{name}: there is no such file, and no shipped model of that name")?;
+            }
+            Self::Read { file, error } => write!(f, "{file}: cannot be read: {}", reason(error))?,
+            Self::TooLarge { file, limit } => {
+                write!(f, "{file}: has more than the {limit} bytes that are read")?;
+            }
+            Self::Write { file, error } => {
+                write!(f, "{file}: cannot be written: {}", reason(error))?;
+            }
+            Self::Lower(model, error) => write!(f, "{model}: {error}")?,
+            Self::NoFunction { model, asked } => {
+                write!(f, "{model}: the model has no {}", asked.join(", "))?;
+            }
+            Self::Stdout(error) => {
+                write!(f, "standard output: cannot be written: {}", reason(error))?;
+            }
+        }
+        match self.hint() {
+            Some(hint) => write!(f, "\n  hint: {hint}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// What the system says, without its error number.
+fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    let end = text.find(" (os error").unwrap_or(text.len());
+    let mut text = text[..end].to_owned();
+    if let Some(first) = text.get_mut(..1) {
+        first.make_ascii_lowercase();
+    }
+    text
+}

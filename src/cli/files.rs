@@ -1,0 +1,99 @@
+//! Files in and out: models by path or by name, outputs that are whole or not there.
+
+use super::failure::Failure;
+use denavit::model::{self, Robot};
+use denavit::shipped;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+/// More is not read: the limit of [`model::read`], which refuses what has more.
+const MAX_MODEL_BYTES: u64 = 16 << 20;
+
+/// The robot of a path, of a shipped model's name, or, for `-`, of standard input.
+pub(crate) fn read_model(place: &Path) -> Result<Robot, Failure> {
+    let name = place.to_string_lossy();
+    let (name, bytes) = match name.as_ref() {
+        "-" => ("standard input", read_all("standard input", &mut io::stdin().lock())?),
+        name => (name, read_path(place, name)?),
+    };
+    model::read(name, &bytes).map_err(Failure::Model)
+}
+
+fn read_path(path: &Path, name: &str) -> Result<Vec<u8>, Failure> {
+    let failure = |error| Failure::Read { file: name.to_owned(), error };
+    let is_file = path.metadata().is_ok_and(|metadata| !metadata.is_dir());
+    if let Some(model) = shipped::find(name).filter(|_| !is_file) {
+        return Ok(model.text.as_bytes().to_vec());
+    }
+    match File::open(path) {
+        Ok(_) if path.is_dir() => Err(failure(io::ErrorKind::IsADirectory.into())),
+        Ok(mut file) => read_all(name, &mut file),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(no_model(path, name)),
+        Err(error) => Err(failure(error)),
+    }
+}
+
+fn read_all(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    file.take(MAX_MODEL_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| Failure::Read { file: name.to_owned(), error })?;
+    if bytes.len() as u64 > MAX_MODEL_BYTES {
+        return Err(Failure::TooLarge { file: name.to_owned(), limit: MAX_MODEL_BYTES });
+    }
+    Ok(bytes)
+}
+
+fn no_model(path: &Path, name: &str) -> Failure {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let nearest = denavit::expr::text::nearest(&stem, shipped::MODELS.iter().map(|m| m.name));
+    let is_path = path.components().count() > 1 || path.extension().is_some();
+    Failure::NoModel { name: name.to_owned(), nearest, is_path }
+}
+
+/// Writes a file whole: into a new file beside it, which then takes its name. What was there stays
+/// until then. `-` is standard output.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    if path.as_os_str() == "-" {
+        return Ok(io::stdout().lock().write_all(bytes)?);
+    }
+    replace(path, bytes)
+        .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // a link stays a link: its target is replaced
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    match target.metadata() {
+        Ok(metadata) if metadata.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        // devices and pipes are written to, not replaced
+        Ok(metadata) if !metadata.is_file() => return fs::write(&target, bytes),
+        Ok(metadata) if metadata.permissions().readonly() => {
+            return Err(io::ErrorKind::PermissionDenied.into());
+        }
+        _ => {}
+    }
+    let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.tmp", std::process::id()));
+    let temporary = target.with_file_name(hidden);
+    let written = write_new(&temporary, bytes).and_then(|()| {
+        if let Ok(metadata) = target.metadata() {
+            fs::set_permissions(&temporary, metadata.permissions())?;
+        }
+        fs::rename(&temporary, &target)
+    });
+    if written.is_err() {
+        // the first error is the one to report
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}

@@ -1,0 +1,64 @@
+//! `denavit inspect`: what a model file says, as denavit understands it.
+
+mod json;
+mod text;
+
+use super::Answer;
+use super::failure::Failure;
+use super::files::{read_model, write_whole};
+use super::json::write_json;
+use super::options::ModelArgument;
+use clap::Args;
+use denavit::report::{Pose, Values, picture};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Show a model: tree, rows, masses, drives, contacts, assumptions
+///
+/// A file that is wrong is answered with all its faults, each with place, cause and hint, and exit
+/// code 2.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit inspect tulip
+  denavit inspect puma560 --svg puma560.svg
+  denavit inspect scara --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Draw the robot at its zero pose, with the frames of its links; - is standard output
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let robot = match read_model(&arguments.model.model) {
+        Ok(robot) => robot,
+        Err(Failure::Model(error)) if arguments.json => {
+            write_json(out, &json::faults(&error))?;
+            out.flush()?;
+            return Err(Failure::Model(error));
+        }
+        Err(failure) => return Err(failure),
+    };
+    if let Some(file) = &arguments.svg {
+        let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(robot.name.clone(), e))?;
+        write_whole(file, picture(&robot, &pose).as_bytes())?;
+        if file.as_os_str() == "-" {
+            return Ok(Answer::Done);
+        }
+    }
+    let mut values = Values::new(&robot);
+    if arguments.json {
+        write_json(out, &json::robot(&robot, &mut values))?;
+    } else {
+        text::write(out, &robot, &mut values)?;
+        if let Some(file) = &arguments.svg {
+            writeln!(out, "\nwrote {}", file.display())?;
+        }
+    }
+    Ok(Answer::Done)
+}

@@ -1,0 +1,313 @@
+//! The robot as tables.
+
+use crate::cli::failure::Failure;
+use denavit::expr::ExprId;
+use denavit::model::{
+    Base, Contact, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms,
+};
+use denavit::report::{Align, Table, Values, paragraph};
+use std::io::Write;
+
+pub(super) fn write(
+    out: &mut dyn Write,
+    robot: &Robot,
+    values: &mut Values,
+) -> Result<(), Failure> {
+    head(out, robot, values)?;
+    writeln!(out, "\n{}", link_table(robot, values))?;
+    totals(out, robot, values)?;
+    for (title, table) in [
+        ("limits", limit_table(robot, values)),
+        ("drives, springs, damping", drive_table(robot, values)),
+        ("contacts", point_table(robot, values, &mut robot.contacts.values())),
+        (
+            "must not touch the ground",
+            point_table(robot, values, &mut robot.bodies_that_must_not_touch.iter()),
+        ),
+    ] {
+        if !table.is_empty() {
+            writeln!(out, "\n{title}")?;
+            for line in table.without_empty_columns().to_string().lines() {
+                writeln!(out, "  {line}")?;
+            }
+        }
+    }
+    if !robot.assumptions.is_empty() {
+        writeln!(out, "\nassumptions")?;
+        for assumption in &robot.assumptions {
+            writeln!(out, "{}", paragraph("  - ", "    ", assumption))?;
+        }
+    }
+    Ok(())
+}
+
+fn head(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(), Failure> {
+    writeln!(out, "{}, hash {:016x}", robot.name, robot.hash)?;
+    for (label, text) in [("", &robot.description), ("source: ", &robot.source)] {
+        if !text.is_empty() {
+            writeln!(out, "{}", paragraph("  ", "  ", &format!("{label}{text}")))?;
+        }
+    }
+    let base = match robot.base {
+        Base::Fixed => "fixed base",
+        Base::Floating => "floating base",
+        Base::PlanarFloating => "planar floating base",
+    };
+    let convention = match robot.convention {
+        Convention::Standard => "standard",
+        Convention::Modified => "modified",
+    };
+    let gravity = robot.gravity.map(|component| values.show(component)).join(", ");
+    writeln!(out, "  {base}, {convention} convention, free fall [{gravity}] m/s^2 in frame 0")?;
+    if robot.terms != Terms::ALL {
+        writeln!(out, "  terms: {}", term_names(robot.terms).join(", "))?;
+    }
+    Ok(())
+}
+
+/// The terms that a model has.
+pub(super) fn term_names(terms: Terms) -> Vec<&'static str> {
+    let Terms { inertia, coriolis, gravity, friction, rotor } = terms;
+    let all = [
+        (inertia, "inertia"),
+        (coriolis, "coriolis"),
+        (gravity, "gravity"),
+        (friction, "friction"),
+        (rotor, "rotor"),
+    ];
+    all.into_iter().filter(|(has, _)| *has).map(|(_, name)| name).collect()
+}
+
+fn totals(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(), Failure> {
+    let joints: Vec<_> = robot.joints().map(|(link, _)| &robot.links[link]).collect();
+    let of_base = match robot.base {
+        Base::Fixed => 0,
+        Base::Floating => 6,
+        Base::PlanarFloating => 3,
+    };
+    let driven = joints.iter().filter(|link| link.drive.is_some()).count();
+    write!(out, "degrees of freedom: {}", joints.len())?;
+    match of_base {
+        0 => writeln!(out, " ({driven} with a drive)")?,
+        _ => writeln!(
+            out,
+            " ({of_base} of the base, {} joints, {driven} of them with a drive)",
+            joints.len() - of_base
+        )?,
+    }
+    match total_mass(robot, values) {
+        Some(mass) => writeln!(out, "total mass: {} kg", denavit::report::short(mass))?,
+        None => writeln!(out, "total mass: not known, some masses have no value")?,
+    }
+    let known = robot.parameters.values().filter(|parameter| parameter.known).count();
+    let all = robot.parameters.len();
+    writeln!(out, "parameters: {all} ({known} known, {} to identify)", all - known)?;
+    Ok(())
+}
+
+/// The mass of all bodies [kg], if the file gives all of them.
+pub(super) fn total_mass(robot: &Robot, values: &mut Values) -> Option<f64> {
+    let masses: Vec<ExprId> =
+        robot.links.values().filter_map(|link| Some(link.body.as_ref()?.mass)).collect();
+    values.sum(&masses)
+}
+
+fn link_table(robot: &Robot, values: &mut Values) -> Table {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("link", Left),
+        ("joint", Left),
+        ("a [m]", Left),
+        ("alpha [rad]", Left),
+        ("d [m]", Left),
+        ("theta [rad]", Left),
+        ("mass [kg]", Right),
+        ("com [m]", Left),
+    ]);
+    table.push(vec!["frame 0".to_owned()]);
+    for (label, id) in tree(robot) {
+        let link = &robot.links[id];
+        let mut cells = vec![label, kind_name(link.joint.kind).to_owned()];
+        cells.extend(row_entries(values, &link.joint).map(clip));
+        if let Some(body) = &link.body {
+            cells.push(values.show(body.mass));
+            cells.push(clip(body.com.map(|c| values.show(c)).join(", ")));
+        }
+        table.push(cells);
+    }
+    table
+}
+
+/// What a joint is called in tables.
+pub(super) fn kind_name(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Fixed => "fixed",
+    }
+}
+
+/// The entries a, alpha, d, theta of a row, with q in its place.
+pub(super) fn row_entries(values: &Values, joint: &Joint) -> [String; 4] {
+    let with_variable = |expr: ExprId, is_variable: bool| {
+        let constant = values.formula(expr);
+        match (is_variable, constant.as_str()) {
+            (false, _) => constant,
+            (true, "0") => "q".to_owned(),
+            (true, text) if text.starts_with('-') => format!("q - {}", &text[1..]),
+            (true, text) => format!("q + {text}"),
+        }
+    };
+    [
+        values.formula(joint.a),
+        values.formula(joint.alpha),
+        with_variable(joint.d, joint.kind == JointKind::Prismatic),
+        with_variable(joint.theta, joint.kind == JointKind::Revolute),
+    ]
+}
+
+/// The links, each after the one that carries it, with lines that show who carries whom. A chain
+/// without branches stays in its column.
+fn tree(robot: &Robot) -> Vec<(String, LinkId)> {
+    let mut rows = Vec::with_capacity(robot.links.len());
+    let mut pending: Vec<(LinkId, String, String)> = Vec::new();
+    push_children(robot, None, "", &mut pending);
+    while let Some((id, first, rest)) = pending.pop() {
+        rows.push((format!("{first}{}", robot.links[id].name), id));
+        push_children(robot, Some(id), &rest, &mut pending);
+    }
+    rows
+}
+
+fn push_children(
+    robot: &Robot,
+    parent: Option<LinkId>,
+    indent: &str,
+    pending: &mut Vec<(LinkId, String, String)>,
+) {
+    let children: Vec<LinkId> = robot.tree.children(parent).collect();
+    if let [child] = children[..] {
+        pending.push((child, indent.to_owned(), indent.to_owned()));
+        return;
+    }
+    for (place, &child) in children.iter().enumerate().rev() {
+        let is_last = place + 1 == children.len();
+        let (branch, below) = if is_last { ("└─ ", "   ") } else { ("├─ ", "│  ") };
+        pending.push((child, format!("{indent}{branch}"), format!("{indent}{below}")));
+    }
+}
+
+fn limit_table(robot: &Robot, values: &mut Values) -> Table {
+    use Align::Left;
+    let mut table = Table::new(&[
+        ("link", Left),
+        ("q [rad, m]", Left),
+        ("|qd|", Left),
+        ("|qdd|", Left),
+        ("tau [N m, N]", Left),
+    ]);
+    for link in robot.links.values() {
+        let limits = &link.limits;
+        let is_limited = limits.position.is_some()
+            || limits.velocity.is_some()
+            || limits.acceleration.is_some()
+            || limits.torque.is_some();
+        if is_limited {
+            let mut range = |ends: Option<[ExprId; 2]>| {
+                ends.map_or("-".to_owned(), |ends| {
+                    format!("{} .. {}", values.show(ends[0]), values.show(ends[1]))
+                })
+            };
+            let (q, tau) = (range(limits.position), range(limits.torque));
+            let qd = optional(values, limits.velocity);
+            let qdd = optional(values, limits.acceleration);
+            table.push(vec![link.name.clone(), q, qd, qdd, tau]);
+        }
+    }
+    table
+}
+
+fn optional(values: &mut Values, expr: Option<ExprId>) -> String {
+    expr.map_or("-".to_owned(), |expr| values.show(expr))
+}
+
+fn drive_table(robot: &Robot, values: &mut Values) -> Table {
+    use Align::Left;
+    let mut table = Table::new(&[
+        ("link", Left),
+        ("gear", Left),
+        ("rotor inertia", Left),
+        ("viscous", Left),
+        ("coulomb", Left),
+        ("offset", Left),
+        ("springs", Left),
+    ]);
+    for link in robot.links.values() {
+        let springs = springs(values, link);
+        let drive = link.drive.unwrap_or_default();
+        let viscous = drive.viscous.or(link.joint.damping);
+        if link.drive.is_none() && viscous.is_none() && springs.is_empty() {
+            continue;
+        }
+        let gear = match link.drive {
+            Some(_) => optional(values, drive.gear_ratio),
+            None => "no drive".to_owned(),
+        };
+        table.push(vec![
+            link.name.clone(),
+            gear,
+            optional(values, drive.rotor_inertia),
+            optional(values, viscous),
+            optional(values, drive.coulomb),
+            optional(values, drive.offset),
+            springs.join("; "),
+        ]);
+    }
+    table
+}
+
+fn springs(values: &mut Values, link: &Link) -> Vec<String> {
+    let mut springs = Vec::new();
+    if let Some(spring) = &link.joint.spring {
+        let (stiffness, angle) = (values.show(spring.stiffness), values.show(spring.angle));
+        springs.push(format!("{stiffness} about q = {angle}"));
+    }
+    let drive = link.drive.unwrap_or_default();
+    if let Some(elastic) = drive.series_elastic {
+        let stiffness = values.show(elastic.stiffness);
+        let radii = [elastic.motor_radius, elastic.load_radius].map(|r| values.show(r));
+        springs.push(format!("series {stiffness} N/m on {} m, {} m", radii[0], radii[1]));
+    }
+    if let Some(spring) = drive.return_spring {
+        let relation = match spring.side {
+            Side::Above => '>',
+            Side::Below => '<',
+        };
+        let (stiffness, angle) = (values.show(spring.stiffness), values.show(spring.angle));
+        springs.push(format!("return {stiffness} where q {relation} {angle}"));
+    }
+    springs
+}
+
+fn point_table(
+    robot: &Robot,
+    values: &mut Values,
+    points: &mut dyn Iterator<Item = &Contact>,
+) -> Table {
+    let columns = [("point", Align::Left), ("link", Align::Left), ("position [m]", Align::Left)];
+    let mut table = Table::new(&columns);
+    for point in points {
+        let position = clip(point.position.map(|c| values.show(c)).join(", "));
+        table.push(vec![point.name.clone(), robot.links[point.link].name.clone(), position]);
+    }
+    table
+}
+
+/// A cell of bounded width: a formula may be long.
+fn clip(text: String) -> String {
+    const WIDEST: usize = 40;
+    match text.char_indices().nth(WIDEST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}

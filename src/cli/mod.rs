@@ -1,0 +1,81 @@
+//! The command: one file for each subcommand; what they share stands here and in `files`.
+//!
+//! Answers go to standard output, progress to standard error where that is a terminal, failures to
+//! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
+
+mod count;
+mod derive;
+mod failure;
+mod files;
+mod inspect;
+mod json;
+mod options;
+mod progress;
+mod schema;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Symbolic robot dynamics: from a Denavit-Hartenberg table to exact equations and optimised Rust.
+#[derive(Debug, Parser)]
+#[command(name = "denavit", version, after_help = EXAMPLE, subcommand_required = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLE: &str = "\
+MODEL is the path of a model file, the name of a shipped model, or - for standard input.
+Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
+
+Example:
+  denavit inspect tulip";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Inspect(inspect::Arguments),
+    Derive(derive::Arguments),
+    Count(count::Arguments),
+    Schema(schema::Arguments),
+}
+
+/// What a command that ran to its end says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    Done,
+}
+
+/// Runs the command line of the process.
+pub(crate) fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // help that nobody reads, or an error that nobody sees: nothing is left to say
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    let answer = cli.command.run(&mut out);
+    match answer.and_then(|answer| Ok(out.flush().map(|()| answer)?)) {
+        Ok(Answer::Done) => ExitCode::SUCCESS,
+        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Err(failure) => {
+            let _ = writeln!(io::stderr(), "{failure}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+impl Command {
+    fn run(&self, out: &mut dyn Write) -> Result<Answer, Failure> {
+        match self {
+            Self::Inspect(arguments) => inspect::run(arguments, out),
+            Self::Derive(arguments) => derive::run(arguments, out),
+            Self::Count(arguments) => count::run(arguments, out),
+            Self::Schema(arguments) => schema::run(arguments, out),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Options that several commands have.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
+use denavit::derive::Flavour;
+use denavit::function::FunctionName;
+use denavit::model::Terms;
+use std::path::PathBuf;
+
+/// The model that a command is about.
+#[derive(Debug, Args)]
+pub(crate) struct ModelArgument {
+    /// Path of a model file, name of a shipped model, or - for standard input
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+}
+
+/// Functions, given as a list of names.
+#[derive(Debug, Args)]
+pub(crate) struct FunctionList {
+    /// Functions, separated by commas; all that the model has if none are named
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = function_names())]
+    functions: Vec<FunctionName>,
+}
+
+impl FunctionList {
+    /// The functions asked for, each once, in the order of listings.
+    pub(crate) fn wanted(&self) -> Vec<FunctionName> {
+        let asked =
+            |name: &FunctionName| self.functions.is_empty() || self.functions.contains(name);
+        FunctionName::ALL.into_iter().filter(asked).collect()
+    }
+}
+
+fn function_names() -> impl TypedValueParser<Value = FunctionName> {
+    PossibleValuesParser::new(FunctionName::ALL.map(FunctionName::as_str)).try_map(|name| {
+        FunctionName::parse(&name).ok_or_else(|| format!("`{name}` is not a function"))
+    })
+}
+
+/// Whether the model's values go into the functions.
+#[derive(Debug, Args)]
+pub(crate) struct FlavourOption {
+    /// Fold the model's values into the functions (otherwise parameters are set at run time)
+    #[arg(long)]
+    baked: bool,
+}
+
+impl FlavourOption {
+    /// The flavour asked for.
+    pub(crate) fn flavour(&self) -> Flavour {
+        if self.baked { Flavour::Baked } else { Flavour::Tunable }
+    }
+}
+
+/// A term of the equations of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Term {
+    /// D qdd
+    Inertia,
+    /// C qd
+    Coriolis,
+    /// G
+    Gravity,
+    /// Viscous and Coulomb friction, joint damping
+    Friction,
+    /// Reflected rotor inertia
+    Rotor,
+}
+
+/// The terms of a list.
+pub(crate) fn terms(list: &[Term]) -> Terms {
+    let has = |term| list.contains(&term);
+    Terms {
+        inertia: has(Term::Inertia),
+        coriolis: has(Term::Coriolis),
+        gravity: has(Term::Gravity),
+        friction: has(Term::Friction),
+        rotor: has(Term::Rotor),
+    }
+}

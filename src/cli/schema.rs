@@ -1,0 +1,35 @@
+//! `denavit schema`: the JSON Schema of a file format.
+
+use super::Answer;
+use super::failure::Failure;
+use clap::{Args, ValueEnum};
+use std::io::Write;
+
+/// Print the JSON Schema of a file format
+///
+/// An editor that is told of it completes and checks model files while they are written.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  denavit schema model")]
+pub(crate) struct Arguments {
+    /// The format
+    #[arg(value_name = "FORMAT")]
+    format: Format,
+    /// Accepted as everywhere; a schema is JSON already
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// A robot
+    #[value(alias = denavit::model::FORMAT)]
+    Model,
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let schema = match arguments.format {
+        Format::Model => denavit::model::schema(),
+    };
+    writeln!(out, "{}", schema.trim_end())?;
+    Ok(Answer::Done)
+}

@@ -1,0 +1,25 @@
+//! What people look at: tables and pictures.
+//!
+//! - [`Table`], [`paragraph`]: columns and lines of text
+//! - [`Values`]: the numbers behind a model's expressions
+//! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
+//!
+//! Nothing here prints; text is handed to whoever does.
+
+mod camera;
+mod label;
+mod outline;
+mod paragraph;
+mod picture;
+mod pose;
+mod scene;
+mod space;
+mod svg;
+mod table;
+mod values;
+
+pub use paragraph::paragraph;
+pub use picture::picture;
+pub use pose::Pose;
+pub use table::{Align, Table};
+pub use values::{Values, short};

@@ -1,0 +1,83 @@
+//! The command as a user meets it: answers, exit codes, messages, files.
+
+mod answers;
+mod errors;
+mod help;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// What a run of the command gave.
+struct Run {
+    code: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+fn run_in(directory: &Path, arguments: &[&str]) -> Run {
+    let output = command(directory).args(arguments).output().expect("the command starts");
+    Run::of(output)
+}
+
+fn command(directory: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_denavit"));
+    command.current_dir(directory).stdin(Stdio::null());
+    command
+}
+
+impl Run {
+    fn of(output: Output) -> Self {
+        Self {
+            code: output.status.code(),
+            stdout: String::from_utf8(output.stdout).expect("UTF-8"),
+            stderr: String::from_utf8(output.stderr).expect("UTF-8"),
+        }
+    }
+}
+
+/// The answer to a question that has one.
+fn answer(arguments: &[&str]) -> String {
+    let directory = Directory::new("answer");
+    let run = run_in(&directory.path, arguments);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{arguments:?}");
+    run.stdout
+}
+
+fn json(arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&answer(arguments)).expect("JSON")
+}
+
+/// A directory of a test's own, empty at first, removed in the end.
+struct Directory {
+    path: PathBuf,
+}
+
+impl Directory {
+    fn new(name: &str) -> Self {
+        use std::sync::atomic::{AtomicUsize, Ordering};
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("{name}-{}-{number}", std::process::id());
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::create_dir_all(&path).expect("a directory");
+        Self { path }
+    }
+
+    /// The names of its files, sorted.
+    fn files(&self) -> Vec<String> {
+        let entries = self.path.read_dir().expect("a directory");
+        let name = |entry: std::io::Result<std::fs::DirEntry>| {
+            entry.expect("an entry").file_name().to_string_lossy().into_owned()
+        };
+        let mut names: Vec<String> = entries.map(name).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Directory {
+    fn drop(&mut self) {
+        // a directory that stays is a nuisance, no failure
+        let _ = std::fs::remove_dir_all(&self.path);
+    }
+}

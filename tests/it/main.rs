@@ -1,0 +1,3 @@
+//! Tests of the whole: the command, and the code that it emits.
+
+mod cli;

@@ -1,6 +1,7 @@
 //! The tests of the compiler, one module for each stage.
 
 mod counts;
+mod definite;
 mod engine_values;
 mod laws;
 mod methods;

@@ -6,6 +6,7 @@ pub mod derive;
 pub mod dynamics;
 pub mod expr;
 pub mod function;
+pub mod fundamental;
 pub mod kinematics;
 pub mod model;
 pub mod number;

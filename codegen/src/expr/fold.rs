@@ -15,7 +15,7 @@ const MAX_POWER_BITS: u64 = 4096;
 
 impl Dag {
     /// The expression of a node whose operands may be anything: applies the laws.
-    pub(super) fn make(&mut self, node: Node) -> ExprId {
+    pub(crate) fn make(&mut self, node: Node) -> ExprId {
         match node {
             Node::Constant(_) | Node::Pi | Node::Symbol(_) => self.intern(node),
             Node::Neg(a) => self.neg(a),

@@ -1,0 +1,278 @@
+//! The canonical polynomial of an expression.
+//!
+//! Atoms are symbols, pi, and the sine and cosine of *single* angles: an angle is first made
+//! canonical itself, a sum of monomials with whole coefficients, and then taken apart by the
+//! addition theorems. With s^2 = 1 - c^2 each sine is left at most once in a monomial, and the
+//! monomials c^k s^e (e = 0 or 1) of different angles are linearly independent: two expressions
+//! are the same function exactly if their polynomials are equal. Angles a quarter turn apart are
+//! known to be; other fractions of pi are refused, because their sines are algebraic numbers.
+//!
+//! Functions without such a theory (`sqrt`, `sign`, `select`, ...) are atoms too, told apart by
+//! their canonical arguments: of these equal polynomials still mean equal expressions, but
+//! `sqrt(x)^2` is not seen to be `x`.
+
+use super::polynomial::{Monomial, Polynomial, TooManyTerms};
+use crate::expr::{Dag, ExprId, Node, UnaryFunction};
+use crate::number::{Rational, integer};
+use num_traits::{One, Signed, ToPrimitive};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The most terms that a polynomial may have on the way.
+pub const MAX_TERMS: usize = 50_000;
+
+/// An angle may be at most so many times another one.
+const MAX_MULTIPLE: i32 = 64;
+
+/// Why an expression has no canonical polynomial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CanonicalError {
+    /// The polynomial has more than [`MAX_TERMS`] terms, or exponents beyond 32 bits.
+    TooManyTerms,
+    /// Division by zero.
+    DivisionByZero,
+    /// Division by a sum, or by a sine: the quotient is no polynomial.
+    DivisionBySum,
+    /// An angle that is no whole multiple (up to 64) of its atoms and of a quarter turn.
+    Angle,
+}
+
+impl fmt::Display for CanonicalError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooManyTerms => {
+                write!(f, "written out, the expression has more than {MAX_TERMS} terms")
+            }
+            Self::DivisionByZero => write!(f, "division by zero"),
+            Self::DivisionBySum => {
+                write!(f, "division by a sum or a sine: only products of symbols divide here")
+            }
+            Self::Angle => write!(
+                f,
+                "an angle is no whole multiple of its symbols and of a quarter turn, so its sine \
+                 has no canonical form"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for CanonicalError {}
+
+impl From<TooManyTerms> for CanonicalError {
+    fn from(_: TooManyTerms) -> Self {
+        Self::TooManyTerms
+    }
+}
+
+/// The canonical polynomial of an expression. The graph grows by atoms.
+pub fn canonical(dag: &mut Dag, expr: ExprId) -> Result<Polynomial, CanonicalError> {
+    let mut polynomials = canonical_all(dag, &[expr])?;
+    Ok(polynomials.remove(0))
+}
+
+/// The canonical polynomials of several expressions, in order; what they share is done once.
+pub fn canonical_all(dag: &mut Dag, exprs: &[ExprId]) -> Result<Vec<Polynomial>, CanonicalError> {
+    let mut uses: FxHashMap<ExprId, usize> = FxHashMap::default();
+    let nodes = dag.topological(exprs);
+    for &expr in &nodes {
+        dag.node(expr).for_each_operand(|operand| *uses.entry(operand).or_default() += 1);
+    }
+    exprs.iter().for_each(|&expr| *uses.entry(expr).or_default() += 1);
+    let mut expansion = Expansion { dag, cosine_of: FxHashMap::default() };
+    let mut known: FxHashMap<ExprId, Polynomial> = FxHashMap::default();
+    for expr in nodes {
+        let polynomial = expansion.node(expr, &known)?;
+        // A polynomial is kept only as long as something below the outputs still needs it.
+        expansion.dag.node(expr).for_each_operand(|operand| {
+            let left = uses.get_mut(&operand).expect("operands were counted");
+            *left -= 1;
+            if *left == 0 {
+                known.remove(&operand);
+            }
+        });
+        known.insert(expr, polynomial);
+    }
+    Ok(exprs.iter().map(|expr| known[expr].clone()).collect())
+}
+
+/// Whether two expressions are the same function.
+pub fn equal(dag: &mut Dag, a: ExprId, b: ExprId) -> Result<bool, CanonicalError> {
+    let polynomials = canonical_all(dag, &[a, b])?;
+    Ok(polynomials[0] == polynomials[1])
+}
+
+struct Expansion<'a> {
+    dag: &'a mut Dag,
+    /// The cosine atom of each sine atom.
+    cosine_of: FxHashMap<ExprId, ExprId>,
+}
+
+impl Expansion<'_> {
+    fn node(
+        &mut self,
+        expr: ExprId,
+        known: &FxHashMap<ExprId, Polynomial>,
+    ) -> Result<Polynomial, CanonicalError> {
+        let one = Rational::one();
+        Ok(match self.dag.node(expr) {
+            Node::Constant(id) => Polynomial::constant(self.dag.constant_value(id).clone()),
+            Node::Pi | Node::Symbol(_) => Polynomial::atom(expr),
+            Node::Neg(a) => known[&a].scaled(&-one),
+            Node::Add(a, b) => self.bounded(known[&a].clone().plus(&known[&b], &one))?,
+            Node::Sub(a, b) => self.bounded(known[&a].clone().plus(&known[&b], &-one))?,
+            Node::Mul(a, b) => self.product(&known[&a], &known[&b])?,
+            Node::Div(a, b) => {
+                let inverse = self.inverse(&known[&b])?;
+                self.product(&known[&a], &inverse)?
+            }
+            Node::Pow(a, n) => self.power(&known[&a], n)?,
+            Node::Unary(UnaryFunction::Cos, a) => self.unit_point(&known[&a])?.0,
+            Node::Unary(UnaryFunction::Sin, a) => self.unit_point(&known[&a])?.1,
+            Node::Unary(UnaryFunction::Tan, a) => {
+                let (cosine, sine) = self.unit_point(&known[&a])?;
+                let inverse = self.inverse(&cosine)?;
+                self.product(&sine, &inverse)?
+            }
+            node @ (Node::Unary(..) | Node::Binary(..) | Node::Select { .. }) => {
+                let mut images = BTreeMap::<ExprId, ExprId>::new();
+                let dag = &mut *self.dag;
+                node.for_each_operand(|operand| {
+                    images.insert(operand, known[&operand].to_expr(dag));
+                });
+                let folded = crate::expr::rebuild(self.dag, expr, |operand| images[&operand]);
+                let operand = images.iter().find(|(_, image)| **image == folded);
+                match operand {
+                    Some((operand, _)) => known[operand].clone(),
+                    None => signed_atom(self.dag, folded),
+                }
+            }
+        })
+    }
+
+    fn bounded(&self, polynomial: Polynomial) -> Result<Polynomial, CanonicalError> {
+        if polynomial.len() > MAX_TERMS {
+            return Err(CanonicalError::TooManyTerms);
+        }
+        Ok(polynomial)
+    }
+
+    fn product(&self, a: &Polynomial, b: &Polynomial) -> Result<Polynomial, CanonicalError> {
+        self.without_squared_sines(a.times(b, MAX_TERMS)?)
+    }
+
+    /// s^2 = 1 - c^2, until no sine has an exponent but 1.
+    fn without_squared_sines(&self, mut rest: Polynomial) -> Result<Polynomial, CanonicalError> {
+        loop {
+            let mut reduced = Polynomial::zero();
+            let mut is_done = true;
+            for (monomial, coefficient) in rest.terms() {
+                let squared = monomial.powers().iter().find_map(|&(atom, exponent)| {
+                    let cosine = *self.cosine_of.get(&atom)?;
+                    (exponent > 1).then_some((atom, cosine, exponent))
+                });
+                let Some((sine, cosine, exponent)) = squared else {
+                    reduced.add_term(monomial.clone(), coefficient.clone());
+                    continue;
+                };
+                is_done = false;
+                let times = |base: &Monomial, atom: ExprId, exponent: i32| {
+                    let power = Monomial::atom(atom).power(exponent);
+                    power.and_then(|power| base.times(&power)).ok_or(TooManyTerms)
+                };
+                let base = times(&monomial.without(sine), sine, exponent - 2)?;
+                reduced.add_term(times(&base, cosine, 2)?, -coefficient.clone());
+                reduced.add_term(base, coefficient.clone());
+            }
+            rest = self.bounded(reduced)?;
+            if is_done {
+                return Ok(rest);
+            }
+        }
+    }
+
+    fn inverse(&self, polynomial: &Polynomial) -> Result<Polynomial, CanonicalError> {
+        if polynomial.is_zero() {
+            return Err(CanonicalError::DivisionByZero);
+        }
+        let (monomial, coefficient) = polynomial.as_term().ok_or(CanonicalError::DivisionBySum)?;
+        if monomial.powers().iter().any(|(atom, _)| self.cosine_of.contains_key(atom)) {
+            return Err(CanonicalError::DivisionBySum);
+        }
+        let inverse = monomial.power(-1).ok_or(TooManyTerms)?;
+        Ok(Polynomial::term(inverse, coefficient.recip()))
+    }
+
+    fn power(&self, base: &Polynomial, n: u32) -> Result<Polynomial, CanonicalError> {
+        let mut result = Polynomial::constant(Rational::one());
+        for bit in (0..32 - n.leading_zeros()).rev() {
+            result = self.product(&result, &result)?;
+            if n >> bit & 1 == 1 {
+                result = self.product(&result, base)?;
+            }
+        }
+        Ok(result)
+    }
+
+    /// (cos, sin) of an angle.
+    fn unit_point(
+        &mut self,
+        angle: &Polynomial,
+    ) -> Result<(Polynomial, Polynomial), CanonicalError> {
+        let one = Polynomial::constant(Rational::one());
+        let mut point = (one, Polynomial::zero());
+        let pi = self.dag.pi();
+        for (monomial, coefficient) in angle.terms() {
+            let is_pi = monomial.powers() == [(pi, 1)];
+            // An angle of 1 rad has no canonical sine: neither has a number without pi.
+            let times = if is_pi { coefficient * integer(2) } else { coefficient.clone() };
+            let whole = times.to_integer().to_i32().filter(|_| times.is_integer());
+            let whole = whole.filter(|_| !monomial.is_one()).ok_or(CanonicalError::Angle)?;
+            if is_pi {
+                for _ in 0..whole.rem_euclid(4) {
+                    point = (point.1.scaled(&integer(-1)), point.0);
+                }
+                continue;
+            }
+            if whole.abs() > MAX_MULTIPLE {
+                return Err(CanonicalError::Angle);
+            }
+            let (cosine, mut sine) = self.atom_point(monomial);
+            if coefficient.is_negative() {
+                sine = sine.scaled(&integer(-1));
+            }
+            for _ in 0..whole.abs() {
+                point = self.turned(&point, &(cosine.clone(), sine.clone()))?;
+            }
+        }
+        Ok(point)
+    }
+
+    /// (cos, sin) of an angle that is one monomial.
+    fn atom_point(&mut self, monomial: &Monomial) -> (Polynomial, Polynomial) {
+        let angle = Polynomial::term(monomial.clone(), Rational::one()).to_expr(self.dag);
+        let (cosine, sine) = (self.dag.cos(angle), self.dag.sin(angle));
+        self.cosine_of.insert(sine, cosine);
+        (Polynomial::atom(cosine), Polynomial::atom(sine))
+    }
+
+    /// The sum of two angles, as points (cos, sin).
+    fn turned(
+        &self,
+        (c, s): &(Polynomial, Polynomial),
+        (d, t): &(Polynomial, Polynomial),
+    ) -> Result<(Polynomial, Polynomial), CanonicalError> {
+        let (cc, ss) = (self.product(c, d)?, self.product(s, t)?);
+        let (sc, cs) = (self.product(s, d)?, self.product(c, t)?);
+        Ok((cc.plus(&ss, &integer(-1)), sc.plus(&cs, &Rational::one())))
+    }
+}
+
+/// A function as an atom; folding may have made it a number, or taken a sign out of it.
+fn signed_atom(dag: &Dag, expr: ExprId) -> Polynomial {
+    match dag.node(expr) {
+        Node::Constant(id) => Polynomial::constant(dag.constant_value(id).clone()),
+        Node::Neg(a) => Polynomial::atom(a).scaled(&integer(-1)),
+        _ => Polynomial::atom(expr),
+    }
+}

@@ -6,7 +6,6 @@ mod engine_values;
 mod laws;
 mod methods;
 mod model;
-mod models;
 mod program;
 mod robots;
 mod thesis;

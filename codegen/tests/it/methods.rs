@@ -1,10 +1,11 @@
 //! The thesis's four derivations against each other and against the recursions, on shipped robots.
 
-use super::models::{fixture, model};
+use super::robots::{fixture, load, shipped};
 use denavit_codegen::derive::{Derivation, Flavour, derive as derive_recursively};
 use denavit_codegen::dynamics::methods::{Method, MethodResult, derive};
 use denavit_codegen::expr::{Dag, ExprId, Residues, evaluate};
 use denavit_codegen::function::FunctionName;
+use denavit_codegen::fundamental::canonical_all;
 use denavit_codegen::model::{Convention, Robot};
 use denavit_codegen::number::Residue;
 
@@ -60,42 +61,31 @@ fn agree(robot: &Robot) {
 #[test]
 fn all_methods_agree_with_the_recursions_on_every_kind_of_joint() {
     for convention in [Convention::Standard, Convention::Modified] {
-        agree(&Robot { convention, ..fixture("every_joint") });
+        agree(&Robot { convention, ..fixture("every_joint.json") });
     }
 }
 
 #[test]
-fn all_methods_agree_with_the_recursions_on_the_double_pendulum() {
-    agree(&model("double_pendulum"));
+fn all_methods_are_identical_on_the_double_pendulum_term_by_term() {
+    let robot = load("double_pendulum");
+    let mut dag = robot.dag.clone();
+    let mut forms = |method| {
+        let entries = terms_of(&derive(&mut dag, &robot, method)).map(|(_, entries)| entries);
+        canonical_all(&mut dag, &entries.concat()).expect("a polynomial of a few terms")
+    };
+    let [first, others @ ..] = Method::ALL.map(&mut forms);
+    // 4 entries of D, 4 of C, 2 of G, 2 torques; C22 alone is 0
+    assert_eq!(first.iter().filter(|form| form.is_zero()).count(), 1);
+    for (other, method) in others.iter().zip(&Method::ALL[1..]) {
+        assert_eq!(*other, first, "{method}");
+    }
 }
 
 #[test]
-fn all_methods_agree_with_the_recursions_on_puma560() {
-    agree(&model("puma560"));
-}
-
-#[test]
-fn all_methods_agree_with_the_recursions_on_the_leg_of_tulip() {
-    agree(&model("tulip_leg6"));
-}
-
-#[test]
-fn all_methods_agree_with_the_recursions_where_joints_slide() {
-    agree(&model("scara"));
-    agree(&model("stanford"));
-}
-
-#[test]
-fn all_methods_agree_with_the_recursions_in_modified_frames() {
-    agree(&model("rx90"));
-}
-
-#[test]
-fn all_methods_agree_with_the_recursions_on_a_walker_in_the_plane() {
-    agree(&model("planar_biped"));
-}
-
-#[test]
-fn all_methods_agree_with_the_recursions_on_tulip() {
-    agree(&model("tulip"));
+fn all_methods_agree_with_the_recursions_on_every_shipped_robot() {
+    let names = shipped();
+    for name in ["puma560", "tulip", "tulip_leg6"] {
+        assert!(names.iter().any(|shipped| shipped == name), "{name}");
+    }
+    names.iter().for_each(|name| agree(&load(name)));
 }

@@ -66,6 +66,8 @@ pub(crate) enum Term {
     Friction,
     /// Reflected rotor inertia
     Rotor,
+    /// Springs across joints
+    Spring,
 }
 
 /// The terms of a list.
@@ -77,5 +79,6 @@ pub(crate) fn terms(list: &[Term]) -> Terms {
         gravity: has(Term::Gravity),
         friction: has(Term::Friction),
         rotor: has(Term::Rotor),
+        spring: has(Term::Spring),
     }
 }

@@ -52,11 +52,11 @@ fn terms_of(dag: &mut Dag, robot: &Robot, link: &Link) -> JointTerms {
             torque = add_product(dag, torque, damping, variables.qd);
         }
     }
-    if let Some(spring) = joint.spring {
+    if let Some(spring) = joint.spring.filter(|_| robot.terms.spring) {
         let stretch = dag.sub(variables.q, spring.angle);
         (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, stretch);
     }
-    if let Some(spring) = drive.return_spring {
+    if let Some(spring) = drive.return_spring.filter(|_| robot.terms.spring) {
         let zero = dag.zero();
         let stretch = dag.sub(variables.q, spring.angle);
         let sides = match spring.side {

@@ -202,8 +202,8 @@ const SIDES: Word<Side> =
     Word { what: "side", known: &["above", "below"], values: &[Side::Above, Side::Below] };
 const TERMS: Word<usize> = Word {
     what: "term",
-    known: &["inertia", "coriolis", "gravity", "friction", "rotor"],
-    values: &[0, 1, 2, 3, 4],
+    known: &["inertia", "coriolis", "gravity", "friction", "rotor", "spring"],
+    values: &[0, 1, 2, 3, 4, 5],
 };
 const MODEL: Word<()> = Word { what: EFFECT_PLACE, known: &["model"], values: &[()] };
 
@@ -273,12 +273,12 @@ fn read_terms(fields: &Fields<'_, '_>, report: &mut Report) -> Terms {
     if fields.get("terms").is_none() {
         return Terms::ALL;
     }
-    let mut has = [false; 5];
+    let mut has = [false; 6];
     fields.items("terms", report, |json, report| {
         TERMS.read(json, report).map(|index| has[index] = true)
     });
-    let [inertia, coriolis, gravity, friction, rotor] = has;
-    Terms { inertia, coriolis, gravity, friction, rotor }
+    let [inertia, coriolis, gravity, friction, rotor, spring] = has;
+    Terms { inertia, coriolis, gravity, friction, rotor, spring }
 }
 
 fn read_declarations<'a>(

@@ -62,12 +62,20 @@ pub struct Terms {
     pub friction: bool,
     /// Reflected rotor inertia.
     pub rotor: bool,
+    /// Springs across joints.
+    pub spring: bool,
 }
 
 impl Terms {
     /// Every term.
-    pub const ALL: Self =
-        Self { inertia: true, coriolis: true, gravity: true, friction: true, rotor: true };
+    pub const ALL: Self = Self {
+        inertia: true,
+        coriolis: true,
+        gravity: true,
+        friction: true,
+        rotor: true,
+        spring: true,
+    };
 }
 
 /// The kind of a joint; its axis is z_(i-1) (standard) or z_i (modified).

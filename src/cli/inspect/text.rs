@@ -67,13 +67,14 @@ fn head(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(), F
 
 /// The terms that a model has.
 pub(super) fn term_names(terms: Terms) -> Vec<&'static str> {
-    let Terms { inertia, coriolis, gravity, friction, rotor } = terms;
+    let Terms { inertia, coriolis, gravity, friction, rotor, spring } = terms;
     let all = [
         (inertia, "inertia"),
         (coriolis, "coriolis"),
         (gravity, "gravity"),
         (friction, "friction"),
         (rotor, "rotor"),
+        (spring, "spring"),
     ];
     all.into_iter().filter(|(has, _)| *has).map(|(_, name)| name).collect()
 }

@@ -23,7 +23,7 @@ pub(super) fn drive_torques(dag: &mut Dag, robot: &Robot) -> Vec<ExprId> {
         .map(|(link, _)| {
             let link = &robot.links[link];
             let friction = if robot.terms.friction { friction(dag, link) } else { dag.zero() };
-            let springs = springs(dag, link);
+            let springs = if robot.terms.spring { springs(dag, link) } else { dag.zero() };
             let sum = dag.add(friction, springs);
             let offset = link.drive.and_then(|drive| drive.offset).unwrap_or_else(|| dag.zero());
             dag.add(sum, offset)

@@ -57,7 +57,8 @@ pub fn derive(dag: &mut Dag, robot: &Robot) -> MethodResult {
     let rotor_mass = jacobian(dag, &rotor_momentum, &at.qd);
     let rotor_torque = euler_lagrange(dag, &at, rotors, &rotor_momentum);
 
-    let potential = dag.add(energies.springs, energies.offsets);
+    let springs = if robot.terms.spring { energies.springs } else { zero };
+    let potential = dag.add(springs, energies.offsets);
     let elastic = gradient(dag, potential, &at.q);
     let dissipation = if robot.terms.friction { energies.dissipation } else { zero };
     let friction = gradient(dag, dissipation, &at.qd);

@@ -88,6 +88,7 @@ fn a_model_without_a_term_has_zeros_in_its_place() {
         Terms { gravity: false, ..all },
         Terms { friction: false, ..all },
         Terms { rotor: false, ..all },
+        Terms { spring: false, ..all },
     ];
     for terms in cases {
         let robot = Robot { terms, ..tree_robot(Convention::Standard) };
@@ -109,6 +110,7 @@ fn a_model_without_a_term_has_zeros_in_its_place() {
             assert_eq!(classes("Ia_"), terms.rotor, "{method}");
             assert_eq!(classes("fc_"), terms.friction, "{method}");
             assert_eq!(classes("gx"), terms.gravity, "{method}");
+            assert_eq!(classes("ks_"), terms.spring, "{method}");
         }
     }
 }

@@ -2,8 +2,10 @@
 //! Rust.
 
 pub mod arena;
+pub mod build_script;
 pub mod derive;
 pub mod dynamics;
+pub mod emit;
 pub mod expr;
 pub mod function;
 pub mod fundamental;

@@ -1,4 +1,7 @@
-//! What a call costs: operations counted by kind, and one number to compare forms by.
+//! What a call costs: operations, counted by kind.
+//!
+//! Formulations are compared before they are lowered, by
+//! [`Operations::price`](crate::expr::Operations::price); this is what the chosen one came to.
 
 use super::{
     BinaryOperation, Code, Instruction, Leaf, Operation, Program, Routine, UnaryOperation,
@@ -24,7 +27,7 @@ pub struct Counts {
     /// Selections, minima, maxima, absolute values and signs: all without a branch.
     pub select: usize,
     /// Other functions: tan, exp, log, tanh, atan2.
-    pub function: usize,
+    pub other: usize,
     /// Operations, of any kind, of the prelude that this function needs; run once for each set of
     /// parameters.
     pub prelude: usize,
@@ -34,7 +37,7 @@ impl Counts {
     /// Operations of a call, of any kind; those of the prelude are not among them.
     pub fn total(&self) -> usize {
         let arithmetic = self.mul + self.add + self.neg + self.div;
-        arithmetic + self.sqrt + self.sincos + self.select + self.function
+        arithmetic + self.sqrt + self.sincos + self.select + self.other
     }
 
     fn count(&mut self, instruction: &Instruction) {
@@ -45,8 +48,8 @@ impl Counts {
             Instruction::Value { operation, .. } => match operation {
                 Operation::Unary(Neg, _) => &mut self.neg,
                 Operation::Unary(Sqrt, _) => &mut self.sqrt,
-                Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut self.function,
-                Operation::Binary(Atan2, ..) => &mut self.function,
+                Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut self.other,
+                Operation::Binary(Atan2, ..) => &mut self.other,
                 Operation::Unary(Abs | Sign, _) | Operation::Select { .. } => &mut self.select,
                 Operation::Binary(Min | Max, ..) => &mut self.select,
                 Operation::Binary(Add | Sub, ..) => &mut self.add,
@@ -66,7 +69,7 @@ impl AddAssign for Counts {
         self.sqrt += other.sqrt;
         self.sincos += other.sincos;
         self.select += other.select;
-        self.function += other.function;
+        self.other += other.other;
         self.prelude += other.prelude;
     }
 }
@@ -81,22 +84,6 @@ pub fn code_counts(code: &Code) -> Counts {
 /// The operations of a routine of `program`.
 pub fn counts(program: &Program, routine: &Routine) -> Counts {
     Counts { prelude: prelude_operations(program, routine), ..code_counts(&routine.code) }
-}
-
-/// One number to compare two forms of a function by: about the cycles that each operation keeps a
-/// floating-point port of a current x86-64 or Arm core busy, in units of one multiplication.
-/// Additions overlap with multiplications and cost the same; a change of sign is one bit-wise
-/// operation on another port; division and root are not pipelined well; the sine and cosine of
-/// the runtime are some 20 multiplications and additions. Prelude operations are free.
-pub fn cost(counts: &Counts) -> f64 {
-    let of = |count: usize, weight: f64| count as f64 * weight;
-    of(counts.mul + counts.add, 1.0)
-        + of(counts.neg, 0.5)
-        + of(counts.div, 8.0)
-        + of(counts.sqrt, 12.0)
-        + of(counts.sincos, 30.0)
-        + of(counts.select, 2.0)
-        + of(counts.function, 60.0)
 }
 
 /// Number of prelude instructions that the prelude values of a routine depend on.

@@ -4,8 +4,9 @@
 //! bit for bit.
 
 use super::tape::{Choice, Step, Tape};
-use super::{BinaryOperation, Code, Leaf, Program, Routine, UnaryOperation};
-use crate::expr::Relation;
+use super::{BinaryOperation, Code, Leaf, Program, Routine, UnaryOperation, constant_values};
+use crate::expr::{ExprId, Relation};
+use crate::model::Robot;
 use denavit_runtime::{Scalar, Transcendental};
 use std::fmt;
 
@@ -47,6 +48,19 @@ pub fn prelude_values(program: &Program, parameters: &[f64]) -> Result<Vec<f64>,
         Leaf::Parameter(row) => parameters[row],
         Leaf::Prelude(_) | Leaf::Argument { .. } => unreachable!("no leaves of a prelude"),
     }))
+}
+
+/// The values that the model gives to the parameters of a program, in the order of
+/// [`Program::parameters`]; none where it gives none.
+pub fn parameter_defaults(program: &Program, robot: &Robot) -> Vec<Option<f64>> {
+    let default = |name: &String| {
+        let id = robot.find_parameter(name)?;
+        robot.parameters[id].default
+    };
+    let defaults: Vec<Option<ExprId>> = program.parameters.iter().map(default).collect();
+    let given: Vec<ExprId> = defaults.iter().flatten().copied().collect();
+    let mut values = constant_values(&robot.dag, &given).into_iter();
+    defaults.iter().map(|default| default.and_then(|_| values.next())).collect()
 }
 
 /// The outputs of code that runs once.

@@ -3,7 +3,7 @@
 //! - [`lower`]: expressions to code; what depends on parameters alone goes to one shared prelude
 //! - [`schedule`]: an order of the instructions in which values are short-lived
 //! - [`verify`]: each slot defined once and before its use; called after each pass
-//! - [`Counts`], [`cost`]: what a call costs
+//! - [`counts`]: what a call costs
 //! - [`Evaluator`]: the reference interpreter; [`BatchEvaluator`]: many samples at once
 //!
 //! A program is the first stage that holds floats: constants are the nearest `f64` of the exact
@@ -19,8 +19,8 @@ mod tape;
 mod verify;
 
 pub use batch::{BatchEvaluator, LANES};
-pub use cost::{Counts, code_counts, cost, counts};
-pub use interpret::{Evaluator, ShapeMismatch, prelude_values};
+pub use cost::{Counts, code_counts, counts};
+pub use interpret::{Evaluator, ShapeMismatch, parameter_defaults, prelude_values};
 pub use lower::{LowerError, constant_values, lower};
 pub use schedule::{peak_live, schedule};
 pub use verify::{Fault, verify};

@@ -2,6 +2,7 @@
 
 mod counts;
 mod definite;
+mod emit;
 mod engine_values;
 mod laws;
 mod methods;

@@ -1,0 +1,336 @@
+//! The statements of a function: straight-line code as text.
+//!
+//! A value that is used once is written where it is used while the line stays short; every other
+//! one gets a `let`. The operations and their order of evaluation are those of the code.
+
+use super::names::{Names, joint_numbers};
+use crate::arena::Handle;
+use crate::expr::Relation;
+use crate::program::{BinaryOperation, Code, Instruction, Leaf, Operation, Slot, UnaryOperation};
+use std::ops::Range;
+
+/// Longest right side of a `let`; the line stays within 100 columns.
+const LONGEST: usize = 72;
+
+/// How tightly the outermost operation of a text binds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Sign,
+    Atom,
+}
+
+/// A value as text.
+#[derive(Clone, Debug)]
+struct Term {
+    text: String,
+    binding: Binding,
+}
+
+impl Term {
+    fn atom(text: String) -> Self {
+        Self { text, binding: Binding::Atom }
+    }
+
+    /// The text, in brackets if it binds less tightly than `least`.
+    fn within(&self, least: Binding) -> String {
+        if self.binding < least { format!("({})", self.text) } else { self.text.clone() }
+    }
+}
+
+/// How the leaves of code are written, and which values have a name of their own.
+pub(super) struct Vocabulary {
+    /// The names that no value may take.
+    pub(super) names: Names,
+    /// The text of each leaf that is no constant, by slot.
+    pub(super) leaves: Vec<Option<String>>,
+    /// The names of values that have one: fields of the prelude.
+    pub(super) named: Vec<Option<String>>,
+}
+
+/// Writes the statements of one code, whole or in parts.
+pub(super) struct Body<'a> {
+    code: &'a Code,
+    terms: Vec<Option<Term>>,
+    /// Values that wait to be written where they are used.
+    waiting: Vec<Option<Term>>,
+    named: Vec<Option<String>>,
+    names: Names,
+    uses: Vec<u32>,
+    /// The instruction that uses a slot last; `usize::MAX` for an output.
+    last_use: Vec<Option<usize>>,
+    next: usize,
+    /// The statement that declares each constant.
+    constants: Vec<Option<String>>,
+    declared: Vec<bool>,
+    lines: Vec<String>,
+}
+
+impl<'a> Body<'a> {
+    pub(super) fn new(code: &'a Code, vocabulary: Vocabulary) -> Self {
+        let Vocabulary { mut names, leaves, mut named } = vocabulary;
+        let mut terms = vec![None; code.slots];
+        let mut constants = vec![None; code.slots];
+        for (slot, leaf) in code.leaves.iter() {
+            let text = match leaf {
+                Leaf::Constant(value) => {
+                    let (name, declaration) = constant(*value, &mut names);
+                    constants[slot.index()] = Some(declaration);
+                    name
+                }
+                _ => leaves[slot.index()].clone().expect("each leaf has a text"),
+            };
+            terms[slot.index()] = Some(Term::atom(text));
+        }
+        name_sines(code, &mut names, &mut named);
+        let mut last_use = vec![None; code.slots];
+        for (index, instruction) in code.instructions.iter().enumerate() {
+            instruction.for_each_operand(|operand| last_use[operand.index()] = Some(index));
+        }
+        code.outputs.iter().for_each(|output| last_use[output.index()] = Some(usize::MAX));
+        Self {
+            code,
+            terms,
+            waiting: vec![None; code.slots],
+            named,
+            names,
+            uses: code.uses(),
+            last_use,
+            next: 1,
+            constants,
+            declared: vec![false; code.slots],
+            lines: Vec::new(),
+        }
+    }
+
+    /// Writes the instructions of a range; what is used after it gets a name.
+    pub(super) fn write(&mut self, range: Range<usize>) {
+        for index in range.clone() {
+            let instruction = self.code.instructions[index];
+            instruction.for_each_operand(|operand| self.declare(operand));
+            match instruction {
+                Instruction::SinCos { sine, cosine, angle } => self.sincos(sine, cosine, angle),
+                Instruction::Value { result, operation } => {
+                    let term = self.term(&operation);
+                    let slot = result.index();
+                    let used_here = self.last_use[slot].is_some_and(|last| last < range.end);
+                    let may_wait = self.uses[slot] == 1 && used_here && self.named[slot].is_none();
+                    if may_wait && term.text.len() <= LONGEST / 2 {
+                        self.waiting[slot] = Some(term);
+                    } else {
+                        self.assign(result, &term);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The statements written since the last call. Constants are declared anew after it.
+    pub(super) fn take_lines(&mut self) -> Vec<String> {
+        self.declared.fill(false);
+        std::mem::take(&mut self.lines)
+    }
+
+    /// Declares a constant, if the slot is one and is not declared yet.
+    pub(super) fn declare(&mut self, slot: Slot) {
+        if let Some(declaration) = &self.constants[slot.index()]
+            && !std::mem::replace(&mut self.declared[slot.index()], true)
+        {
+            self.lines.push(declaration.clone());
+        }
+    }
+
+    /// From here on, the slot is read as `text`.
+    pub(super) fn read_as(&mut self, slot: Slot, text: String) {
+        self.terms[slot.index()] = Some(Term::atom(text));
+    }
+
+    /// The text of a value that is there.
+    pub(super) fn text(&self, slot: Slot) -> &str {
+        &self.terms[slot.index()].as_ref().expect("values are assigned before their use").text
+    }
+
+    fn sincos(&mut self, sine: Slot, cosine: Slot, angle: Slot) {
+        let receiver = self.operands([angle], 0, Binding::Atom)[0].within(Binding::Atom);
+        let [left, right] = [sine, cosine].map(|slot| match self.uses[slot.index()] {
+            0 => "_".to_owned(),
+            _ => self.name(slot),
+        });
+        self.lines.push(format!("let ({left}, {right}) = {receiver}.sincos();"));
+    }
+
+    fn term(&mut self, operation: &Operation) -> Term {
+        match *operation {
+            Operation::Unary(function, a) => self.unary(function, a),
+            Operation::Binary(function, a, b) => self.binary(function, a, b),
+            Operation::Select { relation, sides, then, otherwise } => {
+                let operands = [sides[0], sides[1], then, otherwise];
+                let all = self.operands(operands, 30, Binding::Sum).map(|term| term.text);
+                let name = match relation {
+                    Relation::Less => "select_less",
+                    Relation::LessEqual => "select_less_equal",
+                    Relation::Equal => "select_equal",
+                };
+                Term::atom(format!("S::{name}({})", all.join(", ")))
+            }
+        }
+    }
+
+    fn unary(&mut self, function: UnaryOperation, a: Slot) -> Term {
+        let method = match function {
+            UnaryOperation::Neg => {
+                let [a] = self.operands([a], 3, Binding::Sign);
+                // Two signs in a row read badly; the laws leave none.
+                let text = format!("-{}", a.within(Binding::Atom));
+                return Term { text, binding: Binding::Sign };
+            }
+            UnaryOperation::Tan => "tangent",
+            UnaryOperation::Sqrt => "sqrt",
+            UnaryOperation::Exp => "exponential",
+            UnaryOperation::Log => "logarithm",
+            UnaryOperation::Tanh => "hyperbolic_tangent",
+            UnaryOperation::Abs => "abs",
+            UnaryOperation::Sign => "sign",
+        };
+        let [a] = self.operands([a], 22, Binding::Atom);
+        Term::atom(format!("{}.{method}()", a.within(Binding::Atom)))
+    }
+
+    fn binary(&mut self, function: BinaryOperation, a: Slot, b: Slot) -> Term {
+        let (symbol, binding) = match function {
+            BinaryOperation::Add => ("+", Binding::Sum),
+            BinaryOperation::Sub => ("-", Binding::Sum),
+            BinaryOperation::Mul => ("*", Binding::Product),
+            BinaryOperation::Div => ("/", Binding::Product),
+            BinaryOperation::Atan2 => return self.method("arctangent2", a, b),
+            BinaryOperation::Min => return self.method("lesser", a, b),
+            BinaryOperation::Max => return self.method("greater", a, b),
+        };
+        let [mut a, mut b] = self.operands([a, b], 7, binding);
+        // Operators of one kind group to the left: brackets on the right side only. Products and
+        // sums commute, bit by bit, so that most brackets go.
+        let tighter = if binding == Binding::Sum { Binding::Product } else { Binding::Sign };
+        let commutes = matches!(function, BinaryOperation::Add | BinaryOperation::Mul);
+        if commutes && b.binding < tighter && a.binding >= tighter {
+            std::mem::swap(&mut a, &mut b);
+        }
+        let text = format!("{} {symbol} {}", a.within(binding), b.within(tighter));
+        Term { text, binding }
+    }
+
+    fn method(&mut self, name: &str, a: Slot, b: Slot) -> Term {
+        let [a, b] = self.operands([a, b], 20, Binding::Atom);
+        Term::atom(format!("{}.{name}({})", a.within(Binding::Atom), b.text))
+    }
+
+    /// The operands' texts; those that wait are taken, or assigned first if the line would become
+    /// too long or have brackets within brackets.
+    fn operands<const N: usize>(
+        &mut self,
+        slots: [Slot; N],
+        extra: usize,
+        binding: Binding,
+    ) -> [Term; N] {
+        loop {
+            let waiting = |slot: &Slot| self.waiting[slot.index()].as_ref();
+            let length = |slot: &Slot| match waiting(slot) {
+                Some(term) => term.text.len(),
+                None => self.text(*slot).len(),
+            };
+            let nested = slots.iter().find(|slot| {
+                waiting(slot).is_some_and(|term| {
+                    term.text.contains('(') && (term.binding <= binding || extra > 7)
+                })
+            });
+            let too_long = extra + slots.iter().map(length).sum::<usize>() > LONGEST;
+            let longest = slots
+                .iter()
+                .filter(|slot| too_long && waiting(slot).is_some())
+                .max_by_key(|slot| length(slot));
+            let Some(&slot) = nested.or(longest) else { break };
+            let term = self.waiting[slot.index()].take().expect("it was found waiting");
+            self.assign(slot, &term);
+        }
+        slots.map(|slot| {
+            let waiting = self.waiting[slot.index()].take();
+            waiting.unwrap_or_else(|| Term::atom(self.text(slot).to_owned()))
+        })
+    }
+
+    fn assign(&mut self, slot: Slot, term: &Term) {
+        let name = self.name(slot);
+        self.lines.push(format!("let {name} = {};", term.text));
+    }
+
+    /// The name of a slot; makes it readable by that name.
+    fn name(&mut self, slot: Slot) -> String {
+        let name = match self.named[slot.index()].take() {
+            Some(name) => name,
+            None => {
+                let names = &mut self.names;
+                let mut numbered = (self.next..).map(|number| (number, format!("t{number}")));
+                let free = numbered.find(|(_, name)| names.claim(name));
+                let (number, name) = free.expect("numbers do not end");
+                self.next = number + 1;
+                name
+            }
+        };
+        self.terms[slot.index()] = Some(Term::atom(name.clone()));
+        name
+    }
+}
+
+/// The name of a constant, and the statement that declares it.
+fn constant(value: f64, names: &mut Names) -> (String, String) {
+    // The sign of a zero is part of its value.
+    let (known, value) = match value.to_bits() {
+        0 => (Some("zero"), "S::ZERO".to_owned()),
+        0x3ff0_0000_0000_0000 => (Some("one"), "S::ONE".to_owned()),
+        _ => (None, format!("S::from_f64({value:?})")),
+    };
+    let numbered = (1..).map(|number| format!("k{number}"));
+    let mut candidates = known.map(str::to_owned).into_iter().chain(numbered);
+    let name = candidates.find(|name| names.claim(name)).expect("numbers do not end");
+    let declaration = format!("let {name} = {value};");
+    (name, declaration)
+}
+
+/// Names sines and cosines of joint angles and their sums: s1, c1, s23, c23; sin1, cos1 where
+/// those are taken.
+fn name_sines(code: &Code, names: &mut Names, named: &mut [Option<String>]) {
+    let mut joints: Vec<Option<Vec<usize>>> = vec![None; code.slots];
+    for (slot, leaf) in code.leaves.iter() {
+        if let Leaf::Argument { argument: 0, entry } = leaf {
+            joints[slot.index()] = Some(vec![entry + 1]);
+        }
+    }
+    for instruction in &code.instructions {
+        match *instruction {
+            Instruction::Value {
+                result,
+                operation: Operation::Binary(BinaryOperation::Add, a, b),
+            } => {
+                if let (Some(a), Some(b)) = (&joints[a.index()], &joints[b.index()]) {
+                    let mut sum = [a.as_slice(), b].concat();
+                    sum.sort_unstable();
+                    joints[result.index()] = Some(sum);
+                }
+            }
+            Instruction::SinCos { sine, cosine, angle } => {
+                let Some(joints) = &joints[angle.index()] else { continue };
+                let numbers = joint_numbers(joints);
+                for [s, c] in [["s", "c"], ["sin", "cos"]] {
+                    let pair = [format!("{s}{numbers}"), format!("{c}{numbers}")];
+                    if names.claim_all(&pair) {
+                        let [s, c] = pair;
+                        named[sine.index()] = Some(s);
+                        named[cosine.index()] = Some(c);
+                        break;
+                    }
+                }
+            }
+            Instruction::Value { .. } => {}
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! The functions: documentation, signature, statements, result.
+
+use super::parts::in_parts;
+use super::selectors::{links, variants};
+use super::{Context, bound, template};
+use crate::emit::arrays::{Place, array};
+use crate::emit::body::{Body, Vocabulary};
+use crate::emit::names::{Names, camel_case, identifier};
+use crate::emit::wording::{argument, documentation, of_joints, operations, summary, wrapped};
+use crate::function::FunctionName;
+use crate::program::{Leaf, OutputShape, Routine, counts};
+
+/// Functions of more instructions than this are written in parts, so that an unoptimised build
+/// does not need the stack of all their values at once.
+const LARGEST: usize = 20_000;
+
+/// All functions, with the structs of their results.
+pub(super) fn items(context: &Context<'_>) -> Vec<String> {
+    let names = unique_names(context);
+    let mut items = Vec::new();
+    let mut dispatched: Vec<FunctionName> = Vec::new();
+    for (routine, name) in context.program.routines.iter().zip(&names) {
+        if routine.link.is_none() || !dispatched.contains(&routine.name) {
+            items.extend(results(context, routine));
+        }
+        if routine.link.is_some() && !dispatched.contains(&routine.name) {
+            dispatched.push(routine.name);
+            items.push(dispatch(context, routine, &names));
+        }
+        items.extend(function(context, routine, name));
+    }
+    items
+}
+
+/// The names of the functions: unique, also where links are called alike.
+fn unique_names(context: &Context<'_>) -> Vec<String> {
+    let mut names = Names::locals();
+    let routines = &context.program.routines;
+    routines.iter().for_each(|routine| {
+        names.claim(routine.name.as_str());
+    });
+    let name = |routine: &Routine| match routine.link {
+        None => routine.name.as_str().to_owned(),
+        Some(_) => names.unique(&identifier(&routine.full_name()).to_ascii_lowercase()),
+    };
+    routines.iter().map(name).collect()
+}
+
+/// A function, after its parts if it is too large for one piece.
+fn function(context: &Context<'_>, routine: &Routine, name: &str) -> Vec<String> {
+    let code = &routine.code;
+    let mut body = Body::new(code, vocabulary(context, routine));
+    let (mut items, mut lines) = (Vec::new(), Vec::new());
+    if code.instructions.len() > LARGEST {
+        let (parts, calls) = in_parts(context, routine, name, &mut body);
+        items.extend(parts);
+        lines.extend(calls);
+        if code
+            .outputs
+            .iter()
+            .any(|&output| matches!(code.leaves.get(output), Some(Leaf::Prelude(_))))
+        {
+            lines.push("let p = parameters;".to_owned());
+        }
+    } else {
+        body.write(0..code.instructions.len());
+        let is_read = |leaf: &dyn Fn(&Leaf) -> bool| code.leaves.values().any(leaf);
+        lines.extend(prologue(routine, is_read));
+    }
+    code.outputs.iter().for_each(|&output| body.declare(output));
+    lines.extend(body.take_lines());
+    let entries: Vec<&str> = code.outputs.iter().map(|&output| body.text(output)).collect();
+    if let (true, [entry]) = (is_scalar(routine), &entries[..]) {
+        let result = scalar_result(entry, &mut lines);
+        lines.push(result);
+    } else {
+        lines.extend(result_lines(routine, &entries));
+    }
+
+    let is_public = routine.link.is_none();
+    let result = result_type(context, routine);
+    let start = if is_public { format!("pub fn {name}") } else { format!("fn {name}") };
+    let signature = signature(routine, &start, &arguments(routine), &format!(" -> {result}"));
+    items.push(frame(&doc(context, routine), is_public, &signature, &lines));
+    items
+}
+
+/// Documentation, attributes, signature and statements together.
+pub(super) fn frame(doc: &str, is_public: bool, signature: &str, lines: &[String]) -> String {
+    let mut attributes = String::new();
+    if is_public {
+        attributes += "#[must_use]\n";
+    }
+    if lines.iter().any(|line| line.contains("from_f64(")) {
+        attributes +=
+            "#[allow(clippy::approx_constant)] // a model's number may lie near a famous one\n";
+    }
+    template(
+        include_str!("../../../templates/rust/function.rs.in"),
+        &[
+            ("doc", doc),
+            ("attributes", &attributes),
+            ("signature", signature),
+            ("body", &lines.join("\n")),
+        ],
+    )
+}
+
+/// How the leaves of a routine are written.
+fn vocabulary(context: &Context<'_>, routine: &Routine) -> Vocabulary {
+    let text = |leaf: &Leaf| match *leaf {
+        Leaf::Prelude(row) => Some(format!("p.{}", context.prelude_fields[row])),
+        Leaf::Argument { argument, entry } => {
+            Some(format!("{}[{entry}]", routine.arguments[argument].name))
+        }
+        Leaf::Constant(_) | Leaf::Parameter(_) => None,
+    };
+    Vocabulary {
+        names: Names::locals(),
+        leaves: routine.code.leaves.values().map(text).collect(),
+        named: vec![None; routine.code.slots],
+    }
+}
+
+/// Statements before all others: a short name for the parameters; arguments that nothing reads are
+/// read, so that the compiler does not warn.
+pub(super) fn prologue(
+    routine: &Routine,
+    is_read: impl Fn(&dyn Fn(&Leaf) -> bool) -> bool,
+) -> Vec<String> {
+    let mut lines = Vec::new();
+    match is_read(&|leaf| matches!(leaf, Leaf::Prelude(_))) {
+        true => lines.push("let p = parameters;".to_owned()),
+        false => lines.push("let _ = parameters;".to_owned()),
+    }
+    for (row, shape) in routine.arguments.iter().enumerate() {
+        if !is_read(&|leaf| matches!(leaf, Leaf::Argument { argument, .. } if *argument == row)) {
+            lines.push(format!("let _ = {};", shape.name));
+        }
+    }
+    lines
+}
+
+/// The arguments with their types.
+pub(super) fn arguments(routine: &Routine) -> Vec<String> {
+    let vectors = routine.arguments.iter().map(|shape| format!("{}: &[S; DOF]", shape.name));
+    std::iter::once("parameters: &Parameters<S>".to_owned()).chain(vectors).collect()
+}
+
+/// `pub fn name<S: Scalar>(arguments) -> result`, on one line if it fits; `start` goes up to the
+/// name, `end` is the result.
+pub(super) fn signature(routine: &Routine, start: &str, arguments: &[String], end: &str) -> String {
+    let start = format!("{start}<S: {}>", bound(routine.code.is_transcendental()));
+    let line = format!("{start}({}){end}", arguments.join(", "));
+    // Room for ` {`.
+    if line.len() <= 98 {
+        return line;
+    }
+    let lines: String = arguments.iter().map(|argument| format!("    {argument},\n")).collect();
+    format!("{start}(\n{lines}){end}")
+}
+
+fn doc(context: &Context<'_>, routine: &Routine) -> String {
+    let mut lines = vec![summary(routine.name).to_owned(), String::new()];
+    let counts = operations(&counts(context.program, routine));
+    if let Some(link) = &routine.link {
+        let of = format!("Of the link `{}`: {counts}.", documentation(link));
+        return wrapped("/// ", &format!("{} {of}", summary(routine.name)));
+    }
+    let shapes = routine.arguments.iter();
+    lines.extend(shapes.map(|shape| format!("- `{}`: {}", shape.name, argument(shape))));
+    lines.push(String::new());
+    if let [output] = &routine.outputs[..] {
+        lines.push(format!("Result: {}.", output_doc(output)));
+        lines.push(String::new());
+    }
+    lines.push(format!("One call: {counts}."));
+    commented(&lines)
+}
+
+fn output_doc(output: &OutputShape) -> String {
+    documentation(&output.doc).trim_end_matches('.').to_owned()
+}
+
+fn commented(lines: &[String]) -> String {
+    let line = |line: &String| match line.is_empty() {
+        true => "///\n".to_owned(),
+        false => wrapped("/// ", line),
+    };
+    lines.iter().map(line).collect()
+}
+
+/// The struct of several outputs.
+fn results(context: &Context<'_>, routine: &Routine) -> Option<String> {
+    if routine.outputs.len() == 1 {
+        return None;
+    }
+    let field = |output: &OutputShape| {
+        let doc = wrapped("/// ", &format!("{}.", output_doc(output)));
+        format!("{doc}pub {}: {},\n", output.name, array_type(context, routine, output))
+    };
+    Some(template(
+        include_str!("../../../templates/rust/results.rs.in"),
+        &[
+            ("function", routine.name.as_str()),
+            ("name", &camel_case(routine.name.as_str())),
+            ("fields", &routine.outputs.iter().map(field).collect::<String>()),
+        ],
+    ))
+}
+
+fn result_type(context: &Context<'_>, routine: &Routine) -> String {
+    match &routine.outputs[..] {
+        [output] => array_type(context, routine, output),
+        _ => format!("{}<S>", camel_case(routine.name.as_str())),
+    }
+}
+
+/// `[[S; 3]; DOF]`: outermost dimension last.
+fn array_type(context: &Context<'_>, routine: &Routine, output: &OutputShape) -> String {
+    let (rows, columns) = of_joints(routine.name);
+    let last = output.shape.len().saturating_sub(1);
+    let dimension = |(place, &len): (usize, &usize)| {
+        let of_joints = if place == last { columns } else { rows };
+        if of_joints && len == context.dof { "DOF".to_owned() } else { len.to_string() }
+    };
+    let dimensions: Vec<String> = output.shape.iter().enumerate().map(dimension).collect();
+    dimensions
+        .iter()
+        .rev()
+        .fold("S".to_owned(), |inner, dimension| format!("[{inner}; {dimension}]"))
+}
+
+fn is_scalar(routine: &Routine) -> bool {
+    matches!(&routine.outputs[..], [output] if output.shape.is_empty())
+}
+
+/// The result of a function that computes one number: what the last statement assigns, if that is
+/// the number.
+fn scalar_result(entry: &str, lines: &mut Vec<String>) -> String {
+    let assigned = lines.last().and_then(|line| {
+        line.strip_prefix(&format!("let {entry} = "))
+            .map(|value| value.trim_end_matches(';').to_owned())
+    });
+    if assigned.is_some() {
+        lines.pop();
+    }
+    assigned.unwrap_or_else(|| entry.to_owned())
+}
+
+/// The arrays of the result, in their struct if there are several.
+fn result_lines(routine: &Routine, entries: &[&str]) -> Vec<String> {
+    let place = match routine.outputs.len() {
+        1 => Place { indent: 4, followed: false },
+        _ => Place { indent: 8, followed: true },
+    };
+    let mut rest = entries;
+    let mut arrays = Vec::new();
+    for output in &routine.outputs {
+        let (own, others) = rest.split_at(output.len());
+        rest = others;
+        arrays.push(array(&output.shape, own, place));
+    }
+    match &arrays[..] {
+        [array] => array.clone(),
+        _ => {
+            let mut lines = vec![format!("{} {{", camel_case(routine.name.as_str()))];
+            for (output, array) in routine.outputs.iter().zip(&arrays) {
+                let mut array = array.clone();
+                array[0].insert_str(0, &format!("{}: ", output.name));
+                array.last_mut().expect("an array has a line").push(',');
+                lines.extend(array.iter().map(|line| format!("    {line}")));
+            }
+            lines.push("}".to_owned());
+            lines
+        }
+    }
+}
+
+/// The public function that chooses by link.
+fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String {
+    let known = links(context);
+    let variants = variants(&known);
+    let of_name = context.program.routines.iter().zip(names);
+    let arms: Vec<String> = of_name
+        .filter(|(routine, _)| routine.name == first.name)
+        .map(|(routine, name)| {
+            let link = routine.link.as_deref();
+            let row = known.iter().position(|known| Some(*known) == link);
+            let variant = &variants[row.expect("the link is one of the links")];
+            let vectors = routine.arguments.iter().map(|shape| format!(", {}", shape.name));
+            format!("    Link::{variant} => {name}(parameters{}),", vectors.collect::<String>())
+        })
+        .collect();
+    assert!(arms.len() == known.len(), "{} is derived for each link or for none", first.name);
+    let mut lines = vec!["match link {".to_owned()];
+    lines.extend(arms);
+    lines.push("}".to_owned());
+
+    let is_transcendental = |routine: &&Routine| routine.code.is_transcendental();
+    let all = context.program.routines.iter().filter(|routine| routine.name == first.name);
+    let bounding = all.clone().find(is_transcendental).unwrap_or(first);
+    let mut arguments = arguments(first);
+    arguments.insert(1, "link: Link".to_owned());
+    let end = format!(" -> {}", result_type(context, first));
+    let start = format!("pub fn {}", first.name);
+    let signature = signature(bounding, &start, &arguments, &end);
+    let mut doc = vec![summary(first.name).to_owned(), String::new()];
+    let shapes = first.arguments.iter();
+    doc.extend(shapes.map(|shape| format!("- `{}`: {}", shape.name, argument(shape))));
+    if let [output] = &first.outputs[..] {
+        doc.extend([String::new(), format!("Result: {}.", output_doc(output))]);
+    }
+    frame(&commented(&doc), true, &signature, &lines)
+}

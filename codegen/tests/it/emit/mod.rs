@@ -1,0 +1,5 @@
+//! Emitted Rust as text. That it compiles and computes is tested by the package `denavit`.
+
+mod golden;
+mod recount;
+mod text;

@@ -2,9 +2,12 @@
 //!
 //! - everything of [`denavit_codegen`], the symbolic compiler
 //! - [`shipped`]: robots whose model files are part of the library
+//! - [`tulip`], [`puma560`]: what the compiler made of two of them when this library was built
 //! - [`report`]: tables and pictures of robots
 
+mod generated;
 pub mod report;
 pub mod shipped;
 
 pub use denavit_codegen::*;
+pub use generated::{puma560, tulip};

@@ -1,3 +1,4 @@
 //! Tests of the whole: the command, and the code that it emits.
 
 mod cli;
+mod emitted;

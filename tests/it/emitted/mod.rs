@@ -1,0 +1,6 @@
+//! Emitted code against the interpreters, bit for bit, on all functions of the generated modules.
+
+mod flat;
+mod golden;
+mod modules;
+mod outside;

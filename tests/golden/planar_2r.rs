@@ -14,8 +14,8 @@
 //
 //     function                 mul      add      neg      div   sincos  prelude
 //     inverse_dynamics          23       15        2        0        2       44
-//     mass_matrix                3        3        2        0        1       45
-//     dynamics_terms            12       10        4        0        3       50
+//     mass_matrix                3        3        0        0        1       45
+//     dynamics_terms            12       10        2        0        3       50
 //     forward_dynamics          28       17        1        1        2       49
 //     link_jacobian_link1        2        0        1        0        1        0
 //     link_jacobian_link2        4        3        2        0        2        0
@@ -314,7 +314,7 @@ pub fn inverse_dynamics<S: Scalar>(
 ///
 /// Result: D(q), symmetric, rotors included \[kg m^2, kg m, kg\].
 ///
-/// One call: 3 mul, 3 add, 2 neg, 1 sincos.
+/// One call: 3 mul, 3 add, 1 sincos.
 #[must_use]
 #[allow(clippy::approx_constant)] // a model's number may lie near a famous one
 pub fn mass_matrix<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [[S; DOF]; DOF] {
@@ -322,8 +322,8 @@ pub fn mass_matrix<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [[S; 
     let (s2, c2) = q[1].sincos();
     let t1 = c2 * p.r12 - s2 * p.r11;
     let k1 = S::from_f64(2.0);
-    let t2 = -(p.r13 - k1 * t1);
-    let t3 = -(p.r4 - t1);
+    let t2 = k1 * t1 - p.r13;
+    let t3 = t1 - p.r4;
     [[t2, t3], [t3, p.r5]]
 }
 
@@ -343,7 +343,7 @@ pub struct DynamicsTerms<S> {
 /// - `q`: joint positions (rad, m)
 /// - `qd`: joint rates (rad/s, m/s)
 ///
-/// One call: 12 mul, 10 add, 4 neg, 3 sincos.
+/// One call: 12 mul, 10 add, 2 neg, 3 sincos.
 #[must_use]
 #[allow(clippy::approx_constant)] // a model's number may lie near a famous one
 pub fn dynamics_terms<S: Scalar>(
@@ -355,8 +355,8 @@ pub fn dynamics_terms<S: Scalar>(
     let (s2, c2) = q[1].sincos();
     let t1 = c2 * p.r12 - s2 * p.r11;
     let k1 = S::from_f64(2.0);
-    let t2 = -(p.r13 - k1 * t1);
-    let t3 = -(p.r4 - t1);
+    let t2 = k1 * t1 - p.r13;
+    let t3 = t1 - p.r4;
     let t4 = c2 * p.r11 + s2 * p.r12;
     let t5 = -(qd[1] * t4);
     let t6 = (qd[0] + qd[1]) * t4;

@@ -160,7 +160,7 @@ pub(super) fn columns(counts: &Counts) -> [(&'static str, usize); 9] {
         ("sqrt", counts.sqrt),
         ("sincos", counts.sincos),
         ("select", counts.select),
-        ("other", counts.other),
+        ("function", counts.function),
         ("prelude", counts.prelude),
     ]
 }

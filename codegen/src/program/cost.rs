@@ -27,7 +27,7 @@ pub struct Counts {
     /// Selections, minima, maxima, absolute values and signs: all without a branch.
     pub select: usize,
     /// Other functions: tan, exp, log, tanh, atan2.
-    pub other: usize,
+    pub function: usize,
     /// Operations, of any kind, of the prelude that this function needs; run once for each set of
     /// parameters.
     pub prelude: usize,
@@ -37,7 +37,7 @@ impl Counts {
     /// Operations of a call, of any kind; those of the prelude are not among them.
     pub fn total(&self) -> usize {
         let arithmetic = self.mul + self.add + self.neg + self.div;
-        arithmetic + self.sqrt + self.sincos + self.select + self.other
+        arithmetic + self.sqrt + self.sincos + self.select + self.function
     }
 
     fn count(&mut self, instruction: &Instruction) {
@@ -48,8 +48,8 @@ impl Counts {
             Instruction::Value { operation, .. } => match operation {
                 Operation::Unary(Neg, _) => &mut self.neg,
                 Operation::Unary(Sqrt, _) => &mut self.sqrt,
-                Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut self.other,
-                Operation::Binary(Atan2, ..) => &mut self.other,
+                Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut self.function,
+                Operation::Binary(Atan2, ..) => &mut self.function,
                 Operation::Unary(Abs | Sign, _) | Operation::Select { .. } => &mut self.select,
                 Operation::Binary(Min | Max, ..) => &mut self.select,
                 Operation::Binary(Add | Sub, ..) => &mut self.add,
@@ -69,7 +69,7 @@ impl AddAssign for Counts {
         self.sqrt += other.sqrt;
         self.sincos += other.sincos;
         self.select += other.select;
-        self.other += other.other;
+        self.function += other.function;
         self.prelude += other.prelude;
     }
 }

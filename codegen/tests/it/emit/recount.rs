@@ -54,7 +54,7 @@ fn recount(statements: &[&str]) -> Counts {
         counts.select += selections.iter().map(|pattern| count(pattern)).sum::<usize>();
         let others =
             [".tangent()", ".arctangent2(", ".exponential()", ".logarithm()", ".hyperbolic"];
-        counts.other += others.iter().map(|pattern| count(pattern)).sum::<usize>();
+        counts.function += others.iter().map(|pattern| count(pattern)).sum::<usize>();
     }
     counts
 }

@@ -1,6 +1,6 @@
 //! Counting the operations that an expression costs.
 
-use super::dag::{Dag, ExprId, Node, UnaryFunction};
+use super::dag::{BinaryFunction, Dag, ExprId, Node, UnaryFunction};
 use rustc_hash::FxHashSet;
 
 /// How many operations expressions cost, shared ones once. Only what can change from sample to
@@ -21,8 +21,8 @@ pub struct Operations {
     pub sincos: usize,
     /// Selections, minima, maxima, absolute values, signs.
     pub select: usize,
-    /// Other functions.
-    pub other: usize,
+    /// Other functions: tan, exp, log, tanh, atan2.
+    pub function: usize,
     /// Operations on parameters alone.
     pub prelude: usize,
 }
@@ -53,25 +53,26 @@ impl Operations {
                 }
                 Node::Unary(UnaryFunction::Sqrt, _) => total.sqrt += 1,
                 Node::Unary(UnaryFunction::Abs | UnaryFunction::Sign, _)
-                | Node::Binary(..)
+                | Node::Binary(BinaryFunction::Min | BinaryFunction::Max, ..)
                 | Node::Select { .. } => total.select += 1,
-                Node::Unary(..) => total.other += 1,
+                Node::Unary(..) | Node::Binary(BinaryFunction::Atan2, ..) => total.function += 1,
                 Node::Constant(_) | Node::Pi | Node::Symbol(_) => {}
             }
         }
         total
     }
 
-    /// Multiplications and additions together.
-    pub const fn arithmetic(&self) -> usize {
-        self.mul + self.add
+    /// Operations of a call, of any kind; those of the prelude are not among them.
+    pub const fn total(&self) -> usize {
+        let arithmetic = self.mul + self.add + self.neg + self.div;
+        arithmetic + self.sqrt + self.sincos + self.select + self.function
     }
 
     /// What formulations are compared by, in sixteenths of an operation: multiplications,
     /// additions and divisions count one each; sine with cosine as much as 16 (it takes about 20
     /// of them); changes of sign, which mostly vanish, break ties.
     pub const fn price(&self) -> usize {
-        let arithmetic = self.mul + self.add + self.div + self.sqrt + self.select + self.other;
+        let arithmetic = self.mul + self.add + self.div + self.sqrt + self.select + self.function;
         16 * (arithmetic + 16 * self.sincos) + self.neg
     }
 }

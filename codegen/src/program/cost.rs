@@ -7,83 +7,18 @@ use super::{
     BinaryOperation, Code, Instruction, Leaf, Operation, Program, Routine, UnaryOperation,
 };
 use crate::arena::Handle;
-use std::ops::AddAssign;
-
-/// Operations of a function, by kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Multiplications.
-    pub mul: usize,
-    /// Additions and subtractions.
-    pub add: usize,
-    /// Changes of sign.
-    pub neg: usize,
-    /// Divisions.
-    pub div: usize,
-    /// Square roots.
-    pub sqrt: usize,
-    /// Sine and cosine of one angle, together one operation.
-    pub sincos: usize,
-    /// Selections, minima, maxima, absolute values and signs: all without a branch.
-    pub select: usize,
-    /// Other functions: tan, exp, log, tanh, atan2.
-    pub function: usize,
-    /// Operations, of any kind, of the prelude that this function needs; run once for each set of
-    /// parameters.
-    pub prelude: usize,
-}
-
-impl Counts {
-    /// Operations of a call, of any kind; those of the prelude are not among them.
-    pub fn total(&self) -> usize {
-        let arithmetic = self.mul + self.add + self.neg + self.div;
-        arithmetic + self.sqrt + self.sincos + self.select + self.function
-    }
-
-    fn count(&mut self, instruction: &Instruction) {
-        use BinaryOperation::{Add, Atan2, Div, Max, Min, Mul, Sub};
-        use UnaryOperation::{Abs, Exp, Log, Neg, Sign, Sqrt, Tan, Tanh};
-        *(match instruction {
-            Instruction::SinCos { .. } => &mut self.sincos,
-            Instruction::Value { operation, .. } => match operation {
-                Operation::Unary(Neg, _) => &mut self.neg,
-                Operation::Unary(Sqrt, _) => &mut self.sqrt,
-                Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut self.function,
-                Operation::Binary(Atan2, ..) => &mut self.function,
-                Operation::Unary(Abs | Sign, _) | Operation::Select { .. } => &mut self.select,
-                Operation::Binary(Min | Max, ..) => &mut self.select,
-                Operation::Binary(Add | Sub, ..) => &mut self.add,
-                Operation::Binary(Mul, ..) => &mut self.mul,
-                Operation::Binary(Div, ..) => &mut self.div,
-            },
-        }) += 1;
-    }
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        self.mul += other.mul;
-        self.add += other.add;
-        self.neg += other.neg;
-        self.div += other.div;
-        self.sqrt += other.sqrt;
-        self.sincos += other.sincos;
-        self.select += other.select;
-        self.function += other.function;
-        self.prelude += other.prelude;
-    }
-}
+use crate::expr::Operations;
 
 /// The operations of a piece of code, without a prelude.
-pub fn code_counts(code: &Code) -> Counts {
-    let mut counts = Counts::default();
-    code.instructions.iter().for_each(|instruction| counts.count(instruction));
+pub fn code_counts(code: &Code) -> Operations {
+    let mut counts = Operations::default();
+    code.instructions.iter().for_each(|instruction| count(&mut counts, instruction));
     counts
 }
 
 /// The operations of a routine of `program`.
-pub fn counts(program: &Program, routine: &Routine) -> Counts {
-    Counts { prelude: prelude_operations(program, routine), ..code_counts(&routine.code) }
+pub fn counts(program: &Program, routine: &Routine) -> Operations {
+    Operations { prelude: prelude_operations(program, routine), ..code_counts(&routine.code) }
 }
 
 /// Number of prelude instructions that the prelude values of a routine depend on.
@@ -105,4 +40,23 @@ fn prelude_operations(program: &Program, routine: &Routine) -> usize {
         }
     }
     operations
+}
+
+fn count(counts: &mut Operations, instruction: &Instruction) {
+    use BinaryOperation::{Add, Atan2, Div, Max, Min, Mul, Sub};
+    use UnaryOperation::{Abs, Exp, Log, Neg, Sign, Sqrt, Tan, Tanh};
+    *(match instruction {
+        Instruction::SinCos { .. } => &mut counts.sincos,
+        Instruction::Value { operation, .. } => match operation {
+            Operation::Unary(Neg, _) => &mut counts.neg,
+            Operation::Unary(Sqrt, _) => &mut counts.sqrt,
+            Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut counts.function,
+            Operation::Binary(Atan2, ..) => &mut counts.function,
+            Operation::Unary(Abs | Sign, _) | Operation::Select { .. } => &mut counts.select,
+            Operation::Binary(Min | Max, ..) => &mut counts.select,
+            Operation::Binary(Add | Sub, ..) => &mut counts.add,
+            Operation::Binary(Mul, ..) => &mut counts.mul,
+            Operation::Binary(Div, ..) => &mut counts.div,
+        },
+    }) += 1;
 }

@@ -18,8 +18,9 @@ mod sign;
 mod tape;
 mod verify;
 
+pub use crate::expr::Operations as Counts;
 pub use batch::{BatchEvaluator, LANES};
-pub use cost::{Counts, code_counts, counts};
+pub use cost::{code_counts, counts};
 pub use interpret::{Evaluator, ShapeMismatch, parameter_defaults, prelude_values};
 pub use lower::{LowerError, constant_values, lower};
 pub use schedule::{peak_live, schedule};

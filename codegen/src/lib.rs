@@ -13,5 +13,6 @@ pub mod kinematics;
 pub mod model;
 pub mod number;
 pub mod program;
+pub mod regressor;
 pub mod regroup;
 pub mod spatial;

@@ -8,7 +8,7 @@ const MAX_FUNCTION_LINES: usize = 70;
 const MAX_COLUMNS: usize = 100;
 
 /// The stages of the compiler, in pipeline order: a stage uses only itself and those before it.
-const STAGES: [&str; 14] = [
+const STAGES: [&str; 15] = [
     "arena",
     "number",
     "expr",
@@ -19,6 +19,7 @@ const STAGES: [&str; 14] = [
     "kinematics",
     "regroup",
     "dynamics",
+    "regressor",
     "derive",
     "program",
     "emit",

@@ -242,7 +242,7 @@ fn unary_of(function: UnaryFunction, value: &Rational) -> Option<Rational> {
 }
 
 /// A whole number modulo 4.
-pub(super) fn quarter_turns(whole: &Rational) -> u8 {
+pub(crate) fn quarter_turns(whole: &Rational) -> u8 {
     let four = integer(4);
     let rest = whole - (whole / &four).floor() * &four;
     rest.to_u8().expect("a whole number modulo 4 is 0, 1, 2 or 3")

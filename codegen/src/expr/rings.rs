@@ -267,7 +267,7 @@ fn turned(a: [Residue; 2], b: [Residue; 2]) -> [Residue; 2] {
 }
 
 /// An angle as a combination of atoms with rational coefficients; `None` is the atom pi.
-fn angle_atoms(dag: &Dag, argument: ExprId) -> BTreeMap<Option<ExprId>, Rational> {
+pub(crate) fn angle_atoms(dag: &Dag, argument: ExprId) -> BTreeMap<Option<ExprId>, Rational> {
     let mut atoms = BTreeMap::<Option<ExprId>, Rational>::new();
     // Users have larger handles than operands: what is taken last is complete, and each node is
     // taken once, however often it is shared.

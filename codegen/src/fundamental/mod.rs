@@ -3,12 +3,26 @@
 //!
 //! - [`Polynomial`]: sparse, over any atoms, with rational coefficients and signed exponents
 //! - [`canonical`]: an expression as a polynomial in symbols, sines and cosines of single angles
+//! - [`decompose`]: a matrix as f^T B, over trigonometric polynomials in packed keys
 //! - [`equal`]: whether two expressions are the same function
 
+mod basis;
 mod canonical;
+mod decompose;
+#[cfg(test)]
+mod decompose_tests;
+mod expand;
+mod key;
+mod layout;
 mod polynomial;
+mod series;
 #[cfg(test)]
 mod tests;
+mod whole;
 
 pub use canonical::{CanonicalError, MAX_TERMS, canonical, canonical_all, equal};
+pub use decompose::{
+    Basis, Decomposition, Entry, FundamentalFunction, Matrix, Wave, decompose, smallest,
+};
+pub use expand::{DEFAULT_MEMORY_BYTES, Expansion, FourierError, Progress};
 pub use polynomial::{Monomial, Polynomial, TooManyTerms};

@@ -130,6 +130,21 @@ impl Frames {
     }
 }
 
+/// The groups of parallel revolute axes, each from its first body outwards; groups of one are left
+/// out.
+pub fn parallel_groups(mechanism: &Mechanism) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (i, continues) in group_members(mechanism).into_iter().enumerate() {
+        let parent = mechanism.bodies[i].parent.filter(|_| continues);
+        match parent.and_then(|p| groups.iter_mut().find(|group| group.last() == Some(&p))) {
+            Some(group) => group.push(i),
+            None => groups.push(vec![i]),
+        }
+    }
+    groups.retain(|group| group.len() > 1);
+    groups
+}
+
 /// For each body, whether it continues the group of its parent: both joints turn, the axes are
 /// parallel (nothing but turns about z between them), and the parent carries nothing else.
 fn group_members(mechanism: &Mechanism) -> Vec<bool> {

@@ -8,6 +8,6 @@ mod frames;
 mod mechanism;
 mod world;
 
-pub use frames::{Frame, Frames};
+pub use frames::{Frame, Frames, parallel_groups};
 pub use mechanism::{Mechanism, MovingBody, Placement};
 pub use world::{World, center_of_mass_column};

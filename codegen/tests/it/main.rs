@@ -1,6 +1,7 @@
 //! The tests of the compiler, one module for each stage.
 
 mod counts;
+mod decomposition;
 mod definite;
 mod emit;
 mod engine_values;

@@ -1,0 +1,7 @@
+//! The equations of motion as linear functions of what is unknown.
+
+mod pull;
+
+pub use pull::{
+    Equation, MatterEntry, MatterRegressor, MotionTerms, fixed_base_regressor, torso_regressor,
+};

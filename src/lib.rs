@@ -11,3 +11,8 @@ pub mod shipped;
 
 pub use denavit_codegen::*;
 pub use generated::{puma560, tulip};
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExamples;

@@ -1,6 +1,7 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
 use denavit::derive::BakeError;
+use denavit::emit::rust::EmitError;
 use denavit::model::ModelError;
 use denavit::program::LowerError;
 use std::fmt;
@@ -24,6 +25,8 @@ pub(crate) enum Failure {
     Bake(BakeError),
     /// A model holds numbers that no computer arithmetic holds; holds model and cause.
     Lower(String, LowerError),
+    /// A default of a model is no number that Rust can hold; holds model and cause.
+    Emit(String, EmitError),
     /// The model has none of the functions asked for.
     NoFunction { model: String, asked: Vec<String> },
     /// The answer cannot be written to standard output.
@@ -75,7 +78,9 @@ impl Failure {
                 }
                 _ => return None,
             },
-            Self::Lower(..) => "check the exponents of the numbers in the model".to_owned(),
+            Self::Lower(..) | Self::Emit(..) => {
+                "check the exponents of the numbers in the model".to_owned()
+            }
             Self::NoFunction { .. } => "contacts are declared under \"contacts\"".to_owned(),
             Self::Model(_) | Self::Read { .. } | Self::Bake(_) | Self::Stdout(_) => return None,
         })
@@ -102,6 +107,7 @@ impl fmt::Display for Failure {
                 write!(f, "{file}: cannot be written: {}", reason(error))?;
             }
             Self::Lower(model, error) => write!(f, "{model}: {error}")?,
+            Self::Emit(model, error) => write!(f, "{model}: {error}")?,
             Self::NoFunction { model, asked } => {
                 write!(f, "{model}: the model has no {}", asked.join(", "))?;
             }

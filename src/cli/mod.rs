@@ -4,7 +4,9 @@
 //! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
 
 mod count;
+mod demo;
 mod derive;
+mod emit;
 mod failure;
 mod files;
 mod inspect;
@@ -35,16 +37,21 @@ Example:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Demo(demo::Arguments),
     Inspect(inspect::Arguments),
     Derive(derive::Arguments),
     Count(count::Arguments),
+    Emit(emit::Arguments),
     Schema(schema::Arguments),
 }
 
 /// What a command that ran to its end says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
+    /// Done, and the answer is good.
     Done,
+    /// Done, and the answer is negative.
+    Negative,
 }
 
 /// Runs the command line of the process.
@@ -61,6 +68,7 @@ pub(crate) fn run() -> ExitCode {
     let answer = cli.command.run(&mut out);
     match answer.and_then(|answer| Ok(out.flush().map(|()| answer)?)) {
         Ok(Answer::Done) => ExitCode::SUCCESS,
+        Ok(Answer::Negative) => ExitCode::from(1),
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
         Err(failure) => {
             let _ = writeln!(io::stderr(), "{failure}");
@@ -72,9 +80,11 @@ pub(crate) fn run() -> ExitCode {
 impl Command {
     fn run(&self, out: &mut dyn Write) -> Result<Answer, Failure> {
         match self {
+            Self::Demo(arguments) => demo::run(arguments, out),
             Self::Inspect(arguments) => inspect::run(arguments, out),
             Self::Derive(arguments) => derive::run(arguments, out),
             Self::Count(arguments) => count::run(arguments, out),
+            Self::Emit(arguments) => emit::run(arguments, out),
             Self::Schema(arguments) => schema::run(arguments, out),
         }
     }

@@ -18,6 +18,11 @@ impl Progress {
         self.write(what);
     }
 
+    /// Takes the line away, so that an answer can be written.
+    pub(crate) fn clear(&self) {
+        self.write("");
+    }
+
     fn write(&self, text: &str) {
         if self.is_visible {
             let mut line = io::stderr().lock();

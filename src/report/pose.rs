@@ -7,7 +7,9 @@ use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{Base, Body, Contact, LinkId, Robot};
-use denavit_codegen::program::{Evaluator, LowerError, Routine, lower, prelude_values};
+use denavit_codegen::program::{
+    Evaluator, LowerError, Routine, lower, parameter_defaults, prelude_values,
+};
 
 /// A length or an angle that the model leaves open has this value in pictures [m, rad].
 const OPEN_VALUE: f64 = 0.5;
@@ -53,7 +55,7 @@ impl Pose {
     /// The robot at the joint positions `q` [rad, m], one for each degree of freedom.
     fn at(robot: &Robot, q: &[f64]) -> Result<Self, LowerError> {
         let mut values = Values::new(robot);
-        let (frames, open) = frames(robot, &mut values, q)?;
+        let (frames, open) = frames(robot, q)?;
         let place = |values: &mut Values, point: &Contact| {
             let position = point.position.map(|c| values.number(c).unwrap_or(OPEN_VALUE));
             frames[point.link.index()].point(position)
@@ -87,26 +89,14 @@ fn direction_of_open(robot: &Robot, fall: Vec3) -> Option<Vec3> {
 }
 
 /// The frames of all links, by interpreting `link_transforms`, and the parameters left open.
-fn frames(
-    robot: &Robot,
-    values: &mut Values,
-    q: &[f64],
-) -> Result<(Vec<Transform>, Vec<String>), LowerError> {
+fn frames(robot: &Robot, q: &[f64]) -> Result<(Vec<Transform>, Vec<String>), LowerError> {
     let derivation = derive(robot, Flavour::Tunable, &[FunctionName::LinkTransforms])
         .expect("only baking asks for values");
     let program = lower(&derivation.dag, &derivation.functions)?;
-    let mut open = Vec::new();
-    let parameters: Vec<f64> = program
-        .parameters
-        .iter()
-        .map(|name| {
-            let parameter = robot.find_parameter(name).map(|id| robot.parameters[id].symbol);
-            parameter.and_then(|symbol| values.number(symbol)).unwrap_or_else(|| {
-                open.push(name.clone());
-                OPEN_VALUE
-            })
-        })
-        .collect();
+    let defaults = parameter_defaults(&program, robot);
+    let named = program.parameters.iter().zip(&defaults);
+    let open = named.filter(|(_, value)| value.is_none()).map(|(name, _)| name.clone()).collect();
+    let parameters: Vec<f64> = defaults.iter().map(|value| value.unwrap_or(OPEN_VALUE)).collect();
     let prelude = prelude_values(&program, &parameters).expect("one value for each parameter");
     let rows = program.routines.first().map(|routine| evaluate(routine, &prelude, q));
     let frames = rows.unwrap_or_default().chunks_exact(12).map(Transform::from_rows).collect();

@@ -3,6 +3,7 @@
 mod answers;
 mod errors;
 mod help;
+mod readme;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

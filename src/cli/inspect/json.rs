@@ -86,6 +86,11 @@ fn link(robot: &Robot, values: &mut Values, link: &Link) -> Value {
         "a": a, "alpha": alpha, "d": d, "theta": theta,
         "limits": limits,
         "body": body,
+        "spring": link.joint.spring.map(|spring| json!({
+            "stiffness": values.number(spring.stiffness),
+            "angle": values.number(spring.angle),
+        })),
+        "damping": link.joint.damping.map(|damping| values.number(damping)),
         "drive": drive(values, link),
     })
 }

@@ -210,3 +210,49 @@ fn the_schema_is_that_of_the_model_format() {
     assert!(schema.to_string().contains("denavit-model/1"));
     assert_eq!(schema, json(&["schema", "denavit-model/1", "--json"]));
 }
+
+#[test]
+fn emit_writes_a_module_with_the_functions_asked_for() {
+    let directory = Directory::new("emit");
+    let run = run_in(&directory.path, &["emit", "tulip", "-o", "tulip.rs"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let text = std::fs::read_to_string(directory.path.join("tulip.rs")).expect("the module");
+    for function in ["inverse_dynamics", "contact_jacobian", "link_jacobian"] {
+        assert!(text.contains(&format!("pub fn {function}<")), "{function}");
+    }
+    assert_eq!(answer(&["emit", "tulip", "-o", "-"]), text);
+
+    let some = answer(&["emit", "tulip", "--functions", "bias,mass_matrix", "--baked", "-o", "-"]);
+    assert!(some.contains("pub fn bias<") && some.contains("pub fn mass_matrix<"));
+    assert!(!some.contains("pub fn inverse_dynamics<") && !some.contains("ModelParameters"));
+}
+
+#[test]
+fn the_demo_writes_its_files_and_passes_its_checks() {
+    let directory = Directory::new("demo");
+    let run = run_in(&directory.path, &["demo", "--seed", "5", "--out", "here", "--json"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let demo: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!((&demo["seed"], &demo["passed"]), (&5.into(), &true.into()));
+    let robots = demo["robots"].as_array().expect("robots");
+    let names: Vec<_> = robots.iter().map(|robot| robot["model"].as_str()).collect();
+    assert_eq!(names, [Some("tulip"), Some("puma560")]);
+    for robot in robots {
+        let checks = robot["checks"].as_array().expect("checks");
+        for method in ["newton-euler", "lagrange", "tmt", "dh-lagrange", "forward_dynamics"] {
+            let is_of = |check: &&Value| check["what"].as_str().is_some_and(|w| w.contains(method));
+            let check = checks.iter().find(is_of).unwrap_or_else(|| panic!("no {method}"));
+            assert!(check["states"].as_u64().expect("a number") >= 20, "{check}");
+            // rounding leaves its mark on a comparison that compares something
+            assert!(check["max_relative_difference"].as_f64().expect("a number") > 0.0, "{check}");
+        }
+        for file in robot["files"].as_array().expect("files") {
+            let path = directory.path.join(file["file"].as_str().expect("a path"));
+            let size = std::fs::metadata(&path).expect("a file").len();
+            assert_eq!(file["bytes"], size, "{path:?}");
+        }
+    }
+    let another = run_in(&directory.path, &["demo", "--out", "here"]);
+    assert_eq!(another.code, Some(0));
+    assert!(another.stdout.contains("seed 1") && another.stdout.contains("all checks passed"));
+}

@@ -207,3 +207,35 @@ fn a_device_stays_a_device() {
     let metadata = fs::metadata("/dev/null").expect("the device");
     assert!(metadata.file_type().is_char_device());
 }
+
+#[test]
+fn a_module_is_written_whole_or_not_at_all() {
+    let directory = Directory::new("module");
+    let message = refused(&directory, &["emit", "scara", "-o", "no/such/scara.rs"]);
+    assert_says(&message, &["no/such/scara.rs", "hint: make the directory first"]);
+    let message = refused(&directory, &["emit", "scara", "--functions", "momntum", "-o", "x.rs"]);
+    assert_says(&message, &["momntum", "'momentum'"]);
+    let message = refused(&directory, &["emit", "scara"]);
+    assert_says(&message, &["--output"]);
+}
+
+#[test]
+fn values_that_are_missing_cannot_be_baked() {
+    let directory = Directory::new("bake");
+    let text = shipped::find("double_pendulum").expect("a model").text;
+    let symbolic = text.replace("\"value\": 0.04, ", "");
+    assert_ne!(symbolic, text);
+    fs::write(directory.path.join("pendulum.json"), symbolic).expect("a file");
+    let message = refused(&directory, &["emit", "pendulum.json", "--baked", "-o", "x.rs"]);
+    assert_says(&message, &["double_pendulum", "I1", "hint: "]);
+    let run = run_in(&directory.path, &["inspect", "pendulum.json"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+}
+
+#[test]
+fn the_demo_needs_a_place_for_its_files() {
+    let directory = Directory::new("demo-place");
+    fs::write(directory.path.join("file"), "").expect("a file");
+    let message = refused(&directory, &["demo", "--out", "file/out"]);
+    assert_says(&message, &["file/out", "cannot be written", "hint: "]);
+}

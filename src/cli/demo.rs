@@ -1,0 +1,193 @@
+//! `denavit demo`: the whole way on two robots, and a check of what came out by running it.
+
+mod checks;
+mod compiled;
+mod counts;
+mod states;
+
+use super::Answer;
+use super::emit::Emitted;
+use super::failure::Failure;
+use super::files::{make_directory, read_model, write_whole};
+use super::json::{Ordered, write_json};
+use super::progress::Progress;
+use checks::Check;
+use clap::Args;
+use compiled::{Compiled, ROBOTS};
+use counts::Comparison;
+use denavit::derive::{Flavour, StageReport};
+use denavit::function::FunctionName;
+use denavit::report::{Align, Pose, Table, picture};
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Derive, emit, draw and check the humanoid TUlip and the arm PUMA 560
+///
+/// Needs no file: the models are part of the command. Its functions were generated when it was
+/// built; they are run at random states against equations of motion that are derived in another
+/// way. The exit code is 1 if they disagree.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit demo
+  denavit demo --seed 7 --out demo_7
+  denavit demo --json")]
+pub(crate) struct Arguments {
+    /// Where the random states begin
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Directory for the files that are written
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What became of one robot.
+#[derive(Serialize)]
+struct Outcome {
+    model: String,
+    hash: String,
+    degrees_of_freedom: usize,
+    stages: Ordered<StageJson>,
+    operations: Ordered<Comparison>,
+    files: Vec<Written>,
+    checks: Vec<Check>,
+}
+
+#[derive(Serialize)]
+struct StageJson {
+    milliseconds: f64,
+    nodes: usize,
+}
+
+/// A file that was written.
+#[derive(Serialize)]
+struct Written {
+    file: String,
+    bytes: usize,
+    what: String,
+}
+
+#[derive(Serialize)]
+struct DemoJson<'a> {
+    version: &'a str,
+    seed: u64,
+    robots: &'a [Outcome],
+    seconds: f64,
+    passed: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let started = Instant::now();
+    let progress = Progress::new();
+    let version = env!("CARGO_PKG_VERSION");
+    let directory = &arguments.out;
+    make_directory(directory)?;
+    if !arguments.json {
+        writeln!(out, "denavit {version}, seed {}", arguments.seed)?;
+    }
+    let mut outcomes = Vec::new();
+    for compiled in &ROBOTS {
+        let outcome = one_robot(compiled, arguments.seed, directory, &progress)?;
+        if !arguments.json {
+            progress.clear();
+            write_outcome(out, &outcome)?;
+            out.flush()?;
+        }
+        outcomes.push(outcome);
+    }
+    drop(progress);
+    let passed = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
+    let seconds = started.elapsed().as_secs_f64();
+    if arguments.json {
+        let seed = arguments.seed;
+        write_json(out, &DemoJson { version, seed, robots: &outcomes, seconds, passed })?;
+    } else {
+        let verdict = if passed { "all checks passed" } else { "A CHECK FAILED" };
+        writeln!(out, "\n{verdict}; {seconds:.1} s")?;
+    }
+    Ok(if passed { Answer::Done } else { Answer::Negative })
+}
+
+fn one_robot(
+    compiled: &Compiled,
+    seed: u64,
+    directory: &Path,
+    progress: &Progress,
+) -> Result<Outcome, Failure> {
+    let name = compiled.name;
+    let robot = read_model(Path::new(name))?;
+    progress.show(&format!("{name}: deriving and emitting"));
+    let emitted = Emitted::new(&robot, Flavour::Tunable, &FunctionName::ALL)?;
+    let mut files = Vec::new();
+    let functions = emitted.program.routines.len();
+    let what = format!("{functions} functions as Rust, tunable parameters");
+    files.push(write(directory, &format!("{name}_dynamics.rs"), &emitted.text, what)?);
+    progress.show(&format!("{name}: drawing"));
+    let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(name.to_owned(), e))?;
+    let drawn = picture(&robot, &pose);
+    let what = "the robot with the frames of its links".to_owned();
+    files.push(write(directory, &format!("{name}.svg"), &drawn, what)?);
+    progress.show(&format!("{name}: counting"));
+    let operations = counts::compare(&robot, &emitted.program)?;
+    progress.show(&format!("{name}: checking"));
+    let checks = checks::run(&robot, compiled, seed)?;
+    // a robot without contacts has no stage for their functions
+    let made = |stage: &&StageReport| {
+        let name = FunctionName::parse(&stage.stage);
+        name.is_none_or(|name| emitted.derivation.functions.iter().any(|f| f.name == name))
+    };
+    let stages = emitted.derivation.report.iter().filter(made).map(stage_json).collect();
+    Ok(Outcome {
+        model: name.to_owned(),
+        hash: format!("{:016x}", robot.hash),
+        degrees_of_freedom: robot.degrees_of_freedom(),
+        stages: Ordered(stages),
+        operations: Ordered(operations),
+        files,
+        checks,
+    })
+}
+
+fn stage_json(stage: &StageReport) -> (String, StageJson) {
+    let milliseconds = 1e3 * stage.time.as_secs_f64();
+    (stage.stage.clone(), StageJson { milliseconds, nodes: stage.nodes })
+}
+
+fn write(directory: &Path, name: &str, text: &str, what: String) -> Result<Written, Failure> {
+    let path = directory.join(name);
+    write_whole(&path, text.as_bytes())?;
+    Ok(Written { file: path.display().to_string(), bytes: text.len(), what })
+}
+
+fn write_outcome(out: &mut dyn Write, outcome: &Outcome) -> Result<(), Failure> {
+    let Outcome { model, hash, degrees_of_freedom, .. } = outcome;
+    writeln!(out, "\n{model}: {degrees_of_freedom} degrees of freedom, hash {hash}")?;
+    let mut stages =
+        Table::new(&[("stage", Align::Left), ("nodes", Align::Right), ("ms", Align::Right)]);
+    let mut total = 0.0;
+    for (name, stage) in &outcome.stages.0 {
+        total += stage.milliseconds;
+        stages.push(vec![
+            name.clone(),
+            stage.nodes.to_string(),
+            format!("{:.2}", stage.milliseconds),
+        ]);
+    }
+    stages.push(vec!["total".to_owned(), String::new(), format!("{total:.2}")]);
+    writeln!(out, "\nstages (nodes: of the graph after it)\n{stages}")?;
+    writeln!(out, "operations of one call (mul + add)\n{}", counts::table(&outcome.operations.0))?;
+    writeln!(
+        out,
+        "checks, by running the generated functions\n{}",
+        checks::table(&outcome.checks)
+    )?;
+    for file in &outcome.files {
+        writeln!(out, "wrote {} ({} kB): {}", file.file, file.bytes.div_ceil(1000), file.what)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! `denavit emit`: a model as a module of Rust.
+
+use super::Answer;
+use super::failure::Failure;
+use super::files::{read_model, write_whole};
+use super::json::write_json;
+use super::options::{FlavourOption, FunctionList, ModelArgument};
+use super::progress::Progress;
+use clap::Args;
+use denavit::derive::{Derivation, Flavour, derive};
+use denavit::emit::rust::module;
+use denavit::function::FunctionName;
+use denavit::model::Robot;
+use denavit::program::{Program, lower};
+use serde::Serialize;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Write the functions of a model as Rust
+///
+/// The module needs the crate `denavit-runtime` and nothing else. The same model gives the same
+/// bytes. In a crate of your own, let build.rs do this: denavit_codegen::build_script.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit emit puma560 -o puma560_dynamics.rs
+  denavit emit tulip --baked --functions inverse_dynamics,mass_matrix -o tulip.rs
+  denavit emit scara -o -")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    #[command(flatten)]
+    functions: FunctionList,
+    #[command(flatten)]
+    flavour: FlavourOption,
+    /// The file to write; - is standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Print JSON (about the file, which is Rust all the same)
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct EmitJson<'a> {
+    model: &'a str,
+    flavour: String,
+    file: String,
+    bytes: usize,
+    lines: usize,
+    functions: Vec<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let robot = read_model(&arguments.model.model)?;
+    let flavour = arguments.flavour.flavour();
+    let progress = Progress::new();
+    progress.show(&format!("deriving and emitting {}", robot.name));
+    let emitted = Emitted::new(&robot, flavour, &arguments.functions.wanted())?;
+    drop(progress);
+    let text = &emitted.text;
+    if arguments.output.as_os_str() == "-" {
+        out.write_all(text.as_bytes())?;
+        return Ok(Answer::Done);
+    }
+    write_whole(&arguments.output, text.as_bytes())?;
+    let (file, lines) = (arguments.output.display().to_string(), text.lines().count());
+    let functions: Vec<String> =
+        emitted.program.routines.iter().map(|routine| routine.full_name()).collect();
+    if arguments.json {
+        let (flavour, bytes) = (flavour.to_string(), text.len());
+        let json = EmitJson { model: &robot.name, flavour, file, bytes, lines, functions };
+        write_json(out, &json)?;
+    } else {
+        let count = functions.len();
+        writeln!(out, "wrote {file}: {count} functions, {lines} lines, {flavour} parameters")?;
+    }
+    Ok(Answer::Done)
+}
+
+/// A model on its way to Rust.
+pub(crate) struct Emitted {
+    /// Its functions as expressions.
+    pub(crate) derivation: Derivation,
+    /// Its functions as code.
+    pub(crate) program: Program,
+    /// The module.
+    pub(crate) text: String,
+}
+
+impl Emitted {
+    /// Derives the functions of a robot and writes them as a module.
+    pub(crate) fn new(
+        robot: &Robot,
+        flavour: Flavour,
+        wanted: &[FunctionName],
+    ) -> Result<Self, Failure> {
+        let derivation = derive(robot, flavour, wanted).map_err(Failure::Bake)?;
+        if derivation.functions.is_empty() {
+            let asked = wanted.iter().map(|name| name.to_string()).collect();
+            return Err(Failure::NoFunction { model: robot.name.clone(), asked });
+        }
+        let program = lower(&derivation.dag, &derivation.functions)
+            .map_err(|error| Failure::Lower(robot.name.clone(), error))?;
+        let text = module(&derivation.robot, &program)
+            .map_err(|error| Failure::Emit(robot.name.clone(), error))?;
+        Ok(Self { derivation, program, text })
+    }
+}

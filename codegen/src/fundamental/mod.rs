@@ -4,6 +4,8 @@
 //! - [`Polynomial`]: sparse, over any atoms, with rational coefficients and signed exponents
 //! - [`canonical`]: an expression as a polynomial in symbols, sines and cosines of single angles
 //! - [`decompose`]: a matrix as f^T B, over trigonometric polynomials in packed keys
+//! - [`separate`]: products of unknowns as columns; [`echelon`]: Gauss-Jordan on B
+//! - [`gcd`], [`divide`]: divisors of polynomials; [`Fraction`], [`Field`]: rational functions
 //! - [`equal`]: whether two expressions are the same function
 
 mod basis;
@@ -11,10 +13,14 @@ mod canonical;
 mod decompose;
 #[cfg(test)]
 mod decompose_tests;
+mod echelon;
 mod expand;
+mod fraction;
+mod gcd;
 mod key;
 mod layout;
 mod polynomial;
+mod separate;
 mod series;
 #[cfg(test)]
 mod tests;
@@ -24,5 +30,9 @@ pub use canonical::{CanonicalError, MAX_TERMS, canonical, canonical_all, equal};
 pub use decompose::{
     Basis, Decomposition, Entry, FundamentalFunction, Matrix, Wave, decompose, smallest,
 };
+pub use echelon::{Echelon, EchelonError, echelon};
 pub use expand::{DEFAULT_MEMORY_BYTES, Expansion, FourierError, Progress};
+pub use fraction::{Field, Fraction};
+pub use gcd::{divide, gcd};
 pub use polynomial::{Monomial, Polynomial, TooManyTerms};
+pub use separate::{Separated, equal_columns, separate};

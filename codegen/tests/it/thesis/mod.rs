@@ -4,6 +4,7 @@
 
 mod appendix_a;
 mod chapter_2;
+mod identification;
 
 use super::robots::load;
 use denavit_codegen::dynamics::methods::{Method, MethodResult, derive};
@@ -18,6 +19,7 @@ fn every_test_that_the_errata_name_exists() {
     let modules = [
         ("appendix_a", include_str!("appendix_a.rs")),
         ("chapter_2", include_str!("chapter_2.rs")),
+        ("identification", include_str!("identification.rs")),
     ];
     let named = errata.split('`').filter_map(|word| word.split_once("::"));
     let mut count = 0;

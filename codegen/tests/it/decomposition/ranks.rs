@@ -1,0 +1,52 @@
+//! Gauss-Jordan on B: the number of base parameters, and that Coriolis terms change nothing.
+
+use super::{Case, FULL, WITHOUT_CORIOLIS};
+use denavit_codegen::expr::text;
+use denavit_codegen::fundamental::{Basis, Echelon, Fraction, echelon};
+use std::collections::BTreeMap;
+
+fn eliminate(case: &mut Case) -> Echelon {
+    let found = case.decompose(&[Basis::Fourier]).remove(0);
+    let order: Vec<usize> = (0..found.columns.len()).collect();
+    echelon(&mut case.dag, &found, &order).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// B_Eu as text.
+fn rows_of(mut case: Case) -> Vec<Vec<(usize, String)>> {
+    let found = eliminate(&mut case);
+    let row = |row: &BTreeMap<usize, Fraction>| {
+        let mut text = |(&column, value): (&usize, &Fraction)| {
+            let value = value.to_expr(&mut case.dag);
+            (column, text::print(&case.dag, value).to_string())
+        };
+        row.iter().map(&mut text).collect()
+    };
+    found.rows.iter().map(row).collect()
+}
+
+#[test]
+fn b_has_the_rank_of_the_known_base_parameters() {
+    for (name, rank) in [
+        ("planar_2r", 6),
+        ("planar_3r", 9),
+        ("scara", 8),
+        ("stanford", 33),
+        ("puma560", 36),
+        ("rx90", 36),
+        ("tulip_leg5", 29),
+        ("tulip_leg6", 36),
+        ("iiwa", 43),
+    ] {
+        assert_eq!(eliminate(&mut Case::new(name, WITHOUT_CORIOLIS)).rank(), rank, "{name}");
+    }
+    // 10 for the torso and 7 for each joint
+    assert_eq!(eliminate(&mut Case::torso("tulip", WITHOUT_CORIOLIS)).rank(), 94);
+}
+
+#[test]
+fn coriolis_terms_add_no_relation_and_take_none() {
+    for name in ["planar_2r", "planar_3r", "scara", "stanford", "puma560", "tulip_leg6"] {
+        let (without, full) = (Case::new(name, WITHOUT_CORIOLIS), Case::new(name, FULL));
+        assert_eq!(rows_of(without), rows_of(full), "{name}");
+    }
+}

@@ -97,8 +97,17 @@ pub enum Cause {
     DuplicateKey(String),
     /// A key that must stand here does not.
     MissingKey(&'static str),
-    /// The tag is not that of a model file.
-    WrongFormat(String),
+    /// The tag is not that of this kind of file.
+    WrongFormat {
+        /// The tag.
+        found: String,
+        /// The tag that it should be.
+        expected: &'static str,
+    },
+    /// A file of equations without an equation.
+    NoEquations,
+    /// An equation that is not one expression, "=", and another one.
+    NotAnEquation(String),
     /// A word that is none of those that may stand here.
     UnknownWord {
         /// What the word should say.

@@ -232,7 +232,7 @@ impl<'a> ModelFile<'a> {
     /// Reads the form of a whole file; none if it is no object at all.
     pub(super) fn read(json: &Json<'a>, report: &mut Report) -> Option<Self> {
         let fields = Fields::of(json, MODEL_KEYS, report)?;
-        fields.format(report);
+        fields.format(super::FORMAT, report);
         Some(Self {
             name: fields.name("name", report),
             description: fields.text_or_empty("description", report),
@@ -281,7 +281,7 @@ fn read_terms(fields: &Fields<'_, '_>, report: &mut Report) -> Terms {
     Terms { inertia, coriolis, gravity, friction, rotor, spring }
 }
 
-fn read_declarations<'a>(
+pub(super) fn read_declarations<'a>(
     fields: &Fields<'_, 'a>,
     key: &'static str,
     known: &'static [&'static str],

@@ -27,9 +27,11 @@ impl fmt::Display for Cause {
             Self::UnknownKey { key, .. } => write!(f, "unknown key `{}`", clip(key)),
             Self::DuplicateKey(key) => write!(f, "the key `{}` is given twice", clip(key)),
             Self::MissingKey(key) => write!(f, "the key `{key}` is missing"),
-            Self::WrongFormat(found) => {
-                write!(f, "the format is `{}`, not `{}`", clip(found), super::FORMAT)
+            Self::WrongFormat { found, expected } => {
+                write!(f, "the format is `{}`, not `{expected}`", clip(found))
             }
+            Self::NoEquations => write!(f, "there is no equation"),
+            Self::NotAnEquation(text) => write!(f, "\"{}\" is not an equation", clip(text)),
             Self::UnknownWord { what, found, .. } => write!(f, "unknown {what} `{}`", clip(found)),
             Self::WrongLength { expected, found } => {
                 write!(f, "expected {expected} values, found {found}")
@@ -188,7 +190,12 @@ impl Cause {
                 "a model file begins with \"format\": \"denavit-model/1\""
             }
             Self::DuplicateKey(_) => "only one of them could count: remove the other",
-            Self::WrongFormat(_) => "docs/model-file.md describes the format",
+            Self::WrongFormat { expected, .. } if *expected == super::equations::FORMAT => {
+                "docs/equations.md describes the format"
+            }
+            Self::WrongFormat { .. } => "docs/model-file.md describes the format",
+            Self::NoEquations => "an equation is a text, as \"tau = m*l^2*thdd + m*g*l*cos(th)\"",
+            Self::NotAnEquation(_) => "write two expressions with one = between them",
             Self::MissingKey("about") => {
                 "say about which point the inertia is taken: \"com\" or \"origin\""
             }

@@ -9,6 +9,7 @@
 //! pointer, cause and hint. docs/model-file.md describes the format.
 
 mod check;
+pub mod equations;
 mod fault;
 mod file;
 mod hash;

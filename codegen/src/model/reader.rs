@@ -1,6 +1,5 @@
 //! Reads the values of JSON objects by key, noting every fault of form.
 
-use super::FORMAT;
 use super::fault::Cause;
 use super::file::{Entry, Name, Scalar};
 use super::json::{Json, Value};
@@ -82,11 +81,12 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// Checks the format tag.
-    pub(super) fn format(&self, report: &mut Report) {
+    pub(super) fn format(&self, expected: &'static str, report: &mut Report) {
         let Some(json) = self.require("format", report) else { return };
         let Some(tag) = text_of(json, report) else { return };
-        if tag.text != FORMAT {
-            report.push(json.start, Cause::WrongFormat(tag.text.into_owned()));
+        if tag.text != expected {
+            let found = tag.text.into_owned();
+            report.push(json.start, Cause::WrongFormat { found, expected });
         }
     }
 

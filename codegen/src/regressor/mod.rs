@@ -1,5 +1,6 @@
 //! The equations of motion as linear functions of what is unknown.
 
+pub mod equations;
 mod pull;
 
 pub use pull::{

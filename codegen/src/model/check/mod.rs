@@ -24,7 +24,7 @@ use crate::arena::PrimaryMap;
 use crate::expr::ExprId;
 use crate::expr::text::nearest;
 use rustc_hash::FxHashMap;
-use scope::Scope;
+pub(super) use scope::Scope;
 
 /// What is built up while a file is checked.
 struct Check<'r> {

@@ -16,8 +16,8 @@ use std::collections::BTreeSet;
 const MAX_TEXT_BYTES: usize = 1 << 20;
 
 /// The graph with the declared names.
-pub(super) struct Scope {
-    pub(super) dag: Dag,
+pub(in crate::model) struct Scope {
+    pub(in crate::model) dag: Dag,
     facts: Facts,
     declared: FxHashMap<String, ExprId>,
     /// Every name that the file declares, now or later.
@@ -27,7 +27,7 @@ pub(super) struct Scope {
 
 impl Scope {
     /// A scope in which nothing is declared yet; `names` are those that the file will declare.
-    pub(super) fn new(names: BTreeSet<String>) -> Self {
+    pub(in crate::model) fn new(names: BTreeSet<String>) -> Self {
         Self {
             dag: Dag::new(),
             facts: Facts::default(),
@@ -38,7 +38,7 @@ impl Scope {
     }
 
     /// Declares a symbol that expressions may use from here on.
-    pub(super) fn declare(
+    pub(in crate::model) fn declare(
         &mut self,
         name: &str,
         class: SymbolClass,
@@ -53,28 +53,28 @@ impl Scope {
     }
 
     /// Lets expressions use a name that was refused, so that one fault does not become many.
-    pub(super) fn tolerate(&mut self, name: &str) {
+    pub(in crate::model) fn tolerate(&mut self, name: &str) {
         let one = self.dag.one();
         self.declared.insert(name.to_owned(), one);
     }
 
     /// Whether expressions may use the name.
-    pub(super) fn is_declared(&self, name: &str) -> bool {
+    pub(in crate::model) fn is_declared(&self, name: &str) -> bool {
         self.declared.contains_key(name)
     }
 
     /// Makes a symbol that no expression of the file can name.
-    pub(super) fn generate(&mut self, name: &str, class: SymbolClass) -> ExprId {
+    pub(in crate::model) fn generate(&mut self, name: &str, class: SymbolClass) -> ExprId {
         self.dag.symbol(name, class)
     }
 
     /// Reads an expression; 0 stands in for one that is at fault.
-    pub(super) fn expression(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
+    pub(in crate::model) fn expression(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
         self.read(scalar, false, report).unwrap_or(self.dag.zero())
     }
 
     /// Reads an expression; none if it is at fault.
-    pub(super) fn try_expression(
+    pub(in crate::model) fn try_expression(
         &mut self,
         scalar: &Scalar,
         report: &mut Report,
@@ -83,13 +83,13 @@ impl Scope {
     }
 
     /// Reads an entry of a row, which is the constant part of a joint.
-    pub(super) fn row_entry(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
+    pub(in crate::model) fn row_entry(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
         self.read(scalar, true, report).unwrap_or(self.dag.zero())
     }
 
     /// Reads an expression that must have a value, of the given dimension if one is given, and
     /// returns the value, free of symbols.
-    pub(super) fn value(
+    pub(in crate::model) fn value(
         &mut self,
         scalar: &Scalar,
         expected: Option<(&str, Dimension)>,
@@ -107,7 +107,11 @@ impl Scope {
     }
 
     /// Reads an expression without symbols.
-    pub(super) fn number(&mut self, scalar: &Scalar, report: &mut Report) -> Option<ExprId> {
+    pub(in crate::model) fn number(
+        &mut self,
+        scalar: &Scalar,
+        report: &mut Report,
+    ) -> Option<ExprId> {
         let expr = self.read(scalar, false, report)?;
         if !self.has_symbols(expr) {
             return Some(expr);
@@ -117,7 +121,7 @@ impl Scope {
     }
 
     /// Checks that an expression has the dimension that its place asks for.
-    pub(super) fn expect(
+    pub(in crate::model) fn expect(
         &mut self,
         expr: ExprId,
         what: &str,
@@ -135,18 +139,23 @@ impl Scope {
     }
 
     /// The value of an expression as the file gives it: exact, but for pi.
-    pub(super) fn approximate(&mut self, expr: ExprId) -> Option<Rational> {
+    pub(in crate::model) fn approximate(&mut self, expr: ExprId) -> Option<Rational> {
         self.facts.update(&mut self.dag);
         approximate(&self.dag, self.facts.value(expr)?)
     }
 
     /// Whether an expression depends on a symbol.
-    pub(super) fn has_symbols(&self, expr: ExprId) -> bool {
+    pub(in crate::model) fn has_symbols(&self, expr: ExprId) -> bool {
         !self.dag.classes(expr).is_empty()
     }
 
     /// Notes that an expression depends on a symbol where it may not.
-    pub(super) fn refuse_symbols(&self, scalar: &Scalar, expr: ExprId, report: &mut Report) {
+    pub(in crate::model) fn refuse_symbols(
+        &self,
+        scalar: &Scalar,
+        expr: ExprId,
+        report: &mut Report,
+    ) {
         let symbols = if report.wants_hints() { free_symbols(&self.dag, &[expr]) } else { vec![] };
         let name = symbols.first().map(|&symbol| self.dag.symbols()[symbol].name.clone());
         let text = scalar.text.clone().into_owned();

@@ -1,5 +1,6 @@
 //! R0 = f^T B on robots: sizes against an independent count, values at random points.
 
+mod given;
 mod ranks;
 mod sizes;
 

@@ -1,0 +1,204 @@
+//! The regressor of given equations (thesis, appendix B): every product of unknowns is a column,
+//! what has none moves to the left side, and R0_ij = f^T b_ij comes with it.
+
+use crate::expr::{Dag, ExprId, SymbolId, free_symbols, text};
+use crate::fundamental::{
+    Basis, Decomposition, Echelon, EchelonError, Entry, Expansion, FourierError, Matrix, Wave,
+    decompose, echelon, equal_columns, separate,
+};
+use crate::model::equations::Equations;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// Why equations have no regressor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EquationsError {
+    /// They are not written out.
+    Fourier(FourierError),
+    /// An unknown stands where the equations are no polynomial in it.
+    NotPolynomial {
+        /// The equations' name.
+        name: String,
+        /// The unknown.
+        unknown: String,
+    },
+    /// A column to keep that there is not.
+    NoColumn {
+        /// The equations' name.
+        name: String,
+        /// What was asked for.
+        column: String,
+        /// The columns.
+        columns: Vec<String>,
+    },
+    /// B is not eliminated.
+    Echelon(EchelonError),
+}
+
+impl fmt::Display for EquationsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fourier(error) => write!(f, "{error}"),
+            Self::NotPolynomial { name, unknown } => write!(
+                f,
+                "{name}: the equations are no polynomials in the unknown {unknown}\n  hint: \
+                 unknowns may stand in sums, products and powers; make {unknown} a known"
+            ),
+            Self::NoColumn { name, column, columns } => write!(
+                f,
+                "{name}: there is no column {column}\n  hint: the columns are {}",
+                columns.join(", ")
+            ),
+            Self::Echelon(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for EquationsError {}
+
+/// zeta = R0 theta0 from equations.
+#[derive(Clone, Debug)]
+pub struct EquationsRegressor {
+    /// Holds all expressions, those of the equations among them.
+    pub dag: Dag,
+    /// theta0: products of unknowns, or sums of them that act alike (c1^2 m1 + I1).
+    pub parameters: Vec<ExprId>,
+    /// zeta, equation by equation.
+    pub left: Vec<ExprId>,
+    /// f and B; the columns are those of theta0.
+    pub decomposition: Decomposition,
+    name: String,
+}
+
+/// The regressor of equations, in one basis of functions.
+pub fn equations_regressor(
+    equations: &Equations,
+    basis: Basis,
+    expansion: &mut Expansion<'_>,
+) -> Result<EquationsRegressor, EquationsError> {
+    let mut dag = equations.dag.clone();
+    let rows: Vec<Vec<ExprId>> =
+        equations.equations.iter().map(|one| vec![dag.sub(one.right, one.left)]).collect();
+    let knowns: BTreeSet<ExprId> = equations.knowns.iter().map(|known| known.symbol).collect();
+    let ids: Vec<SymbolId> = dag.symbols().keys().collect();
+    let known_ids: BTreeSet<SymbolId> =
+        ids.into_iter().filter(|&id| knowns.contains(&dag.symbol_expr(id))).collect();
+    let is_known = |id: SymbolId| known_ids.contains(&id);
+    let matrix = Matrix { rows: &rows, is_known: &is_known, chains: &[] };
+    let found =
+        decompose(&mut dag, &matrix, &[basis], expansion).map_err(EquationsError::Fourier)?;
+    let found = found.first().expect("every matrix has the first two bases");
+    let unknowns: Vec<ExprId> = equations.unknowns.iter().map(|unknown| unknown.symbol).collect();
+    require_polynomial(&dag, found, &unknowns, &equations.name)?;
+    let mut separated = separate(found, &unknowns);
+    let left = separated.left_side(&mut dag);
+    let products: Vec<ExprId> = separated
+        .products
+        .iter()
+        .map(|product| {
+            product.iter().fold(dag.one(), |result, &(unknown, exponent)| {
+                let power = dag.pow(unknown, exponent);
+                dag.mul(result, power)
+            })
+        })
+        .collect();
+    let mut parameters = Vec::new();
+    let mut columns: Vec<Vec<Entry>> = Vec::new();
+    for group in equal_columns(&separated.decomposition) {
+        let zero = dag.zero();
+        parameters.push(group.iter().fold(zero, |sum, &place| dag.add(sum, products[place])));
+        columns.push(separated.decomposition.columns[group[0]].clone());
+    }
+    separated.decomposition.columns = columns;
+    let (decomposition, name) = (separated.decomposition, equations.name.clone());
+    Ok(EquationsRegressor { dag, parameters, left, decomposition, name })
+}
+
+/// An unknown may be a factor, with an exponent that is not negative, and nothing else.
+fn require_polynomial(
+    dag: &Dag,
+    found: &Decomposition,
+    unknowns: &[ExprId],
+    name: &str,
+) -> Result<(), EquationsError> {
+    let mut below: Vec<ExprId> = Vec::new();
+    for function in &found.functions {
+        for &(factor, exponent) in &function.factors {
+            if exponent < 0 || !unknowns.contains(&factor) {
+                below.push(factor);
+            }
+        }
+        match &function.wave {
+            Wave::Harmonic { angle, .. } => {
+                below.extend(angle.iter().map(|&(angle, _)| angle));
+            }
+            Wave::Product(powers) => {
+                below.extend(powers.iter().map(|&(angle, _, _)| angle));
+            }
+        }
+    }
+    let symbols = free_symbols(dag, &below);
+    let inside = symbols.into_iter().map(|id| dag.symbols()[id].name.as_str()).find(|symbol| {
+        unknowns.iter().any(|&unknown| dag.as_symbol(unknown).is_some_and(|s| s.name == *symbol))
+    });
+    match inside {
+        Some(unknown) => Err(EquationsError::NotPolynomial {
+            name: name.to_owned(),
+            unknown: unknown.to_owned(),
+        }),
+        None => Ok(()),
+    }
+}
+
+impl EquationsRegressor {
+    /// The columns' names: their parameters as text.
+    pub fn column_names(&self) -> Vec<String> {
+        let name = |&parameter: &ExprId| text::print(&self.dag, parameter).to_string();
+        self.parameters.iter().map(name).collect()
+    }
+
+    /// theta = B_Eu theta0 (thesis 3.5), with the columns of `keep` kept before others. A name
+    /// is the parameter of a column as text.
+    pub fn base_parameters(
+        &mut self,
+        keep: &[&str],
+    ) -> Result<(Echelon, Vec<ExprId>), EquationsError> {
+        let mut order: Vec<usize> = Vec::new();
+        for &wanted in keep {
+            let place = self.find(wanted).ok_or_else(|| EquationsError::NoColumn {
+                name: self.name.clone(),
+                column: wanted.to_owned(),
+                columns: self.column_names(),
+            })?;
+            if !order.contains(&place) {
+                order.push(place);
+            }
+        }
+        let rest: Vec<usize> =
+            (0..self.parameters.len()).filter(|place| !order.contains(place)).collect();
+        order.extend(rest);
+        let found =
+            echelon(&mut self.dag, &self.decomposition, &order).map_err(EquationsError::Echelon)?;
+        let mut sums = Vec::new();
+        for row in &found.rows {
+            let mut sum = self.dag.zero();
+            for (&column, factor) in row {
+                let factor = factor.to_expr(&mut self.dag);
+                let product = self.dag.mul(factor, self.parameters[column]);
+                sum = self.dag.add(sum, product);
+            }
+            sums.push(sum);
+        }
+        Ok((found, sums))
+    }
+
+    /// The column of a name.
+    fn find(&mut self, wanted: &str) -> Option<usize> {
+        let mut resolve = |dag: &mut Dag, name: &str| {
+            let id = dag.find_symbol(name)?;
+            Some(dag.symbol_expr(id))
+        };
+        let expr = text::parse(&mut self.dag, wanted, &mut resolve).ok()?;
+        self.parameters.iter().position(|&parameter| parameter == expr)
+    }
+}

@@ -78,10 +78,10 @@ impl<'a> Portfolio<'a> {
                         best = Some((price, form, outputs));
                     }
                 };
-                if frames.len() <= MAX_EXPLICIT_JOINTS {
-                    if let Some(closed) = explicit(dag, &entries) {
-                        keep(dag, Form::Explicit, with_entries(&outputs, &closed));
-                    }
+                if frames.len() <= MAX_EXPLICIT_JOINTS
+                    && let Some(closed) = explicit(dag, &entries)
+                {
+                    keep(dag, Form::Explicit, with_entries(&outputs, &closed));
                 }
                 keep(dag, *form, outputs);
             }

@@ -280,7 +280,7 @@ impl Job<'_> {
                 (function.plus(waves).with_flag(flag), known, c)
             })
             .collect();
-        split.sort_unstable_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)));
+        split.sort_unstable_by_key(|a| (a.0, a.1));
         let groups = split.chunk_by(|a, b| a.0 == b.0);
         groups
             .map(|group| {

@@ -238,7 +238,7 @@ impl Layout {
             let members: Vec<usize> = chain.iter().filter_map(|&q| self.find_angle(q)).collect();
             // A cumulated angle has the exponent of its own angle minus that of the next one.
             for pair in members.windows(2) {
-                wanted[pair[0]] = wanted[pair[0]] + bounds[pair[1]];
+                wanted[pair[0]] += bounds[pair[1]];
             }
         }
         self.angles.iter_mut().for_each(|atom| atom.is_signed = true);
@@ -357,7 +357,7 @@ impl Atom {
 /// Whether all symbols below an expression are known.
 fn depends_on_known(dag: &Dag, expr: ExprId, is_known: KnownTest) -> bool {
     let symbols = free_symbols(dag, &[expr]);
-    symbols.into_iter().all(|symbol| is_known(symbol))
+    symbols.into_iter().all(is_known)
 }
 
 /// Bits of an unsigned number.

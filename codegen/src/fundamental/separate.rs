@@ -35,13 +35,18 @@ impl Separated {
     }
 }
 
+/// The unknowns of a column by their rank, with exponents.
+type Unknowns = Vec<(usize, i32)>;
+
+/// Equation, function without unknowns, and coefficient of an entry of B.
+type Separate = (u32, FundamentalFunction, u32);
+
 /// Separates the unknowns from equations that were decomposed as a matrix of one column, with the
 /// unknowns among the factors of the functions. Columns come in the order of `unknowns`: by the
 /// first unknown in them, its exponent, then by the others.
 pub fn separate(found: &Decomposition, unknowns: &[ExprId]) -> Separated {
     let rank = |factor: ExprId| unknowns.iter().position(|&unknown| unknown == factor);
-    let mut columns: BTreeMap<Vec<(usize, i32)>, Vec<(u32, FundamentalFunction, u32)>> =
-        BTreeMap::new();
+    let mut columns: BTreeMap<Unknowns, Vec<Separate>> = BTreeMap::new();
     for entry in found.columns.iter().flatten() {
         let function = &found.functions[entry.function as usize];
         let (mut product, mut factors) = (Vec::new(), Vec::new());

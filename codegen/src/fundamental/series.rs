@@ -155,7 +155,7 @@ impl<const N: usize, C: Whole> Series<N, C> {
             }
             terms.reserve_exact(sums.len());
             terms.extend(sums.drain().filter(|(_, c)| !c.is_zero()));
-            terms.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
+            terms.sort_unstable_by_key(|(a, _)| *a);
         }
         terms.shrink_to_fit();
         Ok(Self { denominator, terms }.reduced())
@@ -205,7 +205,7 @@ impl<const N: usize, C: Whole> Series<N, C> {
 pub(super) fn sum_equal_keys<const N: usize, C: Whole>(
     terms: &mut Vec<(Key<N>, C)>,
 ) -> Result<(), Overflow> {
-    terms.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
+    terms.sort_unstable_by_key(|(a, _)| *a);
     let mut kept = 0;
     let mut at = 0;
     while at < terms.len() {

@@ -73,13 +73,22 @@ pub fn canonical(dag: &mut Dag, expr: ExprId) -> Result<Polynomial, CanonicalErr
 
 /// The canonical polynomials of several expressions, in order; what they share is done once.
 pub fn canonical_all(dag: &mut Dag, exprs: &[ExprId]) -> Result<Vec<Polynomial>, CanonicalError> {
+    canonical_within(dag, exprs, MAX_TERMS)
+}
+
+/// [`canonical_all`] that gives up beyond `limit` terms instead of [`MAX_TERMS`].
+pub(super) fn canonical_within(
+    dag: &mut Dag,
+    exprs: &[ExprId],
+    limit: usize,
+) -> Result<Vec<Polynomial>, CanonicalError> {
     let mut uses: FxHashMap<ExprId, usize> = FxHashMap::default();
     let nodes = dag.topological(exprs);
     for &expr in &nodes {
         dag.node(expr).for_each_operand(|operand| *uses.entry(operand).or_default() += 1);
     }
     exprs.iter().for_each(|&expr| *uses.entry(expr).or_default() += 1);
-    let mut expansion = Expansion { dag, cosine_of: FxHashMap::default() };
+    let mut expansion = Expansion { dag, limit, cosine_of: FxHashMap::default() };
     let mut known: FxHashMap<ExprId, Polynomial> = FxHashMap::default();
     for expr in nodes {
         let polynomial = expansion.node(expr, &known)?;
@@ -104,6 +113,7 @@ pub fn equal(dag: &mut Dag, a: ExprId, b: ExprId) -> Result<bool, CanonicalError
 
 struct Expansion<'a> {
     dag: &'a mut Dag,
+    limit: usize,
     /// The cosine atom of each sine atom.
     cosine_of: FxHashMap<ExprId, ExprId>,
 }
@@ -151,14 +161,14 @@ impl Expansion<'_> {
     }
 
     fn bounded(&self, polynomial: Polynomial) -> Result<Polynomial, CanonicalError> {
-        if polynomial.len() > MAX_TERMS {
+        if polynomial.len() > self.limit {
             return Err(CanonicalError::TooManyTerms);
         }
         Ok(polynomial)
     }
 
     fn product(&self, a: &Polynomial, b: &Polynomial) -> Result<Polynomial, CanonicalError> {
-        self.without_squared_sines(a.times(b, MAX_TERMS)?)
+        self.without_squared_sines(a.times(b, self.limit)?)
     }
 
     /// s^2 = 1 - c^2, until no sine has an exponent but 1.

@@ -7,6 +7,7 @@
 //! - [`separate`]: products of unknowns as columns; [`echelon`]: Gauss-Jordan on B
 //! - [`gcd`], [`divide`]: divisors of polynomials; [`Fraction`], [`Field`]: rational functions
 //! - [`equal`]: whether two expressions are the same function
+//! - [`written_out`]: short expressions the way people write them
 
 mod basis;
 mod canonical;
@@ -20,6 +21,7 @@ mod gcd;
 mod key;
 mod layout;
 mod polynomial;
+mod readable;
 mod separate;
 mod series;
 #[cfg(test)]
@@ -35,4 +37,5 @@ pub use expand::{DEFAULT_MEMORY_BYTES, Expansion, FourierError, Progress};
 pub use fraction::{Field, Fraction};
 pub use gcd::{divide, gcd};
 pub use polynomial::{Monomial, Polynomial, TooManyTerms};
+pub use readable::written_out;
 pub use separate::{Separated, equal_columns, separate};

@@ -1,0 +1,17 @@
+//! Equations as LaTeX, the way a person would set them.
+//!
+//! - [`Notation`]: how symbols and angles are written (`\dot q_1`, `m_{2}`, `s_{12}`)
+//! - [`write_expressions`]: formulas, with intermediates named where they are long or shared
+//! - [`document()`]: the equations of motion of a robot as a complete document
+
+mod document;
+mod expression;
+mod nomenclature;
+mod notation;
+mod term;
+#[cfg(test)]
+mod tests;
+
+pub use document::document;
+pub use expression::{Extent, Written, write_expression, write_expressions};
+pub use notation::{Notation, escape, latex_of_name};

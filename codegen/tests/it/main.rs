@@ -5,6 +5,7 @@ mod decomposition;
 mod definite;
 mod emit;
 mod engine_values;
+mod latex;
 mod laws;
 mod methods;
 mod model;

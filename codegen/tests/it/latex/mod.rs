@@ -1,0 +1,4 @@
+//! Documents of equations, read back by a reader that knows nothing of the printer.
+
+mod documents;
+mod reader;

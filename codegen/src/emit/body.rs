@@ -33,9 +33,19 @@ impl Term {
         Self { text, binding: Binding::Atom }
     }
 
+    /// Appends the text, in brackets if it binds less tightly than `least`.
+    fn write(&self, least: Binding, to: &mut String) {
+        match self.binding < least {
+            true => to.extend(["(", &self.text, ")"]),
+            false => to.push_str(&self.text),
+        }
+    }
+
     /// The text, in brackets if it binds less tightly than `least`.
     fn within(&self, least: Binding) -> String {
-        if self.binding < least { format!("({})", self.text) } else { self.text.clone() }
+        let mut text = String::with_capacity(self.text.len() + 2);
+        self.write(least, &mut text);
+        text
     }
 }
 
@@ -215,7 +225,10 @@ impl<'a> Body<'a> {
         if commutes && b.binding < tighter && a.binding >= tighter {
             std::mem::swap(&mut a, &mut b);
         }
-        let text = format!("{} {symbol} {}", a.within(binding), b.within(tighter));
+        let mut text = String::with_capacity(a.text.len() + b.text.len() + 7);
+        a.write(binding, &mut text);
+        text.extend([" ", symbol, " "]);
+        b.write(tighter, &mut text);
         Term { text, binding }
     }
 
@@ -260,7 +273,7 @@ impl<'a> Body<'a> {
 
     fn assign(&mut self, slot: Slot, term: &Term) {
         let name = self.name(slot);
-        self.lines.push(format!("let {name} = {};", term.text));
+        self.lines.push(["let ", &name, " = ", &term.text, ";"].concat());
     }
 
     /// The name of a slot; makes it readable by that name.
@@ -268,9 +281,9 @@ impl<'a> Body<'a> {
         let name = match self.named[slot.index()].take() {
             Some(name) => name,
             None => {
-                let names = &mut self.names;
+                // Numbers are given once; only the names given before can be in the way.
                 let mut numbered = (self.next..).map(|number| (number, format!("t{number}")));
-                let free = numbered.find(|(_, name)| names.claim(name));
+                let free = numbered.find(|(_, name)| self.names.is_free(name));
                 let (number, name) = free.expect("numbers do not end");
                 self.next = number + 1;
                 name

@@ -57,9 +57,14 @@ impl Names {
         self.taken.insert(name.to_owned())
     }
 
+    /// Whether `name` is free.
+    pub(super) fn is_free(&self, name: &str) -> bool {
+        !self.taken.contains(name)
+    }
+
     /// Takes all of `names`, if each is free.
     pub(super) fn claim_all(&mut self, names: &[String]) -> bool {
-        let free = names.iter().all(|name| !self.taken.contains(name));
+        let free = names.iter().all(|name| self.is_free(name));
         if free {
             self.taken.extend(names.iter().cloned());
         }
@@ -76,8 +81,8 @@ impl Names {
             return name.to_owned();
         }
         let numbered = (2..).map(|number| format!("{name}{separator}{number}"));
-        let free = |name: &String| !self.taken.contains(name);
-        let name = numbered.into_iter().find(free).expect("numbers do not end");
+        let name =
+            numbered.into_iter().find(|name| self.is_free(name)).expect("numbers do not end");
         self.taken.insert(name.clone());
         name
     }

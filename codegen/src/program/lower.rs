@@ -136,21 +136,18 @@ fn symbol_free(dag: &Dag, entries: &[ExprId]) -> FxHashMap<ExprId, f64> {
     exprs.into_iter().zip(values).collect()
 }
 
-/// The expressions of a kind that an entry, or an expression of another kind, refers to.
+/// The expressions of a kind that an entry, or an expression of another kind, refers to, in the
+/// order of the graph.
 fn maximal(dag: &Dag, entries: &[ExprId], is_kind: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
-    let mut found: Vec<ExprId> = entries.iter().copied().filter(|&e| is_kind(e)).collect();
+    let mut is_found = vec![false; dag.len()];
+    let mut note = |expr: ExprId| is_found[expr.index()] |= is_kind(expr);
+    entries.iter().for_each(|&entry| note(entry));
     for expr in dag.topological(entries) {
         if !is_kind(expr) {
-            dag.node(expr).for_each_operand(|operand| {
-                if is_kind(operand) {
-                    found.push(operand);
-                }
-            });
+            dag.node(expr).for_each_operand(&mut note);
         }
     }
-    found.sort_unstable();
-    found.dedup();
-    found
+    (0..dag.len()).map(ExprId::from_index).filter(|expr| is_found[expr.index()]).collect()
 }
 
 /// Lowers one set of expressions after the other; its tables are made once.
@@ -160,6 +157,8 @@ struct Builder<'a> {
     constants: &'a FxHashMap<ExprId, f64>,
     /// The slot of each expression of the current code.
     slot_of: Vec<Option<Slot>>,
+    /// All false between two codes.
+    reached: Vec<bool>,
     /// The sine and cosine of each angle of the current code.
     sincos: FxHashMap<ExprId, [Slot; 2]>,
     /// The powers of each expression of the current code, the first one included.
@@ -169,9 +168,15 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(dag: &'a Dag, constants: &'a FxHashMap<ExprId, f64>) -> Self {
-        let slot_of = vec![None; dag.len()];
-        let (sincos, powers) = (FxHashMap::default(), FxHashMap::default());
-        Self { dag, constants, slot_of, sincos, powers, code: Code::default() }
+        Self {
+            dag,
+            constants,
+            slot_of: vec![None; dag.len()],
+            reached: vec![false; dag.len()],
+            sincos: FxHashMap::default(),
+            powers: FxHashMap::default(),
+            code: Code::default(),
+        }
     }
 
     /// The code of `outputs`. `leaf_of` names what the code does not compute itself.
@@ -196,29 +201,28 @@ impl<'a> Builder<'a> {
 
     /// The leaves and the expressions between leaves and outputs, each in the order of the graph.
     fn reach(
-        &self,
+        &mut self,
         outputs: &[ExprId],
         leaf_of: impl Fn(ExprId) -> Option<Leaf>,
     ) -> (Vec<(ExprId, Leaf)>, Vec<ExprId>) {
         let (mut leaves, mut interior) = (Vec::new(), Vec::new());
-        let last = outputs.iter().map(|output| output.index()).max().map_or(0, |index| index + 1);
-        let mut marked = vec![false; last];
-        outputs.iter().for_each(|output| marked[output.index()] = true);
-        for expr in (0..last).rev().map(ExprId::from_index) {
-            if !marked[expr.index()] {
+        let mut pending = outputs.to_vec();
+        while let Some(expr) = pending.pop() {
+            if std::mem::replace(&mut self.reached[expr.index()], true) {
                 continue;
             }
             match leaf_of(expr).or_else(|| self.constant_leaf(expr)) {
                 Some(leaf) => leaves.push((expr, leaf)),
                 None => {
                     interior.push(expr);
-                    let node = self.dag.node(expr);
-                    node.for_each_operand(|operand| marked[operand.index()] = true);
+                    self.dag.node(expr).for_each_operand(|operand| pending.push(operand));
                 }
             }
         }
-        leaves.reverse();
-        interior.reverse();
+        leaves.sort_unstable_by_key(|(expr, _)| *expr);
+        interior.sort_unstable();
+        let leaf_exprs = leaves.iter().map(|(expr, _)| expr);
+        leaf_exprs.chain(&interior).for_each(|expr| self.reached[expr.index()] = false);
         (leaves, interior)
     }
 

@@ -5,8 +5,8 @@
 //! bit, also in the remainder.
 
 use super::interpret::{ShapeMismatch, argument_leaves, binary, initial_registers, select, unary};
-use super::tape::{Choice, Step, Tape};
-use super::{BinaryOperation, Routine, UnaryOperation};
+use super::tape::{Register, Run, Tape};
+use super::{BinaryOperation, Routine};
 use denavit_runtime::Transcendental;
 
 /// Samples in a block.
@@ -98,49 +98,52 @@ impl<S: Transcendental> BatchEvaluator<S> {
     }
 }
 
-fn execute<S: Transcendental>(tape: &Tape, registers: &mut [Block<S>]) {
-    use BinaryOperation::{Add, Div, Mul, Sub};
-    for step in &tape.steps {
-        match *step {
-            // One arm for each common operation, so that the choice stands outside the loop.
-            Step::Binary(Add, to, from) => pairwise(registers, to, from, |a, b| a + b),
-            Step::Binary(Sub, to, from) => pairwise(registers, to, from, |a, b| a - b),
-            Step::Binary(Mul, to, from) => pairwise(registers, to, from, |a, b| a * b),
-            Step::Binary(Div, to, from) => pairwise(registers, to, from, |a, b| a / b),
-            Step::Binary(function, to, from) => {
-                pairwise(registers, to, from, |a, b| binary(function, a, b));
+fn execute<S: Transcendental>(tape: &Tape, values: &mut [Block<S>]) {
+    use BinaryOperation::{Add, Mul, Sub};
+    for run in &tape.runs {
+        match run {
+            // The common operations have loops of their own, without a choice inside.
+            Run::Binary(Add, rows) => pairwise(values, &tape.binary[rows.clone()], |a, b| a + b),
+            Run::Binary(Sub, rows) => pairwise(values, &tape.binary[rows.clone()], |a, b| a - b),
+            Run::Binary(Mul, rows) => pairwise(values, &tape.binary[rows.clone()], |a, b| a * b),
+            Run::Binary(function, rows) => {
+                let function = |a, b| binary(*function, a, b);
+                pairwise(values, &tape.binary[rows.clone()], function);
             }
-            Step::Unary(UnaryOperation::Neg, to, from) => each(registers, to, from, |a| -a),
-            Step::Unary(function, to, from) => each(registers, to, from, |a| unary(function, a)),
-            Step::SinCos([sine, cosine], angle) => {
-                let pairs = registers[angle as usize].map(S::sincos);
-                registers[sine as usize] = pairs.map(|(s, _)| s);
-                registers[cosine as usize] = pairs.map(|(_, c)| c);
+            Run::Unary(function, rows) => {
+                for &[to, from] in &tape.unary[rows.clone()] {
+                    values[to as usize] = values[from as usize].map(|a| unary(*function, a));
+                }
             }
-            Step::Select(to, choice) => {
-                let Choice { relation, sides, then, otherwise } = tape.choices[choice as usize];
-                let [left, right, then, otherwise] =
-                    [sides[0], sides[1], then, otherwise].map(|at| registers[at as usize]);
-                registers[to as usize] = std::array::from_fn(|lane| {
-                    select(relation, [left[lane], right[lane]], then[lane], otherwise[lane])
-                });
+            Run::SinCos(rows) => {
+                for &[sine, cosine, angle] in &tape.sincos[rows.clone()] {
+                    let pairs = values[angle as usize].map(S::sincos);
+                    values[sine as usize] = pairs.map(|(s, _)| s);
+                    values[cosine as usize] = pairs.map(|(_, c)| c);
+                }
+            }
+            Run::Select(relation, rows) => {
+                for &[to, left, right, then, otherwise] in &tape.select[rows.clone()] {
+                    let [left, right, then, otherwise] =
+                        [left, right, then, otherwise].map(|at| values[at as usize]);
+                    values[to as usize] = std::array::from_fn(|lane| {
+                        let sides = [left[lane], right[lane]];
+                        select(*relation, sides, then[lane], otherwise[lane])
+                    });
+                }
             }
         }
     }
 }
 
 #[inline]
-fn each<S: Copy>(registers: &mut [Block<S>], to: u32, from: u32, function: impl Fn(S) -> S) {
-    registers[to as usize] = registers[from as usize].map(function);
-}
-
-#[inline]
 fn pairwise<S: Copy>(
-    registers: &mut [Block<S>],
-    to: u32,
-    [left, right]: [u32; 2],
+    values: &mut [Block<S>],
+    rows: &[[Register; 3]],
     function: impl Fn(S, S) -> S,
 ) {
-    let (a, b) = (registers[left as usize], registers[right as usize]);
-    registers[to as usize] = std::array::from_fn(|lane| function(a[lane], b[lane]));
+    for &[to, left, right] in rows {
+        let (a, b) = (values[left as usize], values[right as usize]);
+        values[to as usize] = std::array::from_fn(|lane| function(a[lane], b[lane]));
+    }
 }

@@ -3,7 +3,7 @@
 //! It computes through the same [`Scalar`] as emitted code, in the same order, so the two agree
 //! bit for bit.
 
-use super::tape::{Choice, Step, Tape};
+use super::tape::{Register, Run, Tape};
 use super::{BinaryOperation, Code, Leaf, Program, Routine, UnaryOperation, constant_values};
 use crate::expr::{ExprId, Relation};
 use crate::model::Robot;
@@ -136,28 +136,45 @@ pub(super) fn initial_registers<S: Scalar>(tape: &Tape, prelude: &[f64]) -> Vec<
     tape.leaves.iter().map(leaf).collect()
 }
 
-fn execute<S: Transcendental>(tape: &Tape, registers: &mut [S]) {
-    for step in &tape.steps {
-        match *step {
-            Step::Unary(function, to, from) => {
-                registers[to as usize] = unary(function, registers[from as usize]);
+fn execute<S: Transcendental>(tape: &Tape, values: &mut [S]) {
+    use BinaryOperation::{Add, Mul, Sub};
+    for run in &tape.runs {
+        match run {
+            // The common operations have loops of their own, without a choice inside.
+            Run::Binary(Add, rows) => pairwise(values, &tape.binary[rows.clone()], |a, b| a + b),
+            Run::Binary(Sub, rows) => pairwise(values, &tape.binary[rows.clone()], |a, b| a - b),
+            Run::Binary(Mul, rows) => pairwise(values, &tape.binary[rows.clone()], |a, b| a * b),
+            Run::Binary(function, rows) => {
+                let function = |a, b| binary(*function, a, b);
+                pairwise(values, &tape.binary[rows.clone()], function);
             }
-            Step::Binary(function, to, [left, right]) => {
-                let (a, b) = (registers[left as usize], registers[right as usize]);
-                registers[to as usize] = binary(function, a, b);
+            Run::Unary(function, rows) => {
+                for &[to, from] in &tape.unary[rows.clone()] {
+                    values[to as usize] = unary(*function, values[from as usize]);
+                }
             }
-            Step::SinCos([sine, cosine], angle) => {
-                let (s, c) = registers[angle as usize].sincos();
-                registers[sine as usize] = s;
-                registers[cosine as usize] = c;
+            Run::SinCos(rows) => {
+                for &[sine, cosine, angle] in &tape.sincos[rows.clone()] {
+                    let (s, c) = values[angle as usize].sincos();
+                    values[sine as usize] = s;
+                    values[cosine as usize] = c;
+                }
             }
-            Step::Select(to, choice) => {
-                let Choice { relation, sides, then, otherwise } = tape.choices[choice as usize];
-                let [left, right, then, otherwise] =
-                    [sides[0], sides[1], then, otherwise].map(|at| registers[at as usize]);
-                registers[to as usize] = select(relation, [left, right], then, otherwise);
+            Run::Select(relation, rows) => {
+                for &[to, left, right, then, otherwise] in &tape.select[rows.clone()] {
+                    let [left, right, then, otherwise] =
+                        [left, right, then, otherwise].map(|at| values[at as usize]);
+                    values[to as usize] = select(*relation, [left, right], then, otherwise);
+                }
             }
         }
+    }
+}
+
+#[inline]
+fn pairwise<S: Copy>(values: &mut [S], rows: &[[Register; 3]], function: impl Fn(S, S) -> S) {
+    for &[to, left, right] in rows {
+        values[to as usize] = function(values[left as usize], values[right as usize]);
     }
 }
 

@@ -1,83 +1,164 @@
-//! Code with its slots mapped to few registers: what the interpreters run.
+//! Code as the interpreters run it: on few registers, in runs of one operation.
+//!
+//! Choosing what to do next is what an interpreter spends its time on, because no processor can
+//! predict that choice over thousands of instructions. So instructions that are ready are taken
+//! together with all others of their kind: a run needs one choice. Each instruction still computes
+//! what it did from the same operands, so no bit changes.
 
 use super::{BinaryOperation, Code, Instruction, Leaf, Operation, UnaryOperation};
 use crate::arena::Handle;
 use crate::expr::Relation;
+use std::ops::Range;
 
-/// A register.
+/// A register: an index into the values.
 pub(super) type Register = u32;
 
-/// A step, on registers.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Step {
-    Unary(UnaryOperation, Register, Register),
-    Binary(BinaryOperation, Register, [Register; 2]),
-    SinCos([Register; 2], Register),
-    /// The operands stand in [`Tape::choices`].
-    Select(Register, u32),
+/// Consecutive steps of one kind: rows of the table of that kind.
+#[derive(Clone, Debug)]
+pub(super) enum Run {
+    Unary(UnaryOperation, Range<usize>),
+    Binary(BinaryOperation, Range<usize>),
+    SinCos(Range<usize>),
+    Select(Relation, Range<usize>),
 }
 
-/// Operands of a selection.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    pub(super) relation: Relation,
-    pub(super) sides: [Register; 2],
-    pub(super) then: Register,
-    pub(super) otherwise: Register,
-}
-
-/// Steps on registers. The leaves stand in the first registers, in order, and are never
+/// Code on registers. The leaves stand in the first registers, in order, and are never
 /// overwritten; the others are used again once their value is dead.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tape {
     pub(super) leaves: Vec<Leaf>,
-    pub(super) steps: Vec<Step>,
-    pub(super) choices: Vec<Choice>,
+    pub(super) runs: Vec<Run>,
+    /// Result, operand.
+    pub(super) unary: Vec<[Register; 2]>,
+    /// Result, left operand, right operand.
+    pub(super) binary: Vec<[Register; 3]>,
+    /// Sine, cosine, angle.
+    pub(super) sincos: Vec<[Register; 3]>,
+    /// Result, left and right side, value if the relation holds, value if not.
+    pub(super) select: Vec<[Register; 5]>,
     pub(super) outputs: Vec<Register>,
     pub(super) registers: usize,
+}
+
+/// What the steps of a run have in common.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Unary(UnaryOperation),
+    Binary(BinaryOperation),
+    SinCos,
+    Select(Relation),
+}
+
+impl Kind {
+    fn of(instruction: &Instruction) -> Self {
+        match instruction {
+            Instruction::SinCos { .. } => Self::SinCos,
+            Instruction::Value { operation, .. } => match operation {
+                Operation::Unary(function, _) => Self::Unary(*function),
+                Operation::Binary(function, ..) => Self::Binary(*function),
+                Operation::Select { relation, .. } => Self::Select(*relation),
+            },
+        }
+    }
 }
 
 impl Tape {
     /// The tape of verified code.
     pub(super) fn new(code: &Code) -> Self {
         let leaves: Vec<Leaf> = code.leaves.values().copied().collect();
-        let registers = leaves.len();
-        let mut tape = Self { leaves, registers, ..Self::default() };
-        let mut allocation = Allocation::new(code);
-        for (index, instruction) in code.instructions.iter().enumerate() {
-            let operands = allocation.operands(index, instruction);
-            let step = match *instruction {
-                Instruction::SinCos { sine, cosine, .. } => {
-                    let results = [sine, cosine].map(|slot| allocation.assign(slot.index()));
-                    [sine, cosine].iter().for_each(|slot| allocation.drop_unused(slot.index()));
-                    Step::SinCos(results, operands[0])
+        let mut tape = Self { leaves, ..Self::default() };
+        let order = in_runs(code);
+        let mut allocation = Allocation::new(code, &order);
+        let mut kind = None;
+        for (step, &index) in order.iter().enumerate() {
+            let instruction = &code.instructions[index];
+            let operands = allocation.operands(step, instruction);
+            let [first, second] = allocation.results(instruction);
+            if kind != Some(Kind::of(instruction)) {
+                kind = Some(Kind::of(instruction));
+                tape.begin(Kind::of(instruction));
+            }
+            let [a, b, c, d] = operands;
+            let end = match tape.runs.last_mut().expect("a run has begun") {
+                Run::Unary(_, rows) => {
+                    tape.unary.push([first, a]);
+                    &mut rows.end
                 }
-                Instruction::Value { result, operation } => {
-                    let register = allocation.assign(result.index());
-                    allocation.drop_unused(result.index());
-                    match operation {
-                        Operation::Unary(function, _) => {
-                            Step::Unary(function, register, operands[0])
-                        }
-                        Operation::Binary(function, ..) => {
-                            Step::Binary(function, register, [operands[0], operands[1]])
-                        }
-                        Operation::Select { relation, .. } => {
-                            let [left, right, then, otherwise] = operands;
-                            let sides = [left, right];
-                            tape.choices.push(Choice { relation, sides, then, otherwise });
-                            Step::Select(register, index_u32(tape.choices.len() - 1))
-                        }
-                    }
+                Run::Binary(_, rows) => {
+                    tape.binary.push([first, a, b]);
+                    &mut rows.end
+                }
+                Run::SinCos(rows) => {
+                    tape.sincos.push([first, second, a]);
+                    &mut rows.end
+                }
+                Run::Select(_, rows) => {
+                    tape.select.push([first, a, b, c, d]);
+                    &mut rows.end
                 }
             };
-            tape.steps.push(step);
+            *end += 1;
         }
-        tape.outputs =
-            code.outputs.iter().map(|slot| allocation.register_of[slot.index()]).collect();
+        let register = |output: &super::Slot| allocation.register_of[output.index()];
+        tape.outputs = code.outputs.iter().map(register).collect();
         tape.registers = allocation.registers;
         tape
     }
+
+    fn begin(&mut self, kind: Kind) {
+        let empty = |len: usize| len..len;
+        self.runs.push(match kind {
+            Kind::Unary(function) => Run::Unary(function, empty(self.unary.len())),
+            Kind::Binary(function) => Run::Binary(function, empty(self.binary.len())),
+            Kind::SinCos => Run::SinCos(empty(self.sincos.len())),
+            Kind::Select(relation) => Run::Select(relation, empty(self.select.len())),
+        });
+    }
+}
+
+/// The instructions in an order of few runs: of the kinds that have ready instructions, the one
+/// with most of them, until none of it is left.
+fn in_runs(code: &Code) -> Vec<usize> {
+    let mut users = vec![Vec::new(); code.slots];
+    let mut missing = vec![0_u32; code.instructions.len()];
+    for (index, instruction) in code.instructions.iter().enumerate() {
+        instruction.for_each_operand(|operand| {
+            if operand.index() >= code.leaves.len() {
+                users[operand.index()].push(index);
+                missing[index] += 1;
+            }
+        });
+    }
+    let mut ready: Vec<(Kind, Vec<usize>)> = Vec::new();
+    let make_ready = |ready: &mut Vec<(Kind, Vec<usize>)>, index: usize| {
+        let kind = Kind::of(&code.instructions[index]);
+        match ready.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, indices)) => indices.push(index),
+            None => ready.push((kind, vec![index])),
+        }
+    };
+    let free = (0..missing.len()).filter(|&index| missing[index] == 0).collect::<Vec<_>>();
+    free.into_iter().for_each(|index| make_ready(&mut ready, index));
+
+    let mut order = Vec::with_capacity(code.instructions.len());
+    while let Some(place) = (0..ready.len()).max_by_key(|&place| ready[place].1.len())
+        && !ready[place].1.is_empty()
+    {
+        while !ready[place].1.is_empty() {
+            for index in std::mem::take(&mut ready[place].1) {
+                order.push(index);
+                code.instructions[index].for_each_result(|result| {
+                    for &user in &users[result.index()] {
+                        missing[user] -= 1;
+                        if missing[user] == 0 {
+                            make_ready(&mut ready, user);
+                        }
+                    }
+                });
+            }
+        }
+    }
+    order
 }
 
 /// Which register holds which slot while the code is walked.
@@ -90,11 +171,12 @@ struct Allocation {
 }
 
 impl Allocation {
-    fn new(code: &Code) -> Self {
+    fn new(code: &Code, order: &[usize]) -> Self {
         let leaves = code.leaves.len();
         let mut last_use = vec![None; code.slots];
-        for (index, instruction) in code.instructions.iter().enumerate() {
-            instruction.for_each_operand(|operand| last_use[operand.index()] = Some(index));
+        for (step, &index) in order.iter().enumerate() {
+            code.instructions[index]
+                .for_each_operand(|operand| last_use[operand.index()] = Some(step));
         }
         code.outputs.iter().for_each(|output| last_use[output.index()] = Some(usize::MAX));
         // A leaf's register is its slot; the others are overwritten as they are assigned.
@@ -103,37 +185,45 @@ impl Allocation {
     }
 
     /// The registers of the operands; those read for the last time become free.
-    fn operands(&mut self, index: usize, instruction: &Instruction) -> [Register; 4] {
+    fn operands(&mut self, step: usize, instruction: &Instruction) -> [Register; 4] {
         let (mut registers, mut count) = ([0; 4], 0);
-        let mut dead = Vec::with_capacity(4);
+        let (mut dead, mut dead_count) = ([0; 4], 0);
         instruction.for_each_operand(|operand| {
             let register = self.register_of[operand.index()];
             registers[count] = register;
             count += 1;
-            let is_last = self.last_use[operand.index()] == Some(index);
-            if is_last && operand.index() >= self.leaves && !dead.contains(&register) {
-                dead.push(register);
+            let is_last = self.last_use[operand.index()] == Some(step);
+            let is_leaf = operand.index() < self.leaves;
+            if is_last && !is_leaf && !dead[..dead_count].contains(&register) {
+                dead[dead_count] = register;
+                dead_count += 1;
             }
         });
-        self.free.extend(dead);
+        self.free.extend(&dead[..dead_count]);
         registers
     }
 
-    fn assign(&mut self, slot: usize) -> Register {
-        let register = self.free.pop().unwrap_or_else(|| {
-            self.registers += 1;
-            index_u32(self.registers - 1)
+    /// Registers for the results: a second one for the cosine. A result that nobody reads frees its
+    /// register at once.
+    fn results(&mut self, instruction: &Instruction) -> [Register; 2] {
+        let (mut registers, mut count) = ([0; 2], 0);
+        instruction.for_each_result(|result| {
+            let register = self.free.pop().unwrap_or_else(|| {
+                self.registers += 1;
+                index_u32(self.registers - 1)
+            });
+            self.register_of[result.index()] = register;
+            registers[count] = register;
+            count += 1;
         });
-        self.register_of[slot] = register;
-        register
-    }
-
-    /// A result that nobody reads (the other half of a sine and cosine) frees its register at
-    /// once; the two halves were given different ones before.
-    fn drop_unused(&mut self, slot: usize) {
-        if self.last_use[slot].is_none() {
-            self.free.push(self.register_of[slot]);
-        }
+        let mut at = 0;
+        instruction.for_each_result(|result| {
+            if self.last_use[result.index()].is_none() {
+                self.free.push(registers[at]);
+            }
+            at += 1;
+        });
+        registers
     }
 }
 

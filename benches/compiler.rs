@@ -1,0 +1,44 @@
+//! How long the compiler takes: from a model's text to functions, to a program, to Rust.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use denavit::derive::{Flavour, derive};
+use denavit::emit::rust::module;
+use denavit::function::FunctionName;
+use denavit::model::{self, Robot};
+use denavit::program::lower;
+use std::hint::black_box;
+
+const MODELS: [(&str, &str); 3] = [
+    ("puma560", include_str!("../models/puma560.json")),
+    ("tulip_leg6", include_str!("../models/tulip_leg6.json")),
+    ("tulip", include_str!("../models/tulip.json")),
+];
+
+fn read(name: &str, text: &str) -> Robot {
+    model::read(name, text.as_bytes()).expect("shipped models are right")
+}
+
+fn stages(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("compiler");
+    group.sample_size(20);
+    for (name, text) in MODELS {
+        let robot = read(name, text);
+        let derived = || {
+            derive(&robot, Flavour::Tunable, &FunctionName::ALL).expect("tunable needs no value")
+        };
+        let derivation = derived();
+        let lowered = || {
+            lower(&derivation.dag, &derivation.functions)
+                .expect("shipped models have small numbers")
+        };
+        let program = lowered();
+        group.bench_function(format!("read/{name}"), |b| b.iter(|| read(name, black_box(text))));
+        group.bench_function(format!("derive/{name}"), |b| b.iter(derived));
+        group.bench_function(format!("lower/{name}"), |b| b.iter(lowered));
+        group.bench_function(format!("emit/{name}"), |b| b.iter(|| module(&robot, &program)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, stages);
+criterion_main!(benches);

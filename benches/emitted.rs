@@ -1,0 +1,165 @@
+//! How long a call takes: every emitted function, and the interpreters beside it.
+//!
+//! Each measurement is of 64 calls with different inputs, in hot caches; the throughput that is
+//! printed is calls per second.
+
+use criterion::measurement::WallTime;
+use criterion::{
+    BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main,
+};
+use denavit::derive::{Flavour, derive};
+use denavit::function::FunctionName;
+use denavit::model;
+use denavit::number::Residue;
+use denavit::program::{
+    BatchEvaluator, Evaluator, Program, lower, parameter_defaults, prelude_values,
+};
+use std::hint::black_box;
+
+/// Made for this measurement alone.
+mod tulip_leg6 {
+    #![allow(dead_code, unreachable_pub)]
+    include!(concat!(env!("OUT_DIR"), "/tulip_leg6_dynamics.rs"));
+}
+
+const SAMPLES: usize = 64;
+
+/// A number in [-1, 1), from a written seed.
+fn number(seed: usize, key: usize) -> f64 {
+    let bits = Residue::scrambled(seed as u64, key as u64).value() >> 8;
+    bits as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// q, qd and a third vector of each sample.
+fn samples<const N: usize>() -> Vec<[[f64; N]; 3]> {
+    let vector = |seed| std::array::from_fn(|entry| number(seed, entry));
+    (0..SAMPLES).map(|sample| [0, 1, 2].map(|row| vector(3 * sample + row))).collect()
+}
+
+fn measure<const N: usize, T>(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    name: &str,
+    call: impl Fn(&[f64; N], &[f64; N], &[f64; N]) -> T,
+) {
+    let samples = samples::<N>();
+    group.throughput(Throughput::Elements(SAMPLES as u64));
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            for [q, qd, x] in black_box(&samples) {
+                black_box(call(q, qd, x));
+            }
+        });
+    });
+}
+
+/// The functions that every robot has.
+macro_rules! robot {
+    ($criterion:ident, $module:path, $name:literal) => {{
+        use $module as m;
+        let p = &m::Parameters::<f64>::default();
+        let mut group = $criterion.benchmark_group(concat!("emitted/", $name));
+        let g = &mut group;
+        measure(g, "inverse_dynamics", |q, v, x| m::inverse_dynamics(p, q, v, x));
+        measure(g, "mass_matrix", |q, _, _| m::mass_matrix(p, q));
+        measure(g, "coriolis_matrix", |q, v, _| m::coriolis_matrix(p, q, v));
+        measure(g, "gravity_vector", |q, _, _| m::gravity_vector(p, q));
+        measure(g, "bias", |q, v, _| m::bias(p, q, v));
+        measure(g, "dynamics_terms", |q, v, _| m::dynamics_terms(p, q, v));
+        measure(g, "forward_dynamics", |q, v, x| m::forward_dynamics(p, q, v, x));
+        measure(g, "mass_matrix_solve", |q, _, x| m::mass_matrix_solve(p, q, x));
+        measure(g, "inverse_dynamics_derivatives", |q, v, x| {
+            m::inverse_dynamics_derivatives(p, q, v, x)
+        });
+        measure(g, "forward_dynamics_derivatives", |q, v, x| {
+            m::forward_dynamics_derivatives(p, q, v, x)
+        });
+        measure(g, "link_transforms", |q, _, _| m::link_transforms(p, q));
+        let last = m::Link::ALL[m::Link::ALL.len() - 1];
+        measure(g, "link_jacobian", |q, _, _| m::link_jacobian(p, last, q));
+        measure(g, "center_of_mass", |q, _, _| m::center_of_mass(p, q));
+        measure(g, "center_of_mass_jacobian", |q, _, _| m::center_of_mass_jacobian(p, q));
+        measure(g, "momentum", |q, v, _| m::momentum(p, q, v));
+        measure(g, "kinetic_energy", |q, v, _| m::kinetic_energy(p, q, v));
+        measure(g, "potential_energy", |q, _, _| m::potential_energy(p, q));
+        group.finish();
+    }};
+}
+
+fn emitted(criterion: &mut Criterion) {
+    robot!(criterion, denavit::puma560, "puma560");
+    robot!(criterion, crate::tulip_leg6, "tulip_leg6");
+    robot!(criterion, denavit::tulip, "tulip");
+    use denavit::tulip as m;
+    let p = &m::Parameters::<f64>::default();
+    let mut group = criterion.benchmark_group("emitted/tulip");
+    measure(&mut group, "contact_positions", |q, _, _| m::contact_positions(p, q));
+    measure(&mut group, "contact_jacobian", |q, _, _| m::contact_jacobian(p, q));
+    measure(&mut group, "contact_bias", |q, v, _| m::contact_bias(p, q, v));
+    group.bench_function("parameters", |b| {
+        b.iter_batched_ref(
+            m::ModelParameters::<f64>::default,
+            |model| m::Parameters::new(model),
+            BatchSize::SmallInput,
+        );
+    });
+    group.finish();
+}
+
+/// The program of a model and the values of its prelude.
+fn program(name: &str, text: &str) -> (Program, Vec<f64>) {
+    let robot = model::read(name, text.as_bytes()).expect("shipped models are right");
+    let derivation = derive(&robot, Flavour::Tunable, &FunctionName::ALL).expect("tunable");
+    let program = lower(&derivation.dag, &derivation.functions).expect("small numbers");
+    let defaults = parameter_defaults(&program, &robot).into_iter().flatten();
+    let prelude = prelude_values(&program, &defaults.collect::<Vec<f64>>()).expect("all given");
+    (program, prelude)
+}
+
+fn interpreted(criterion: &mut Criterion) {
+    let puma560 = ("puma560", include_str!("../models/puma560.json"));
+    let tulip = ("tulip", include_str!("../models/tulip.json"));
+    let names = [FunctionName::InverseDynamics, FunctionName::ForwardDynamics];
+    for (model, text) in [puma560, tulip] {
+        let (program, prelude) = program(model, text);
+        for name in names {
+            let routine = program.find(name, None).expect("every robot has it");
+            let label = format!("{model}/{name}");
+            let mut one = Evaluator::<f64>::new(routine, &prelude);
+            let mut many = BatchEvaluator::<f64>::new(routine, &prelude);
+            let columns: Vec<Vec<f64>> = (0..many.inputs())
+                .map(|entry| (0..SAMPLES).map(|sample| number(sample, entry)).collect())
+                .collect();
+            let rows: Vec<Vec<f64>> = (0..SAMPLES)
+                .map(|sample| columns.iter().map(|column| column[sample]).collect())
+                .collect();
+
+            let mut group = criterion.benchmark_group("interpreted");
+            group.throughput(Throughput::Elements(SAMPLES as u64));
+            let mut output = vec![0.0; one.outputs()];
+            group.bench_function(format!("one/{label}"), |b| {
+                b.iter(|| {
+                    for row in black_box(&rows) {
+                        let vectors: [&[f64]; 3] = std::array::from_fn(|argument| {
+                            let len = row.len() / 3;
+                            &row[argument * len..(argument + 1) * len]
+                        });
+                        one.evaluate(&vectors, &mut output).expect("lengths are right");
+                    }
+                });
+            });
+            let inputs: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
+            let mut outputs = vec![vec![0.0; SAMPLES]; many.outputs()];
+            group.bench_function(format!("batch/{label}"), |b| {
+                b.iter(|| {
+                    let mut columns: Vec<&mut [f64]> =
+                        outputs.iter_mut().map(|column| &mut column[..]).collect();
+                    many.evaluate(black_box(&inputs), &mut columns).expect("lengths are right");
+                });
+            });
+            group.finish();
+        }
+    }
+}
+
+criterion_group!(benches, emitted, interpreted);
+criterion_main!(benches);

@@ -89,39 +89,50 @@ pub fn fixed_base_regressor(dag: &mut Dag, frames: &Frames, terms: MotionTerms) 
     pull(dag, frames, None, &base, (equations, terms))
 }
 
+/// How a torso moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TorsoMotion {
+    /// In space: six equations.
+    Spatial,
+    /// In the x-y plane of its own frame: the moment about z, the forces along x and y.
+    Planar,
+}
+
 /// The regressor of a robot whose frame `torso` moves freely. Joints up to the torso have no
 /// equations and no variables, and bodies on them no columns (all 0).
 pub fn torso_regressor(
     dag: &mut Dag,
     frames: &Frames,
-    torso: usize,
+    (torso, motion): (usize, TorsoMotion),
     terms: MotionTerms,
 ) -> MatterRegressor {
-    let mut free = |name: &str, class| {
-        ["x", "y", "z"].map(|axis| dag.symbol(&format!("{name}_torso_{axis}"), class))
-    };
-    let angular = free("w", SymbolClass::Rate);
-    let angular_rate = free("wd", SymbolClass::Acceleration);
-    let linear = free("a", SymbolClass::Acceleration);
-    let none = zero(dag);
-    let angular = if terms.rates { angular } else { none };
-    let angular_rate = if terms.accelerations { angular_rate } else { none };
-    let linear = if terms.accelerations || terms.gravity { linear } else { none };
     let (zero, one) = (dag.zero(), dag.one());
-    let unit = |axis: usize| [0, 1, 2].map(|k| if k == axis { one } else { zero });
-    let moments = (0..3).map(|axis| (axis, unit(axis), none));
-    let forces = (0..3).map(|axis| (3 + axis, none, unit(axis)));
-    let base = State {
-        angular,
-        angular_rate,
-        linear,
-        spread: spread(dag, angular, angular_rate),
-        twists: moments.chain(forces).collect(),
+    let (turns, moves): (&[usize], &[usize]) = match motion {
+        TorsoMotion::Spatial => (&[0, 1, 2], &[0, 1, 2]),
+        TorsoMotion::Planar => (&[2], &[0, 1]),
     };
-    let moments = (0..3).map(Equation::TorsoMoment);
-    let forces = (0..3).map(Equation::TorsoForce);
-    let joints = (torso + 1..frames.len()).map(Equation::Joint);
-    let equations = moments.chain(forces).chain(joints).collect();
+    let mut free = |name: &str, class, axes: &[usize], wanted: bool| {
+        [0, 1, 2].map(|axis| match wanted && axes.contains(&axis) {
+            true => dag.symbol(&format!("{name}_torso_{}", ["x", "y", "z"][axis]), class),
+            false => zero,
+        })
+    };
+    let accelerates = terms.accelerations;
+    let angular = free("w", SymbolClass::Rate, turns, terms.rates);
+    let angular_rate = free("wd", SymbolClass::Acceleration, turns, accelerates);
+    let linear = free("a", SymbolClass::Acceleration, moves, accelerates || terms.gravity);
+    let unit = |axis: usize| [0, 1, 2].map(|k| if k == axis { one } else { zero });
+    let none = [zero; 3];
+    let moments = turns.iter().map(|&axis| (Equation::TorsoMoment(axis), unit(axis), none));
+    let forces = moves.iter().map(|&axis| (Equation::TorsoForce(axis), none, unit(axis)));
+    let (mut equations, mut twists) = (Vec::new(), Vec::new());
+    for (row, (equation, angular, linear)) in moments.chain(forces).enumerate() {
+        equations.push(equation);
+        twists.push((row, angular, linear));
+    }
+    let spread = spread(dag, angular, angular_rate);
+    let base = State { angular, angular_rate, linear, spread, twists };
+    equations.extend((torso + 1..frames.len()).map(Equation::Joint));
     pull(dag, frames, Some(torso), &base, (equations, terms))
 }
 

@@ -2,6 +2,7 @@
 
 mod given;
 mod ranks;
+mod robot;
 mod sizes;
 
 use super::robots::load;
@@ -12,7 +13,7 @@ use denavit_codegen::fundamental::{
 use denavit_codegen::kinematics::{Frames, Mechanism, parallel_groups};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::{
-    MatterRegressor, MotionTerms, fixed_base_regressor, torso_regressor,
+    MatterRegressor, MotionTerms, TorsoMotion, fixed_base_regressor, torso_regressor,
 };
 
 /// Every term.
@@ -36,7 +37,9 @@ impl Case {
 
     /// On the torso, body 5 of the virtual chain.
     pub(crate) fn torso(name: &str, terms: MotionTerms) -> Self {
-        Self::build(name, |dag, frames| torso_regressor(dag, frames, 5, terms))
+        Self::build(name, |dag, frames| {
+            torso_regressor(dag, frames, (5, TorsoMotion::Spatial), terms)
+        })
     }
 
     fn build(name: &str, regressor: impl Fn(&mut Dag, &Frames) -> MatterRegressor) -> Self {

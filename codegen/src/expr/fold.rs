@@ -3,9 +3,9 @@
 //! What every law here obeys: it is exact (true for all values for which both sides are defined),
 //! it terminates (the right side is smaller, or moves a sign outwards, or gathers parameters), and
 //! it never adds operations to run-time code, even if the operands are shared with other users.
-//! (Counted are multiplications, additions, divisions and functions; negations are free.) Each law has its cases under its own
-//! name in `tests/fixtures/fold`, and `fold_tests.rs` sees to it that none is missing; the laws of
-//! functions stand in `fold_functions.rs` under the same rules.
+//! (Counted are multiplications, additions, divisions and functions; negations are free.) Each law
+//! has its cases under its own name in `tests/fixtures/fold`, and `fold_tests.rs` sees to it that
+//! none is missing; the laws of functions stand in `fold_functions.rs` under the same rules.
 
 use super::dag::{Dag, ExprId, Node, UnaryFunction};
 use num_traits::Signed;
@@ -402,8 +402,8 @@ impl Dag {
         Some(if s == plus_x { self.add(x, parameters) } else { self.sub(parameters, x) })
     }
 
-    /// Where p and q are parameters, so that their product moves to the prelude. Between parameters,
-    /// where p and q are constants.
+    /// Where p and q are parameters, so that their product moves to the prelude. Between
+    /// parameters, where p and q are constants.
     fn gather_factors(&mut self, a: ExprId, b: ExprId) -> Option<ExprId> {
         let run_time = self.is_run_time(a) || self.is_run_time(b);
         let fixed = |dag: &Self, e: ExprId| match run_time {

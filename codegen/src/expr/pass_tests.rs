@@ -152,8 +152,8 @@ fn substitution_replaces_all_at_once() {
     assert_eq!(names, ["x", "y", "q1"]);
 }
 
-/// One node on the other, a million of them (fewer in a slow build), by all passes: on the small stack of a test's thread
-/// a recursive pass would not survive it.
+/// One node on the other, a million of them (fewer in a slow build), by all passes: on the small
+/// stack of a test's thread a recursive pass would not survive it.
 #[test]
 fn passes_do_not_recurse() {
     const DEPTH: usize = if cfg!(debug_assertions) { 40_000 } else { 250_000 };

@@ -173,9 +173,9 @@ impl<'a> Writer<'a> {
                 };
                 let [left, right, then, otherwise] =
                     [left, right, then, otherwise].map(|part| of(part).text());
-                let text = format!(
-                    r"\begin{{cases}} {then} & \text{{if }} {left} {relation} {right} \\ {otherwise} & \text{{otherwise}} \end{{cases}}"
-                );
+                let first = format!(r"{then} & \text{{if }} {left} {relation} {right}");
+                let second = format!(r"{otherwise} & \text{{otherwise}}");
+                let text = format!(r"\begin{{cases}} {first} \\ {second} \end{{cases}}");
                 self.closed(expr, text, true)
             }
         }

@@ -97,8 +97,7 @@ fn what_is_shared_or_long_is_named_once() {
     let formulas: Vec<String> = written.outputs.iter().map(|terms| terms.join(" ")).collect();
     assert_eq!(formulas, ["x_1 q_1", "x_1 x_2 + x_1 q_2"]);
     // A long sum is cut into pieces that fit a line.
-    let long = vec!["a1*q1*qd1*(a2 + q2)"; 1];
-    let sum: Vec<String> = (0..100).map(|i| format!("{}*q{i}", long[0])).collect();
+    let sum: Vec<String> = (0..100).map(|i| format!("a1*q1*qd1*(a2 + q2)*q{i}")).collect();
     let sum = read(&mut dag, &sum.join(" + "));
     let notation = Notation::of_names(&dag);
     let written = write_expressions(&dag, &[sum], &notation, extent);

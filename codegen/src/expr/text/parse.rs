@@ -188,12 +188,16 @@ impl Parser<'_, '_> {
             Token::Comma => return self.comma(offset).map(|()| true),
             Token::Relation { relation, exchanged } => {
                 self.reduce_to_bracket()?;
-                match self.pending.last_mut() {
-                    Some(Pending::Bracket {
-                        call:
-                            Some(Call { function: Function::Select, commas: 0, relation: slot @ None }),
-                        ..
-                    }) => *slot = Some((relation, exchanged)),
+                let call = match self.pending.last_mut() {
+                    Some(Pending::Bracket { call, .. }) => call.as_mut(),
+                    _ => None,
+                };
+                match call {
+                    Some(Call { function: Function::Select, commas: 0, relation: slot })
+                        if slot.is_none() =>
+                    {
+                        *slot = Some((relation, exchanged));
+                    }
                     _ => return Err(ParseError::new(offset, ParseCause::StrayRelation)),
                 }
                 return Ok(true);

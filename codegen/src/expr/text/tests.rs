@@ -340,7 +340,9 @@ proptest! {
     fn random_expressions_are_read(
         tokens in prop::collection::vec(
             (
-                prop::sample::select(vec!["a", "-b", "q1", "0", "1", "2.5", "9e300", "pi", "(a - 1)"]),
+                prop::sample::select(vec![
+                    "a", "-b", "q1", "0", "1", "2.5", "9e300", "pi", "(a - 1)",
+                ]),
                 prop::sample::select(vec!["+", "-", "*", "/", "^2*", "^64/", "^-3+", "^2^2-"]),
             ),
             1..300,

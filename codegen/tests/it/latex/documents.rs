@@ -162,7 +162,8 @@ fn the_double_pendulum_is_set_as_in_the_thesis() {
         r"m_1 c_1^2 + I_1 + m_2 (c_2^2 + 2 c_2 l_1 \cos q_2 + l_1^2) + I_2",
         r"& m_2 c_2 (c_2 + l_1 \cos q_2) + I_2 \\",
         r"\\ m_2 c_2 (c_2 + l_1 \cos q_2) + I_2 & m_2 c_2^2 + I_2 \end{bmatrix}",
-        r"\begin{bmatrix} -m_2 c_2 l_1 \dot{q}_2 \sin q_2 & -m_2 c_2 l_1 (\dot{q}_1 + \dot{q}_2) \sin q_2",
+        r"\begin{bmatrix} -m_2 c_2 l_1 \dot{q}_2 \sin q_2 &",
+        r"& -m_2 c_2 l_1 (\dot{q}_1 + \dot{q}_2) \sin q_2 \\",
         r"\\ m_2 c_2 l_1 \dot{q}_1 \sin q_2 & 0 \end{bmatrix}",
     ] {
         assert!(text.contains(entry), "{entry} is not in:\n{text}");

@@ -48,10 +48,14 @@ pub enum FunctionName {
     KineticEnergy,
     /// Potential energy.
     PotentialEnergy,
+    /// R0 of zeta = R0 theta0: one column for each unknown parameter.
+    Regressor,
+    /// R of zeta = R theta: one column for each base parameter.
+    BaseRegressor,
 }
 
 impl FunctionName {
-    /// Every function, in the order of listings.
+    /// Every function of run-time use, in the order of listings.
     pub const ALL: [Self; 20] = [
         Self::InverseDynamics,
         Self::MassMatrix,
@@ -74,6 +78,9 @@ impl FunctionName {
         Self::KineticEnergy,
         Self::PotentialEnergy,
     ];
+
+    /// The functions for identification, which are derived where they are asked for by name.
+    pub const REGRESSORS: [Self; 2] = [Self::Regressor, Self::BaseRegressor];
 
     /// The name in JSON, flags and emitted code.
     pub const fn as_str(self) -> &'static str {
@@ -98,12 +105,14 @@ impl FunctionName {
             Self::Momentum => "momentum",
             Self::KineticEnergy => "kinetic_energy",
             Self::PotentialEnergy => "potential_energy",
+            Self::Regressor => "regressor",
+            Self::BaseRegressor => "base_regressor",
         }
     }
 
     /// The function of a name.
     pub fn parse(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|function| function.as_str() == name)
+        Self::ALL.into_iter().chain(Self::REGRESSORS).find(|function| function.as_str() == name)
     }
 }
 

@@ -4,6 +4,7 @@ use denavit::derive::BakeError;
 use denavit::emit::rust::EmitError;
 use denavit::model::ModelError;
 use denavit::program::LowerError;
+use denavit::regressor::BaseError;
 use std::fmt;
 use std::io;
 
@@ -29,6 +30,10 @@ pub(crate) enum Failure {
     Emit(String, EmitError),
     /// The model has none of the functions asked for.
     NoFunction { model: String, asked: Vec<String> },
+    /// The base parameters are not found.
+    Base(Box<BaseError>),
+    /// A file is no certificate.
+    Certificate { file: String, error: serde_json::Error },
     /// The answer cannot be written to standard output.
     Stdout(io::Error),
 }
@@ -82,7 +87,14 @@ impl Failure {
                 "check the exponents of the numbers in the model".to_owned()
             }
             Self::NoFunction { .. } => "contacts are declared under \"contacts\"".to_owned(),
-            Self::Model(_) | Self::Read { .. } | Self::Bake(_) | Self::Stdout(_) => return None,
+            Self::Certificate { .. } => {
+                "give a file that `denavit base --certificate` wrote".to_owned()
+            }
+            Self::Model(_)
+            | Self::Base(_)
+            | Self::Read { .. }
+            | Self::Bake(_)
+            | Self::Stdout(_) => return None,
         })
     }
 }
@@ -110,6 +122,10 @@ impl fmt::Display for Failure {
             Self::Emit(model, error) => write!(f, "{model}: {error}")?,
             Self::NoFunction { model, asked } => {
                 write!(f, "{model}: the model has no {}", asked.join(", "))?;
+            }
+            Self::Base(error) => write!(f, "{error}")?,
+            Self::Certificate { file, error } => {
+                write!(f, "{file}: is no certificate: {error}")?;
             }
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;

@@ -34,6 +34,13 @@ fn read_path(path: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     }
 }
 
+/// The bytes of a file.
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
+    let name = path.display().to_string();
+    let mut file = File::open(path).map_err(|error| Failure::Read { file: name.clone(), error })?;
+    read_all(&name, &mut file)
+}
+
 fn read_all(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     file.take(MAX_MODEL_BYTES + 1)

@@ -3,6 +3,7 @@
 //! Answers go to standard output, progress to standard error where that is a terminal, failures to
 //! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
 
+mod base;
 mod count;
 mod demo;
 mod derive;
@@ -14,6 +15,7 @@ mod json;
 mod options;
 mod progress;
 mod schema;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -42,6 +44,8 @@ enum Command {
     Derive(derive::Arguments),
     Count(count::Arguments),
     Emit(emit::Arguments),
+    Base(base::Arguments),
+    Verify(verify::Arguments),
     Schema(schema::Arguments),
 }
 
@@ -85,6 +89,8 @@ impl Command {
             Self::Derive(arguments) => derive::run(arguments, out),
             Self::Count(arguments) => count::run(arguments, out),
             Self::Emit(arguments) => emit::run(arguments, out),
+            Self::Base(arguments) => base::run(arguments, out),
+            Self::Verify(arguments) => verify::run(arguments, out),
             Self::Schema(arguments) => schema::run(arguments, out),
         }
     }

@@ -28,12 +28,15 @@ impl FunctionList {
     pub(crate) fn wanted(&self) -> Vec<FunctionName> {
         let asked =
             |name: &FunctionName| self.functions.is_empty() || self.functions.contains(name);
-        FunctionName::ALL.into_iter().filter(asked).collect()
+        let named =
+            FunctionName::REGRESSORS.into_iter().filter(|name| self.functions.contains(name));
+        FunctionName::ALL.into_iter().filter(asked).chain(named).collect()
     }
 }
 
 fn function_names() -> impl TypedValueParser<Value = FunctionName> {
-    PossibleValuesParser::new(FunctionName::ALL.map(FunctionName::as_str)).try_map(|name| {
+    let names = FunctionName::ALL.into_iter().chain(FunctionName::REGRESSORS);
+    PossibleValuesParser::new(names.map(FunctionName::as_str)).try_map(|name| {
         FunctionName::parse(&name).ok_or_else(|| format!("`{name}` is not a function"))
     })
 }

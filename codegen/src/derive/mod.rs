@@ -9,6 +9,7 @@ use crate::expr::{Dag, Operations};
 use crate::function::{Function, FunctionName};
 use crate::kinematics::Mechanism;
 use crate::model::Robot;
+use crate::regressor;
 use crate::regroup::regroup;
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -78,7 +79,12 @@ pub fn derive(
     let portfolio = Portfolio::new(&mut dag, &robot, &regrouped);
     let mut functions: Vec<Function> = Vec::new();
     for &name in wanted {
-        let made = portfolio.derive(&mut dag, name);
+        let made = match name {
+            FunctionName::Regressor | FunctionName::BaseRegressor => {
+                regressor::functions::derive(&mut dag, &robot, name)
+            }
+            _ => portfolio.derive(&mut dag, name),
+        };
         let entries: Vec<_> = made.iter().flat_map(Function::entries).collect();
         let operations = Operations::count(&dag, &entries);
         log.stage(name.as_str(), &dag, Some(operations));

@@ -23,6 +23,6 @@ mod forward;
 mod inverse;
 mod joint_torque;
 pub mod methods;
-mod motion;
+pub(crate) mod motion;
 mod outputs;
 pub mod portfolio;

@@ -6,29 +6,29 @@ use crate::spatial::{Matrix, Vector, add, cross, dot, negate, zero};
 
 /// Which terms of the motion are carried along; what is left out is 0 and folds away.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Terms {
+pub(crate) struct Terms {
     /// Joint rates.
-    pub(super) rates: bool,
+    pub(crate) rates: bool,
     /// Joint accelerations.
-    pub(super) accelerations: bool,
+    pub(crate) accelerations: bool,
     /// Gravity, as an acceleration of frame 0.
-    pub(super) gravity: bool,
+    pub(crate) gravity: bool,
 }
 
 /// The motion of each frame, in its own coordinates.
-pub(super) struct Motion {
+pub(crate) struct Motion {
     /// Angular velocity [rad/s].
-    pub(super) angular: Vec<Vector>,
+    pub(crate) angular: Vec<Vector>,
     /// Angular acceleration [rad/s^2].
-    pub(super) angular_rate: Vec<Vector>,
+    pub(crate) angular_rate: Vec<Vector>,
     /// U = [wd]x + [w]x [w]x, the acceleration of a body point per unit of distance [1/s^2].
-    pub(super) spread: Vec<Matrix>,
+    pub(crate) spread: Vec<Matrix>,
     /// Acceleration of the origin minus gravity [m/s^2].
-    pub(super) linear: Vec<Vector>,
+    pub(crate) linear: Vec<Vector>,
 }
 
 /// The motion of all frames. `accelerations` replaces the symbols qdd where they are wanted.
-pub(super) fn motion(
+pub(crate) fn motion(
     dag: &mut Dag,
     frames: &Frames,
     terms: Terms,

@@ -38,6 +38,8 @@ impl<'a> Portfolio<'a> {
             ContactPositions | ContactJacobian | ContactBias if robot.contacts.is_empty() => {
                 Vec::new()
             }
+            // Of the stage after this one.
+            FunctionName::Regressor | FunctionName::BaseRegressor => Vec::new(),
             LinkJacobian => robot
                 .links
                 .iter()
@@ -133,10 +135,12 @@ fn with_entries(outputs: &[Output], entries: &[ExprId]) -> Vec<Output> {
 }
 
 /// The arguments of a function, in the order of the call.
-fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec<Argument> {
+pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec<Argument> {
     use FunctionName as F;
     let names: &[&'static str] = match name {
-        F::InverseDynamics | F::InverseDynamicsDerivatives => &["q", "qd", "qdd"],
+        F::InverseDynamics | F::InverseDynamicsDerivatives | F::Regressor | F::BaseRegressor => {
+            &["q", "qd", "qdd"]
+        }
         F::ForwardDynamics | F::ForwardDynamicsDerivatives => &["q", "qd", "tau"],
         F::CoriolisMatrix
         | F::Bias

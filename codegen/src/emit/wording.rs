@@ -41,6 +41,8 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         FunctionName::Momentum => "Linear momentum, and angular momentum about the centre of mass.",
         FunctionName::KineticEnergy => "Kinetic energy.",
         FunctionName::PotentialEnergy => "Potential energy.",
+        FunctionName::Regressor => "Regressor R0: torques per unit of each unknown parameter.",
+        FunctionName::BaseRegressor => "Regressor R: torques per unit of each base parameter.",
     }
 }
 
@@ -132,6 +134,7 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         FunctionName::LinkJacobian
         | FunctionName::ContactJacobian
         | FunctionName::CenterOfMassJacobian => (false, true),
+        FunctionName::Regressor | FunctionName::BaseRegressor => (true, false),
         FunctionName::LinkTransforms
         | FunctionName::ContactPositions
         | FunctionName::ContactBias

@@ -3,6 +3,7 @@
 use super::dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
 use super::evaluate::{EvaluateError, Ring};
 use super::fold_functions::quarter_turns;
+use super::symbol::ClassSet;
 use crate::arena::Handle;
 use crate::number::{Rational, Residue, integer, to_f64};
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -175,6 +176,7 @@ fn holds<T: PartialOrd>(relation: Relation, left: &T, right: &T) -> bool {
 /// the function is odd, even where it is even.
 pub struct Residues {
     seed: u64,
+    parameter_seed: u64,
     given: FxHashMap<String, Residue>,
     unit_points: FxHashMap<(Residue, u64), [Residue; 2]>,
 }
@@ -182,13 +184,24 @@ pub struct Residues {
 impl Residues {
     /// The point of a seed.
     pub fn new(seed: u64) -> Self {
-        Self { seed, given: FxHashMap::default(), unit_points: FxHashMap::default() }
+        Self::with_parameters(seed, seed)
+    }
+
+    /// The point of a seed, at which parameters (and what depends on them alone) have the values of
+    /// the point `parameter_seed`.
+    pub fn with_parameters(seed: u64, parameter_seed: u64) -> Self {
+        let (given, unit_points) = (FxHashMap::default(), FxHashMap::default());
+        Self { seed, parameter_seed, given, unit_points }
     }
 
     /// The same point, but with this value for the symbol `name`.
     pub fn with(mut self, name: &str, value: Residue) -> Self {
         self.given.insert(name.to_owned(), value);
         self
+    }
+
+    fn seed_of(&self, dag: &Dag, expr: ExprId) -> u64 {
+        if dag.is_run_time(expr) { self.seed } else { self.parameter_seed }
     }
 
     /// (cos, sin) of the angle `argument`, by the addition theorems.
@@ -204,7 +217,7 @@ impl Residues {
                 // The atom 1 need not be a node below the angle.
                 Some(expr) if expr == dag.one() => Residue::ONE,
                 Some(expr) => values[expr.index()].expect("operands come first"),
-                None => Residue::scrambled(self.seed, fnv("pi")),
+                None => Residue::scrambled(self.parameter_seed, fnv("pi")),
             };
             let mut coefficient = coefficient;
             if atom.is_none() {
@@ -216,7 +229,8 @@ impl Residues {
                 }
             }
             let denominator = coefficient.denom().to_u64().unwrap_or(u64::MAX);
-            let mut factor = self.random_unit_point(value, denominator);
+            let seed = atom.map_or(self.parameter_seed, |expr| self.seed_of(dag, expr));
+            let mut factor = self.random_unit_point(seed, value, denominator);
             if coefficient.is_negative() {
                 factor[1] = -factor[1];
             }
@@ -232,11 +246,10 @@ impl Residues {
     }
 
     /// A random point for an atom; that of 0 is 1, and opposite atoms have conjugate points.
-    fn random_unit_point(&mut self, value: Residue, denominator: u64) -> [Residue; 2] {
+    fn random_unit_point(&mut self, seed: u64, value: Residue, denominator: u64) -> [Residue; 2] {
         if value == Residue::ZERO {
             return [Residue::ONE, Residue::ZERO];
         }
-        let seed = self.seed;
         let (value, is_opposite) = magnitude(value);
         let [cos, sin] = *self.unit_points.entry((value, denominator)).or_insert_with(|| {
             let key = value.value() ^ denominator.rotate_left(40);
@@ -249,8 +262,8 @@ impl Residues {
         [cos, if is_opposite { -sin } else { sin }]
     }
 
-    fn opaque(&self, label: &str, arguments: &[Residue]) -> Residue {
-        arguments.iter().fold(Residue::scrambled(self.seed, fnv(label)), |state, argument| {
+    fn opaque(&self, seed: u64, label: &str, arguments: &[Residue]) -> Residue {
+        arguments.iter().fold(Residue::scrambled(seed, fnv(label)), |state, argument| {
             Residue::scrambled(state.value(), argument.value())
         })
     }
@@ -317,11 +330,13 @@ impl Ring for Residues {
         Residue::from_rational(value).ok_or(EvaluateError::DivisionByZero)
     }
     fn pi(&mut self) -> Result<Residue, EvaluateError> {
-        Ok(Residue::scrambled(self.seed, fnv("pi")))
+        Ok(Residue::scrambled(self.parameter_seed, fnv("pi")))
     }
     fn symbol(&mut self, dag: &Dag, id: SymbolId) -> Result<Residue, EvaluateError> {
         let name = &dag.symbols()[id].name;
-        let random = || Residue::scrambled(self.seed ^ 0x7379_6d62, fnv(name));
+        let class = ClassSet::of(dag.symbols()[id].class);
+        let seed = if class.is_run_time() { self.seed } else { self.parameter_seed };
+        let random = || Residue::scrambled(seed ^ 0x7379_6d62, fnv(name));
         Ok(self.given.get(name).copied().unwrap_or_else(random))
     }
     fn neg(&mut self, a: &Residue) -> Residue {
@@ -359,7 +374,8 @@ impl Ring for Residues {
                     UnaryFunction::Tanh | UnaryFunction::Sign => magnitude(value),
                     _ => (value, false),
                 };
-                let result = self.opaque(&format!("{function:?}"), &[value]);
+                let seed = self.seed_of(dag, argument);
+                let result = self.opaque(seed, &format!("{function:?}"), &[value]);
                 Ok(if negated { -result } else { result })
             }
         }
@@ -375,7 +391,7 @@ impl Ring for Residues {
             BinaryFunction::Atan2 => (a, b),
             BinaryFunction::Min | BinaryFunction::Max => (a.min(b), a.max(b)),
         };
-        Ok(self.opaque(&format!("{function:?}"), &[*a, *b]))
+        Ok(self.opaque(self.seed, &format!("{function:?}"), &[*a, *b]))
     }
     fn select(
         &mut self,
@@ -386,7 +402,7 @@ impl Ring for Residues {
     ) -> Residue {
         // The sides decide as a coin would, so that a selection keeps what holds of both branches:
         // it is linear in them, and its square is the selection of the squares.
-        let coin = self.opaque(&format!("{relation:?}"), &[*sides[0], *sides[1]]);
+        let coin = self.opaque(self.seed, &format!("{relation:?}"), &[*sides[0], *sides[1]]);
         if coin.value().is_multiple_of(2) { *then } else { *otherwise }
     }
 }

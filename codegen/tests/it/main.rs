@@ -10,5 +10,6 @@ mod laws;
 mod methods;
 mod model;
 mod program;
+mod regressor;
 mod robots;
 mod thesis;

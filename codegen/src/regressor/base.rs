@@ -1,0 +1,324 @@
+//! Base parameters: the combinations of parameters that the torques depend on, theta = B_Eu theta0
+//! (thesis 3.5).
+
+use super::column::{Regressor, RegressorError, RegressorOptions};
+use super::dependence::relations;
+use super::eliminate::{Reduced, eliminate};
+use super::rank::{PARAMETERS, Ranking, rank};
+use crate::expr::{Dag, EvaluateError, ExprId, Residues, SymbolClass, evaluate, text};
+use crate::fundamental::{CanonicalError, Fraction};
+use crate::model::Robot;
+use crate::number::{Rational, Residue, integer};
+use num_traits::{One, Signed};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+/// Why the base parameters of a model are not found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BaseError {
+    /// There is no regressor.
+    Regressor(RegressorError),
+    /// A known parameter or an angle has no exact form.
+    Canonical(CanonicalError),
+    /// The columns have no value at a random point.
+    Evaluate(EvaluateError),
+    /// A column to keep that the model does not have.
+    NoColumn {
+        /// The model.
+        model: String,
+        /// What was asked for.
+        name: String,
+    },
+    /// There are more dependencies than the table explains; holds how many of each.
+    Unexplained {
+        /// The model.
+        model: String,
+        /// Dependencies found modulo p.
+        needed: usize,
+        /// Dependencies that are proved.
+        proved: usize,
+    },
+}
+
+impl fmt::Display for BaseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Regressor(error) => write!(f, "{error}"),
+            Self::Canonical(error) => write!(f, "a known parameter has no exact form: {error}"),
+            Self::Evaluate(error) => write!(f, "the columns have no value: {error}"),
+            Self::NoColumn { model, name } => write!(
+                f,
+                "{model}: there is no parameter {name} to keep\n  hint: `denavit base {model}` \
+                 lists them"
+            ),
+            Self::Unexplained { model, needed, proved } => write!(
+                f,
+                "{model}: {needed} columns depend on others, of which {proved} are proved to; the \
+                 rest is a coincidence of this geometry or of these terms"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for BaseError {}
+
+impl From<CanonicalError> for BaseError {
+    fn from(error: CanonicalError) -> Self {
+        Self::Canonical(error)
+    }
+}
+
+impl From<EvaluateError> for BaseError {
+    fn from(error: EvaluateError) -> Self {
+        Self::Evaluate(error)
+    }
+}
+
+/// A column that is a combination of columns that stay.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dependent {
+    /// The column.
+    pub column: usize,
+    /// What it is the sum of: columns that stay, with their known factors; none if it is 0.
+    pub relation: Vec<(usize, ExprId)>,
+}
+
+/// One base parameter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BaseParameter {
+    /// The column that stays.
+    pub column: usize,
+    /// The parameters that it is the sum of, that of its own column first, with known factors.
+    pub members: Vec<(usize, ExprId)>,
+    /// The sum, with members of the same factor grouped, in the names of the columns.
+    pub expression: ExprId,
+    /// The sum in the symbols of the model.
+    pub value: ExprId,
+}
+
+impl BaseParameter {
+    /// Whether it is a parameter alone: that parameter can be identified by itself.
+    pub fn is_alone(&self) -> bool {
+        self.members.len() == 1
+    }
+}
+
+/// The base parameters of a model.
+#[derive(Clone, Debug)]
+pub struct BaseParameters {
+    /// R0; its graph also holds the expressions below.
+    pub regressor: Regressor,
+    /// The order in which columns were preferred, first to keep first.
+    pub order: Vec<usize>,
+    /// The base parameters, in that order.
+    pub parameters: Vec<BaseParameter>,
+    /// The columns that depend on others, or are 0, in column order.
+    pub dependent: Vec<Dependent>,
+    /// Rank, pivots and their rows modulo p.
+    pub ranking: Ranking,
+}
+
+impl BaseParameters {
+    /// The number of base parameters.
+    pub fn rank(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// The name of a column.
+    pub fn name(&self, column: usize) -> &str {
+        &self.regressor.columns[column].name
+    }
+
+    /// The columns that are 0.
+    pub fn zero(&self) -> Vec<usize> {
+        let zero = self.dependent.iter().filter(|dependent| dependent.relation.is_empty());
+        zero.map(|dependent| dependent.column).collect()
+    }
+
+    /// An expression as text.
+    pub fn text(&self, expr: ExprId) -> String {
+        text::print(&self.regressor.dag, expr).to_string()
+    }
+
+    /// The right side of a dependent column's relation as text, columns by their parameters.
+    pub fn relation_text(&self, dependent: &Dependent) -> String {
+        let mut regressor = self.regressor.clone();
+        let sum = combination(&mut regressor, &dependent.relation, &[]);
+        text::print(&regressor.dag, sum).to_string()
+    }
+}
+
+/// The base parameters of `robot`, columns named in `keep` being kept before others.
+pub fn base_parameters(
+    robot: &Robot,
+    options: RegressorOptions,
+    keep: &[String],
+) -> Result<BaseParameters, BaseError> {
+    let regressor =
+        Regressor::new(robot, options, robot.torque_side).map_err(BaseError::Regressor)?;
+    reduce(regressor, keep)
+}
+
+/// The base parameters of a regressor.
+pub fn reduce(mut regressor: Regressor, keep: &[String]) -> Result<BaseParameters, BaseError> {
+    let order = order(&regressor, keep)?;
+    let mut dag = regressor.dag.clone();
+    let relations = relations(&regressor, &mut dag);
+    let (_, reduced) = eliminate(&mut dag, &relations, &order)?;
+    regressor.dag = dag;
+    let ranking = rank(&regressor, &order)?;
+    if ranking.dependent.len() != reduced.len() {
+        return Err(BaseError::Unexplained {
+            model: regressor.model.clone(),
+            needed: ranking.dependent.len(),
+            proved: reduced.len(),
+        });
+    }
+    let dependent = dependents(&mut regressor.dag, &reduced);
+    check(&regressor.dag, &dependent, &ranking)?;
+    let parameters = ranking
+        .pivots
+        .iter()
+        .map(|&column| base_parameter(&mut regressor, column, &reduced))
+        .collect();
+    Ok(BaseParameters { regressor, order, parameters, dependent, ranking })
+}
+
+fn order(regressor: &Regressor, keep: &[String]) -> Result<Vec<usize>, BaseError> {
+    let mut order = Vec::new();
+    for name in keep {
+        let found = regressor.find(name).ok_or_else(|| BaseError::NoColumn {
+            model: regressor.model.clone(),
+            name: name.clone(),
+        })?;
+        if !order.contains(&found) {
+            order.push(found);
+        }
+    }
+    let first: BTreeSet<usize> = order.iter().copied().collect();
+    order.extend((0..regressor.columns.len()).filter(|column| !first.contains(column)));
+    Ok(order)
+}
+
+fn dependents(dag: &mut Dag, reduced: &BTreeMap<usize, Reduced>) -> Vec<Dependent> {
+    let mut dependents = Vec::new();
+    for (&column, row) in reduced {
+        let others = row.iter().filter(|&(&other, _)| other != column);
+        let relation =
+            others.map(|(&other, value)| (other, value.negated().to_expr(dag))).collect();
+        dependents.push(Dependent { column, relation });
+    }
+    dependents
+}
+
+/// The exact factors against those found modulo p: two computations that share nothing.
+fn check(dag: &Dag, dependent: &[Dependent], ranking: &Ranking) -> Result<(), BaseError> {
+    let mut ring = Residues::with_parameters(PARAMETERS, PARAMETERS);
+    for (column, values) in &ranking.dependent {
+        let exact = dependent.iter().find(|exact| exact.column == *column);
+        let relation = exact.map_or(&[][..], |exact| &exact.relation);
+        let factors: Vec<ExprId> = relation.iter().map(|&(_, factor)| factor).collect();
+        let residues = evaluate(dag, &factors, &mut ring)?;
+        for (&pivot, &value) in ranking.pivots.iter().zip(values) {
+            let place = relation.iter().position(|&(other, _)| other == pivot);
+            let ours = place.map_or(Residue::ZERO, |place| residues[place]);
+            assert!(ours == value && exact.is_some(), "exact and modular elimination differ");
+        }
+    }
+    Ok(())
+}
+
+fn base_parameter(
+    regressor: &mut Regressor,
+    column: usize,
+    reduced: &BTreeMap<usize, Reduced>,
+) -> BaseParameter {
+    let one = Fraction::number(Rational::one());
+    let mut members = vec![(column, one)];
+    for (&dependent, row) in reduced {
+        if let Some(factor) = row.get(&column) {
+            members.push((dependent, factor.negated()));
+        }
+    }
+    let groups = groups(&members);
+    let members: Vec<(usize, ExprId)> = members
+        .iter()
+        .map(|(member, factor)| (*member, factor.to_expr(&mut regressor.dag)))
+        .collect();
+    let expression = combination(regressor, &members, &groups);
+    let dag = &mut regressor.dag;
+    let mut value = dag.zero();
+    for &(member, factor) in &members {
+        let product = dag.mul(factor, regressor.columns[member].value);
+        value = dag.add(value, product);
+    }
+    BaseParameter { column, members, expression, value }
+}
+
+/// Members of the same factor, up to sign: the place of the first of them, and the sign to it.
+fn groups(members: &[(usize, Fraction)]) -> Vec<(usize, bool)> {
+    let mut groups: Vec<(usize, bool)> = Vec::new();
+    for (place, (_, factor)) in members.iter().enumerate() {
+        let opposite = factor.negated();
+        let leader = (0..place).find_map(|other| {
+            let is_leader = groups[other].0 == other;
+            let same = members[other].1 == *factor;
+            let opposed = members[other].1 == opposite;
+            (is_leader && (same || opposed)).then_some((other, opposed))
+        });
+        groups.push(leader.unwrap_or((place, false)));
+    }
+    groups
+}
+
+/// The sum of the columns' names times their factors; `groups` (if not empty) says which factor
+/// stands before which sum.
+fn combination(
+    regressor: &mut Regressor,
+    members: &[(usize, ExprId)],
+    groups: &[(usize, bool)],
+) -> ExprId {
+    let names: Vec<ExprId> =
+        members.iter().map(|&(column, _)| name_symbol(regressor, column)).collect();
+    let dag = &mut regressor.dag;
+    let mut total = dag.zero();
+    for (leader, &(_, factor)) in members.iter().enumerate() {
+        if groups.get(leader).is_some_and(|&(first, _)| first != leader) {
+            continue;
+        }
+        let mut sum = names[leader];
+        for (place, &(first, is_opposite)) in groups.iter().enumerate() {
+            if first == leader && place != leader {
+                sum = if is_opposite {
+                    dag.sub(sum, names[place])
+                } else {
+                    dag.add(sum, names[place])
+                };
+            }
+        }
+        // A minus sign belongs before the product.
+        let (factor, is_negative) = match dag.node(factor) {
+            crate::expr::Node::Neg(inner) => (inner, true),
+            _ => match dag.as_constant(factor).cloned() {
+                Some(value) if value.is_negative() => (dag.constant(value * integer(-1)), true),
+                _ => (factor, false),
+            },
+        };
+        let product = dag.mul(factor, sum);
+        total = if is_negative { dag.sub(total, product) } else { dag.add(total, product) };
+    }
+    total
+}
+
+/// The symbol that stands for a column's parameter in formulas: a product stands for itself.
+fn name_symbol(regressor: &mut Regressor, column: usize) -> ExprId {
+    let column = &regressor.columns[column];
+    let dag = &mut regressor.dag;
+    if let Some(id) = dag.find_symbol(&column.name) {
+        return dag.symbol_expr(id);
+    }
+    match column.parameter {
+        Some(_) => dag.symbol(&column.name, SymbolClass::Inertia),
+        None => column.value,
+    }
+}

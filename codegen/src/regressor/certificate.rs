@@ -1,0 +1,297 @@
+//! A proof of rank and relations that anybody can check (`denavit-certificate/1`), and the check.
+//!
+//! - rank >= r: r rows of the columns that stay, at written points modulo p, have a determinant
+//!   that is not 0;
+//! - rank <= r: each other column's relation vanishes, exactly. The relation is read as matter, one
+//!   amount a body, and settled: from the tips to the base each body hands on what its carrier
+//!   feels alike, and what is left must be what the body does not feel. No elimination is done.
+
+use super::base::BaseParameters;
+use super::column::{Regressor, RegressorError, RegressorOptions, Unknowns};
+use super::rank::{PARAMETERS, rows_at};
+use super::settle::settle;
+use crate::expr::text;
+use crate::model::{Robot, Terms};
+use crate::number::Residue;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// The tag of a certificate file.
+pub const FORMAT: &str = "denavit-certificate/1";
+
+/// A certificate, as it stands in its file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Certificate {
+    /// [`FORMAT`].
+    pub format: String,
+    /// The model's name.
+    pub model: String,
+    /// The hash of the model's content, in hexadecimal.
+    pub model_hash: String,
+    /// The terms: inertia, coriolis, gravity.
+    pub terms: Vec<String>,
+    /// What was added: friction, rotor, offset; `products` if bodies are taken by products.
+    pub with: Vec<String>,
+    /// The prime.
+    pub prime: u64,
+    /// The seed of the known parameters' values modulo the prime.
+    pub parameters: u64,
+    /// The names of all columns, in order.
+    pub columns: Vec<String>,
+    /// The columns that stay, each with a row (point, joint) of the determinant.
+    pub pivots: Vec<Pivot>,
+    /// The relations.
+    pub relations: Vec<NullVector>,
+}
+
+/// A column that stays.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pivot {
+    /// The column's name.
+    pub column: String,
+    /// The seed of the point.
+    pub point: u64,
+    /// The row of R0 at that point, from 0.
+    pub joint: usize,
+}
+
+/// A relation: column = sum of factor * column that stays.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NullVector {
+    /// The column that depends.
+    pub column: String,
+    /// Factors, as expressions in the constants of the model, with the columns that stay.
+    pub sum: Vec<(String, String)>,
+}
+
+/// What the check of a certificate found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Everything holds; the rank.
+    Verified(usize),
+    /// It is no certificate of this format.
+    Format(String),
+    /// It belongs to another model, or to another content of the model.
+    OtherModel(String),
+    /// The model has other columns.
+    OtherColumns,
+    /// Pivots and relations do not add up: this column is in both, in none, or twice.
+    NotAPartition(String),
+    /// The determinant is 0, or a row is named twice.
+    RankTooLow,
+    /// This column's relation does not hold, or could not be followed.
+    Relation(String),
+    /// The model has no regressor.
+    Regressor(RegressorError),
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Verified(rank) => write!(f, "verified: {rank} base parameters"),
+            Self::Format(tag) => write!(f, "`{tag}` is not {FORMAT} with its prime"),
+            Self::OtherModel(name) => {
+                write!(f, "the certificate is of `{name}` with another content")
+            }
+            Self::OtherColumns => write!(f, "the model has other columns"),
+            Self::NotAPartition(column) => {
+                write!(f, "{column} is not either one that stays or one that depends")
+            }
+            Self::RankTooLow => write!(f, "the columns that stay are not shown independent"),
+            Self::Relation(column) => write!(f, "the relation of {column} does not hold"),
+            Self::Regressor(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl Verdict {
+    /// Whether everything holds.
+    pub fn is_verified(&self) -> bool {
+        matches!(self, Self::Verified(_))
+    }
+}
+
+fn hash_text(robot: &Robot) -> String {
+    format!("{:016x}", robot.hash)
+}
+
+fn term_names(terms: Terms) -> Vec<String> {
+    let list =
+        [(terms.inertia, "inertia"), (terms.coriolis, "coriolis"), (terms.gravity, "gravity")];
+    list.iter().filter(|(has, _)| *has).map(|(_, name)| (*name).to_owned()).collect()
+}
+
+impl Certificate {
+    /// The certificate of base parameters found for `robot` with `options`.
+    pub fn new(robot: &Robot, options: RegressorOptions, base: &BaseParameters) -> Self {
+        let with = [
+            (options.friction, "friction"),
+            (options.rotor, "rotor"),
+            (options.offset, "offset"),
+            (options.only_modelled, "only_modelled"),
+            (options.unknowns == Unknowns::Products, "products"),
+        ];
+        let name = |column: usize| base.name(column).to_owned();
+        let pivots = base
+            .ranking
+            .pivots
+            .iter()
+            .zip(&base.ranking.rows)
+            .map(|(&column, &(point, joint))| Pivot { column: name(column), point, joint });
+        let relations = base.dependent.iter().map(|dependent| NullVector {
+            column: name(dependent.column),
+            sum: dependent
+                .relation
+                .iter()
+                .map(|&(column, factor)| (base.text(factor), name(column)))
+                .collect(),
+        });
+        Self {
+            format: FORMAT.to_owned(),
+            model: robot.name.clone(),
+            model_hash: hash_text(robot),
+            terms: term_names(robot.terms),
+            with: with.iter().filter(|(on, _)| *on).map(|(_, name)| (*name).to_owned()).collect(),
+            prime: Residue::MODULUS,
+            parameters: PARAMETERS,
+            columns: base.regressor.columns.iter().map(|column| column.name.clone()).collect(),
+            pivots: pivots.collect(),
+            relations: relations.collect(),
+        }
+    }
+
+    /// Checks the certificate against `robot`, by means that share nothing with its making but the
+    /// regressor itself.
+    pub fn verify(&self, robot: &Robot) -> Verdict {
+        if self.format != FORMAT || self.prime != Residue::MODULUS {
+            return Verdict::Format(self.format.clone());
+        }
+        if self.model != robot.name || self.model_hash != hash_text(robot) {
+            return Verdict::OtherModel(self.model.clone());
+        }
+        let has = |list: &[String], name: &str| list.iter().any(|item| item == name);
+        let options = RegressorOptions {
+            friction: has(&self.with, "friction"),
+            rotor: has(&self.with, "rotor"),
+            offset: has(&self.with, "offset"),
+            only_modelled: has(&self.with, "only_modelled"),
+            unknowns: if has(&self.with, "products") {
+                Unknowns::Products
+            } else {
+                Unknowns::Parameters
+            },
+        };
+        let mut robot = robot.clone();
+        robot.terms.inertia = has(&self.terms, "inertia");
+        robot.terms.coriolis = has(&self.terms, "coriolis");
+        robot.terms.gravity = has(&self.terms, "gravity");
+        let regressor = match Regressor::new(&robot, options, robot.torque_side) {
+            Ok(regressor) => regressor,
+            Err(error) => return Verdict::Regressor(error),
+        };
+        let names = regressor.columns.iter().map(|column| &column.name);
+        if !names.eq(self.columns.iter()) {
+            return Verdict::OtherColumns;
+        }
+        if let Some(column) = self.not_a_partition() {
+            return Verdict::NotAPartition(column);
+        }
+        if !self.is_independent(&regressor) {
+            return Verdict::RankTooLow;
+        }
+        for relation in &self.relations {
+            if !holds(&regressor, relation) {
+                return Verdict::Relation(relation.column.clone());
+            }
+        }
+        Verdict::Verified(self.pivots.len())
+    }
+
+    fn not_a_partition(&self) -> Option<String> {
+        let mut seen = BTreeSet::new();
+        let stay: BTreeSet<&String> = self.pivots.iter().map(|pivot| &pivot.column).collect();
+        let pivots = self.pivots.iter().map(|pivot| &pivot.column);
+        for column in pivots.chain(self.relations.iter().map(|relation| &relation.column)) {
+            if !self.columns.contains(column) || !seen.insert(column) {
+                return Some(column.clone());
+            }
+        }
+        for (_, column) in self.relations.iter().flat_map(|relation| &relation.sum) {
+            if !stay.contains(column) {
+                return Some(column.clone());
+            }
+        }
+        self.columns.iter().find(|column| !seen.contains(column)).cloned()
+    }
+
+    /// Whether the square matrix of the named rows and the columns that stay has a determinant
+    /// other than 0 modulo p.
+    fn is_independent(&self, regressor: &Regressor) -> bool {
+        let columns: Option<Vec<usize>> =
+            self.pivots.iter().map(|pivot| regressor.find(&pivot.column)).collect();
+        let Some(columns) = columns else { return false };
+        let points: BTreeSet<u64> = self.pivots.iter().map(|pivot| pivot.point).collect();
+        let mut matrix = Vec::new();
+        let mut used = BTreeSet::new();
+        for point in points {
+            let Ok(rows) = rows_at(regressor, &columns, point) else { return false };
+            for pivot in self.pivots.iter().filter(|pivot| pivot.point == point) {
+                match rows.get(pivot.joint) {
+                    Some(row) if used.insert((point, pivot.joint)) => matrix.push(row.clone()),
+                    _ => return false,
+                }
+            }
+        }
+        self.parameters == PARAMETERS && determinant(matrix) != Residue::ZERO
+    }
+}
+
+/// The determinant by condensation on the corner: a row is exchanged where the corner is 0.
+fn determinant(mut matrix: Vec<Vec<Residue>>) -> Residue {
+    let mut product = Residue::ONE;
+    while !matrix.is_empty() {
+        let Some(at) = matrix.iter().position(|row| row[0] != Residue::ZERO) else {
+            return Residue::ZERO;
+        };
+        let corner = matrix.swap_remove(at);
+        if (matrix.len() - at) % 2 == 1 {
+            product = -product;
+        }
+        product = product * corner[0];
+        let inverse = corner[0].inverse().expect("the corner is not 0");
+        for row in &mut matrix {
+            let factor = row[0] * inverse;
+            let rest = row.iter().zip(&corner).skip(1);
+            *row = rest.map(|(&value, &top)| value - factor * top).collect();
+        }
+    }
+    product
+}
+
+/// Whether a relation vanishes exactly.
+fn holds(regressor: &Regressor, relation: &NullVector) -> bool {
+    let mut dag = regressor.dag.clone();
+    let mut amounts = Vec::new();
+    let minus_one = dag.integer(-1);
+    match regressor.find(&relation.column) {
+        Some(column) => amounts.push((column, minus_one)),
+        None => return false,
+    }
+    for (factor, name) in &relation.sum {
+        let resolve = &mut |dag: &mut crate::expr::Dag, name: &str| {
+            let id = dag.find_symbol(name)?;
+            let known = !crate::expr::ClassSet::of(dag.symbols()[id].class).is_run_time();
+            known.then(|| dag.symbol_expr(id))
+        };
+        let factor = text::parse(&mut dag, factor, resolve);
+        match (factor, regressor.find(name)) {
+            (Ok(factor), Some(column)) => amounts.push((column, factor)),
+            _ => return false,
+        }
+    }
+    settle(regressor, &mut dag, &amounts)
+}

@@ -1,0 +1,132 @@
+//! Gauss-Jordan on the relations, over the rational functions of the known parameters.
+//!
+//! Eliminating from the last column backwards leaves each dependent column as a combination of
+//! columns before it that stay: the same as Gauss-Jordan on B from the first column forwards
+//! (thesis 3.4), on a matrix with a few entries a row instead of a million rows.
+
+use super::dependence::{Place, Relation};
+use crate::expr::{Dag, ExprId, Node, UnaryFunction};
+use crate::fundamental::{CanonicalError, Field, Fraction, Polynomial, canonical_all};
+use std::collections::BTreeMap;
+
+/// A dependent column: itself, with coefficient 1, and columns that stay; the sum vanishes.
+pub(super) type Reduced = BTreeMap<usize, Fraction>;
+
+/// The known field, and for each dependent column, by its index, its relation. `order` lists the
+/// columns, those to keep first.
+pub(super) fn eliminate(
+    dag: &mut Dag,
+    relations: &[Relation],
+    order: &[usize],
+) -> Result<(Field, BTreeMap<usize, Reduced>), CanonicalError> {
+    let exprs: Vec<_> = relations.iter().flat_map(|relation| relation.values().copied()).collect();
+    let polynomials = canonical_all(dag, &exprs)?;
+    let field = field_of(dag, &polynomials);
+    let mut polynomials = polynomials.into_iter();
+    let mut rows: Vec<Row> = relations
+        .iter()
+        .map(|relation| {
+            let values = polynomials.by_ref().take(relation.len()).map(Fraction::polynomial);
+            let row = relation.keys().copied().zip(values);
+            row.filter(|(_, value)| !value.is_zero()).collect()
+        })
+        .collect();
+    // Features are no columns: they go first.
+    let mut features: Vec<Place> = rows
+        .iter()
+        .flat_map(|row| row.keys().copied())
+        .filter(|place| matches!(place, Place::Feature(_)))
+        .collect();
+    features.sort_unstable();
+    features.dedup();
+    for feature in features {
+        if let Some(pivot) = take_pivot(&field, &mut rows, feature)? {
+            for row in &mut rows {
+                subtract(&field, row, &pivot, feature)?;
+            }
+        }
+    }
+    let mut done: Vec<(usize, Row)> = Vec::new();
+    for &column in order.iter().rev() {
+        let place = Place::Column(column);
+        if let Some(pivot) = take_pivot(&field, &mut rows, place)? {
+            for row in rows.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
+                subtract(&field, row, &pivot, place)?;
+            }
+            done.push((column, pivot));
+        }
+    }
+    let column_of = |place: Place| match place {
+        Place::Column(column) => Some(column),
+        Place::Feature(_) => None,
+    };
+    let reduced = done.into_iter().map(|(column, row)| {
+        let row = row.into_iter().filter_map(|(place, value)| Some((column_of(place)?, value)));
+        (column, row.collect())
+    });
+    Ok((field, reduced.collect()))
+}
+
+type Row = BTreeMap<Place, Fraction>;
+
+/// Takes the simplest row with an entry at `place`, scaled so that the entry is 1.
+fn take_pivot(
+    field: &Field,
+    rows: &mut Vec<Row>,
+    place: Place,
+) -> Result<Option<Row>, CanonicalError> {
+    let weight = |row: &Row| {
+        let pivot = row.get(&place)?;
+        let size: usize = row.values().map(Fraction::size).sum();
+        Some((pivot.size() > 2, size))
+    };
+    let best = (0..rows.len())
+        .filter_map(|index| Some((weight(&rows[index])?, index)))
+        .min()
+        .map(|(_, index)| index);
+    let Some(index) = best else { return Ok(None) };
+    let mut row = rows.swap_remove(index);
+    if !row[&place].is_one() {
+        let inverse = field.inverse(&row[&place])?;
+        for value in row.values_mut() {
+            *value = field.multiply(value, &inverse)?;
+        }
+    }
+    Ok(Some(row))
+}
+
+/// Takes `place` out of a row with a pivot row.
+fn subtract(field: &Field, row: &mut Row, pivot: &Row, place: Place) -> Result<(), CanonicalError> {
+    let Some(factor) = row.get(&place).map(Fraction::negated) else { return Ok(()) };
+    for (&other, value) in pivot {
+        let change = field.multiply(&factor, value)?;
+        let sum = match row.get(&other) {
+            Some(before) => field.add(before, &change)?,
+            None => change,
+        };
+        if sum.is_zero() {
+            row.remove(&other);
+        } else {
+            row.insert(other, sum);
+        }
+    }
+    Ok(())
+}
+
+/// The field of what the polynomials are made of: which atoms are sines.
+fn field_of(dag: &mut Dag, polynomials: &[Polynomial]) -> Field {
+    let mut atoms: Vec<ExprId> = polynomials
+        .iter()
+        .flat_map(|polynomial| polynomial.terms())
+        .flat_map(|(monomial, _)| monomial.powers().iter().map(|&(atom, _)| atom))
+        .collect();
+    atoms.sort_unstable();
+    atoms.dedup();
+    let mut cosine_of = BTreeMap::new();
+    for atom in atoms {
+        if let Node::Unary(UnaryFunction::Sin, angle) = dag.node(atom) {
+            cosine_of.insert(atom, dag.cos(angle));
+        }
+    }
+    Field::new(cosine_of)
+}

@@ -1,0 +1,85 @@
+//! Ranks against the tables that an independent engine's singular values confirm (gap 0.1 : 1e-15).
+
+use super::{INERTIAL, base, rigid, tree};
+use crate::robots::{fixture, load};
+use denavit_codegen::model::{Base, Robot};
+use denavit_codegen::regressor::RegressorOptions;
+
+/// Ranks: inertial, + friction, + rotor, + offset.
+fn ranks(robot: &Robot) -> [usize; 4] {
+    let friction = RegressorOptions { friction: true, ..INERTIAL };
+    let rotor = RegressorOptions { rotor: true, ..friction };
+    let offset = RegressorOptions { offset: true, ..rotor };
+    [INERTIAL, friction, rotor, offset].map(|options| base(robot, options).rank())
+}
+
+#[test]
+fn arms_and_legs_have_the_ranks_of_the_table() {
+    for (name, expected) in [
+        ("planar_2r", [6, 10, 11, 13]),
+        ("planar_3r", [9, 15, 17, 20]),
+        ("scara", [8, 16, 19, 22]),
+        ("stanford", [33, 45, 49, 55]),
+        ("puma560", [36, 48, 52, 58]),
+        ("rx90", [36, 48, 52, 58]),
+        ("iiwa", [43, 57, 62, 69]),
+        ("panda", [43, 57, 62, 69]),
+        ("tulip_leg5", [29, 39, 42, 47]),
+        ("tulip_leg6", [36, 48, 52, 58]),
+    ] {
+        assert_eq!(ranks(&rigid(load(name))), expected, "{name}");
+    }
+    assert_eq!(ranks(&rigid(fixture("general_6r.json"))), [38, 50, 55, 61]);
+}
+
+#[test]
+fn floating_robots_have_the_ranks_of_the_table() {
+    let free = rigid(load("tulip"));
+    let options = RegressorOptions { friction: true, rotor: true, ..INERTIAL };
+    assert_eq!(base(&free, INERTIAL).rank(), 94);
+    assert_eq!(base(&free, options).rank(), 130, "twelve driven joints");
+    // The chain's six joints with friction, rotor and offset of their own.
+    let chain = Robot { base: Base::Fixed, ..free };
+    assert_eq!(ranks(&chain), [94, 130, 148, 165]);
+}
+
+#[test]
+fn general_arms_have_the_ranks_of_the_formula() {
+    for n in 2..=7 {
+        let names: Vec<[String; 3]> =
+            (0..n).map(|i| ["a", "al", "d"].map(|name| format!("{name}{i}"))).collect();
+        let rows: Vec<_> = (0..n)
+            .map(|i| {
+                let [a, al, d] = &names[i];
+                ("revolute", a.as_str(), al.as_str(), d.as_str(), i.checked_sub(1))
+            })
+            .collect();
+        let free = tree("skew", ["gx", "gy", "gz"], &rows);
+        assert_eq!(base(&free, INERTIAL).rank(), 7 * n - 4, "n = {n}, free gravity");
+        let upright = tree("skew", ["0", "0", "-g"], &rows);
+        assert_eq!(base(&upright, INERTIAL).rank(), 7 * n - 6, "n = {n}, first axis upright");
+    }
+}
+
+#[test]
+fn planar_arms_have_the_ranks_of_the_formula() {
+    for n in 1..=5usize {
+        let names: Vec<String> = (0..n).map(|i| format!("a{i}")).collect();
+        let rows: Vec<_> =
+            (0..n).map(|i| ("revolute", names[i].as_str(), "0", "0", i.checked_sub(1))).collect();
+        let rotor = RegressorOptions { rotor: true, ..INERTIAL };
+        let upright = tree("planar", ["0", "-g", "0"], &rows);
+        assert_eq!(base(&upright, INERTIAL).rank(), 3 * n);
+        assert_eq!(base(&upright, rotor).rank(), 4 * n - 1);
+        let lying = tree("planar", ["0", "0", "-g"], &rows);
+        assert_eq!(base(&lying, INERTIAL).rank(), 3 * n - 2);
+        assert_eq!(base(&lying, rotor).rank(), 4 * n - 3);
+    }
+}
+
+#[test]
+fn planar_floating_trees_have_the_ranks_of_the_formula() {
+    let robot = rigid(load("planar_biped"));
+    let n = robot.degrees_of_freedom() - 3;
+    assert_eq!(base(&robot, INERTIAL).rank(), 4 + 3 * n);
+}

@@ -15,8 +15,10 @@ use checks::Check;
 use clap::Args;
 use compiled::{Compiled, ROBOTS};
 use counts::Comparison;
-use denavit::derive::{Flavour, StageReport};
+use denavit::derive::{Derivation, Flavour, StageReport};
+use denavit::emit::latex::document;
 use denavit::function::FunctionName;
+use denavit::model::Robot;
 use denavit::report::{Align, Pose, Table, picture};
 use serde::Serialize;
 use std::io::Write;
@@ -127,6 +129,10 @@ fn one_robot(
     let functions = emitted.program.routines.len();
     let what = format!("{functions} functions as Rust, tunable parameters");
     files.push(write(directory, &format!("{name}_dynamics.rs"), &emitted.text, what)?);
+    progress.show(&format!("{name}: setting the equations"));
+    let document = equations(&robot, &emitted.derivation);
+    let what = "D, C, G and W^T as LaTeX".to_owned();
+    files.push(write(directory, &format!("{name}_equations.tex"), &document, what)?);
     progress.show(&format!("{name}: drawing"));
     let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(name.to_owned(), e))?;
     let drawn = picture(&robot, &pose);
@@ -151,6 +157,16 @@ fn one_robot(
         files,
         checks,
     })
+}
+
+/// D, C, G and, of a robot with contacts, W^T as a LaTeX document.
+fn equations(robot: &Robot, derivation: &Derivation) -> String {
+    use FunctionName::{ContactJacobian, CoriolisMatrix, GravityVector, MassMatrix};
+    let is_set =
+        |name| matches!(name, MassMatrix | CoriolisMatrix | GravityVector | ContactJacobian);
+    let functions = derivation.functions.iter().filter(|function| is_set(function.name));
+    let functions: Vec<_> = functions.cloned().collect();
+    document(robot, &derivation.dag, &functions).expect("our template has a place for each value")
 }
 
 fn stage_json(stage: &StageReport) -> (String, StageJson) {

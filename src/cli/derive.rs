@@ -4,21 +4,29 @@ mod equations;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::read_model;
+use super::files::{read_model, write_whole};
 use super::json::{Ordered, write_json};
 use super::options::ModelArgument;
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::dynamics::methods::Method;
-use denavit::expr::Operations;
 use denavit::expr::text::print_with_intermediates;
+use denavit::expr::{ExprId, Operations};
 use denavit::report::{Align, Table};
 use equations::{Equations, Part};
 use serde::Serialize;
 use std::io::Write;
+use std::path::PathBuf;
 
-/// Equations with more nodes than this are not read by people: they get a summary instead.
-const READABLE_NODES: usize = 700;
+/// Equations with more nodes than this are not multiplied out: it would take long and come to much.
+const MULTIPLIED_OUT_NODES: usize = 1500;
+
+/// Equations of at most so many terms, multiplied out, are written so.
+const READABLE_TERMS: usize = 500;
+
+/// Others of at most so many nodes are written with intermediates; what is larger is not read by
+/// people and gets a summary.
+const READABLE_NODES: usize = 300;
 
 /// Entries that are longer than this altogether, in nodes, are written with intermediates.
 const PLAIN_NODES: u64 = 200;
@@ -31,6 +39,7 @@ const PLAIN_NODES: u64 = 200;
 Examples:
   denavit derive double_pendulum
   denavit derive double_pendulum --method lagrange
+  denavit derive tulip --latex tulip.tex
   denavit derive scara --json")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -38,6 +47,9 @@ pub(crate) struct Arguments {
     /// How: by the recursions that emitted code uses, or in one of the thesis's four ways
     #[arg(long, value_enum, value_name = "METHOD", default_value = "recursive")]
     method: MethodName,
+    /// Write the equations as a LaTeX document; - is standard output
+    #[arg(long, value_name = "FILE")]
+    latex: Option<PathBuf>,
     /// Print JSON: every entry as text, with intermediates where they are long
     #[arg(long)]
     json: bool,
@@ -97,19 +109,39 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let robot = read_model(&arguments.model.model)?;
     let progress = Progress::new();
     progress.show(&format!("deriving {}", robot.name));
-    let equations = match arguments.method.method() {
+    let mut equations = match arguments.method.method() {
         None => Equations::recursive(&robot),
         Some(method) => Equations::by_method(&robot, method),
     };
+    if let Some(file) = &arguments.latex {
+        progress.show(&format!("setting the equations of {}", robot.name));
+        let document = equations.latex(&robot);
+        if file.as_os_str() == "-" {
+            out.write_all(document.as_bytes())?;
+            return Ok(Answer::Done);
+        }
+        write_whole(file, document.as_bytes())?;
+    }
     drop(progress);
     if arguments.json {
         write_answer(out, &equations)?;
     } else {
         write!(out, "{}: {}, method {}", equations.model, equations.law(), equations.method)?;
         writeln!(out, "\n\njoints: {}", numbered(&equations.joints))?;
-        match equations.nodes() > READABLE_NODES {
-            true => write_summary(out, &equations)?,
-            false => write_in_full(out, &equations)?,
+        let nodes = equations.nodes();
+        let multiplied_out = match nodes <= MULTIPLIED_OUT_NODES {
+            true => equations.written_out(READABLE_TERMS),
+            false => None,
+        };
+        match multiplied_out {
+            Some(entries) => write_in_full(out, &equations, &entries, u64::MAX)?,
+            None if nodes <= READABLE_NODES => {
+                write_in_full(out, &equations, &equations.entries_of_terms(), PLAIN_NODES)?;
+            }
+            None => write_summary(out, &equations)?,
+        }
+        if let Some(file) = &arguments.latex {
+            writeln!(out, "\nwrote {}", file.display())?;
         }
     }
     Ok(Answer::Done)
@@ -145,12 +177,17 @@ fn write_answer(out: &mut dyn Write, equations: &Equations) -> Result<(), Failur
     write_json(out, &json)
 }
 
-/// D, C, G and the drives' torque; tau is what they add up to.
-fn write_in_full(out: &mut dyn Write, equations: &Equations) -> Result<(), Failure> {
+/// D, C, G and the drives' torque; tau is what they add up to. `entries` are those of the terms;
+/// longer ones than `threshold` nodes are written with intermediates.
+fn write_in_full(
+    out: &mut dyn Write,
+    equations: &Equations,
+    entries: &[ExprId],
+    threshold: u64,
+) -> Result<(), Failure> {
+    let terms: Vec<&Part> = equations.parts.iter().filter(|part| part.is_term()).collect();
     let zero = equations.dag.zero();
-    let terms: Vec<&Part> = equations.parts.iter().filter(|part| part.symbol != "tau").collect();
-    let entries: Vec<_> = terms.iter().flat_map(|part| part.entries.iter().copied()).collect();
-    let printed = print_with_intermediates(&equations.dag, &entries, PLAIN_NODES);
+    let printed = print_with_intermediates(&equations.dag, entries, threshold);
     let mut texts = printed.outputs.iter();
     for part in terms {
         let own: Vec<&String> = texts.by_ref().take(part.entries.len()).collect();
@@ -159,8 +196,8 @@ fn write_in_full(out: &mut dyn Write, equations: &Equations) -> Result<(), Failu
             writeln!(out, "{} = 0", part.symbol)?;
             continue;
         }
-        for (index, text) in own.into_iter().enumerate() {
-            if let Some(left) = left_side(part, index) {
+        for (index, text) in own.iter().enumerate() {
+            if let Some(left) = left_side(part, &own, index) {
                 writeln!(out, "{left} = {text}")?;
             }
         }
@@ -174,23 +211,19 @@ fn write_in_full(out: &mut dyn Write, equations: &Equations) -> Result<(), Failu
     Ok(())
 }
 
-/// The name of an entry; of a symmetric pair both names, and none for the second of them.
-fn left_side(part: &Part, index: usize) -> Option<String> {
+/// The name of an entry; of equal ones across the diagonal of D both names, and none for the second.
+fn left_side(part: &Part, texts: &[&String], index: usize) -> Option<String> {
     let symbol = part.symbol;
-    let [rows, columns] = part.shape[..] else {
+    let [_, columns] = part.shape[..] else {
         return Some(format!("{symbol}[{}]", index + 1));
     };
     let (row, column) = (index / columns, index % columns);
     let name = |row: usize, column: usize| format!("{symbol}[{},{}]", row + 1, column + 1);
     let mirrored = column * columns + row;
-    let is_pair = rows == columns && row != column && part.is_symmetric();
-    match (is_pair, row > column) {
-        (true, true) => None,
-        (true, false) if part.entries[mirrored] == part.entries[index] => {
-            Some(format!("{} = {}", name(row, column), name(column, row)))
-        }
-        _ => Some(name(row, column)),
+    if symbol != "D" || row == column || texts.get(mirrored) != texts.get(index) {
+        return Some(name(row, column));
     }
+    (row < column).then(|| format!("{} = {}", name(row, column), name(column, row)))
 }
 
 fn write_summary(out: &mut dyn Write, equations: &Equations) -> Result<(), Failure> {
@@ -216,5 +249,5 @@ fn write_summary(out: &mut dyn Write, equations: &Equations) -> Result<(), Failu
     if let Some(total) = equations.time {
         writeln!(out, "derived in {:.1} ms", 1e3 * total)?;
     }
-    Ok(writeln!(out, "too large to be read here; --json has every entry")?)
+    Ok(writeln!(out, "too large to be read here: --latex FILE sets them, --json has every entry")?)
 }

@@ -2,8 +2,10 @@
 
 use denavit::derive::{Flavour, derive};
 use denavit::dynamics::methods::{self, Method, MethodResult};
+use denavit::emit::latex::document;
 use denavit::expr::{Dag, ExprId};
-use denavit::function::{Form, FunctionName};
+use denavit::function::{Form, Function, FunctionName, Output};
+use denavit::fundamental::written_out;
 use denavit::model::Robot;
 use std::time::Instant;
 
@@ -17,6 +19,8 @@ pub(super) struct Part {
     pub(super) shape: Vec<usize>,
     /// Its entries, row-major.
     pub(super) entries: Vec<ExprId>,
+    /// What the entries are.
+    doc: String,
     /// The formulation, if there is a choice.
     pub(super) form: &'static str,
     /// How long it took [s], if it was derived by itself.
@@ -24,11 +28,9 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Whether it is a square matrix that is its own transpose.
-    pub(super) fn is_symmetric(&self) -> bool {
-        let [rows, columns] = self.shape[..] else { return false };
-        let entry = |row: usize, column: usize| self.entries[row * columns + column];
-        rows == columns && (0..rows).all(|i| (0..i).all(|j| entry(i, j) == entry(j, i)))
+    /// Whether it is a term of the equations, and not what they add up to or a constraint.
+    pub(super) fn is_term(&self) -> bool {
+        ["D", "C", "G", "tau_drive"].contains(&self.symbol)
     }
 }
 
@@ -44,35 +46,36 @@ pub(super) struct Equations {
     pub(super) time: Option<f64>,
 }
 
+/// What is derived by recursion, with its letters.
+const RECURSIVE: [(FunctionName, &str); 5] = [
+    (FunctionName::MassMatrix, "D"),
+    (FunctionName::CoriolisMatrix, "C"),
+    (FunctionName::GravityVector, "G"),
+    (FunctionName::InverseDynamics, "tau"),
+    (FunctionName::ContactJacobian, "W^T"),
+];
+
 impl Equations {
     /// By the recursions that emitted code uses.
     pub(super) fn recursive(robot: &Robot) -> Self {
-        use FunctionName::{CoriolisMatrix, GravityVector, InverseDynamics, MassMatrix};
-        let wanted = [MassMatrix, CoriolisMatrix, GravityVector, InverseDynamics];
+        let wanted = RECURSIVE.map(|(name, _)| name);
         let derivation =
             derive(robot, Flavour::Tunable, &wanted).expect("only baking asks for values");
-        let symbols = ["D", "C", "G", "tau"];
-        let functions = derivation.functions.iter().zip(symbols);
-        let parts = functions
-            .flat_map(|(function, symbol)| {
-                let name = function.name.as_str();
-                let stage = derivation.report.iter().find(|stage| stage.stage == name);
-                let time = stage.map(|stage| stage.time.as_secs_f64());
-                let form = match function.form {
-                    Form::Plain => "plain",
-                    Form::Grouped => "grouped axes",
-                    Form::Explicit => "explicit",
-                };
-                function.outputs.iter().map(move |output| Part {
-                    name,
-                    symbol,
-                    shape: output.shape.clone(),
-                    entries: output.entries.clone(),
-                    form,
-                    time,
-                })
-            })
-            .collect();
+        let mut parts = Vec::new();
+        for function in &derivation.functions {
+            let name = function.name.as_str();
+            let stage = derivation.report.iter().find(|stage| stage.stage == name);
+            let letter = RECURSIVE.iter().find(|(own, _)| *own == function.name);
+            parts.extend(function.outputs.iter().map(|output| Part {
+                name,
+                symbol: letter.map_or("", |(_, letter)| letter),
+                shape: output.shape.clone(),
+                entries: output.entries.clone(),
+                doc: output.doc.clone(),
+                form: form_name(function.form),
+                time: stage.map(|stage| stage.time.as_secs_f64()),
+            }));
+        }
         Self {
             model: robot.name.clone(),
             method: "recursive",
@@ -97,20 +100,21 @@ impl Equations {
         } = methods::derive(&mut dag, robot, method);
         let time = Some(started.elapsed().as_secs_f64());
         let n = gravity.len();
-        let part = |name, symbol, shape: &[usize], entries: Vec<ExprId>| Part {
+        let part = |name, symbol, shape: &[usize], entries: Vec<ExprId>, doc: &str| Part {
             name,
             symbol,
             shape: shape.to_vec(),
             entries,
+            doc: format!("By the method {method}. {doc}"),
             form: "",
             time: None,
         };
         let parts = vec![
-            part("mass_matrix", "D", &[n, n], mass_matrix.concat()),
-            part("coriolis_matrix", "C", &[n, n], coriolis_matrix.concat()),
-            part("gravity_vector", "G", &[n], gravity),
-            part("drive_torque", "tau_drive", &[n], drive_torque),
-            part("inverse_dynamics", "tau", &[n], inverse_dynamics),
+            part("mass_matrix", "D", &[n, n], mass_matrix.concat(), "D(q), rotors included."),
+            part("coriolis_matrix", "C", &[n, n], coriolis_matrix.concat(), "C(q, qd)."),
+            part("gravity_vector", "G", &[n], gravity, "G(q) = dP/dq of gravity."),
+            part("drive_torque", "tau_drive", &[n], drive_torque, "Friction, springs, offsets."),
+            part("inverse_dynamics", "tau", &[n], inverse_dynamics, "Joint torques."),
         ];
         let (model, joints) = (robot.name.clone(), joints(robot));
         Self { model, method: method.as_str(), joints, dag, parts, time }
@@ -124,11 +128,48 @@ impl Equations {
         }
     }
 
-    /// Number of nodes of the equations, each shared one counted once.
+    /// D, C, G and W as a LaTeX document.
+    pub(super) fn latex(&self, robot: &Robot) -> String {
+        let function = |part: &Part| {
+            let name = FunctionName::parse(part.name)?;
+            let output = Output {
+                name: part.name,
+                shape: part.shape.clone(),
+                entries: part.entries.clone(),
+                doc: part.doc.clone(),
+            };
+            let (arguments, outputs, form) = (Vec::new(), vec![output], Form::Plain);
+            Some(Function { name, link: None, arguments, outputs, form })
+        };
+        let set = self.parts.iter().filter(|part| part.symbol != "tau");
+        let functions: Vec<Function> = set.filter_map(function).collect();
+        document(robot, &self.dag, &functions).expect("our template has a place for each value")
+    }
+
+    /// The equations with their terms (`is_term`) written out as people do; none if that takes more
+    /// than `limit` terms.
+    pub(super) fn written_out(&mut self, limit: usize) -> Option<Vec<ExprId>> {
+        let entries = self.entries_of_terms();
+        written_out(&mut self.dag, &entries, limit)
+    }
+
+    /// The entries of the terms, in order.
+    pub(super) fn entries_of_terms(&self) -> Vec<ExprId> {
+        let terms = self.parts.iter().filter(|part| part.is_term());
+        terms.flat_map(|part| part.entries.iter().copied()).collect()
+    }
+
+    /// Number of nodes of the terms, each shared one counted once.
     pub(super) fn nodes(&self) -> usize {
-        let entries: Vec<ExprId> =
-            self.parts.iter().flat_map(|part| part.entries.iter().copied()).collect();
-        self.dag.topological(&entries).len()
+        self.dag.topological(&self.entries_of_terms()).len()
+    }
+}
+
+fn form_name(form: Form) -> &'static str {
+    match form {
+        Form::Plain => "plain",
+        Form::Grouped => "grouped axes",
+        Form::Explicit => "explicit",
     }
 }
 

@@ -199,8 +199,29 @@ fn small_equations_are_printed_in_full_and_large_ones_in_summary() {
     for entry in ["D[1,1] = ", "D[1,2] = D[2,1] = ", "C[2,1] = ", "G[2] = "] {
         assert!(small.contains(entry), "{entry}\n{small}");
     }
+    // the same equations, whichever way they were derived
+    let entries = |text: &str| {
+        let lines = text.lines().filter(|line| line.contains(" = ") && !line.contains(':'));
+        lines.filter(|line| !line.starts_with("tau_drive")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    for method in ["dh-lagrange", "lagrange", "newton-euler", "tmt"] {
+        let other = answer(&["derive", "double_pendulum", "--method", method]);
+        assert_eq!(entries(&other), entries(&small), "{method}");
+    }
     let large = answer(&["derive", "puma560"]);
     assert!(large.contains("mass_matrix") && !large.contains("D[1,1]"), "{large}");
+}
+
+#[test]
+fn equations_are_set_as_a_document() {
+    let directory = Directory::new("latex");
+    let run = run_in(&directory.path, &["derive", "tulip", "--latex", "tulip.tex"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let text = std::fs::read_to_string(directory.path.join("tulip.tex")).expect("the document");
+    assert!(text.contains(r"\documentclass") && text.trim_end().ends_with(r"\end{document}"));
+    assert_eq!(answer(&["derive", "tulip", "--latex", "-"]), text);
+    let pendulum = answer(&["derive", "double_pendulum", "--method", "lagrange", "--latex", "-"]);
+    assert!(pendulum.contains("D =") && pendulum.contains("G ="), "{pendulum}");
 }
 
 #[test]
@@ -246,7 +267,13 @@ fn the_demo_writes_its_files_and_passes_its_checks() {
             // rounding leaves its mark on a comparison that compares something
             assert!(check["max_relative_difference"].as_f64().expect("a number") > 0.0, "{check}");
         }
-        for file in robot["files"].as_array().expect("files") {
+        let files = robot["files"].as_array().expect("files");
+        for ending in ["_dynamics.rs", "_equations.tex", ".svg"] {
+            let has_ending =
+                |file: &Value| file["file"].as_str().is_some_and(|f| f.ends_with(ending));
+            assert!(files.iter().any(has_ending), "{ending}");
+        }
+        for file in files {
             let path = directory.path.join(file["file"].as_str().expect("a path"));
             let size = std::fs::metadata(&path).expect("a file").len();
             assert_eq!(file["bytes"], size, "{path:?}");

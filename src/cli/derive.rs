@@ -18,8 +18,12 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Equations with more nodes than this are not multiplied out: it would take long and come to much.
-const MULTIPLIED_OUT_NODES: usize = 1500;
+/// Equations with more nodes than this are not multiplied out, which would take long and come to
+/// much: the first is for robots of few joints, whose equations may be long and come to little.
+const MULTIPLIED_OUT_NODES: [usize; 2] = [3000, 700];
+
+/// So many joints are few.
+const FEW_JOINTS: usize = 4;
 
 /// Equations of at most so many terms, multiplied out, are written so.
 const READABLE_TERMS: usize = 500;
@@ -129,7 +133,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write!(out, "{}: {}, method {}", equations.model, equations.law(), equations.method)?;
         writeln!(out, "\n\njoints: {}", numbered(&equations.joints))?;
         let nodes = equations.nodes();
-        let multiplied_out = match nodes <= MULTIPLIED_OUT_NODES {
+        let most = MULTIPLIED_OUT_NODES[usize::from(equations.joints.len() > FEW_JOINTS)];
+        let multiplied_out = match nodes <= most {
             true => equations.written_out(READABLE_TERMS),
             false => None,
         };
@@ -211,7 +216,7 @@ fn write_in_full(
     Ok(())
 }
 
-/// The name of an entry; of equal ones across the diagonal of D both names, and none for the second.
+/// The name of an entry; of equal ones across the diagonal of D both names, none for the second.
 fn left_side(part: &Part, texts: &[&String], index: usize) -> Option<String> {
     let symbol = part.symbol;
     let [_, columns] = part.shape[..] else {

@@ -6,10 +6,10 @@ use denavit_runtime::Scalar;
 /// A point of the picture [px]: right, down.
 pub(super) type Vec2 = [f64; 2];
 
-/// How far the camera looks down [rad].
+/// How far the camera looks down \[rad\].
 const ELEVATION: f64 = 0.36;
 
-/// Directions from which the camera may look, about the vertical [rad], the preferred one first.
+/// Directions from which the camera may look, about the vertical \[rad\], the preferred one first.
 const AZIMUTHS: [f64; 10] = [0.75, -0.75, 1.2, -1.2, 0.35, -0.35, 1.9, -1.9, 2.8, -2.8];
 
 /// A later direction must show this much more than the preferred one to be taken.
@@ -118,7 +118,7 @@ impl Camera {
         [dot(vector, self.right) * self.scale, -dot(vector, self.up) * self.scale]
     }
 
-    /// How near the eye a point is [m]; larger is nearer.
+    /// How near the eye a point is \[m\]; larger is nearer.
     pub(super) fn nearness(&self, point: Vec3) -> f64 {
         dot(point, self.eye)
     }

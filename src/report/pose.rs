@@ -19,9 +19,9 @@ const OPEN_VALUE: f64 = 0.5;
 pub struct Pose {
     /// Frame of each link, in link order.
     pub(super) frames: Vec<Transform>,
-    /// Contact points, in file order [m].
+    /// Contact points, in file order \[m\].
     pub(super) contacts: Vec<Vec3>,
-    /// Centre of mass of the robot [m], if the file gives the values that it needs.
+    /// Centre of mass of the robot \[m\], if the file gives the values that it needs.
     pub(super) center_of_mass: Option<Vec3>,
     /// A point of the ground and the direction away from it.
     pub(super) ground: [Vec3; 2],

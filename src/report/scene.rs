@@ -31,7 +31,7 @@ pub(super) struct Named {
 /// What a picture shows, in frame 0.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
-    /// Longest extent of the robot [m].
+    /// Longest extent of the robot \[m\].
     pub(super) size: f64,
     /// The solids, in link order.
     pub(super) shapes: Vec<Shape>,

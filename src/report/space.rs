@@ -44,7 +44,7 @@ pub(super) fn perpendicular(a: Vec3) -> Vec3 {
 pub(super) struct Transform {
     /// The directions of its axes x, y, z.
     pub(super) axes: [Vec3; 3],
-    /// Its origin [m].
+    /// Its origin \[m\].
     pub(super) origin: Vec3,
 }
 

@@ -25,7 +25,7 @@ fn body_momenta(dag: &mut Dag, frames: &Frames) -> Vec<[Vector; 4]> {
         .collect()
 }
 
-/// T = sum (p . v + L . w) / 2 over the bodies [J]; rotors are added by the caller.
+/// T = sum (p . v + L . w) / 2 over the bodies \[J\]; rotors are added by the caller.
 pub(super) fn kinetic_energy(dag: &mut Dag, frames: &Frames) -> ExprId {
     let momenta = body_momenta(dag, frames);
     let mut twice = dag.zero();
@@ -56,7 +56,7 @@ fn matter_in_base(
     (mass, first)
 }
 
-/// P = -g . (sum m o) [J].
+/// P = -g . (sum m o) \[J\].
 pub(super) fn potential_energy(
     dag: &mut Dag,
     frames: &Frames,
@@ -83,7 +83,7 @@ pub(super) fn per_total_mass(dag: &mut Dag, frames: &Frames) -> Frames {
     scaled
 }
 
-/// Position of the centre of mass in frame 0 [m].
+/// Position of the centre of mass in frame 0 \[m\].
 pub(super) fn center_of_mass(dag: &mut Dag, frames: &Frames) -> Vector {
     let fractions = per_total_mass(dag, frames);
     let composites = super::composite::composites(dag, &fractions);

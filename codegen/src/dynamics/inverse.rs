@@ -8,7 +8,7 @@ use crate::spatial::{Matrix, PseudoInertia, Vector, add, cross, dot};
 /// A force and a moment about the origin of a frame, in its coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wrench {
-    /// Force [N].
+    /// Force \[N\].
     pub(super) force: Vector,
     /// Moment [N m].
     pub(super) moment: Vector,

@@ -15,7 +15,7 @@ pub(super) struct JointTerms {
     pub(super) rotor: ExprId,
     /// Friction, damping, springs and offset: what the drive must give besides [N m, N].
     pub(super) torque: ExprId,
-    /// Elastic energy of the joint's springs [J].
+    /// Elastic energy of the joint's springs \[J\].
     pub(super) energy: ExprId,
 }
 

@@ -129,7 +129,8 @@ fn kinematics_and_energy(
             "link_transforms",
             &[links, 3, 4],
             candidate.link_transforms(dag),
-            "Link by link, the upper three rows [R | o] of the transform to the world frame [1, m].",
+            "Link by link, the upper three rows [R | o] of the transform to the world frame \
+             [1, m].",
         )],
         F::ContactPositions => vec![output(
             "contact_positions",

@@ -172,7 +172,13 @@ pub(super) fn columns(counts: &Counts) -> [(&'static str, usize); 9] {
 /// taken for a link.
 pub(super) fn one_line(text: &str) -> String {
     let visible = |c: char| {
-        let hides = matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}');
+        let hides = matches!(
+            c,
+            '\u{200b}'..='\u{200f}'
+                | '\u{2028}'..='\u{202e}'
+                | '\u{2060}'..='\u{2069}'
+                | '\u{feff}'
+        );
         if c.is_control() || hides { ' ' } else { c }
     };
     let plain: String = text.chars().map(visible).collect();

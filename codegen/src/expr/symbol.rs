@@ -11,7 +11,7 @@ pub enum SymbolClass {
     Acceleration,
     /// Joint torque or force tau [Nm, N], or any other right-hand side.
     Effort,
-    /// Time t [s].
+    /// Time t \[s\].
     Time,
     /// Lengths, angles, gravity: known constants of the model.
     Geometry,

@@ -56,10 +56,11 @@ fn check(sources: &[&str], chain: &[&str]) -> Vec<Decomposition> {
     let mut dag = Dag::new();
     let row: Vec<ExprId> = sources.iter().map(|source| read(&mut dag, source)).collect();
     let chain: Vec<ExprId> = chain.iter().map(|name| read(&mut dag, name)).collect();
-    let found = try_all(&mut dag, &[row.clone()], &[chain], DEFAULT_MEMORY_BYTES).expect("small");
+    let found = try_all(&mut dag, std::slice::from_ref(&row), &[chain], DEFAULT_MEMORY_BYTES)
+        .expect("small");
     for decomposition in &found {
         let rows = recomposed(&mut dag, decomposition);
-        assert_same(&dag, &rows, &[row.clone()]);
+        assert_same(&dag, &rows, std::slice::from_ref(&row));
     }
     found
 }

@@ -1,8 +1,8 @@
 //! The field of rational functions of the known parameters, with sines and cosines of its angles.
 //!
 //! A member is a numerator over a denominator without sines (they are multiplied away by
-//! conjugates, with s^2 = 1 - c^2), both without a common divisor, the denominator without units. That is a
-//! canonical form: equal members are written equally.
+//! conjugates, with s^2 = 1 - c^2), both without a common divisor, the denominator without units.
+//! That is a canonical form: equal members are written equally.
 
 use super::gcd::{divide, gcd, without_unit};
 use super::{Monomial, Polynomial, TooManyTerms};

@@ -17,7 +17,7 @@ pub struct Frame {
     /// The joint's own turn, which follows; none for a sliding joint, and for a frame that does not
     /// turn with its joint.
     pub joint_turn: Option<Turn>,
-    /// Origin in the parent's frame [m].
+    /// Origin in the parent's frame \[m\].
     pub offset: Vector,
     /// The joint's symbols.
     pub variables: JointVariables,

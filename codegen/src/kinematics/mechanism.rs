@@ -13,7 +13,7 @@ pub struct Placement {
     pub body: Option<usize>,
     /// The rotation, carrier to frame.
     pub turns: Vec<Turn>,
-    /// The origin [m].
+    /// The origin \[m\].
     pub offset: Vector,
 }
 
@@ -27,9 +27,9 @@ pub struct MovingBody {
     pub is_revolute: bool,
     /// Constant rotation from the parent's frame to the joint, before the joint angle.
     pub turns: Vec<Turn>,
-    /// The joint angle [rad] with its constant part; none for a sliding joint.
+    /// The joint angle \[rad\] with its constant part; none for a sliding joint.
     pub angle: Option<ExprId>,
-    /// Origin in the parent's frame [m], for a sliding joint at q = 0.
+    /// Origin in the parent's frame \[m\], for a sliding joint at q = 0.
     pub offset: Vector,
     /// The joint's symbols.
     pub variables: JointVariables,

@@ -10,7 +10,7 @@ pub struct World<'a> {
     frames: &'a Frames,
     /// The axes of each frame: `axes[i][k]` is its k-th axis.
     axes: Vec<Matrix>,
-    /// The origins [m].
+    /// The origins \[m\].
     origins: Vec<Vector>,
 }
 

@@ -231,6 +231,13 @@ impl Cause {
             }
             Self::LateParent(_) => "move the parent in front of the links that it carries",
             Self::Cycle(_) => "one of them must stand on the base or on a link outside the circle",
+            other => return other.robot_hint(),
+        })
+    }
+
+    /// Hints about what the file says of the robot.
+    fn robot_hint(&self) -> Option<&'static str> {
+        Some(match self {
             Self::NotAParameter => {
                 "the entry is written in declared names: say it of the unknowns that it uses"
             }

@@ -117,7 +117,7 @@ pub enum Instruction {
         sine: Slot,
         /// Receives the cosine.
         cosine: Slot,
-        /// The angle [rad].
+        /// The angle \[rad\].
         angle: Slot,
     },
 }

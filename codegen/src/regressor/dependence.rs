@@ -65,10 +65,10 @@ impl<'a> Finder<'a> {
         for (index, column) in regressor.columns.iter().enumerate() {
             let Some((link, 0)) = column.parameter else { continue };
             let placement = mechanism.placements[link].clone();
-            if let Some(host) = placement.body.map(|body| &mut hosts[body]) {
-                if host.is_none() {
-                    *host = Some((index, placement));
-                }
+            if let Some(host) = placement.body.map(|body| &mut hosts[body])
+                && host.is_none()
+            {
+                *host = Some((index, placement));
             }
         }
         let turnings = turnings(dag, mechanism);

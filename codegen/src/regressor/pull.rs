@@ -55,7 +55,7 @@ pub struct MatterRegressor {
 pub enum Equation {
     /// The moment on the torso about an axis of its frame [N m].
     TorsoMoment(usize),
-    /// The force on the torso along an axis of its frame [N].
+    /// The force on the torso along an axis of its frame \[N\].
     TorsoForce(usize),
     /// The torque or force of a joint [N m, N], by its number among the joint variables.
     Joint(usize),

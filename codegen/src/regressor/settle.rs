@@ -112,12 +112,12 @@ impl Settling<'_> {
         if moving.is_revolute {
             let rotor = self.functions.get(&(body, JointFunction::Acceleration)).copied();
             let mechanism = &self.regressor.mechanism;
-            if let Some(rotor) = rotor {
-                if is_alone(self.dag, mechanism, &self.turnings, body) {
-                    let matter = like_rotor(self.dag, rotor);
-                    self.matter[body] = self.matter[body].add(self.dag, &matter);
-                    self.functions.insert((body, JointFunction::Acceleration), zero);
-                }
+            if let Some(rotor) = rotor
+                && is_alone(self.dag, mechanism, &self.turnings, body)
+            {
+                let matter = like_rotor(self.dag, rotor);
+                self.matter[body] = self.matter[body].add(self.dag, &matter);
+                self.functions.insert((body, JointFunction::Acceleration), zero);
             }
         }
         let list = entries(&self.matter[body]);

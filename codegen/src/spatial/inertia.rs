@@ -5,7 +5,7 @@ use super::vector::{Matrix, Vector, add, scale};
 use crate::expr::{Dag, ExprId};
 use crate::number::ratio;
 
-/// The 4x4 pseudo-inertia `[[K, s], [s^T, m]]` about the origin of a frame: m the mass [kg],
+/// The 4x4 pseudo-inertia `[[K, s], [s^T, m]]` about the origin of a frame: m the mass \[kg\],
 /// s = m c the first moment [kg m], K = integral of r r^T dm = tr(J)/2 1 - J [kg m^2], with J the
 /// inertia tensor about the origin (math: Wensing's pseudo-inertia matrix).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,7 +28,7 @@ impl Axis {
 pub struct Turn {
     /// The axis.
     pub axis: Axis,
-    /// The angle [rad].
+    /// The angle \[rad\].
     pub angle: ExprId,
     /// Its cosine.
     pub cos: ExprId,

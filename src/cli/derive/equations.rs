@@ -23,7 +23,7 @@ pub(super) struct Part {
     doc: String,
     /// The formulation, if there is a choice.
     pub(super) form: &'static str,
-    /// How long it took [s], if it was derived by itself.
+    /// How long it took \[s\], if it was derived by itself.
     pub(super) time: Option<f64>,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Equations {
     pub(super) joints: Vec<String>,
     pub(super) dag: Dag,
     pub(super) parts: Vec<Part>,
-    /// How long it took altogether [s], if the parts were derived together.
+    /// How long it took altogether \[s\], if the parts were derived together.
     pub(super) time: Option<f64>,
 }
 

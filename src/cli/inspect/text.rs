@@ -106,7 +106,7 @@ fn totals(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(),
     Ok(())
 }
 
-/// The mass of all bodies [kg], if the file gives all of them.
+/// The mass of all bodies \[kg\], if the file gives all of them.
 pub(super) fn total_mass(robot: &Robot, values: &mut Values) -> Option<f64> {
     let masses: Vec<ExprId> =
         robot.links.values().filter_map(|link| Some(link.body.as_ref()?.mass)).collect();

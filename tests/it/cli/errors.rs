@@ -239,3 +239,23 @@ fn the_demo_needs_a_place_for_its_files() {
     let message = refused(&directory, &["demo", "--out", "file/out"]);
     assert_says(&message, &["file/out", "cannot be written", "hint: "]);
 }
+
+/// No joint moves: every matrix is empty.
+#[test]
+fn a_robot_that_cannot_move_is_no_trouble() {
+    let directory = Directory::new("statue");
+    let statue = r#"{"format": "denavit-model/1", "name": "statue", "convention": "standard",
+        "gravity": [0, 0, 0], "links": [{"name": "stone", "joint": {"type": "fixed"}}]}"#;
+    fs::write(directory.path.join("statue.json"), statue).expect("a file");
+    for arguments in [
+        &["inspect", "statue.json", "--svg", "statue.svg"][..],
+        &["derive", "statue.json", "--latex", "statue.tex"],
+        &["derive", "statue.json", "--method", "newton-euler", "--json"],
+        &["count", "statue.json", "--baked"],
+        &["emit", "statue.json", "-o", "statue.rs"],
+    ] {
+        let run = run_in(&directory.path, arguments);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+    assert_eq!(directory.files(), ["statue.json", "statue.rs", "statue.svg", "statue.tex"]);
+}

@@ -53,6 +53,9 @@ macro_rules! call {
                 F::ContactPositions | F::ContactJacobian | F::ContactBias => {
                     contacts(p, function, [&q, &qd])
                 }
+                F::Regressor | F::BaseRegressor => {
+                    unreachable!("{function} is emitted on request, not in these modules")
+                }
             }
         }
     };

@@ -11,7 +11,7 @@ use crate::spatial::{Matrix, Vector, add, zero};
 pub(super) struct Frame {
     /// Coordinates in this frame to coordinates in the other one.
     pub(super) rotation: Matrix,
-    /// Origin in the other frame [m].
+    /// Origin in the other frame \[m\].
     pub(super) origin: Vector,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Placement {
     pub(super) frame: Frame,
     /// Direction of the joint axis: z of frame i-1 (standard) or of frame i (modified).
     pub(super) axis: Vector,
-    /// A point of the joint axis [m].
+    /// A point of the joint axis \[m\].
     pub(super) joint_origin: Vector,
 }
 

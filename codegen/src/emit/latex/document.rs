@@ -113,7 +113,7 @@ fn capitalised(text: &str) -> String {
 fn as_matrix(output: &Output, formulas: &[String]) -> Option<String> {
     let columns = match output.shape[..] {
         [rows] if rows <= 20 => 1,
-        [rows, columns] if rows <= 20 && columns <= 10 => columns,
+        [rows, columns] if rows <= 20 && (1..=10).contains(&columns) => columns,
         _ => return None,
     };
     let mut widest = vec![0; columns];

@@ -59,7 +59,7 @@ fn parameters_alone_are_computed_once_in_the_prelude_of_all_functions() {
     // Of I1 + m1 c1^2 + m2 l1^2 + I2 + m2 c2^2, m2 c2^2 + I2, m2 l1 c2 and the two weights.
     let [torque, mass] = [0, 1].map(|row| counts(&program, &program.routines[row]));
     let run_time = |c: Counts| (c.mul, c.add, c.neg, c.div, c.sincos);
-    // By hand: with x = h cos q2, D = [[x + p + d12, d12], [d12, d22]] with d12 = x + d22. tau needs
+    // By hand: with x = h cos q2, D = [[x + p + d12, d12], [d12, d22]], d12 = x + d22. tau needs
     // four products with qdd, two with h and h itself, 2 qd1 qd2 + qd2^2, qd1^2, two weights.
     assert_eq!(run_time(mass), (1, 3, 0, 0, 1));
     let (mul, add, neg, div, sincos) = run_time(torque);

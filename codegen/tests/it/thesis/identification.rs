@@ -8,7 +8,8 @@ use denavit_codegen::fundamental::{
 
 /// A.79 and A.80, moved to one side.
 const A79: &str = "N1*(IM1*th1dd + BM1*th1d) + Fc1*sign(th1d) + 1/N1*((m1*c1^2 \
-    + m2*(l1^2 + c2^2 + 2*l1*c2*cos(th2)) + I1 + I2)*th1dd + (m2*(c2^2 + l1*c2*cos(th2)) + I2)*th2dd \
+    + m2*(l1^2 + c2^2 + 2*l1*c2*cos(th2)) + I1 + I2)*th1dd \
+    + (m2*(c2^2 + l1*c2*cos(th2)) + I2)*th2dd \
     + (m1*c1 + m2*l1)*g*cos(th1) + m2*c2*g*cos(th1 + th2)) - tauM1";
 const A80: &str = "N2*(IM2*th2dd + BM2*th2d) + Fc2*sign(th2d) + 1/N2*((m2*(c2^2 + l1*c2*cos(th2)) \
     + I2)*th1dd + (m2*c2^2 + I2)*th2dd + m2*c2*g*cos(th1 + th2)) - tauM2";

@@ -2,9 +2,11 @@
 
 use denavit::derive::BakeError;
 use denavit::emit::rust::EmitError;
+use denavit::fundamental::FourierError;
 use denavit::model::ModelError;
 use denavit::program::LowerError;
 use denavit::regressor::BaseError;
+use denavit::regressor::equations::EquationsError;
 use std::fmt;
 use std::io;
 
@@ -34,6 +36,12 @@ pub(crate) enum Failure {
     Base(Box<BaseError>),
     /// A file is no certificate.
     Certificate { file: String, error: serde_json::Error },
+    /// A regressor is not written out; holds model and cause.
+    Decompose(String, FourierError),
+    /// Equations have no regressor.
+    Equations(EquationsError),
+    /// There are no angles to cumulate; holds the model.
+    NoParallelAxes(String),
     /// The answer cannot be written to standard output.
     Stdout(io::Error),
 }
@@ -87,11 +95,14 @@ impl Failure {
                 "check the exponents of the numbers in the model".to_owned()
             }
             Self::NoFunction { .. } => "contacts are declared under \"contacts\"".to_owned(),
+            Self::NoParallelAxes(_) => "choose the basis fourier or product".to_owned(),
             Self::Certificate { .. } => {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
             Self::Model(_)
             | Self::Base(_)
+            | Self::Decompose(..)
+            | Self::Equations(_)
             | Self::Read { .. }
             | Self::Bake(_)
             | Self::Stdout(_) => return None,
@@ -105,6 +116,11 @@ impl fmt::Display for Failure {
             // place and hint are part of these
             Self::Model(error) => write!(f, "{error}")?,
             Self::Bake(error) => write!(f, "{error}")?,
+            Self::Equations(error) => write!(f, "{error}")?,
+            Self::Decompose(model, error) => write!(f, "{model}: {error}")?,
+            Self::NoParallelAxes(model) => {
+                write!(f, "{model}: there are no parallel axes whose angles could be cumulated")?;
+            }
             Self::NoModel { name, is_path: true, .. } => {
                 write!(f, "{name}: there is no such file")?
             }

@@ -1,6 +1,7 @@
 //! Files in and out: models by path or by name, outputs that are whole or not there.
 
 use super::failure::Failure;
+use denavit::model::equations::{self, Equations};
 use denavit::model::{self, Robot};
 use denavit::shipped;
 use std::fs::{self, File, OpenOptions};
@@ -12,12 +13,35 @@ const MAX_MODEL_BYTES: u64 = 16 << 20;
 
 /// The robot of a path, of a shipped model's name, or, for `-`, of standard input.
 pub(crate) fn read_model(place: &Path) -> Result<Robot, Failure> {
-    let name = place.to_string_lossy();
-    let (name, bytes) = match name.as_ref() {
-        "-" => ("standard input", read_all("standard input", &mut io::stdin().lock())?),
-        name => (name, read_path(place, name)?),
-    };
-    model::read(name, &bytes).map_err(Failure::Model)
+    let (name, bytes) = read_named(place)?;
+    model::read(&name, &bytes).map_err(Failure::Model)
+}
+
+/// What a command can be about that takes models and equations.
+pub(crate) enum Input {
+    Model(Box<Robot>),
+    Equations(Box<Equations>),
+}
+
+/// The model or the equations of a path, told apart by their format.
+pub(crate) fn read_input(place: &Path) -> Result<Input, Failure> {
+    let (name, bytes) = read_named(place)?;
+    if equations::is_equations_file(&bytes) {
+        let equations = equations::read(&name, &bytes).map_err(Failure::Model)?;
+        return Ok(Input::Equations(Box::new(equations)));
+    }
+    let robot = model::read(&name, &bytes).map_err(Failure::Model)?;
+    Ok(Input::Model(Box::new(robot)))
+}
+
+fn read_named(place: &Path) -> Result<(String, Vec<u8>), Failure> {
+    let name = place.to_string_lossy().into_owned();
+    if name == "-" {
+        let name = "standard input";
+        return Ok((name.to_owned(), read_all(name, &mut io::stdin().lock())?));
+    }
+    let bytes = read_path(place, &name)?;
+    Ok((name, bytes))
 }
 
 fn read_path(path: &Path, name: &str) -> Result<Vec<u8>, Failure> {

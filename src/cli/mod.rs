@@ -5,6 +5,7 @@
 
 mod base;
 mod count;
+mod decompose;
 mod demo;
 mod derive;
 mod emit;
@@ -42,6 +43,7 @@ enum Command {
     Demo(demo::Arguments),
     Inspect(inspect::Arguments),
     Derive(derive::Arguments),
+    Decompose(decompose::Arguments),
     Count(count::Arguments),
     Emit(emit::Arguments),
     Base(base::Arguments),
@@ -87,6 +89,7 @@ impl Command {
             Self::Demo(arguments) => demo::run(arguments, out),
             Self::Inspect(arguments) => inspect::run(arguments, out),
             Self::Derive(arguments) => derive::run(arguments, out),
+            Self::Decompose(arguments) => decompose::run(arguments, out),
             Self::Count(arguments) => count::run(arguments, out),
             Self::Emit(arguments) => emit::run(arguments, out),
             Self::Base(arguments) => base::run(arguments, out),

@@ -24,11 +24,15 @@ enum Format {
     /// A robot
     #[value(alias = denavit::model::FORMAT)]
     Model,
+    /// Equations as text
+    #[value(alias = denavit::model::equations::FORMAT)]
+    Equations,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
+        Format::Equations => denavit::model::equations::schema(),
     };
     writeln!(out, "{}", schema.trim_end())?;
     Ok(Answer::Done)

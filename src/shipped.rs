@@ -1,25 +1,25 @@
-//! The robots that denavit ships: their model files, as part of the library.
+//! The robots and equations that denavit ships: their files, as part of the library.
 
-/// A model file that is part of the library.
+/// A model file, or a file of equations, that is part of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShippedModel {
-    /// The model's name; the file is `models/NAME.json`.
+    /// The model's name; the file is `models/NAME.json`, or `models/equations/NAME.json`.
     pub name: &'static str,
     /// The content of the file.
     pub text: &'static str,
 }
 
 macro_rules! shipped {
-    ($($name:literal),* $(,)?) => {
+    ($folder:literal: $($name:literal),* $(,)?) => {
         [$(ShippedModel {
             name: $name,
-            text: include_str!(concat!("../models/", $name, ".json")),
+            text: include_str!(concat!("../", $folder, "/", $name, ".json")),
         }),*]
     };
 }
 
 /// Every shipped model, by name.
-pub const MODELS: &[ShippedModel] = &shipped![
+pub const MODELS: &[ShippedModel] = &shipped!["models":
     "double_pendulum",
     "iiwa",
     "panda",
@@ -37,9 +37,17 @@ pub const MODELS: &[ShippedModel] = &shipped![
     "tulip_one_torso",
 ];
 
+/// Every shipped file of equations, by name.
+pub const EQUATIONS: &[ShippedModel] = &shipped!["models/equations": "double_pendulum_drives"];
+
 /// The shipped model of that name.
 pub fn find(name: &str) -> Option<&'static ShippedModel> {
     MODELS.iter().find(|model| model.name == name)
+}
+
+/// The shipped equations of that name.
+pub fn find_equations(name: &str) -> Option<&'static ShippedModel> {
+    EQUATIONS.iter().find(|equations| equations.name == name)
 }
 
 #[cfg(test)]
@@ -48,17 +56,24 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
-    #[test]
-    fn every_file_of_the_directory_is_shipped() {
-        let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
-        let files: BTreeSet<String> = directory
+    fn stems(folder: &str) -> BTreeSet<String> {
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join(folder)
             .read_dir()
-            .expect("the directory of the models")
+            .expect("the directory is there")
             .map(|entry| entry.expect("an entry").path())
             .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
             .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
-            .collect();
-        let shipped: BTreeSet<String> = MODELS.iter().map(|model| model.name.to_owned()).collect();
-        assert_eq!(shipped, files);
+            .collect()
+    }
+
+    #[test]
+    fn every_file_of_the_directories_is_shipped_under_one_name() {
+        let names = |list: &[ShippedModel]| -> BTreeSet<String> {
+            list.iter().map(|model| model.name.to_owned()).collect()
+        };
+        assert_eq!(names(MODELS), stems("models"));
+        assert_eq!(names(EQUATIONS), stems("models/equations"));
+        assert!(names(MODELS).is_disjoint(&names(EQUATIONS)));
     }
 }

@@ -32,9 +32,9 @@ const READABLE_FUNCTIONS: usize = 60;
 Examples:
   denavit decompose planar_2r
   denavit decompose puma560 --terms inertia,gravity --json
-  denavit decompose models/equations/double_pendulum.json --basis product")]
+  denavit decompose double_pendulum_drives --basis product")]
 pub(crate) struct Arguments {
-    /// Path of a model or of a file of equations, name of a shipped model, or - for standard input
+    /// Path of a model or of a file of equations, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL|EQUATIONS")]
     input: PathBuf,
     /// What the functions are made of; if nothing is said, what makes the fewest

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use denavit::model::equations::{self, Equations};
 use denavit::model::{self, Robot};
-use denavit::shipped;
+use denavit::shipped::{self, ShippedModel};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -13,7 +13,7 @@ const MAX_MODEL_BYTES: u64 = 16 << 20;
 
 /// The robot of a path, of a shipped model's name, or, for `-`, of standard input.
 pub(crate) fn read_model(place: &Path) -> Result<Robot, Failure> {
-    let (name, bytes) = read_named(place)?;
+    let (name, bytes) = read_named(place, &[shipped::MODELS])?;
     model::read(&name, &bytes).map_err(Failure::Model)
 }
 
@@ -25,7 +25,7 @@ pub(crate) enum Input {
 
 /// The model or the equations of a path, told apart by their format.
 pub(crate) fn read_input(place: &Path) -> Result<Input, Failure> {
-    let (name, bytes) = read_named(place)?;
+    let (name, bytes) = read_named(place, &[shipped::MODELS, shipped::EQUATIONS])?;
     if equations::is_equations_file(&bytes) {
         let equations = equations::read(&name, &bytes).map_err(Failure::Model)?;
         return Ok(Input::Equations(Box::new(equations)));
@@ -34,26 +34,28 @@ pub(crate) fn read_input(place: &Path) -> Result<Input, Failure> {
     Ok(Input::Model(Box::new(robot)))
 }
 
-fn read_named(place: &Path) -> Result<(String, Vec<u8>), Failure> {
+/// Name and content of a path, of a file of one of these lists, or of standard input.
+fn read_named(place: &Path, shipped: &[&[ShippedModel]]) -> Result<(String, Vec<u8>), Failure> {
     let name = place.to_string_lossy().into_owned();
     if name == "-" {
         let name = "standard input";
         return Ok((name.to_owned(), read_all(name, &mut io::stdin().lock())?));
     }
-    let bytes = read_path(place, &name)?;
+    let bytes = read_path(place, &name, shipped)?;
     Ok((name, bytes))
 }
 
-fn read_path(path: &Path, name: &str) -> Result<Vec<u8>, Failure> {
+fn read_path(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Result<Vec<u8>, Failure> {
     let failure = |error| Failure::Read { file: name.to_owned(), error };
     let is_file = path.metadata().is_ok_and(|metadata| !metadata.is_dir());
-    if let Some(model) = shipped::find(name).filter(|_| !is_file) {
+    let mut known = shipped.iter().copied().flatten();
+    if let Some(model) = known.find(|model| model.name == name && !is_file) {
         return Ok(model.text.as_bytes().to_vec());
     }
     match File::open(path) {
         Ok(_) if path.is_dir() => Err(failure(io::ErrorKind::IsADirectory.into())),
         Ok(mut file) => read_all(name, &mut file),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(no_model(path, name)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(no_model(path, name, shipped)),
         Err(error) => Err(failure(error)),
     }
 }
@@ -76,9 +78,10 @@ fn read_all(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-fn no_model(path: &Path, name: &str) -> Failure {
+fn no_model(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Failure {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let nearest = denavit::expr::text::nearest(&stem, shipped::MODELS.iter().map(|m| m.name));
+    let names = shipped.iter().copied().flatten().map(|model| model.name);
+    let nearest = denavit::expr::text::nearest(&stem, names);
     let is_path = path.components().count() > 1 || path.extension().is_some();
     Failure::NoModel { name: name.to_owned(), nearest, is_path }
 }

@@ -2,7 +2,7 @@
 
 use super::{Directory, answer, run_in};
 
-const COMMANDS: [&str; 6] = ["demo", "inspect", "derive", "count", "emit", "schema"];
+const COMMANDS: [&str; 7] = ["demo", "inspect", "derive", "decompose", "count", "emit", "schema"];
 
 /// The command lines of a help text's examples; three blanks begin a remark.
 fn examples(help: &str) -> Vec<Vec<String>> {

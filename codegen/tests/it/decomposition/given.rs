@@ -9,7 +9,7 @@ use denavit_codegen::regressor::equations::{
 };
 
 fn shipped() -> Vec<u8> {
-    std::fs::read(repository().join("models/equations/double_pendulum.json")).unwrap()
+    std::fs::read(repository().join("models/equations/double_pendulum_drives.json")).unwrap()
 }
 
 fn regressor(equations: &Equations) -> Result<EquationsRegressor, EquationsError> {
@@ -41,7 +41,8 @@ fn faults(source: &str) -> String {
 #[test]
 fn the_file_of_the_double_pendulum_has_the_base_parameters_of_a93() {
     assert!(is_equations_file(&shipped()));
-    let equations = read("double_pendulum.json", &shipped()).unwrap_or_else(|e| panic!("{e}"));
+    let equations =
+        read("double_pendulum_drives.json", &shipped()).unwrap_or_else(|e| panic!("{e}"));
     let mut found = regressor(&equations).expect("polynomials");
     assert_eq!(found.decomposition.functions.len(), 11);
     assert_eq!((found.decomposition.shape(), found.decomposition.nonzeros()), ((22, 9), 19));

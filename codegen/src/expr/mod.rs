@@ -10,6 +10,8 @@
 //! - [`Order`]: one order of expressions, whatever order they were made in
 //! - [`text`]: expressions as text, read and written
 
+mod angle;
+mod circle;
 mod dag;
 mod diff;
 mod evaluate;
@@ -28,13 +30,13 @@ mod substitute;
 mod symbol;
 pub mod text;
 
+pub(crate) use angle::{AngleAtom, angle_atoms, atom_to_expr, is_pi};
 pub use dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
 pub use diff::derivative;
 pub use evaluate::{EvaluateError, Ring, evaluate};
 pub(crate) use fold_functions::quarter_turns;
 pub use operations::Operations;
 pub use order::Order;
-pub(crate) use rings::angle_atoms;
 pub use rings::{Floats, Rationals, Residues};
 pub(crate) use substitute::rebuild;
 pub use substitute::{free_symbols, substitute};

@@ -1,14 +1,14 @@
 //! The rings that expressions are evaluated over.
 
-use super::dag::{BinaryFunction, Dag, ExprId, Node, Relation, SymbolId, UnaryFunction};
+use super::angle::{angle_atoms, is_pi};
+use super::circle;
+use super::dag::{BinaryFunction, Dag, ExprId, Relation, SymbolId, UnaryFunction};
 use super::evaluate::{EvaluateError, Ring};
-use super::fold_functions::quarter_turns;
 use super::symbol::ClassSet;
 use crate::arena::Handle;
 use crate::number::{Rational, Residue, integer, to_f64};
 use num_traits::{Signed, ToPrimitive, Zero};
 use rustc_hash::FxHashMap;
-use std::collections::BTreeMap;
 
 /// Floating point, with the standard library's functions: for looking at values, never for
 /// deciding anything.
@@ -212,35 +212,26 @@ impl Residues {
         values: &[Option<Residue>],
     ) -> Result<[Residue; 2], EvaluateError> {
         let mut point = [Residue::ONE, Residue::ZERO];
-        for (atom, coefficient) in angle_atoms(dag, argument) {
-            let value = match atom {
-                // The atom 1 need not be a node below the angle.
-                Some(expr) if expr == dag.one() => Residue::ONE,
-                Some(expr) => values[expr.index()].expect("operands come first"),
-                None => Residue::scrambled(self.parameter_seed, fnv("pi")),
-            };
-            let mut coefficient = coefficient;
-            if atom.is_none() {
-                // Quarter turns are exact: pi is taken modulo pi/2.
-                let quarters = (&coefficient * integer(2)).floor();
-                coefficient -= &quarters / integer(2);
-                for _ in 0..quarter_turns(&quarters) {
-                    point = turned(point, [Residue::ZERO, Residue::ONE]);
-                }
+        for (atom, mut coefficient) in angle_atoms(dag, argument) {
+            if is_pi(dag, &atom) {
+                let (exact, odd) = circle::fraction_of_pi(&coefficient);
+                point = circle::turned(point, exact);
+                coefficient = odd;
             }
+            let mut value = Residue::ONE;
+            for &(expr, exponent) in &atom {
+                let factor = values[expr.index()].expect("operands come first");
+                value = value * power(factor, exponent).ok_or(EvaluateError::DivisionByZero)?;
+            }
+            let is_run_time = atom.iter().any(|&(expr, _)| dag.is_run_time(expr));
+            let seed = if is_run_time { self.seed } else { self.parameter_seed };
             let denominator = coefficient.denom().to_u64().unwrap_or(u64::MAX);
-            let seed = atom.map_or(self.parameter_seed, |expr| self.seed_of(dag, expr));
             let mut factor = self.random_unit_point(seed, value, denominator);
             if coefficient.is_negative() {
                 factor[1] = -factor[1];
             }
             let times = coefficient.numer().abs().to_u64().unwrap_or(u64::MAX);
-            for bit in (0..64 - times.leading_zeros()).map(|bit| times >> bit & 1) {
-                if bit == 1 {
-                    point = turned(point, factor);
-                }
-                factor = turned(factor, factor);
-            }
+            point = circle::turned(point, circle::multiple(factor, times));
         }
         Ok(point)
     }
@@ -253,11 +244,7 @@ impl Residues {
         let (value, is_opposite) = magnitude(value);
         let [cos, sin] = *self.unit_points.entry((value, denominator)).or_insert_with(|| {
             let key = value.value() ^ denominator.rotate_left(40);
-            let t = Residue::scrambled(seed ^ 0x756e_6974, key);
-            let square = t * t;
-            // 1 + t^2 has no root: -1 is no square modulo 2^61 - 1, which is 3 modulo 4.
-            let inverse = (Residue::ONE + square).inverse().expect("-1 is not a square");
-            [(Residue::ONE - square) * inverse, (t + t) * inverse]
+            circle::half_tangent(Residue::scrambled(seed ^ 0x756e_6974, key))
         });
         [cos, if is_opposite { -sin } else { sin }]
     }
@@ -269,52 +256,24 @@ impl Residues {
     }
 }
 
+/// a^n; `None` for a negative power of 0.
+fn power(a: Residue, exponent: i64) -> Option<Residue> {
+    let mut base = if exponent < 0 { a.inverse()? } else { a };
+    let mut exponent = exponent.unsigned_abs();
+    let mut result = Residue::ONE;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = result * base;
+        }
+        base = base * base;
+        exponent >>= 1;
+    }
+    Some(result)
+}
+
 /// One of a and -a, the same for both, and whether it is -a: what odd and even functions look at.
 fn magnitude(a: Residue) -> (Residue, bool) {
     if a > -a { (-a, true) } else { (a, false) }
-}
-
-/// The sum of two angles, as points (cos, sin).
-fn turned(a: [Residue; 2], b: [Residue; 2]) -> [Residue; 2] {
-    [a[0] * b[0] - a[1] * b[1], a[1] * b[0] + a[0] * b[1]]
-}
-
-/// An angle as a combination of atoms with rational coefficients; `None` is the atom pi.
-pub(crate) fn angle_atoms(dag: &Dag, argument: ExprId) -> BTreeMap<Option<ExprId>, Rational> {
-    let mut atoms = BTreeMap::<Option<ExprId>, Rational>::new();
-    // Users have larger handles than operands: what is taken last is complete, and each node is
-    // taken once, however often it is shared.
-    let mut pending = BTreeMap::from([(argument, integer(1))]);
-    while let Some((expr, factor)) = pending.pop_last() {
-        let mut push = |operand: ExprId, factor: Rational| {
-            *pending.entry(operand).or_insert_with(Rational::zero) += factor;
-        };
-        match dag.node(expr) {
-            Node::Neg(a) => push(a, -factor),
-            Node::Add(a, b) => {
-                push(a, factor.clone());
-                push(b, factor);
-            }
-            Node::Sub(a, b) => {
-                push(a, factor.clone());
-                push(b, -factor);
-            }
-            Node::Mul(a, b) => match (dag.as_constant(a), dag.as_constant(b)) {
-                (Some(k), _) => push(b, factor * k),
-                (_, Some(k)) => push(a, factor * k),
-                _ => *atoms.entry(Some(expr)).or_insert_with(Rational::zero) += factor,
-            },
-            Node::Pi => *atoms.entry(None).or_insert_with(Rational::zero) += factor,
-            // A rational number is a multiple of the atom 1.
-            Node::Constant(id) => {
-                let total = factor * dag.constant_value(id);
-                *atoms.entry(Some(dag.one())).or_insert_with(Rational::zero) += total;
-            }
-            _ => *atoms.entry(Some(expr)).or_insert_with(Rational::zero) += factor,
-        }
-    }
-    atoms.retain(|_, coefficient| !coefficient.is_zero());
-    atoms
 }
 
 fn fnv(text: &str) -> u64 {

@@ -117,22 +117,22 @@ fn convert_angle<const N: usize, C: Whole>(
         }
         let size = digit.unsigned_abs() as usize;
         let is_sine = key.flag();
-        let mut give = |code: i64, is_sine: bool, factor: i64| -> Result<(), Overflow> {
+        let mut give = |code: i64, is_sine: bool, factor: &C| -> Result<(), Overflow> {
             let key = key.plus(Key::shifted(code - digit, atom.position)).with_flag(is_sine);
-            let factor = C::from_big(&factor.into())?;
-            converted.push((key, coefficient.times(&factor)?));
+            converted.push((key, coefficient.times(factor)?));
             Ok(())
         };
-        for (power, &factor) in chebyshev(size, false)?.iter().enumerate() {
-            if factor != 0 {
+        for (power, factor) in chebyshev::<C>(size, false)?.iter().enumerate() {
+            if !factor.is_zero() {
                 give(power as i64, is_sine, factor)?;
             }
         }
         // sin(k q) cos R in a sine, -sin(k q) sin R in a cosine
-        let sign = if is_sine { digit.signum() } else { -digit.signum() };
-        for (power, &factor) in chebyshev(size - 1, true)?.iter().enumerate() {
-            if factor != 0 {
-                give(-(power as i64 + 1), !is_sine, sign * factor)?;
+        let is_negative = is_sine == (digit < 0);
+        for (power, factor) in chebyshev::<C>(size - 1, true)?.iter().enumerate() {
+            if !factor.is_zero() {
+                let factor = if is_negative { factor.negated() } else { factor.clone() };
+                give(-(power as i64 + 1), !is_sine, &factor)?;
             }
         }
     }
@@ -141,18 +141,20 @@ fn convert_angle<const N: usize, C: Whole>(
 }
 
 /// The coefficients of Chebyshev's polynomial T_n, or of U_n (`second`), by powers of c.
-fn chebyshev(n: usize, second: bool) -> Result<Vec<i64>, Overflow> {
-    let (mut before, mut last) = (vec![1i64], vec![0, if second { 2 } else { 1 }]);
+fn chebyshev<C: Whole>(n: usize, second: bool) -> Result<Vec<C>, Overflow> {
+    let [zero, one, two] = [0, 1, 2].map(C::from);
+    let first = if second { two.clone() } else { one.clone() };
+    let (mut before, mut last) = (vec![one], vec![zero.clone(), first]);
     if n == 0 {
         return Ok(before);
     }
     for _ in 1..n {
-        let mut next = vec![0i64; last.len() + 1];
-        for (power, &factor) in last.iter().enumerate() {
-            next[power + 1] = i64::checked_mul(factor, 2).ok_or(Overflow)?;
+        let mut next = vec![zero.clone(); last.len() + 1];
+        for (power, factor) in last.iter().enumerate() {
+            next[power + 1] = factor.times(&two)?;
         }
-        for (power, &factor) in before.iter().enumerate() {
-            next[power] = next[power].checked_sub(factor).ok_or(Overflow)?;
+        for (power, factor) in before.iter().enumerate() {
+            next[power] = next[power].plus(&factor.negated())?;
         }
         (before, last) = (last, next);
     }
@@ -165,8 +167,8 @@ mod tests {
 
     #[test]
     fn chebyshev_polynomials_are_those_of_the_tables() {
-        assert_eq!(chebyshev(4, false), Ok(vec![1, 0, -8, 0, 8]));
-        assert_eq!(chebyshev(3, true), Ok(vec![0, -4, 0, 8]));
-        assert_eq!([chebyshev(0, true), chebyshev(1, true)], [Ok(vec![1]), Ok(vec![0, 2])]);
+        assert_eq!(chebyshev(4, false), Ok(vec![1_i64, 0, -8, 0, 8]));
+        assert_eq!(chebyshev(3, true), Ok(vec![0_i64, -4, 0, 8]));
+        assert_eq!([chebyshev(0, true), chebyshev(1, true)], [Ok(vec![1_i64]), Ok(vec![0, 2])]);
     }
 }

@@ -44,11 +44,12 @@ fn recomposed(dag: &mut Dag, found: &Decomposition) -> Vec<Vec<ExprId>> {
 }
 
 fn assert_same(dag: &Dag, left: &[Vec<ExprId>], right: &[Vec<ExprId>]) {
+    let texts = || right.concat().iter().map(|&expr| text::print(dag, expr)).collect::<Vec<_>>();
     for seed in 1..4 {
         let at = |rows: &[Vec<ExprId>]| evaluate(dag, &rows.concat(), &mut Residues::new(seed));
         let (left, right) = (at(left), at(right));
         assert!(left.is_ok(), "{left:?}");
-        assert_eq!(left, right);
+        assert_eq!(left, right, "{:?}", texts());
     }
 }
 
@@ -95,6 +96,29 @@ fn known_angles_stay_in_the_coefficients() {
 fn known_sums_divide_as_one_factor() {
     let found = check(&["q1d/(l1 + l2) + 2*q1d/(l1 + l2)", "q1d/(l1*m1^2)"], &[]);
     assert_eq!((found[0].functions.len(), found[0].coefficients.len()), (1, 2));
+}
+
+#[test]
+fn numbers_inside_a_product_are_part_of_the_multiple() {
+    // The graph may write 2 (q2 sin q1) as q2 (2 sin q1): one angle all the same.
+    check(
+        &[
+            "sin(q2*sin(q1))^2 + q2*sin(q2*sin(q1))",
+            "cos(2*(q2*sin(q1)) - 3*q1)",
+            "sin(q1*q2)*sin(q2)",
+        ],
+        &[],
+    );
+    let found = check(&["cos(2*(q1*q2)) - 2*cos(q1*q2)^2", "cos(q1*q1/q2)*sin(3*q1^2/q2)"], &[]);
+    assert_eq!(found[0].columns[0].len(), 1, "it is -1");
+}
+
+#[test]
+fn powers_of_many_factors_do_not_overflow() {
+    let found = check(&["cos(80*q1) + sin(3*q1)"], &[]);
+    let sizes: Vec<_> = found.iter().map(|f| f.functions.len()).collect();
+    // cos 80 q, sin 3 q | c^0 to c^80 (T_80 has numbers near 2^79), s, c^2 s
+    assert_eq!(sizes, [2, 43]);
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use super::key::Key;
 use crate::expr::{
-    Dag, ExprId, Node, SymbolId, UnaryFunction, angle_atoms, free_symbols, quarter_turns,
+    AngleAtom, Dag, ExprId, Node, SymbolId, UnaryFunction, angle_atoms, atom_to_expr, free_symbols,
+    is_pi, quarter_turns,
 };
 use crate::number::{Rational, integer};
 use num_bigint::BigInt;
@@ -162,18 +163,17 @@ impl Layout {
         arguments.sort_unstable();
         arguments.dedup();
         let mut apart = Vec::new();
-        let mut denominators: Vec<(ExprId, BigInt)> = Vec::new();
+        let mut denominators: Vec<(AngleAtom, BigInt)> = Vec::new();
         for argument in arguments {
-            let mut atoms: Vec<(ExprId, Rational)> = Vec::new();
+            let mut atoms: Vec<(AngleAtom, Rational)> = Vec::new();
             let mut quarters = 0;
             for (atom, mut coefficient) in angle_atoms(dag, argument) {
-                if atom.is_none() {
+                if is_pi(dag, &atom) {
                     let whole = (&coefficient * integer(2)).floor();
                     coefficient -= &whole / integer(2);
                     quarters = quarter_turns(&whole);
                 }
                 if !coefficient.is_zero() {
-                    let atom = atom.unwrap_or_else(|| dag.pi());
                     atoms.push((atom, coefficient));
                 }
             }
@@ -184,14 +184,15 @@ impl Layout {
                         let b = coefficient.denom();
                         *common *= Rational::new(common.clone(), b.clone()).denom().clone();
                     }
-                    None => denominators.push((*atom, coefficient.denom().clone())),
+                    None => denominators.push((atom.clone(), coefficient.denom().clone())),
                 }
             }
             apart.push((argument, atoms, quarters));
         }
         for (atom, denominator) in &denominators {
             let unit = dag.constant(Rational::new(BigInt::one(), denominator.clone()));
-            let unit = dag.mul(unit, *atom);
+            let atom = atom_to_expr(dag, atom);
+            let unit = dag.mul(unit, atom);
             self.angles.push(Atom::new(unit, depends_on_known(dag, unit, is_known)));
         }
         for (argument, atoms, quarters) in apart {

@@ -3,11 +3,13 @@
 //! - everything of [`denavit_codegen`], the symbolic compiler
 //! - [`shipped`]: robots whose model files are part of the library
 //! - [`tulip`], [`puma560`]: what the compiler made of two of them when this library was built
+//! - [`simulate`]: robots in motion, on the ground
 //! - [`report`]: tables and pictures of robots
 
 mod generated;
 pub mod report;
 pub mod shipped;
+pub mod simulate;
 
 pub use denavit_codegen::*;
 pub use generated::{puma560, tulip};

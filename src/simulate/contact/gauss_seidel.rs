@@ -102,13 +102,7 @@ fn sticking(block: &[[f64; 3]; 3], w: &[f64; 3], old: &[f64; 3], size: usize) ->
 }
 
 /// Corrects the normal force, then the tangential one by a step that cannot overshoot.
-fn slipping(
-    block: &[[f64; 3]; 3],
-    w: &[f64; 3],
-    old: &[f64; 3],
-    n: usize,
-    mu: f64,
-) -> [f64; 3] {
+fn slipping(block: &[[f64; 3]; 3], w: &[f64; 3], old: &[f64; 3], n: usize, mu: f64) -> [f64; 3] {
     let mut new = *old;
     new[n] = (old[n] - w[n] / block[n][n]).max(0.0);
     let change = new[n] - old[n];

@@ -111,7 +111,8 @@ impl ImpactSolver {
             solution.response[index * rows + rows - 1] -= bounce(index);
         }
         // P . (u+ + u-) / 2
-        let mean = solution.response.iter().zip(impact.before).map(|(after, before)| after + before);
+        let mean =
+            solution.response.iter().zip(impact.before).map(|(after, before)| after + before);
         Ok(0.5 * solution.force.iter().zip(mean).map(|(p, u)| p * u).sum::<f64>())
     }
 }

@@ -34,8 +34,10 @@ pub struct LcpReport {
     pub residual: f64,
 }
 
-/// Entries below this, in a problem whose entries are of order 1, are no pivots.
-const PIVOT: f64 = 1e-11;
+/// Entries below this, in a column whose entries are of order 1, are no pivots. What is rounding
+/// of zero and what is a small pivot shows only in the residual: the next threshold is tried where
+/// the one before ends inaccurately.
+const PIVOTS: [f64; 3] = [1e-9, 1e-12, 1e-7];
 /// Ratios closer than this, relatively, are equal: their rows are compared lexicographically.
 const TIE: f64 = 1e-12;
 /// Largest residual of a solution.
@@ -82,8 +84,26 @@ impl Lemke {
         self.equilibrate(m);
         let magnitude =
             q.iter().zip(&self.scale).fold(0.0_f64, |sum, (entry, d)| sum.max((entry * d).abs()));
+        let mut report = self.attempt(m, q, magnitude, limit, PIVOTS[0]);
+        for pivot in &PIVOTS[1..] {
+            if report.outcome == LcpOutcome::Inaccurate {
+                report = self.attempt(m, q, magnitude, limit, *pivot);
+            }
+        }
+        report
+    }
+
+    fn attempt(
+        &mut self,
+        m: &[f64],
+        q: &[f64],
+        magnitude: f64,
+        limit: usize,
+        smallest: f64,
+    ) -> LcpReport {
+        self.solution.fill(0.0);
         self.fill(m, q, magnitude);
-        let (outcome, pivots) = self.pivot_along_the_path(limit);
+        let (outcome, pivots) = self.pivot_along_the_path(limit, smallest);
         if outcome != LcpOutcome::Solved {
             return LcpReport { outcome, pivots, residual: f64::INFINITY };
         }
@@ -134,11 +154,12 @@ impl Lemke {
         }
     }
 
-    fn pivot_along_the_path(&mut self, limit: usize) -> (LcpOutcome, usize) {
+    fn pivot_along_the_path(&mut self, limit: usize, smallest: f64) -> (LcpOutcome, usize) {
         let (n, width) = (self.n, 2 * self.n + 2);
         let right = |row: usize| self.tableau[row * width + 2 * n + 1];
         // Lexicographically smallest (q_i, e_i): of equal q_i the last.
-        let mut row = (0..n).fold(0, |best, row| if right(row) <= right(best) { row } else { best });
+        let mut row =
+            (0..n).fold(0, |best, row| if right(row) <= right(best) { row } else { best });
         let mut entering = 2 * n;
         for pivots in 1..=limit {
             self.pivot(row, entering);
@@ -147,7 +168,7 @@ impl Lemke {
                 return (LcpOutcome::Solved, pivots);
             }
             entering = if leaving < n { leaving + n } else { leaving - n };
-            match self.leaving_row(entering) {
+            match self.leaving_row(entering, smallest) {
                 Some(next) => row = next,
                 None => return (LcpOutcome::Ray, pivots),
             }
@@ -179,17 +200,18 @@ impl Lemke {
     }
 
     /// The row of the smallest ratio; the cover's, if that is among the smallest.
-    fn leaving_row(&self, entering: usize) -> Option<usize> {
+    fn leaving_row(&self, entering: usize, smallest: f64) -> Option<usize> {
         let (n, width) = (self.n, 2 * self.n + 2);
         let at = |row: usize, column: usize| self.tableau[row * width + column];
-        let candidates = || (0..n).filter(|&row| at(row, entering) > PIVOT);
+        let largest = (0..n).fold(1.0_f64, |sum, row| sum.max(at(row, entering).abs()));
+        let candidates = || (0..n).filter(|&row| at(row, entering) > smallest * largest);
         let ratio = |row: usize| at(row, 2 * n + 1).max(0.0) / at(row, entering);
-        let smallest = candidates().map(ratio).fold(f64::INFINITY, f64::min);
-        if smallest == f64::INFINITY {
+        let least = candidates().map(ratio).fold(f64::INFINITY, f64::min);
+        if least == f64::INFINITY {
             return None;
         }
-        let margin = TIE * (1.0 + smallest);
-        let tied = || candidates().filter(|&row| ratio(row) <= smallest + margin);
+        let margin = TIE * (1.0 + least);
+        let tied = || candidates().filter(|&row| ratio(row) <= least + margin);
         if let Some(cover) = tied().find(|&row| self.basis[row] == 2 * n) {
             return Some(cover);
         }

@@ -219,7 +219,9 @@ impl ContactProblem<'_> {
             let pushes = force[normal] >= -no_force && response[normal].abs() <= no_response;
             match mode {
                 Mode::Open => response[normal] >= -no_response,
+                // Constraints that are met only up to a drift contradict each other a little.
                 Mode::Stick => match contact.friction {
+                    _ if length(w) > 100.0 * no_response => false,
                     Friction::NoSlip => pushes,
                     Friction::Coulomb(mu) => {
                         pushes && length(&f[..tangents]) <= mu * force[normal] + no_force

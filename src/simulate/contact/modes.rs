@@ -105,7 +105,11 @@ impl ModeSolver {
     }
 
     /// The forces of least norm, whatever their signs.
-    fn solve(&mut self, problem: &ContactProblem<'_>, modes: &[Mode]) -> Result<(), ContactFailure> {
+    fn solve(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        modes: &[Mode],
+    ) -> Result<(), ContactFailure> {
         self.list_unknowns(problem, modes);
         let (rows, size) = (problem.rows(), self.unknowns.len());
         self.matrix.clear();
@@ -130,9 +134,11 @@ impl ModeSolver {
         for (index, (mode, contact)) in modes.iter().zip(problem.contacts).enumerate() {
             match mode {
                 Mode::Open => {}
-                Mode::Stick => self.unknowns.extend(
-                    problem.block(index).map(|row| Unknown { row, tangents: 0, friction: [0.0; 2] }),
-                ),
+                Mode::Stick => self.unknowns.extend(problem.block(index).map(|row| Unknown {
+                    row,
+                    tangents: 0,
+                    friction: [0.0; 2],
+                })),
                 Mode::Slip(direction) => {
                     let mu = contact.coefficient().unwrap_or(0.0);
                     self.unknowns.push(Unknown {
@@ -227,7 +233,9 @@ impl ModeSolver {
         for plane in &self.planes {
             self.slack.push(plane.value(&self.least));
             for direction in 0..self.system.nullity() {
-                self.slope.push(plane.value(self.system.null_vector(direction)));
+                let slope = plane.value(self.system.null_vector(direction));
+                // Rounding of a unit vector is no direction.
+                self.slope.push(if slope.abs() > 1e-12 { slope } else { 0.0 });
             }
         }
     }

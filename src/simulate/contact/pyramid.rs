@@ -10,7 +10,7 @@
 //! Exact in a plane, where the directions are both; in space the pyramid lies within the cone. A
 //! contact that slips already in a known direction has its friction in the column of f_n.
 
-use super::lemke::{Lemke, LcpReport};
+use super::lemke::{LcpReport, Lemke};
 use super::{ContactProblem, Space};
 use denavit_runtime::Scalar;
 
@@ -88,7 +88,8 @@ impl Pyramid {
         self.variables.clear();
         for (index, contact) in problem.contacts.iter().enumerate().filter(|(_, c)| !c.released) {
             let mu = contact.coefficient().unwrap_or(0.0);
-            let friction = contact.slipping.map_or([0.0; 2], |direction| direction.map(|d| -mu * d));
+            let friction =
+                contact.slipping.map_or([0.0; 2], |direction| direction.map(|d| -mu * d));
             self.variables.push(Variable::Normal { contact: index, friction });
             if contact.has_slip_law() {
                 continue;

@@ -211,7 +211,11 @@ impl ContactSolver {
             self.trial.force.resize(problem.rows(), 0.0);
             let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
             let report = gauss_seidel::solve(problem, limits, &mut self.trial.force);
-            if !report.converged || !self.follow_directions(problem) {
+            self.read_modes(problem);
+            let trial = &self.trial;
+            if !report.converged
+                || !problem.is_admissible(&trial.modes, &trial.force, &trial.response)
+            {
                 return Err(ContactFailure::NoSolution);
             }
         }
@@ -219,8 +223,8 @@ impl ContactSolver {
         Ok(())
     }
 
-    /// Reads modes off the forces of the trial, then lets the directions follow the responses.
-    fn follow_directions(&mut self, problem: &ContactProblem<'_>) -> bool {
+    /// Reads modes off the forces of the trial and their responses.
+    fn read_modes(&mut self, problem: &ContactProblem<'_>) {
         self.trial.response.resize(problem.rows(), 0.0);
         problem.respond(&self.trial.force, &mut self.trial.response);
         self.trial.modes.clear();
@@ -239,7 +243,12 @@ impl ContactSolver {
                 Mode::Slip(unit(tangential, speed))
             });
         }
-        for _ in 0..200 {
+    }
+
+    /// Lets the directions follow the responses until they stand still; says if they do.
+    fn follow_directions(&mut self, problem: &ContactProblem<'_>) -> bool {
+        self.read_modes(problem);
+        for _ in 0..100 {
             let admissible = self.try_modes(problem);
             let mut turned = 0.0_f64;
             for (index, contact) in problem.contacts.iter().enumerate() {
@@ -252,7 +261,11 @@ impl ContactSolver {
                 {
                     let new = unit(tangential, speed);
                     turned = turned.max((new[0] - direction[0]).hypot(new[1] - direction[1]));
-                    *direction = new;
+                    // Friction overshoots: what slips to one side is braked to the other. The mean
+                    // of both directions damps that.
+                    let mean = [0, 1].map(|axis| 0.5 * (new[axis] + direction[axis]));
+                    let size = length(&mean);
+                    *direction = if size > 0.5 { unit(&mean, size) } else { new };
                 }
             }
             if turned <= 1e-14 {

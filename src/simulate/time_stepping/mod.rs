@@ -1,1 +1,1 @@
-//! Time stepping.
+//! Schemes that take contacts into account over whole steps, impacts and forces alike.

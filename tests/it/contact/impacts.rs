@@ -169,7 +169,8 @@ proptest! {
         let entry = |key: usize| number(seed, key as u64);
         // Apart from each other, so that no force is arbitrarily large.
         let at = |k: usize| 0.5 * k as f64 - 0.5 + 0.1 * entry(k);
-        let points: Vec<[f64; 2]> = (0..count).map(|k| [at(k), -0.5 + 0.1 * entry(9 + k)]).collect();
+        let point = |k: usize| [at(k), -0.5 + 0.1 * entry(9 + k)];
+        let points: Vec<[f64; 2]> = (0..count).map(point).collect();
         let system = plane_body(1.0, 0.05 + entry(30).abs(), &points);
         let v: Vec<f64> = (0..3).map(|k| entry(20 + k)).collect();
         let friction = if no_slip { Friction::NoSlip } else { Friction::Coulomb(mu) };

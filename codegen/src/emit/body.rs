@@ -3,6 +3,7 @@
 //! A value that is used once is written where it is used while the line stays short; every other
 //! one gets a `let`. The operations and their order of evaluation are those of the code.
 
+use super::arrays::{Place, list};
 use super::names::{Names, joint_numbers};
 use crate::arena::Handle;
 use crate::expr::Relation;
@@ -11,6 +12,9 @@ use std::ops::Range;
 
 /// Longest right side of a `let`; the line stays within 100 columns.
 const LONGEST: usize = 72;
+
+/// Most instructions in one block.
+const BLOCK: usize = 2_000;
 
 /// How tightly the outermost operation of a text binds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,7 +63,7 @@ pub(super) struct Vocabulary {
     pub(super) named: Vec<Option<String>>,
 }
 
-/// Writes the statements of one code, whole or in parts.
+/// Writes the statements of one code.
 pub(super) struct Body<'a> {
     code: &'a Code,
     terms: Vec<Option<Term>>,
@@ -114,8 +118,49 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// Writes all instructions: as they are, or in blocks of [`BLOCK`] that hand on what is used
+    /// after them. Each `let` opens a scope within that of the one before, and rustc runs out of
+    /// stack where some 2500 are nested (1.95, with debug information).
+    pub(super) fn write_all(&mut self) {
+        let length = self.code.instructions.len();
+        if length <= BLOCK {
+            self.write(0..length);
+            return;
+        }
+        let mut statements = Vec::new();
+        for start in (0..length).step_by(BLOCK) {
+            let block = start..length.min(start + BLOCK);
+            self.write(block.clone());
+            let lines = self.take_lines();
+            let slots = self.used_after(block).into_iter();
+            let names = slots.map(|slot| vec![self.text(slot).to_owned()]).collect();
+            let names = list(names, Place { indent: 8, followed: true });
+            statements.push(format!("let {} = {{", names.join("\n")));
+            statements.extend(lines.iter().chain(&names).map(|line| format!("    {line}")));
+            statements.push("};".to_owned());
+        }
+        self.lines = statements;
+    }
+
+    /// Whether the code is written in blocks.
+    pub(super) fn is_in_blocks(&self) -> bool {
+        self.code.instructions.len() > BLOCK
+    }
+
+    /// The slots assigned in a range and used after it.
+    fn used_after(&self, range: Range<usize>) -> Vec<Slot> {
+        let mut slots = Vec::new();
+        for instruction in &self.code.instructions[range.clone()] {
+            instruction.for_each_result(|slot| {
+                let is_used = self.last_use[slot.index()].is_some_and(|last| last >= range.end);
+                slots.extend(is_used.then_some(slot));
+            });
+        }
+        slots
+    }
+
     /// Writes the instructions of a range; what is used after it gets a name.
-    pub(super) fn write(&mut self, range: Range<usize>) {
+    fn write(&mut self, range: Range<usize>) {
         for index in range.clone() {
             let instruction = self.code.instructions[index];
             instruction.for_each_operand(|operand| self.declare(operand));
@@ -149,11 +194,6 @@ impl<'a> Body<'a> {
         {
             self.lines.push(declaration.clone());
         }
-    }
-
-    /// From here on, the slot is read as `text`.
-    pub(super) fn read_as(&mut self, slot: Slot, text: String) {
-        self.terms[slot.index()] = Some(Term::atom(text));
     }
 
     /// The text of a value that is there.

@@ -6,7 +6,6 @@
 
 mod functions;
 mod parameters;
-mod parts;
 mod selectors;
 
 use super::arrays::{Place, list};

@@ -1,6 +1,5 @@
 //! The functions: documentation, signature, statements, result.
 
-use super::parts::in_parts;
 use super::selectors::{links, variants};
 use super::{Context, bound, template};
 use crate::emit::arrays::{Place, array};
@@ -9,10 +8,6 @@ use crate::emit::names::{Names, camel_case, identifier};
 use crate::emit::wording::{argument, documentation, of_joints, operations, summary, wrapped};
 use crate::function::FunctionName;
 use crate::program::{Leaf, OutputShape, Routine, counts};
-
-/// Functions of more instructions than this are written in parts, so that an unoptimised build
-/// does not need the stack of all their values at once.
-const LARGEST: usize = 20_000;
 
 /// All functions, with the structs of their results.
 pub(super) fn items(context: &Context<'_>) -> Vec<String> {
@@ -27,7 +22,7 @@ pub(super) fn items(context: &Context<'_>) -> Vec<String> {
             dispatched.push(routine.name);
             items.push(dispatch(context, routine, &names));
         }
-        items.extend(function(context, routine, name));
+        items.push(function(context, routine, name));
     }
     items
 }
@@ -46,27 +41,12 @@ fn unique_names(context: &Context<'_>) -> Vec<String> {
     routines.iter().map(name).collect()
 }
 
-/// A function, after its parts if it is too large for one piece.
-fn function(context: &Context<'_>, routine: &Routine, name: &str) -> Vec<String> {
+/// A function.
+fn function(context: &Context<'_>, routine: &Routine, name: &str) -> String {
     let code = &routine.code;
     let mut body = Body::new(code, vocabulary(context, routine));
-    let (mut items, mut lines) = (Vec::new(), Vec::new());
-    if code.instructions.len() > LARGEST {
-        let (parts, calls) = in_parts(context, routine, name, &mut body);
-        items.extend(parts);
-        lines.extend(calls);
-        if code
-            .outputs
-            .iter()
-            .any(|&output| matches!(code.leaves.get(output), Some(Leaf::Prelude(_))))
-        {
-            lines.push("let p = parameters;".to_owned());
-        }
-    } else {
-        body.write(0..code.instructions.len());
-        let is_read = |leaf: &dyn Fn(&Leaf) -> bool| code.leaves.values().any(leaf);
-        lines.extend(prologue(routine, is_read));
-    }
+    let mut lines = prologue(routine);
+    body.write_all();
     code.outputs.iter().for_each(|&output| body.declare(output));
     lines.extend(body.take_lines());
     let entries: Vec<&str> = code.outputs.iter().map(|&output| body.text(output)).collect();
@@ -80,13 +60,16 @@ fn function(context: &Context<'_>, routine: &Routine, name: &str) -> Vec<String>
     let is_public = routine.link.is_none();
     let result = result_type(context, routine);
     let start = if is_public { format!("pub fn {name}") } else { format!("fn {name}") };
-    let signature = signature(routine, &start, &arguments(routine), &format!(" -> {result}"));
-    items.push(frame(&doc(context, routine), is_public, &signature, &lines));
-    items
+    let signature = signature(routine, &start, &arguments(routine), &result);
+    let mut doc = doc(context, routine);
+    if body.is_in_blocks() {
+        doc += "#[rustfmt::skip] // each name would get a line of its own\n";
+    }
+    frame(&doc, is_public, &signature, &lines)
 }
 
 /// Documentation, attributes, signature and statements together.
-pub(super) fn frame(doc: &str, is_public: bool, signature: &str, lines: &[String]) -> String {
+fn frame(doc: &str, is_public: bool, signature: &str, lines: &[String]) -> String {
     let mut attributes = String::new();
     if is_public {
         attributes += "#[must_use]\n";
@@ -124,17 +107,15 @@ fn vocabulary(context: &Context<'_>, routine: &Routine) -> Vocabulary {
 
 /// Statements before all others: a short name for the parameters; arguments that nothing reads are
 /// read, so that the compiler does not warn.
-pub(super) fn prologue(
-    routine: &Routine,
-    is_read: impl Fn(&dyn Fn(&Leaf) -> bool) -> bool,
-) -> Vec<String> {
-    let mut lines = Vec::new();
-    match is_read(&|leaf| matches!(leaf, Leaf::Prelude(_))) {
-        true => lines.push("let p = parameters;".to_owned()),
-        false => lines.push("let _ = parameters;".to_owned()),
-    }
+fn prologue(routine: &Routine) -> Vec<String> {
+    let leaves = &routine.code.leaves;
+    let reads_parameters = leaves.values().any(|leaf| matches!(leaf, Leaf::Prelude(_)));
+    let parameters = if reads_parameters { "let p = parameters;" } else { "let _ = parameters;" };
+    let mut lines = vec![parameters.to_owned()];
     for (row, shape) in routine.arguments.iter().enumerate() {
-        if !is_read(&|leaf| matches!(leaf, Leaf::Argument { argument, .. } if *argument == row)) {
+        let is_read =
+            |leaf: &Leaf| matches!(leaf, Leaf::Argument { argument, .. } if *argument == row);
+        if !leaves.values().any(is_read) {
             lines.push(format!("let _ = {};", shape.name));
         }
     }
@@ -142,22 +123,22 @@ pub(super) fn prologue(
 }
 
 /// The arguments with their types.
-pub(super) fn arguments(routine: &Routine) -> Vec<String> {
+fn arguments(routine: &Routine) -> Vec<String> {
     let vectors = routine.arguments.iter().map(|shape| format!("{}: &[S; DOF]", shape.name));
     std::iter::once("parameters: &Parameters<S>".to_owned()).chain(vectors).collect()
 }
 
 /// `pub fn name<S: Scalar>(arguments) -> result`, on one line if it fits; `start` goes up to the
-/// name, `end` is the result.
-pub(super) fn signature(routine: &Routine, start: &str, arguments: &[String], end: &str) -> String {
+/// name.
+fn signature(routine: &Routine, start: &str, arguments: &[String], result: &str) -> String {
     let start = format!("{start}<S: {}>", bound(routine.code.is_transcendental()));
-    let line = format!("{start}({}){end}", arguments.join(", "));
+    let line = format!("{start}({}) -> {result}", arguments.join(", "));
     // Room for ` {`.
     if line.len() <= 98 {
         return line;
     }
     let lines: String = arguments.iter().map(|argument| format!("    {argument},\n")).collect();
-    format!("{start}(\n{lines}){end}")
+    format!("{start}(\n{lines}) -> {result}")
 }
 
 fn doc(context: &Context<'_>, routine: &Routine) -> String {
@@ -302,9 +283,9 @@ fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String 
     let bounding = all.clone().find(is_transcendental).unwrap_or(first);
     let mut arguments = arguments(first);
     arguments.insert(1, "link: Link".to_owned());
-    let end = format!(" -> {}", result_type(context, first));
+    let result = result_type(context, first);
     let start = format!("pub fn {}", first.name);
-    let signature = signature(bounding, &start, &arguments, &end);
+    let signature = signature(bounding, &start, &arguments, &result);
     let mut doc = vec![summary(first.name).to_owned(), String::new()];
     let shapes = first.arguments.iter();
     doc.extend(shapes.map(|shape| format!("- `{}`: {}", shape.name, argument(shape))));

@@ -85,7 +85,7 @@ fn prelude(context: &Context<'_>) -> (String, String) {
         }
     }
     let mut body = Body::new(code, Vocabulary { names, leaves, named });
-    body.write(0..code.instructions.len());
+    body.write_all();
     code.outputs.iter().for_each(|&output| body.declare(output));
     let statements = body.take_lines().join("\n");
     let result = |(&output, field): (&_, &String)| match body.text(output) {

@@ -6,7 +6,7 @@ use super::dag::{BinaryFunction, Dag, ExprId, Relation, SymbolId, UnaryFunction}
 use super::evaluate::{EvaluateError, Ring};
 use super::symbol::ClassSet;
 use crate::arena::Handle;
-use crate::number::{Rational, Residue, integer, to_f64};
+use crate::number::{Rational, Residue, to_f64};
 use num_traits::{Signed, ToPrimitive, Zero};
 use rustc_hash::FxHashMap;
 

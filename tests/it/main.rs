@@ -4,3 +4,4 @@ mod cli;
 mod contact;
 mod emitted;
 mod tidy;
+mod time_stepping;

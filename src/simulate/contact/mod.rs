@@ -8,7 +8,8 @@
 //!
 //! > w = G f + b,  G = J M^-1 J^T,  0 <= w_n, 0 <= f_n, w_n f_n = 0  and a law of friction,
 //!
-//! where b is what w would be without contact forces: between impacts J M^-1 (tau - bias) + Jdot qd.
+//! where b is what w would be without contact forces: J M^-1 (tau - bias) + Jdot qd, or before an
+//! impact the velocity.
 //! [`ContactProblem`] is that problem:
 //!
 //! 1. [`delassus`] forms G;

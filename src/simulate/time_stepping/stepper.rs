@@ -1,0 +1,223 @@
+//! The steps.
+
+use super::{Instant, Scheme, StepFailure, StepReport, StepSolver, Stepping, Terms};
+use super::{StepLaw, TimeSteppingModel};
+use crate::simulate::contact::delassus::Delassus;
+use crate::simulate::contact::gauss_seidel;
+use crate::simulate::contact::lemke::LcpOutcome;
+use crate::simulate::contact::pyramid::Pyramid;
+use crate::simulate::contact::{Contact, ContactProblem, Friction, Space, Tolerance};
+
+/// Facets of the pyramid that stands in for cones on which sweeps do not converge.
+const FALLBACK_FACETS: usize = 16;
+
+/// Makes steps; holds the impulses of the last one, from which the next one starts.
+#[derive(Clone, Debug)]
+pub struct TimeStepper {
+    stepping: Stepping,
+    space: Space,
+    /// Of the last step, for all contacts.
+    impulses: Vec<f64>,
+    contacts: Vec<Contact>,
+    closed: Vec<usize>,
+    gaps: Vec<f64>,
+    middle: Vec<f64>,
+    terms: Terms,
+    delassus: Delassus,
+    /// v without, then with contact impulses.
+    rates: Vec<f64>,
+    free: Vec<f64>,
+    force: Vec<f64>,
+    scratch: Vec<f64>,
+    pyramid: Pyramid,
+}
+
+impl TimeStepper {
+    /// Prepares steps of a model with as many contacts as there are laws.
+    pub fn new(stepping: Stepping, model: &impl TimeSteppingModel) -> Self {
+        let (n, count) = (model.dof(), model.contacts());
+        assert_eq!(stepping.laws.len(), count, "a law for every contact");
+        let space = model.space();
+        Self {
+            space,
+            stepping,
+            impulses: vec![0.0; count * space.rows()],
+            contacts: Vec::with_capacity(count),
+            closed: Vec::with_capacity(count),
+            gaps: vec![0.0; count],
+            middle: vec![0.0; n],
+            terms: Terms::default(),
+            delassus: Delassus::new(),
+            rates: vec![0.0; n],
+            free: Vec::new(),
+            force: Vec::new(),
+            scratch: vec![0.0; n],
+            pyramid: Pyramid::new(),
+        }
+    }
+
+    /// Impulses of the last step on all contact points, along tangents and normal [N s].
+    pub fn impulses(&self) -> &[f64] {
+        &self.impulses
+    }
+
+    /// Contact points in the problem of the last step.
+    pub fn closed(&self) -> &[usize] {
+        &self.closed
+    }
+
+    /// The settings.
+    pub fn stepping(&self) -> &Stepping {
+        &self.stepping
+    }
+
+    /// One step from `t_s`: `q` and `qd` become those of `t_s` + h.
+    pub fn step(
+        &mut self,
+        model: &mut impl TimeSteppingModel,
+        t_s: f64,
+        q: &mut [f64],
+        qd: &mut [f64],
+    ) -> Result<StepReport, StepFailure> {
+        let (n, h) = (qd.len(), self.stepping.step_s);
+        let ahead = match self.stepping.scheme {
+            Scheme::MoreauMidpoint => 0.5 * h,
+            Scheme::Anitescu { .. } => 0.0,
+        };
+        for ((middle, q), qd) in self.middle.iter_mut().zip(&*q).zip(&*qd) {
+            *middle = q + ahead * qd;
+        }
+        self.find_closed(model);
+        self.terms.clear(n, self.closed.len() * self.space.rows());
+        let at = Instant { t_s: t_s + ahead, q: &self.middle, qd };
+        model.terms(at, &self.closed, &mut self.terms);
+        self.free_rates(qd)?;
+        let mut report = StepReport {
+            closed: self.closed.len(),
+            penetration_m: self.gaps.iter().fold(0.0, |sum, gap| sum.max(-gap)),
+            ..StepReport::default()
+        };
+        if self.closed.is_empty() {
+            self.impulses.fill(0.0);
+        } else {
+            self.delassus.project(&self.terms.jacobian);
+            self.free_response(qd);
+            (report.iterations, report.fell_back) = self.solve_contacts()?;
+            self.delassus.respond(&self.force, &mut self.rates, &mut self.scratch);
+            self.keep_impulses();
+        }
+        if !self.rates.iter().all(|rate| rate.is_finite()) {
+            return Err(StepFailure::NotFinite);
+        }
+        for ((q, middle), rate) in q.iter_mut().zip(&self.middle).zip(&self.rates) {
+            *q = middle + (h - ahead) * rate;
+        }
+        qd.copy_from_slice(&self.rates);
+        Ok(report)
+    }
+
+    fn find_closed(&mut self, model: &mut impl TimeSteppingModel) {
+        let reach = match self.stepping.scheme {
+            Scheme::MoreauMidpoint => 0.0,
+            Scheme::Anitescu { reach_m } => reach_m,
+        };
+        model.gaps(&self.middle, &mut self.gaps);
+        self.closed.clear();
+        let near = self.gaps.iter().enumerate().filter(|(_, gap)| **gap <= reach);
+        self.closed.extend(near.map(|(contact, _)| contact));
+        self.contacts.clear();
+        let friction = |contact: &usize| Friction::Coulomb(self.stepping.laws[*contact].friction);
+        self.contacts.extend(self.closed.iter().map(|c| Contact::resting(friction(c))));
+    }
+
+    /// v + h (D + h B)^-1 f.
+    fn free_rates(&mut self, qd: &[f64]) -> Result<(), StepFailure> {
+        let (n, h) = (qd.len(), self.stepping.step_s);
+        let Terms { mass, damping, force, .. } = &mut self.terms;
+        for (entry, damping) in mass.iter_mut().zip(damping) {
+            *entry += h * *damping;
+        }
+        self.delassus.factor(mass, n).map_err(StepFailure::Singular)?;
+        for (rate, force) in self.rates.iter_mut().zip(force) {
+            *rate = h * *force;
+        }
+        self.delassus.solve_mass(&mut self.rates);
+        for (rate, old) in self.rates.iter_mut().zip(qd) {
+            *rate += old;
+        }
+        Ok(())
+    }
+
+    /// What the law of contact applies to, without impulses: J v and the scheme's normal term.
+    fn free_response(&mut self, qd: &[f64]) {
+        let (n, rows, h) = (qd.len(), self.space.rows(), self.stepping.step_s);
+        let along = |row: &[f64], v: &[f64]| row.iter().zip(v).map(|(j, v)| j * v).sum::<f64>();
+        self.free.clear();
+        self.free.extend(self.terms.jacobian.chunks_exact(n).map(|row| along(row, &self.rates)));
+        for (place, &contact) in self.closed.iter().enumerate() {
+            let normal = place * rows + rows - 1;
+            let StepLaw { restitution, .. } = self.stepping.laws[contact];
+            self.free[normal] += match self.stepping.scheme {
+                Scheme::MoreauMidpoint if restitution == 0.0 => 0.0,
+                Scheme::MoreauMidpoint => {
+                    let row = &self.terms.jacobian[normal * n..(normal + 1) * n];
+                    restitution * along(row, qd).min(0.0)
+                }
+                Scheme::Anitescu { .. } => self.gaps[contact] / h,
+            };
+        }
+    }
+
+    /// Impulses of the closed contacts into `force`; returns iterations and whether it fell back.
+    fn solve_contacts(&mut self) -> Result<(usize, bool), StepFailure> {
+        let rows = self.space.rows();
+        self.force.clear();
+        for &contact in &self.closed {
+            self.force.extend_from_slice(&self.impulses[contact * rows..(contact + 1) * rows]);
+        }
+        let problem = ContactProblem {
+            space: self.space,
+            contacts: &self.contacts,
+            delassus: self.delassus.matrix(),
+            free: &self.free,
+            tolerance: Tolerance::default(),
+        };
+        let mut spent = 0;
+        let facets = match self.stepping.solver {
+            StepSolver::Pivots { facets } => facets,
+            StepSolver::Sweeps(limits) => {
+                let report = gauss_seidel::solve(&problem, limits, &mut self.force);
+                if report.converged {
+                    return Ok((report.sweeps, false));
+                }
+                spent = report.sweeps;
+                FALLBACK_FACETS
+            }
+        };
+        let report = self.pyramid.solve(&problem, facets, &mut self.force);
+        if report.outcome == LcpOutcome::Solved {
+            Ok((spent + report.pivots, spent > 0))
+        } else {
+            Err(StepFailure::NoImpulses)
+        }
+    }
+
+    fn keep_impulses(&mut self) {
+        let rows = self.space.rows();
+        self.impulses.fill(0.0);
+        for (&contact, force) in self.closed.iter().zip(self.force.chunks_exact(rows)) {
+            self.impulses[contact * rows..(contact + 1) * rows].copy_from_slice(force);
+        }
+    }
+}
+
+impl Terms {
+    fn clear(&mut self, n: usize, rows: usize) {
+        let sizes = [n * n, n * n, n, rows * n];
+        let parts = [&mut self.mass, &mut self.damping, &mut self.force, &mut self.jacobian];
+        for (part, size) in parts.into_iter().zip(sizes) {
+            part.clear();
+            part.resize(size, 0.0);
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Time stepping: closed forms are reached at the order of the scheme.
+
+mod closed_forms;
+mod solvers;
+mod systems;

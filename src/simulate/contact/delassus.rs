@@ -1,5 +1,7 @@
 //! The Delassus matrix G = J M^-1 J^T: how contact forces accelerate contact points.
 
+use super::cholesky::{backward, dot, factorise, forward, subtract};
+
 /// The mass matrix is not positive definite (or not finite).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotPositiveDefinite {
@@ -15,14 +17,17 @@ impl std::fmt::Display for NotPositiveDefinite {
 
 impl std::error::Error for NotPositiveDefinite {}
 
-/// M = L L^T, the rows J L^-T and their products; memory that grows to the largest and stays.
+/// M = U^T U, the columns U^-T J^T and their products; memory that grows to the largest and stays.
+///
+/// Coordinates are taken in reverse order, leaves of the tree before their parents: then U is as
+/// sparse as M, and what is zero costs nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Delassus {
     dof: usize,
     rows: usize,
-    /// Row-major lower factor; the diagonal holds inverses.
+    /// Row-major upper factor of M with its coordinates reversed.
     factor: Vec<f64>,
-    /// Row-major, `rows` x `dof`: row i is L^-1 J_i^T.
+    /// Row-major, `dof` x `rows`: U^-T J^T.
     half: Vec<f64>,
     /// Row-major, `rows` x `rows`.
     matrix: Vec<f64>,
@@ -44,30 +49,16 @@ impl Delassus {
         &self.matrix
     }
 
-    /// Factors the mass matrix (symmetric, `dof` x `dof`; its lower triangle is read).
+    /// Factors the mass matrix (symmetric, `dof` x `dof`).
     pub fn factor(&mut self, mass: &[f64], dof: usize) -> Result<(), NotPositiveDefinite> {
         assert_eq!(mass.len(), dof * dof, "a square matrix");
         self.dof = dof;
         self.rows = 0;
         self.factor.clear();
-        self.factor.extend_from_slice(mass);
-        let l = &mut self.factor;
-        for i in 0..dof {
-            let (above, rest) = l.split_at_mut(i * dof);
-            let row = &mut rest[..dof];
-            for j in 0..i {
-                let other = &above[j * dof..(j + 1) * dof];
-                let sum: f64 = row[..j].iter().zip(&other[..j]).map(|(a, b)| a * b).sum();
-                row[j] = (row[j] - sum) * other[j];
-            }
-            let pivot = row[i] - row[..i].iter().map(|entry| entry * entry).sum::<f64>();
-            // Written so that NaN fails as well.
-            if !(pivot > 0.0 && pivot.is_finite()) {
-                return Err(NotPositiveDefinite { coordinate: i });
-            }
-            row[i] = 1.0 / pivot.sqrt();
-        }
-        Ok(())
+        // Rows and columns backwards: all entries backwards.
+        self.factor.extend(mass.iter().rev());
+        factorise(&mut self.factor, dof)
+            .map_err(|row| NotPositiveDefinite { coordinate: dof - 1 - row })
     }
 
     /// Forms G for the rows of `jacobian` (row-major, `dof` columns); the mass matrix has been
@@ -78,64 +69,59 @@ impl Delassus {
         assert_eq!(jacobian.len(), rows * dof, "whole rows");
         self.rows = rows;
         self.half.clear();
-        self.half.extend_from_slice(jacobian);
-        for row in self.half.chunks_exact_mut(dof) {
-            forward(&self.factor, dof, row);
-        }
+        self.half.resize(rows * dof, 0.0);
         self.matrix.clear();
         self.matrix.resize(rows * rows, 0.0);
+        if rows == 0 {
+            return;
+        }
+        for (r, row) in jacobian.chunks_exact(dof).enumerate() {
+            for (i, entry) in row.iter().rev().enumerate() {
+                self.half[i * rows + r] = *entry;
+            }
+        }
+        for i in 0..dof {
+            let (upper, below) = self.half.split_at_mut((i + 1) * rows);
+            let line = &mut upper[i * rows..];
+            let factors = &self.factor[i * dof..(i + 1) * dof];
+            for entry in line.iter_mut() {
+                *entry *= factors[i];
+            }
+            for (other, factor) in below.chunks_exact_mut(rows).zip(&factors[i + 1..]) {
+                subtract(other, *factor, line);
+            }
+            for (r, target) in self.matrix.chunks_exact_mut(rows).enumerate() {
+                subtract(&mut target[..=r], -line[r], line);
+            }
+        }
         for i in 0..rows {
-            for j in 0..=i {
-                let (a, b) = (&self.half[i * dof..(i + 1) * dof], &self.half[j * dof..]);
-                let sum: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-                self.matrix[i * rows + j] = sum;
-                self.matrix[j * rows + i] = sum;
+            for j in 0..i {
+                self.matrix[j * rows + i] = self.matrix[i * rows + j];
             }
         }
     }
 
     /// x := M^-1 x.
     pub fn solve_mass(&self, x: &mut [f64]) {
-        forward(&self.factor, self.dof, x);
-        backward(&self.factor, self.dof, x);
+        x.reverse();
+        forward(&self.factor, x);
+        backward(&self.factor, x);
+        x.reverse();
     }
 
     /// v := v + M^-1 J^T f: what forces (or impulses) of the rows do to the acceleration (or
     /// velocity). `scratch` has `dof` entries.
     pub fn respond(&self, force: &[f64], v: &mut [f64], scratch: &mut [f64]) {
-        let dof = self.dof;
-        scratch.fill(0.0);
-        for (row, f) in self.half.chunks_exact(dof).zip(force) {
-            if *f != 0.0 {
-                for (sum, entry) in scratch.iter_mut().zip(row) {
-                    *sum += f * entry;
-                }
-            }
+        let rows = self.rows;
+        if rows == 0 {
+            return;
         }
-        backward(&self.factor, dof, scratch);
-        for (entry, change) in v.iter_mut().zip(&*scratch) {
+        for (sum, line) in scratch.iter_mut().zip(self.half.chunks_exact(rows)) {
+            *sum = dot(line, force);
+        }
+        backward(&self.factor, scratch);
+        for (entry, change) in v.iter_mut().zip(scratch.iter().rev()) {
             *entry += change;
-        }
-    }
-}
-
-/// x := L^-1 x.
-fn forward(l: &[f64], n: usize, x: &mut [f64]) {
-    for i in 0..n {
-        let row = &l[i * n..(i + 1) * n];
-        let sum: f64 = row[..i].iter().zip(&x[..i]).map(|(a, b)| a * b).sum();
-        x[i] = (x[i] - sum) * row[i];
-    }
-}
-
-/// x := L^-T x.
-fn backward(l: &[f64], n: usize, x: &mut [f64]) {
-    for i in (0..n).rev() {
-        let row = &l[i * n..(i + 1) * n];
-        let value = x[i] * row[i];
-        x[i] = value;
-        for (entry, factor) in x[..i].iter_mut().zip(row) {
-            *entry -= factor * value;
         }
     }
 }

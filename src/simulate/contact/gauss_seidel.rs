@@ -6,6 +6,7 @@
 //! problem. Redundant contacts do no harm: of all distributions the one near the start is found.
 
 use super::ContactProblem;
+use super::cholesky::dot;
 
 /// When the sweeps end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +56,7 @@ fn update(problem: &ContactProblem<'_>, contact: usize, force: &mut [f64]) -> f6
     let (mut block, mut w, mut old) = ([[0.0; 3]; 3], [0.0; 3], [0.0; 3]);
     for i in 0..size {
         let line = &problem.delassus[(first + i) * rows..(first + i + 1) * rows];
-        w[i] = problem.free[first + i] + line.iter().zip(&*force).map(|(g, f)| g * f).sum::<f64>();
+        w[i] = problem.free[first + i] + dot(line, force);
         block[i][..size].copy_from_slice(&line[first..first + size]);
         old[i] = force[first + i];
     }

@@ -19,11 +19,13 @@
 //! 3. [`solver`] decides the modes: it enumerates them, and finds directions of slipping in space;
 //! 4. [`impact`] is the problem of the velocities after an impact.
 //!
-//! [`lemke`] and [`minimum_norm`] are the linear algebra below, [`gauss_seidel`] and [`pyramid`]
-//! the solvers of time stepping.
+//! [`lemke`] and [`minimum_norm`] are the linear algebra below; [`hold`], [`gauss_seidel`] and
+//! [`pyramid`] the solvers of time stepping.
 
+pub(crate) mod cholesky;
 pub mod delassus;
 pub mod gauss_seidel;
+pub mod hold;
 pub mod impact;
 pub mod lemke;
 pub mod minimum_norm;
@@ -152,7 +154,7 @@ impl ContactProblem<'_> {
         let rows = self.rows();
         for (i, entry) in response.iter_mut().enumerate() {
             let row = &self.delassus[i * rows..(i + 1) * rows];
-            *entry = self.free[i] + row.iter().zip(force).map(|(g, f)| g * f).sum::<f64>();
+            *entry = self.free[i] + cholesky::dot(row, force);
         }
     }
 

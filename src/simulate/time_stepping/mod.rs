@@ -81,8 +81,8 @@ pub enum Scheme {
 /// How the contact problem of a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepSolver {
-    /// Sweeps over friction cones, started from the impulses of the step before; pivots with 16
-    /// facets where the sweeps do not converge.
+    /// The guess that all contacts stick; where that does not hold, sweeps over friction cones from
+    /// the impulses of the step before; pivots with 16 facets where the sweeps do not converge.
     Sweeps(SweepLimits),
     /// Lemke's method with a pyramid of this many facets in space; exact in a plane.
     Pivots {
@@ -124,7 +124,7 @@ pub struct Stepping {
 pub struct StepReport {
     /// Number of contacts in its problem.
     pub closed: usize,
-    /// Sweeps or pivots.
+    /// Sweeps or pivots; 0 if all contacts stick.
     pub iterations: usize,
     /// The largest depth of a contact point where the contacts were looked for [m].
     pub penetration_m: f64,

@@ -2,8 +2,10 @@
 
 use super::{Instant, Scheme, StepFailure, StepReport, StepSolver, Stepping, Terms};
 use super::{StepLaw, TimeSteppingModel};
+use crate::simulate::contact::cholesky::dot;
 use crate::simulate::contact::delassus::Delassus;
 use crate::simulate::contact::gauss_seidel;
+use crate::simulate::contact::hold::Hold;
 use crate::simulate::contact::lemke::LcpOutcome;
 use crate::simulate::contact::pyramid::Pyramid;
 use crate::simulate::contact::{Contact, ContactProblem, Friction, Space, Tolerance};
@@ -29,6 +31,7 @@ pub struct TimeStepper {
     free: Vec<f64>,
     force: Vec<f64>,
     scratch: Vec<f64>,
+    hold: Hold,
     pyramid: Pyramid,
 }
 
@@ -52,6 +55,7 @@ impl TimeStepper {
             free: Vec::new(),
             force: Vec::new(),
             scratch: vec![0.0; n],
+            hold: Hold::new(),
             pyramid: Pyramid::new(),
         }
     }
@@ -151,9 +155,8 @@ impl TimeStepper {
     /// What the law of contact applies to, without impulses: J v and the scheme's normal term.
     fn free_response(&mut self, qd: &[f64]) {
         let (n, rows, h) = (qd.len(), self.space.rows(), self.stepping.step_s);
-        let along = |row: &[f64], v: &[f64]| row.iter().zip(v).map(|(j, v)| j * v).sum::<f64>();
         self.free.clear();
-        self.free.extend(self.terms.jacobian.chunks_exact(n).map(|row| along(row, &self.rates)));
+        self.free.extend(self.terms.jacobian.chunks_exact(n).map(|row| dot(row, &self.rates)));
         for (place, &contact) in self.closed.iter().enumerate() {
             let normal = place * rows + rows - 1;
             let StepLaw { restitution, .. } = self.stepping.laws[contact];
@@ -161,7 +164,7 @@ impl TimeStepper {
                 Scheme::MoreauMidpoint if restitution == 0.0 => 0.0,
                 Scheme::MoreauMidpoint => {
                     let row = &self.terms.jacobian[normal * n..(normal + 1) * n];
-                    restitution * along(row, qd).min(0.0)
+                    restitution * dot(row, qd).min(0.0)
                 }
                 Scheme::Anitescu { .. } => self.gaps[contact] / h,
             };
@@ -186,6 +189,9 @@ impl TimeStepper {
         let facets = match self.stepping.solver {
             StepSolver::Pivots { facets } => facets,
             StepSolver::Sweeps(limits) => {
+                if self.hold.solve(&problem, limits.response, &mut self.force) {
+                    return Ok((0, false));
+                }
                 let report = gauss_seidel::solve(&problem, limits, &mut self.force);
                 if report.converged {
                     return Ok((report.sweeps, false));

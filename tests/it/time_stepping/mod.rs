@@ -3,3 +3,4 @@
 mod closed_forms;
 mod solvers;
 mod systems;
+mod tulip;

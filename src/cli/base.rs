@@ -1,10 +1,12 @@
 //! `denavit base`: what can be identified, exactly.
 
+mod given;
+
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_model, write_whole};
+use super::files::{Input, read_input, write_whole};
 use super::json::{Ordered, write_json};
-use super::options::{ModelArgument, Term, terms};
+use super::options::{Term, terms};
 use clap::{Args, ValueEnum};
 use denavit::model::Robot;
 use denavit::number::Residue;
@@ -24,10 +26,12 @@ use std::path::PathBuf;
 Examples:
   denavit base double_pendulum
   denavit base puma560 --with friction,rotor --json
+  denavit base double_pendulum_drives
   denavit base tulip_leg --terms inertia,gravity --certificate leg.certificate.json")]
 pub(crate) struct Arguments {
-    #[command(flatten)]
-    model: ModelArgument,
+    /// Path of a model or of a file of equations, name of a shipped one, or - for standard input
+    #[arg(value_name = "MODEL|EQUATIONS")]
+    model: PathBuf,
     /// Joint parameters to add to those of the bodies, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     with: Vec<With>,
@@ -47,7 +51,7 @@ pub(crate) struct Arguments {
 
 /// Joint parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum With {
+pub(crate) enum With {
     /// Viscous and Coulomb friction
     Friction,
     /// Reflected rotor inertia
@@ -83,24 +87,33 @@ struct ParameterJson<'a> {
     alone: bool,
 }
 
+/// What was checked, and modulo which prime.
 #[derive(Serialize)]
 struct CertificateJson {
     verified: bool,
     prime: u64,
 }
 
-pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let mut robot = read_model(&arguments.model.model)?;
-    if let Some(list) = &arguments.terms {
-        robot.terms = terms(list);
-    }
-    let has = |with| arguments.with.contains(&with);
-    let options = RegressorOptions {
+/// What a list of joint parameters asks for.
+pub(crate) fn regressor_options(with: &[With]) -> RegressorOptions {
+    let has = |one| with.contains(&one);
+    RegressorOptions {
         friction: has(With::Friction),
         rotor: has(With::Rotor),
         offset: has(With::Offset),
         ..RegressorOptions::default()
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let mut robot = match read_input(&arguments.model)? {
+        Input::Model(robot) => robot,
+        Input::Equations(equations) => return given::run(arguments, &equations, out),
     };
+    if let Some(list) = &arguments.terms {
+        robot.terms = terms(list);
+    }
+    let options = regressor_options(&arguments.with);
     let base = base_parameters(&robot, options, &arguments.keep)
         .map_err(|error| Failure::Base(Box::new(error)))?;
     let certificate = Certificate::new(&robot, options, &base);

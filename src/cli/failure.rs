@@ -2,11 +2,10 @@
 
 use denavit::derive::BakeError;
 use denavit::emit::rust::EmitError;
-use denavit::fundamental::FourierError;
 use denavit::model::ModelError;
 use denavit::program::LowerError;
-use denavit::regressor::BaseError;
 use denavit::regressor::equations::EquationsError;
+use denavit::regressor::{BaseError, DecomposeError};
 use std::fmt;
 use std::io;
 
@@ -36,12 +35,16 @@ pub(crate) enum Failure {
     Base(Box<BaseError>),
     /// A file is no certificate.
     Certificate { file: String, error: serde_json::Error },
-    /// A regressor is not written out; holds model and cause.
-    Decompose(String, FourierError),
+    /// A model is not decomposed.
+    Decompose(DecomposeError),
     /// Equations have no regressor.
     Equations(EquationsError),
     /// There are no angles to cumulate; holds the model.
     NoParallelAxes(String),
+    /// Options that only models have were given for equations; holds their name.
+    NotOfEquations(String),
+    /// A document would be too long to be read, or set.
+    TooLongToSet { name: String, formulas: usize },
     /// The answer cannot be written to standard output.
     Stdout(io::Error),
 }
@@ -95,6 +98,10 @@ impl Failure {
                 "check the exponents of the numbers in the model".to_owned()
             }
             Self::NoFunction { .. } => "contacts are declared under \"contacts\"".to_owned(),
+            Self::NotOfEquations(_) => "write the terms into the equations".to_owned(),
+            Self::TooLongToSet { .. } => {
+                "leave out terms (--terms inertia,gravity), or take --json".to_owned()
+            }
             Self::NoParallelAxes(_) => "choose the basis fourier or product".to_owned(),
             Self::Certificate { .. } => {
                 "give a file that `denavit base --certificate` wrote".to_owned()
@@ -117,7 +124,14 @@ impl fmt::Display for Failure {
             Self::Model(error) => write!(f, "{error}")?,
             Self::Bake(error) => write!(f, "{error}")?,
             Self::Equations(error) => write!(f, "{error}")?,
-            Self::Decompose(model, error) => write!(f, "{model}: {error}")?,
+            Self::Decompose(error) => write!(f, "{error}")?,
+            Self::NotOfEquations(name) => write!(
+                f,
+                "{name}: equations have no --with, --terms or --certificate, which belong to models"
+            )?,
+            Self::TooLongToSet { name, formulas } => {
+                write!(f, "{name}: {formulas} formulas are too many for a document")?;
+            }
             Self::NoParallelAxes(model) => {
                 write!(f, "{model}: there are no parallel axes whose angles could be cumulated")?;
             }

@@ -8,6 +8,7 @@ mod count;
 mod decompose;
 mod demo;
 mod derive;
+mod elimination;
 mod emit;
 mod failure;
 mod files;

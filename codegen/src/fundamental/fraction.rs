@@ -79,7 +79,17 @@ impl Fraction {
 
     /// The same member as an expression.
     pub fn to_expr(&self, dag: &mut Dag) -> ExprId {
-        let numerator = self.numerator.to_expr(dag);
+        let one = dag.one();
+        self.times_expr(dag, one)
+    }
+
+    /// The product with an expression, which stands above the divisor: (I1 + c1^2 m1)/l1^2.
+    pub fn times_expr(&self, dag: &mut Dag, expr: ExprId) -> ExprId {
+        if self.numerator.len() > 1 && dag.as_constant(expr).is_none() {
+            let factor = self.to_expr(dag);
+            return dag.mul(factor, expr);
+        }
+        let numerator = self.numerator.times_expr(dag, expr);
         if self.has_unit_denominator() {
             return numerator;
         }

@@ -2,7 +2,7 @@
 
 use crate::expr::{Dag, ExprId};
 use crate::number::Rational;
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
@@ -193,16 +193,29 @@ impl Polynomial {
         Ok(product)
     }
 
-    /// The polynomial as an expression, its terms in order.
+    /// The polynomial as an expression, its terms in order, what divides a term below it.
     pub fn to_expr(&self, dag: &mut Dag) -> ExprId {
+        let one = dag.one();
+        self.times_expr(dag, one)
+    }
+
+    /// The product with an expression, which stands above what divides a term.
+    pub(super) fn times_expr(&self, dag: &mut Dag, expr: ExprId) -> ExprId {
         let mut sum = dag.zero();
         for (monomial, coefficient) in &self.terms {
-            let mut product = dag.constant(coefficient.clone());
+            let mut above = dag.constant(coefficient.abs());
+            let mut below = dag.one();
             for &(atom, exponent) in monomial.powers() {
-                let power = dag.pow(atom, exponent);
-                product = dag.mul(product, power);
+                let power = dag.pow(atom, exponent.saturating_abs());
+                let side = if exponent > 0 { &mut above } else { &mut below };
+                *side = dag.mul(*side, power);
             }
-            sum = dag.add(sum, product);
+            above = dag.mul(above, expr);
+            let term = dag.div(above, below);
+            sum = match coefficient.is_negative() {
+                true => dag.sub(sum, term),
+                false => dag.add(sum, term),
+            };
         }
         sum
     }

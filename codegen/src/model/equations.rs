@@ -50,7 +50,7 @@ pub struct Equations {
     /// Holds all symbols and expressions.
     pub dag: Dag,
     /// What changes in time: positions, rates, accelerations, torques, in file order.
-    pub variables: Vec<ExprId>,
+    pub variables: Vec<Parameter>,
     /// Constants that are known, in file order.
     pub knowns: Vec<Parameter>,
     /// Constants that are not, in file order.
@@ -120,9 +120,10 @@ fn read_fields(fields: &Fields<'_, '_>, report: &mut Report) -> Equations {
             reading.report.push(value.at, Cause::WrongKind { expected, found });
         }
     }
-    let variables = reading.declare(&variables, Role::Constant, SymbolClass::Configuration);
-    let knowns = reading.declare(&knowns, Role::Constant, SymbolClass::Geometry);
-    let unknowns = reading.declare(&unknowns, Role::Unknown, SymbolClass::Inertia);
+    let positions: BTreeSet<&str> = variables.iter().map(|one| &*one.name.text).collect();
+    let variables = reading.declare(&variables, Role::Constant, |name| motion(name, &positions));
+    let knowns = reading.declare(&knowns, Role::Constant, |_| SymbolClass::Geometry);
+    let unknowns = reading.declare(&unknowns, Role::Unknown, |_| SymbolClass::Inertia);
     if texts.is_empty() {
         let at = fields.get("equations").map_or(fields.at(), |list| list.start);
         reading.report.push(at, Cause::NoEquations);
@@ -134,10 +135,21 @@ fn read_fields(fields: &Fields<'_, '_>, report: &mut Report) -> Equations {
         source: fields.text_or_empty("source", reading.report),
         assumptions: fields.texts("assumptions", reading.report),
         dag: reading.scope.dag,
-        variables: variables.iter().map(|variable| variable.symbol).collect(),
+        variables,
         knowns,
         unknowns,
         equations,
+    }
+}
+
+/// Whether a variable is a position, or by its name the rate `xd` or acceleration `xdd` of a
+/// variable x. It decides how they are set, in order and as letters.
+fn motion(name: &str, variables: &BTreeSet<&str>) -> SymbolClass {
+    let is_of = |ending: &str| name.strip_suffix(ending).is_some_and(|x| variables.contains(x));
+    match (is_of("dd"), is_of("d")) {
+        (true, _) => SymbolClass::Acceleration,
+        (_, true) => SymbolClass::Rate,
+        _ => SymbolClass::Configuration,
     }
 }
 
@@ -151,10 +163,11 @@ impl Reading<'_> {
         &mut self,
         declarations: &[Declaration],
         role: Role,
-        class: SymbolClass,
+        class_of: impl Fn(&str) -> SymbolClass,
     ) -> Vec<Parameter> {
         let mut parameters = Vec::new();
         for declaration in declarations {
+            let class = class_of(&declaration.name.text);
             parameters.extend(self.declare_one(declaration, role, class));
         }
         parameters

@@ -1,11 +1,11 @@
 //! Base parameters: the combinations of parameters that the torques depend on, theta = B_Eu theta0
 //! (thesis 3.5).
 
-use super::column::{Regressor, RegressorError, RegressorOptions};
+use super::column::{Regressor, RegressorError, RegressorOptions, column_symbol};
 use super::dependence::relations;
 use super::eliminate::{Reduced, eliminate};
 use super::rank::{PARAMETERS, Ranking, rank};
-use crate::expr::{Dag, EvaluateError, ExprId, Residues, SymbolClass, evaluate, text};
+use crate::expr::{Dag, EvaluateError, ExprId, Residues, evaluate, text};
 use crate::fundamental::{CanonicalError, Fraction};
 use crate::model::Robot;
 use crate::number::{Rational, Residue, integer};
@@ -278,9 +278,9 @@ fn combination(
     members: &[(usize, ExprId)],
     groups: &[(usize, bool)],
 ) -> ExprId {
+    let Regressor { dag, columns, .. } = regressor;
     let names: Vec<ExprId> =
-        members.iter().map(|&(column, _)| name_symbol(regressor, column)).collect();
-    let dag = &mut regressor.dag;
+        members.iter().map(|&(column, _)| column_symbol(dag, &columns[column])).collect();
     let mut total = dag.zero();
     for (leader, &(_, factor)) in members.iter().enumerate() {
         if groups.get(leader).is_some_and(|&(first, _)| first != leader) {
@@ -308,17 +308,4 @@ fn combination(
         total = if is_negative { dag.sub(total, product) } else { dag.add(total, product) };
     }
     total
-}
-
-/// The symbol that stands for a column's parameter in formulas: a product stands for itself.
-fn name_symbol(regressor: &mut Regressor, column: usize) -> ExprId {
-    let column = &regressor.columns[column];
-    let dag = &mut regressor.dag;
-    if let Some(id) = dag.find_symbol(&column.name) {
-        return dag.symbol_expr(id);
-    }
-    match column.parameter {
-        Some(_) => dag.symbol(&column.name, SymbolClass::Inertia),
-        None => column.value,
-    }
 }

@@ -115,6 +115,8 @@ pub struct Regressor {
     pub joints: Vec<String>,
     pub(super) mechanism: Mechanism,
     pub(super) terms: crate::model::Terms,
+    /// `known` as a combination of features.
+    pub(super) known_features: Vec<(Feature, ExprId)>,
 }
 
 impl Regressor {
@@ -152,7 +154,7 @@ impl Regressor {
         for (joint, (link, _)) in robot.joints().enumerate() {
             builder.add_joint(joint, link);
         }
-        let Builder { mut dag, mut columns, known, mechanism, .. } = builder;
+        let Builder { mut dag, mut columns, known: known_features, mechanism, .. } = builder;
         let n = frames.len();
         let scales = row_scales(&mut dag, robot, side);
         let torques = |dag: &mut Dag, definition: &[(Feature, ExprId)]| {
@@ -168,10 +170,11 @@ impl Regressor {
         for column in &mut columns {
             column.entries = torques(&mut dag, &column.definition);
         }
-        let known = torques(&mut dag, &known);
+        let known = torques(&mut dag, &known_features);
         let joints = robot.joints().map(|(link, _)| robot.links[link].name.clone()).collect();
         let model = robot.name.clone();
-        Ok(Self { model, dag, columns, known, joints, mechanism, terms: wanted })
+        let terms = wanted;
+        Ok(Self { model, dag, columns, known, joints, mechanism, terms, known_features })
     }
 
     /// The entries of R0, row by row.
@@ -197,20 +200,25 @@ fn feature_torques(
         Feature::Matter { body, entry } => {
             shares[body].iter().map(|share| (share.joint, share.torques[entry])).collect()
         }
-        Feature::Joint { joint, function } => {
-            let (_, variables) = robot.joints().nth(joint).expect("the joint is there");
-            let value = match function {
-                JointFunction::Rate => variables.qd,
-                JointFunction::RateSign => dag.unary(UnaryFunction::Sign, variables.qd),
-                JointFunction::Acceleration => variables.qdd,
-                JointFunction::One => dag.one(),
-            };
-            vec![(joint, value)]
+        Feature::Joint { joint, function } => vec![(joint, function.of(dag, robot, joint))],
+    }
+}
+
+impl JointFunction {
+    /// The function of a joint, by its number among the joint variables.
+    pub(super) fn of(self, dag: &mut Dag, robot: &Robot, joint: usize) -> ExprId {
+        let (_, variables) = robot.joints().nth(joint).expect("the joint is there");
+        match self {
+            Self::Rate => variables.qd,
+            Self::RateSign => dag.unary(UnaryFunction::Sign, variables.qd),
+            Self::Acceleration => variables.qdd,
+            Self::One => dag.one(),
         }
     }
 }
 
-fn row_scales(dag: &mut Dag, robot: &Robot, side: TorqueSide) -> Vec<ExprId> {
+/// What the row of each joint is multiplied with.
+pub(super) fn row_scales(dag: &mut Dag, robot: &Robot, side: TorqueSide) -> Vec<ExprId> {
     let one = dag.one();
     let mut scales = Vec::new();
     for (link, _) in robot.joints() {
@@ -417,6 +425,17 @@ impl Builder<'_> {
             definition: vec![definition],
             parameter: None,
         });
+    }
+}
+
+/// The symbol that stands for a column's parameter in formulas: a product stands for itself.
+pub(super) fn column_symbol(dag: &mut Dag, column: &Column) -> ExprId {
+    if let Some(id) = dag.find_symbol(&column.name) {
+        return dag.symbol_expr(id);
+    }
+    match column.parameter {
+        Some(_) => dag.symbol(&column.name, SymbolClass::Inertia),
+        None => column.value,
     }
 }
 

@@ -1,11 +1,13 @@
 //! The regressor of given equations (thesis, appendix B): every product of unknowns is a column,
 //! what has none moves to the left side, and R0_ij = f^T b_ij comes with it.
 
-use crate::expr::{Dag, ExprId, SymbolId, free_symbols, text};
+use super::theta::{Theta, order_of};
+use crate::expr::{Dag, EvaluateError, ExprId, SymbolId, free_symbols, text};
 use crate::fundamental::{
-    Basis, Decomposition, Echelon, EchelonError, Entry, Expansion, FourierError, Matrix, Wave,
-    decompose, echelon, equal_columns, separate,
+    Basis, Decomposition, EchelonError, Entry, Expansion, FourierError, Matrix, Wave, decompose,
+    equal_columns, separate,
 };
+use crate::model::Dimension;
 use crate::model::equations::Equations;
 use std::collections::BTreeSet;
 use std::fmt;
@@ -14,7 +16,12 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EquationsError {
     /// They are not written out.
-    Fourier(FourierError),
+    Fourier {
+        /// The equations' name.
+        name: String,
+        /// Why not.
+        error: FourierError,
+    },
     /// An unknown stands where the equations are no polynomial in it.
     NotPolynomial {
         /// The equations' name.
@@ -31,14 +38,31 @@ pub enum EquationsError {
         /// The columns.
         columns: Vec<String>,
     },
+    /// No unknown is in any equation.
+    NoUnknowns {
+        /// The equations' name.
+        name: String,
+    },
     /// B is not eliminated.
-    Echelon(EchelonError),
+    Echelon {
+        /// The equations' name.
+        name: String,
+        /// Why not.
+        error: EchelonError,
+    },
+    /// The equations have no value at a random point.
+    Evaluate {
+        /// The equations' name.
+        name: String,
+        /// Why not.
+        error: EvaluateError,
+    },
 }
 
 impl fmt::Display for EquationsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Fourier(error) => write!(f, "{error}"),
+            Self::Fourier { name, error } => write!(f, "{name}: {error}"),
             Self::NotPolynomial { name, unknown } => write!(
                 f,
                 "{name}: the equations are no polynomials in the unknown {unknown}\n  hint: \
@@ -49,7 +73,15 @@ impl fmt::Display for EquationsError {
                 "{name}: there is no column {column}\n  hint: the columns are {}",
                 columns.join(", ")
             ),
-            Self::Echelon(error) => write!(f, "{error}"),
+            Self::NoUnknowns { name } => write!(
+                f,
+                "{name}: no equation has an unknown\n  hint: declare what is to be found under \
+                 \"unknowns\""
+            ),
+            Self::Echelon { name, error } => write!(f, "{name}: {error}"),
+            Self::Evaluate { name, error } => {
+                write!(f, "{name}: the equations have no value: {error}")
+            }
         }
     }
 }
@@ -63,11 +95,15 @@ pub struct EquationsRegressor {
     pub dag: Dag,
     /// theta0: products of unknowns, or sums of them that act alike (c1^2 m1 + I1).
     pub parameters: Vec<ExprId>,
+    /// Their SI units; empty where an unknown has none.
+    pub units: Vec<String>,
     /// zeta, equation by equation.
     pub left: Vec<ExprId>,
     /// f and B; the columns are those of theta0.
     pub decomposition: Decomposition,
     name: String,
+    /// What the equations ask to be 0.
+    residuals: Vec<ExprId>,
 }
 
 /// The regressor of equations, in one basis of functions.
@@ -85,8 +121,9 @@ pub fn equations_regressor(
         ids.into_iter().filter(|&id| knowns.contains(&dag.symbol_expr(id))).collect();
     let is_known = |id: SymbolId| known_ids.contains(&id);
     let matrix = Matrix { rows: &rows, is_known: &is_known, chains: &[] };
-    let found =
-        decompose(&mut dag, &matrix, &[basis], expansion).map_err(EquationsError::Fourier)?;
+    let name = equations.name.clone();
+    let found = decompose(&mut dag, &matrix, &[basis], expansion)
+        .map_err(|error| EquationsError::Fourier { name: name.clone(), error })?;
     let found = found.first().expect("every matrix has the first two bases");
     let unknowns: Vec<ExprId> = equations.unknowns.iter().map(|unknown| unknown.symbol).collect();
     require_polynomial(&dag, found, &unknowns, &equations.name)?;
@@ -102,16 +139,38 @@ pub fn equations_regressor(
             })
         })
         .collect();
-    let mut parameters = Vec::new();
+    if products.is_empty() {
+        return Err(EquationsError::NoUnknowns { name });
+    }
+    let (mut parameters, mut units) = (Vec::new(), Vec::new());
     let mut columns: Vec<Vec<Entry>> = Vec::new();
     for group in equal_columns(&separated.decomposition) {
         let zero = dag.zero();
         parameters.push(group.iter().fold(zero, |sum, &place| dag.add(sum, products[place])));
+        units.push(unit(equations, &separated.products[group[0]]));
         columns.push(separated.decomposition.columns[group[0]].clone());
     }
     separated.decomposition.columns = columns;
-    let (decomposition, name) = (separated.decomposition, equations.name.clone());
-    Ok(EquationsRegressor { dag, parameters, left, decomposition, name })
+    let decomposition = separated.decomposition;
+    let residuals = rows.concat();
+    Ok(EquationsRegressor { dag, parameters, units, left, decomposition, name, residuals })
+}
+
+/// The unit of a product of unknowns; empty if one of them has none.
+fn unit(equations: &Equations, product: &[(ExprId, i32)]) -> String {
+    let unit_of = |unknown: ExprId| {
+        let own = equations.unknowns.iter().find(|own| own.symbol == unknown);
+        own.and_then(|own| own.unit.as_ref())
+    };
+    if let [(unknown, 1)] = product {
+        return unit_of(*unknown).map_or_else(String::new, |unit| unit.text().to_owned());
+    }
+    let mut dimension = Some(Dimension::NONE);
+    for &(unknown, exponent) in product {
+        let power = unit_of(unknown).and_then(|unit| unit.dimension().power(exponent));
+        dimension = dimension.zip(power).and_then(|(a, b)| a.times(b));
+    }
+    dimension.map_or_else(String::new, |dimension| dimension.to_string())
 }
 
 /// An unknown may be a factor, with an exponent that is not negative, and nothing else.
@@ -157,39 +216,28 @@ impl EquationsRegressor {
         self.parameters.iter().map(name).collect()
     }
 
-    /// theta = B_Eu theta0 (thesis 3.5), with the columns of `keep` kept before others. A name
+    /// theta = B_Eu theta0 (thesis 3.3-3.5), with the columns of `keep` kept before others. A name
     /// is the parameter of a column as text.
-    pub fn base_parameters(
-        &mut self,
-        keep: &[&str],
-    ) -> Result<(Echelon, Vec<ExprId>), EquationsError> {
-        let mut order: Vec<usize> = Vec::new();
-        for &wanted in keep {
-            let place = self.find(wanted).ok_or_else(|| EquationsError::NoColumn {
+    pub fn theta<N: AsRef<str>>(&mut self, keep: &[N]) -> Result<Theta, EquationsError> {
+        let order = order_of(keep, self.parameters.len(), |name| self.find(name.as_ref()))
+            .map_err(|column| EquationsError::NoColumn {
                 name: self.name.clone(),
-                column: wanted.to_owned(),
+                column,
                 columns: self.column_names(),
             })?;
-            if !order.contains(&place) {
-                order.push(place);
-            }
-        }
-        let rest: Vec<usize> =
-            (0..self.parameters.len()).filter(|place| !order.contains(place)).collect();
-        order.extend(rest);
-        let found =
-            echelon(&mut self.dag, &self.decomposition, &order).map_err(EquationsError::Echelon)?;
-        let mut sums = Vec::new();
-        for row in &found.rows {
-            let mut sum = self.dag.zero();
-            for (&column, factor) in row {
-                let factor = factor.to_expr(&mut self.dag);
-                let product = self.dag.mul(factor, self.parameters[column]);
-                sum = self.dag.add(sum, product);
-            }
-            sums.push(sum);
-        }
-        Ok((found, sums))
+        Theta::new(&mut self.dag, &self.decomposition, &order, self.parameters.clone())
+            .map_err(|error| EquationsError::Echelon { name: self.name.clone(), error })
+    }
+
+    /// Whether the equations are `zeta = f^T B_u theta` at random points modulo a prime: whether
+    /// what was written out, separated and eliminated is still what was given.
+    pub fn holds(&mut self, theta: &Theta) -> Result<bool, EquationsError> {
+        let sides = self.residuals.iter().zip(&self.left);
+        let right: Vec<ExprId> =
+            sides.map(|(&residual, &left)| self.dag.add(residual, left)).collect();
+        theta
+            .holds(&mut self.dag, &self.decomposition, &right)
+            .map_err(|error| EquationsError::Evaluate { name: self.name.clone(), error })
     }
 
     /// The column of a name.

@@ -9,7 +9,7 @@
 //! - [`Certificate`]: a proof of all that, and its verification by other means
 //! - [`functions`]: the regressor functions for emission
 //! - [`equations`]: given equations, not of a model (`denavit-equations/1`)
-//! - [`decompose_robot`]: f and B of a model's regressor in its users' parameters
+//! - [`decompose_robot`]: f and B of a model's regressor; [`Theta`]: theta from B_E, the thesis's way
 //! - `pull`: the equations for decomposition, of arms and of robots on a moving torso
 
 pub mod base;
@@ -25,14 +25,16 @@ mod monomial;
 mod pull;
 mod rank;
 mod settle;
+mod theta;
 mod turning;
 
 pub use base::{BaseError, BaseParameter, BaseParameters, Dependent, base_parameters};
 pub use certificate::{Certificate, Verdict};
 pub use column::{Column, Regressor, RegressorError, RegressorOptions, Unknowns};
-pub use decompose::{RobotDecomposition, decompose_robot};
+pub use decompose::{DecomposeError, RobotDecomposition, decompose_robot};
 pub use pull::{
     Equation, MatterEntry, MatterRegressor, MotionTerms, TorsoMotion, fixed_base_regressor,
     torso_regressor,
 };
 pub use rank::{Ranking, rank};
+pub use theta::Theta;

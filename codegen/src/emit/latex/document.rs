@@ -9,14 +9,14 @@ use crate::function::{Function, FunctionName, Output};
 use crate::fundamental::written_out;
 use crate::model::Robot;
 
-const TEMPLATE: &str = include_str!("../../../templates/latex/document.tex.in");
+pub(super) const TEMPLATE: &str = include_str!("../../../templates/latex/document.tex.in");
 
 /// Equations of at most so many nodes may be written out in full, if they come to so few terms.
 const FULL_NODES: usize = 600;
 const FULL_TERMS: usize = 160;
 
 /// The width of a line, in tenths of a digit: 170 mm of 10 pt type.
-const LINE: u32 = 960;
+pub(super) const LINE: u32 = 960;
 
 /// What is wider than a third of a line, or shared and wider than half a dozen digits, is named:
 /// then each definition fits on its line, and few are needed.
@@ -45,11 +45,13 @@ pub fn document(robot: &Robot, dag: &Dag, functions: &[Function]) -> Result<Stri
             sections.push_str(&section(function, output, own));
         }
     }
-    let description = nomenclature::description(robot);
+    let description =
+        nomenclature::description(&robot.description, &robot.source, &robot.assumptions);
     let table = nomenclature::nomenclature(robot, &dag, &notation);
     fill(
         TEMPLATE,
         &[
+            ("heading", "Equations of motion"),
             ("name", &robot.name),
             ("version", env!("CARGO_PKG_VERSION")),
             ("hash", &format!("{:016x}", robot.hash)),
@@ -63,7 +65,7 @@ pub fn document(robot: &Robot, dag: &Dag, functions: &[Function]) -> Result<Stri
 }
 
 /// The table of intermediates.
-fn abbreviations(written: &Written) -> String {
+pub(super) fn abbreviations(written: &Written) -> String {
     if written.definitions.is_empty() {
         return String::new();
     }
@@ -163,7 +165,7 @@ fn entry_by_entry(
 }
 
 /// A formula of several lines.
-fn broken(name: &str, terms: &[String]) -> String {
+pub(super) fn broken(name: &str, terms: &[String]) -> String {
     let mut lines = vec![String::new()];
     let mut used = 0;
     for term in terms {

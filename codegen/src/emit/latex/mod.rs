@@ -3,7 +3,9 @@
 //! - [`Notation`]: how symbols and angles are written (`\dot q_1`, `m_{2}`, `s_{12}`)
 //! - [`write_expressions`]: formulas, with intermediates named where they are long or shared
 //! - [`document()`]: the equations of motion of a robot as a complete document
+//! - [`robot_decomposition`], [`equations_decomposition`]: f, B and theta as one
 
+mod decomposition;
 mod document;
 mod expression;
 mod nomenclature;
@@ -12,6 +14,7 @@ mod term;
 #[cfg(test)]
 mod tests;
 
+pub use decomposition::{equations_decomposition, robot_decomposition};
 pub use document::document;
 pub use expression::{Extent, Written, write_expression, write_expressions};
 pub use notation::{Notation, escape, latex_of_name};

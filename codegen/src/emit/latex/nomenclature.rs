@@ -4,25 +4,27 @@ use super::expression::write_expression;
 use super::notation::{Notation, escape};
 use super::term::decimal_text;
 use crate::expr::Dag;
-use crate::model::{About, JointKind, Robot, Role};
+use crate::model::equations::Equations;
+use crate::model::{About, JointKind, Parameter, Robot, Role};
 
 /// What holds between the arrays of the document.
-pub(super) const LAW: &str = r"\[ D(q)\,\ddot q + C(q, \dot q)\,\dot q + G(q) = \tau \]
+pub(super) const LAW: &str = r"\section{Equations of motion}
+\[ D(q)\,\ddot q + C(q, \dot q)\,\dot q + G(q) = \tau \]
 The torques $\tau$ are those of rigid-body motion with the rotors; what springs, friction and
 offsets of the joints take is added to them. $C$ is made of Christoffel symbols: $\dot D - 2 C$ is
 skew.";
 
-/// What the model is, and what it assumes.
-pub(super) fn description(robot: &Robot) -> String {
+/// What a model or a system of equations is, where it comes from, and what it assumes.
+pub(super) fn description(description: &str, source: &str, assumptions: &[String]) -> String {
     let mut text = String::new();
-    for (label, value) in [("", &robot.description), ("Source: ", &robot.source)] {
+    for (label, value) in [("", description), ("Source: ", source)] {
         if !value.is_empty() {
             text.push_str(&format!("{label}{}\n\n", escape(value)));
         }
     }
-    if !robot.assumptions.is_empty() {
+    if !assumptions.is_empty() {
         text.push_str("Assumptions:\n\\begin{itemize}\n");
-        for assumption in &robot.assumptions {
+        for assumption in assumptions {
             text.push_str(&format!("  \\item {}\n", escape(assumption)));
         }
         text.push_str("\\end{itemize}\n");
@@ -103,6 +105,27 @@ fn parameters(robot: &Robot, dag: &Dag, notation: &Notation) -> String {
         .values()
         .filter(|parameter| matches!(parameter.role, Role::Constant | Role::Unknown))
         .collect();
+    table(&declared, dag, notation)
+}
+
+/// The names of a system of equations.
+pub(super) fn names(equations: &Equations, notation: &Notation) -> String {
+    let dag = &equations.dag;
+    let mut text = String::new();
+    for (title, list) in [
+        ("Variables", &equations.variables),
+        ("Known constants", &equations.knowns),
+        ("Unknown constants", &equations.unknowns),
+    ] {
+        let list: Vec<&Parameter> = list.iter().collect();
+        if !list.is_empty() {
+            text.push_str(&format!("{title}:\n{}", table(&list, dag, notation)));
+        }
+    }
+    text
+}
+
+fn table(declared: &[&Parameter], dag: &Dag, notation: &Notation) -> String {
     if declared.is_empty() {
         return String::new();
     }

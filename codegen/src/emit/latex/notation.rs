@@ -109,6 +109,36 @@ impl Notation {
         notation.settled(dag)
     }
 
+    /// After the names of a system of equations. There are no joints: angles of different letters
+    /// may have one number.
+    pub fn of_equations(dag: &Dag) -> Self {
+        let mut notation = Self::of_names(dag);
+        notation.joints.clear();
+        notation.abbreviates = false;
+        notation
+    }
+
+    /// Writes the parameters of a regressor's columns, `mx_LINK` or `fv_LINK`, with the number of
+    /// the link's joint: `m_{x,1}`.
+    pub(super) fn name_columns(&mut self, dag: &Dag, robot: &Robot, columns: &[ExprId]) {
+        for &column in columns {
+            let Node::Symbol(id) = dag.node(column) else { continue };
+            let Some((prefix, link)) = dag.symbols()[id].name.split_once('_') else { continue };
+            let Some(number) =
+                robot.joints().position(|(joint, _)| robot.links[joint].name == link)
+            else {
+                continue;
+            };
+            let (base, words) = match prefix {
+                "off" => (r"\mathrm{off}".to_owned(), String::new()),
+                _ => base_and_words(prefix),
+            };
+            let comma = if words.is_empty() { "" } else { "," };
+            let subscript = format!("{words}{comma}{}", number + 1);
+            self.set(dag, column, with_subscript(&base, &subscript));
+        }
+    }
+
     fn set(&mut self, dag: &Dag, expr: ExprId, latex: String) {
         if let Node::Symbol(id) = dag.node(expr)
             && dag.symbols()[id].latex.is_none()

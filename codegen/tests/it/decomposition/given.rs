@@ -2,7 +2,7 @@
 
 use crate::robots::repository;
 use denavit_codegen::expr::{Dag, ExprId, text};
-use denavit_codegen::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, equal};
+use denavit_codegen::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, FourierError, equal};
 use denavit_codegen::model::equations::{Equations, is_equations_file, read, schema};
 use denavit_codegen::regressor::equations::{
     EquationsError, EquationsRegressor, equations_regressor,
@@ -47,8 +47,9 @@ fn the_file_of_the_double_pendulum_has_the_base_parameters_of_a93() {
     assert_eq!(found.decomposition.functions.len(), 11);
     assert_eq!((found.decomposition.shape(), found.decomposition.nonzeros()), ((22, 9), 19));
     let keep = ["c2*m2", "c1*m1", "m2", "c1^2*m1 + I1", "c2^2*m2 + I2"];
-    let (echelon, theta) = found.base_parameters(&keep).expect("small");
-    assert_eq!(echelon.rank(), 8);
+    let theta = found.theta(&keep).expect("small");
+    assert_eq!((theta.rank(), theta.dependent().collect::<Vec<_>>()), (8, vec![1]));
+    assert!(found.holds(&theta).expect("there are values"));
     let expected = [
         "c2*m2",
         "m1*c1 - 1/l1*(m1*c1^2 + I1)",
@@ -59,8 +60,7 @@ fn the_file_of_the_double_pendulum_has_the_base_parameters_of_a93() {
         "BM2",
         "Fc2",
     ];
-    assert_eq!(theta.len(), expected.len());
-    for (&value, source) in theta.iter().zip(expected) {
+    for (&value, source) in theta.parameters.iter().zip(expected) {
         let expected = parse(&mut found.dag, source);
         assert_eq!(equal(&mut found.dag, value, expected), Ok(true), "{source}");
     }
@@ -101,8 +101,64 @@ fn unknowns_must_be_factors() {
 fn a_column_to_keep_must_be_there() {
     let equations = read("test.json", file(r#""x = a*y""#).as_bytes()).unwrap();
     let mut found = regressor(&equations).expect("polynomials");
-    let error = found.base_parameters(&["b"]).expect_err("no column b");
-    assert!(error.to_string().contains("the columns are a"), "{error}");
+    for wanted in ["b", "c", "a + ", "a*y", ""] {
+        let error = found.theta(&[wanted]).expect_err("no such column");
+        assert!(error.to_string().contains("the columns are a"), "{error}");
+    }
+}
+
+#[test]
+fn equations_without_unknowns_have_no_regressor() {
+    let equations = read("test.json", file(r#""x = k*y""#).as_bytes()).unwrap();
+    let error = regressor(&equations).expect_err("nothing to be found");
+    assert!(matches!(&error, EquationsError::NoUnknowns { name } if name == "test"), "{error}");
+    // What cancels is not there.
+    let equations = read("test.json", file(r#""x = a*y - y*a + k""#).as_bytes()).unwrap();
+    assert!(matches!(regressor(&equations), Err(EquationsError::NoUnknowns { .. })));
+}
+
+#[test]
+fn what_cannot_be_written_out_is_told() {
+    for (equation, error) in [
+        ("x = a/(y - y)", FourierError::DivisionByZero),
+        ("x = a*y^5000", FourierError::ExponentTooLarge),
+        ("x = a*cos(9000*y) + b*cos(y)", FourierError::ExponentTooLarge),
+    ] {
+        let equations = read("test.json", file(&format!("\"{equation}\"")).as_bytes())
+            .unwrap_or_else(|error| panic!("{equation}: {error}"));
+        let found = regressor(&equations).expect_err(equation);
+        let name = "test".to_owned();
+        assert_eq!(found, EquationsError::Fourier { name, error }, "{equation}");
+    }
+}
+
+/// Units of products, where all their factors have one.
+#[test]
+fn columns_have_the_units_of_their_products() {
+    let source = file(r#""x = a^2*b*y + b*x""#)
+        .replace(r#""a": {}"#, r#""a": {"unit": "m"}"#)
+        .replace(r#""b": {}"#, r#""b": {"unit": "kg"}"#);
+    let equations = read("test.json", source.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let found = regressor(&equations).expect("polynomials");
+    let kg_m2 = denavit_codegen::model::Unit::parse("kg m^2").unwrap().dimension();
+    assert_eq!(found.units, [kg_m2.to_string(), "kg".to_owned()]);
+    let bare = read("test.json", file(r#""x = a*b*y""#).as_bytes()).unwrap();
+    assert_eq!(regressor(&bare).expect("polynomials").units, [""]);
+}
+
+/// A variable named after another one is its rate: it is set so.
+#[test]
+fn rates_are_known_by_their_names() {
+    use denavit_codegen::emit::latex::{Notation, write_expression};
+    let source = file(r#""x = a*xd + b*xdd + k*yd""#)
+        .replace(r#""y": {}"#, r#""xd": {}, "xdd": {}, "yd": {}"#);
+    let equations = read("test.json", source.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let notation = Notation::of_equations(&equations.dag);
+    let set = |variable: usize| {
+        write_expression(&equations.dag, equations.variables[variable].symbol, &notation)
+    };
+    assert_eq!([set(0), set(1), set(2)], ["x", r"\dot{x}", r"\ddot{x}"]);
+    assert!(!set(3).contains("dot"), "there is no y");
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod given;
 mod ranks;
 mod robot;
 mod sizes;
+mod structure;
 
 use super::robots::load;
 use denavit_codegen::expr::{Dag, ExprId};

@@ -1,8 +1,11 @@
 //! Gauss-Jordan on B: the number of base parameters, and that Coriolis terms change nothing.
 
 use super::{Case, FULL, WITHOUT_CORIOLIS};
+use crate::robots::{load, shipped};
 use denavit_codegen::expr::text;
 use denavit_codegen::fundamental::{Basis, Echelon, Fraction, echelon};
+use denavit_codegen::model::Terms;
+use denavit_codegen::regressor::{Dependent, RegressorOptions, base_parameters};
 use std::collections::BTreeMap;
 
 fn eliminate(case: &mut Case) -> Echelon {
@@ -45,8 +48,43 @@ fn b_has_the_rank_of_the_known_base_parameters() {
 
 #[test]
 fn coriolis_terms_add_no_relation_and_take_none() {
-    for name in ["planar_2r", "planar_3r", "scara", "stanford", "puma560", "tulip_leg6"] {
+    for name in [
+        "double_pendulum",
+        "planar_2r",
+        "planar_3r",
+        "scara",
+        "stanford",
+        "puma560",
+        "rx90",
+        "tulip_leg",
+        "tulip_leg5",
+        "tulip_leg6",
+    ] {
         let (without, full) = (Case::new(name, WITHOUT_CORIOLIS), Case::new(name, FULL));
         assert_eq!(rows_of(without), rows_of(full), "{name}");
+    }
+}
+
+/// What all columns of a robot are in the kept ones, by the structure of its tree: proved relations,
+/// with the rank that the torques have modulo a prime.
+fn relations_of(name: &str, coriolis: bool) -> (Vec<usize>, Vec<(String, String)>) {
+    let mut robot = load(name);
+    robot.terms = Terms { coriolis, ..robot.terms };
+    let options = RegressorOptions::default();
+    let found = base_parameters(&robot, options, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let relation = |dependent: &Dependent| {
+        (found.name(dependent.column).to_owned(), found.relation_text(dependent))
+    };
+    let relations = found.dependent.iter().map(relation).collect();
+    (found.parameters.iter().map(|parameter| parameter.column).collect(), relations)
+}
+
+/// D qdd + G alone has the null space of the full model, on every robot that is shipped.
+#[test]
+fn the_null_space_without_coriolis_terms_is_that_of_the_full_model() {
+    for name in shipped() {
+        let (without, full) = (relations_of(&name, false), relations_of(&name, true));
+        assert!(!full.0.is_empty(), "{name}");
+        assert_eq!(without, full, "{name}");
     }
 }

@@ -1,17 +1,23 @@
 //! Whole robots, in the parameters that a user knows.
 
-use super::{FULL, WITHOUT_CORIOLIS};
 use crate::robots::load;
 use denavit_codegen::dynamics::methods::{Method, derive};
 use denavit_codegen::expr::{Residues, derivative, evaluate};
 use denavit_codegen::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, echelon, smallest};
 use denavit_codegen::model::{About, BodyEntry, Role};
 use denavit_codegen::number::Residue;
-use denavit_codegen::regressor::{MotionTerms, RobotDecomposition, decompose_robot};
+use denavit_codegen::regressor::{RegressorOptions, RobotDecomposition, decompose_robot};
 
-fn decompose(name: &str, terms: MotionTerms) -> RobotDecomposition {
+/// Every term, Coriolis terms among them or not.
+const FULL: bool = true;
+const WITHOUT_CORIOLIS: bool = false;
+
+fn decompose(name: &str, coriolis: bool) -> RobotDecomposition {
+    let mut robot = load(name);
+    robot.terms.coriolis = coriolis;
     let mut expansion = Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
-    decompose_robot(&load(name), terms, &Basis::ALL, &mut expansion).expect("it fits")
+    let options = RegressorOptions::default();
+    decompose_robot(&robot, options, &Basis::ALL, &mut expansion).expect("it fits")
 }
 
 /// The columns are the derivatives of Lagrange's torques by inertia entries: these act alike
@@ -33,7 +39,7 @@ fn columns_are_what_lagrange_says() {
             }
             let seeds = std::iter::once((parameter.symbol, dag.one())).collect();
             let slopes = derivative(&mut dag, &torque, &seeds);
-            let column = found.columns.iter().position(|column| *column == parameter.name).unwrap();
+            let column = found.columns.iter().position(|c| c.name == parameter.name).unwrap();
             let rows: Vec<_> = found.rows.iter().map(|row| row[column]).collect();
             let expected = evaluate(&dag, &slopes, &mut Residues::new(3)).unwrap();
             let ours = evaluate(&found.dag, &rows, &mut Residues::new(3)).unwrap();

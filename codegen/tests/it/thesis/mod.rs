@@ -3,7 +3,9 @@
 //! has a test here which shows that the printed form is wrong and the corrected one right.
 
 mod appendix_a;
+mod appendix_b;
 mod chapter_2;
+mod chapter_3;
 mod identification;
 
 use super::robots::load;
@@ -18,7 +20,9 @@ fn every_test_that_the_errata_name_exists() {
     let errata = include_str!("../../../../docs/errata.md");
     let modules = [
         ("appendix_a", include_str!("appendix_a.rs")),
+        ("appendix_b", include_str!("appendix_b.rs")),
         ("chapter_2", include_str!("chapter_2.rs")),
+        ("chapter_3", include_str!("chapter_3.rs")),
         ("identification", include_str!("identification.rs")),
     ];
     let named = errata.split('`').filter_map(|word| word.split_once("::"));

@@ -1,0 +1,119 @@
+//! theta = B_Eu theta0 by elimination of B (thesis 3.3-3.5): the base parameters of whatever has
+//! been decomposed, of a model or of given equations.
+
+use crate::expr::{Dag, EvaluateError, ExprId, Residues, evaluate};
+use crate::fundamental::{Decomposition, Echelon, EchelonError, echelon};
+use crate::number::Residue;
+
+/// Seeds of the points at which results are compared with what they came from.
+const SEEDS: [u64; 3] = [0x7468_6561, 0x7468_6562, 0x7468_6563];
+
+/// What B_E says of the columns.
+#[derive(Clone, Debug)]
+pub struct Theta {
+    /// B_Eu.
+    pub echelon: Echelon,
+    /// theta0: the parameter of each column, by name or as a product of unknowns.
+    pub columns: Vec<ExprId>,
+    /// theta, in the order of the pivots.
+    pub parameters: Vec<ExprId>,
+}
+
+impl Theta {
+    /// Eliminates B in the order in which columns are preferred.
+    pub(super) fn new(
+        dag: &mut Dag,
+        decomposition: &Decomposition,
+        order: &[usize],
+        columns: Vec<ExprId>,
+    ) -> Result<Self, EchelonError> {
+        let echelon = echelon(dag, decomposition, order)?;
+        let mut parameters = Vec::new();
+        for row in &echelon.rows {
+            let mut sum = dag.zero();
+            for (&column, factor) in row {
+                let product = factor.times_expr(dag, columns[column]);
+                sum = dag.add(sum, product);
+            }
+            parameters.push(sum);
+        }
+        Ok(Self { echelon, columns, parameters })
+    }
+
+    /// The rank of B: the number of base parameters.
+    pub fn rank(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// The columns that are no pivots, in order.
+    pub fn dependent(&self) -> impl Iterator<Item = usize> {
+        (0..self.columns.len()).filter(|column| !self.echelon.pivots.contains(column))
+    }
+
+    /// The columns that a parameter is the sum of, its own first, with their factors.
+    pub fn members(&self, dag: &mut Dag, parameter: usize) -> Vec<(usize, ExprId)> {
+        let own = self.echelon.pivots[parameter];
+        let row = &self.echelon.rows[parameter];
+        let others = row.keys().copied().filter(|&column| column != own);
+        let members: Vec<usize> = std::iter::once(own).chain(others).collect();
+        members.into_iter().map(|column| (column, row[&column].to_expr(dag))).collect()
+    }
+
+    /// What a dependent column is the sum of, columns by their parameters.
+    pub fn relation(&self, dag: &mut Dag, column: usize) -> ExprId {
+        let mut sum = dag.zero();
+        for (pivot, factor) in self.echelon.relation(column) {
+            let product = factor.times_expr(dag, self.columns[pivot]);
+            sum = dag.add(sum, product);
+        }
+        sum
+    }
+
+    /// Whether f^T B_u theta, with the columns of the pivots alone, is `right` at random points
+    /// modulo a prime: equation by equation what R0 theta0 was before anything was decomposed.
+    pub fn holds(
+        &self,
+        dag: &mut Dag,
+        decomposition: &Decomposition,
+        right: &[ExprId],
+    ) -> Result<bool, EvaluateError> {
+        let f: Vec<ExprId> = decomposition.functions.iter().map(|one| one.to_expr(dag)).collect();
+        let b: Vec<ExprId> =
+            decomposition.coefficients.iter().map(|one| one.to_expr(dag)).collect();
+        for seed in SEEDS {
+            let at = |list: &[ExprId]| evaluate(dag, list, &mut Residues::new(seed));
+            let (f, b) = (at(&f)?, at(&b)?);
+            let (theta, right) = (at(&self.parameters)?, at(right)?);
+            let mut sums = vec![Residue::ZERO; right.len()];
+            for (&pivot, &parameter) in self.echelon.pivots.iter().zip(&theta) {
+                for entry in &decomposition.columns[pivot] {
+                    let sum = &mut sums[entry.equation as usize];
+                    let factor = b[entry.coefficient as usize] * f[entry.function as usize];
+                    *sum = *sum + factor * parameter;
+                }
+            }
+            if sums != right {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The order of `count` columns, those of `keep` before others. The error is what is not found.
+pub(super) fn order_of<N: AsRef<str>>(
+    keep: &[N],
+    count: usize,
+    mut find: impl FnMut(&N) -> Option<usize>,
+) -> Result<Vec<usize>, String> {
+    let mut order: Vec<usize> = Vec::new();
+    for wanted in keep {
+        let place = find(wanted).ok_or_else(|| wanted.as_ref().to_owned())?;
+        if !order.contains(&place) {
+            order.push(place);
+        }
+    }
+    let rest: Vec<usize> = (0..count).filter(|place| !order.contains(place)).collect();
+    order.extend(rest);
+    Ok(order)
+}

@@ -1,0 +1,56 @@
+//! The base parameters of given equations.
+
+use super::super::elimination::{Elimination, columns};
+use super::super::progress::Progress;
+use super::{Answer, Arguments, CertificateJson, Failure, write_json};
+use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};
+use denavit::model::equations::Equations;
+use denavit::number::Residue;
+use denavit::regressor::equations::equations_regressor;
+use serde::Serialize;
+use std::io::Write;
+
+#[derive(Serialize)]
+struct GivenJson<'a> {
+    model: &'a str,
+    columns: Vec<String>,
+    #[serde(flatten)]
+    elimination: Elimination,
+    certificate: CertificateJson,
+}
+
+/// B of the equations is eliminated, and what comes out is compared with the equations.
+pub(super) fn run(
+    arguments: &Arguments,
+    equations: &Equations,
+    out: &mut dyn Write,
+) -> Result<Answer, Failure> {
+    let is_of_models = !arguments.with.is_empty() || arguments.terms.is_some();
+    if is_of_models || arguments.certificate.is_some() {
+        return Err(Failure::NotOfEquations(equations.name.clone()));
+    }
+    let progress = Progress::new();
+    let mut show = |_| progress.show("writing the equations out");
+    let mut expansion = Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut show };
+    let mut found = equations_regressor(equations, Basis::Product, &mut expansion)
+        .map_err(Failure::Equations)?;
+    let theta = found.theta(&arguments.keep).map_err(Failure::Equations)?;
+    let verified = found.holds(&theta).map_err(Failure::Equations)?;
+    progress.clear();
+    let named = columns(&found.dag, &found.parameters, found.units.clone());
+    let elimination = Elimination::new(&mut found.dag, &theta, &named);
+    let answer = if verified { Answer::Done } else { Answer::Negative };
+    let columns: Vec<String> = named.into_iter().map(|column| column.name).collect();
+    if arguments.json {
+        let (model, prime) = (equations.name.as_str(), Residue::MODULUS);
+        let certificate = CertificateJson { verified, prime };
+        write_json(out, &GivenJson { model, columns, elimination, certificate })?;
+        return Ok(answer);
+    }
+    let (rank, count) = (theta.rank(), columns.len());
+    writeln!(out, "{}: {rank} base parameters of {count} columns\n", equations.name)?;
+    elimination.write(out)?;
+    let verdict = if verified { "checked" } else { "do NOT agree" };
+    writeln!(out, "\nexact; with the equations {verdict} modulo {}", Residue::MODULUS)?;
+    Ok(answer)
+}

@@ -4,8 +4,10 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use denavit::derive::{Flavour, derive};
 use denavit::emit::rust::module;
 use denavit::function::FunctionName;
+use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};
 use denavit::model::{self, Robot};
 use denavit::program::lower;
+use denavit::regressor::{RegressorOptions, decompose_robot};
 use std::hint::black_box;
 
 const MODELS: [(&str, &str); 3] = [
@@ -40,5 +42,25 @@ fn stages(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, stages);
+/// f and B of whole regressors: PUMA 560 with every term, TUlip without Coriolis terms.
+fn decompositions(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("decompose");
+    group.sample_size(10);
+    for (name, text) in MODELS {
+        let mut robot = read(name, text);
+        robot.terms.coriolis = name != "tulip";
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                let mut expansion =
+                    Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
+                let options = RegressorOptions::default();
+                decompose_robot(black_box(&robot), options, &Basis::ALL, &mut expansion)
+                    .expect("it fits the memory")
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, stages, decompositions);
 criterion_main!(benches);

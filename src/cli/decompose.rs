@@ -11,7 +11,7 @@ use super::options::{Term, terms};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::fundamental::{Basis, Expansion, Progress as Expanded};
-use found::Found;
+pub(super) use found::Found;
 use std::io::Write;
 use std::path::PathBuf;
 

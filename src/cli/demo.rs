@@ -3,6 +3,7 @@
 mod checks;
 mod compiled;
 mod counts;
+mod decomposed;
 mod states;
 
 use super::Answer;
@@ -15,6 +16,7 @@ use checks::Check;
 use clap::Args;
 use compiled::{Compiled, ROBOTS};
 use counts::Comparison;
+use decomposed::Decomposed;
 use denavit::derive::{Derivation, Flavour, StageReport};
 use denavit::emit::latex::document;
 use denavit::function::FunctionName;
@@ -79,6 +81,7 @@ struct DemoJson<'a> {
     version: &'a str,
     seed: u64,
     robots: &'a [Outcome],
+    decomposed: &'a Decomposed,
     seconds: f64,
     passed: bool,
 }
@@ -103,11 +106,16 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         outcomes.push(outcome);
     }
     drop(progress);
+    let decomposed = Decomposed::new(directory)?;
+    if !arguments.json {
+        decomposed.write(out)?;
+    }
     let passed = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
     let seconds = started.elapsed().as_secs_f64();
     if arguments.json {
         let seed = arguments.seed;
-        write_json(out, &DemoJson { version, seed, robots: &outcomes, seconds, passed })?;
+        let (robots, decomposed) = (&outcomes[..], &decomposed);
+        write_json(out, &DemoJson { version, seed, robots, decomposed, seconds, passed })?;
     } else {
         let verdict = if passed { "all checks passed" } else { "A CHECK FAILED" };
         writeln!(out, "\n{verdict}; {seconds:.1} s")?;

@@ -113,7 +113,7 @@ fn read_fields(fields: &Fields<'_, '_>, report: &mut Report) -> Equations {
     let declared = [&variables, &knowns, &unknowns];
     let names: BTreeSet<String> =
         declared.into_iter().flatten().map(|one| one.name.text.clone().into_owned()).collect();
-    let mut reading = Reading { scope: Scope::new(names), report };
+    let mut reading = Reading { scope: Scope::new(names, "knowns"), report };
     for variable in &variables {
         if let Some(value) = &variable.value {
             let (expected, found) = ("an object", "a number or an expression");

@@ -151,6 +151,8 @@ pub enum Cause {
         name: String,
         /// The declared name that was meant, perhaps.
         nearest: Option<String>,
+        /// The key of the file under which it would be declared.
+        section: &'static str,
     },
     /// A joint variable in a row of the table.
     VariableInRow(String),

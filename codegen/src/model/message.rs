@@ -165,9 +165,9 @@ impl Cause {
             Self::UnknownSymbol { nearest: Some(name), .. }
             | Self::UnknownLink(_, Some(name))
             | Self::UnknownContact(_, Some(name)) => format!("did you mean `{name}`?"),
-            Self::UnknownSymbol { nearest: None, name, .. } => {
+            Self::UnknownSymbol { nearest: None, name, section, .. } => {
                 format!(
-                    "declare it: \"constants\": {{\"{}\": {{\"value\": .., \"unit\": ..}}}}",
+                    "declare it: \"{section}\": {{\"{}\": {{\"value\": .., \"unit\": ..}}}}",
                     clip(name)
                 )
             }

@@ -1,9 +1,14 @@
 //! theta = B_Eu theta0 by elimination of B (thesis 3.3-3.5): the base parameters of whatever has
 //! been decomposed, of a model or of given equations.
 
-use crate::expr::{Dag, EvaluateError, ExprId, Residues, evaluate};
+use crate::expr::{
+    ClassSet, Dag, EvaluateError, ExprId, Node, Residues, UnaryFunction, angle_atoms, evaluate,
+    substitute,
+};
 use crate::fundamental::{Decomposition, Echelon, EchelonError, echelon};
-use crate::number::Residue;
+use crate::number::{Rational, Residue};
+use num_traits::One;
+use rustc_hash::FxHashMap;
 
 /// Seeds of the points at which results are compared with what they came from.
 const SEEDS: [u64; 3] = [0x7468_6561, 0x7468_6562, 0x7468_6563];
@@ -80,12 +85,15 @@ impl Theta {
         let f: Vec<ExprId> = decomposition.functions.iter().map(|one| one.to_expr(dag)).collect();
         let b: Vec<ExprId> =
             decomposition.coefficients.iter().map(|one| one.to_expr(dag)).collect();
+        let all = [&f, &b, &self.parameters, right].concat();
+        let all = with_whole_angles(dag, &all);
         for seed in SEEDS {
-            let at = |list: &[ExprId]| evaluate(dag, list, &mut Residues::new(seed));
-            let (f, b) = (at(&f)?, at(&b)?);
-            let (theta, right) = (at(&self.parameters)?, at(right)?);
+            let values = evaluate(dag, &all, &mut Residues::new(seed))?;
+            let (f, rest) = values.split_at(f.len());
+            let (b, rest) = rest.split_at(b.len());
+            let (theta, right) = rest.split_at(self.parameters.len());
             let mut sums = vec![Residue::ZERO; right.len()];
-            for (&pivot, &parameter) in self.echelon.pivots.iter().zip(&theta) {
+            for (&pivot, &parameter) in self.echelon.pivots.iter().zip(theta) {
                 for entry in &decomposition.columns[pivot] {
                     let sum = &mut sums[entry.equation as usize];
                     let factor = b[entry.coefficient as usize] * f[entry.function as usize];
@@ -98,6 +106,41 @@ impl Theta {
         }
         Ok(true)
     }
+}
+
+/// The same with every variable replaced by a multiple of itself, so that no angle has a fraction
+/// of one: modulo a prime, half an angle is a point of its own. What holds for all values of the
+/// variables holds of their multiples, and the other way round.
+fn with_whole_angles(dag: &mut Dag, exprs: &[ExprId]) -> Vec<ExprId> {
+    let is_variable = |dag: &Dag, expr: ExprId| {
+        dag.as_symbol(expr).is_some_and(|symbol| ClassSet::of(symbol.class).is_run_time())
+    };
+    let mut common = Rational::one();
+    for expr in dag.topological(exprs) {
+        let (Node::Unary(UnaryFunction::Sin, angle) | Node::Unary(UnaryFunction::Cos, angle)) =
+            dag.node(expr)
+        else {
+            continue;
+        };
+        for (atom, multiple) in angle_atoms(dag, angle) {
+            if atom.iter().any(|&(factor, exponent)| exponent > 0 && is_variable(dag, factor)) {
+                // lcm(a, b) = a (b / gcd(a, b))
+                let left = &common * multiple;
+                common *= Rational::from_integer(left.denom().clone());
+            }
+        }
+    }
+    if common.is_one() {
+        return exprs.to_vec();
+    }
+    let common = dag.constant(common);
+    let mut multiples = FxHashMap::default();
+    for expr in dag.topological(exprs) {
+        if is_variable(dag, expr) {
+            multiples.insert(expr, dag.mul(common, expr));
+        }
+    }
+    substitute(dag, exprs, &multiples)
 }
 
 /// The order of `count` columns, those of `keep` before others. The error is what is not found.

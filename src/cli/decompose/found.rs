@@ -24,7 +24,7 @@ const MOST_FORMULAS: usize = 20_000;
 const PLAIN_NODES: u64 = 200;
 
 /// f and B.
-pub(super) struct Found {
+pub(in crate::cli) struct Found {
     subject: Subject,
     decomposition: Decomposition,
     theta: Option<Theta>,
@@ -37,7 +37,7 @@ enum Subject {
 
 impl Found {
     /// Of a model; in the basis that makes the fewest functions if none is named.
-    pub(super) fn of_model(
+    pub(in crate::cli) fn of_model(
         robot: Box<Robot>,
         options: RegressorOptions,
         basis: Option<Basis>,
@@ -53,7 +53,7 @@ impl Found {
     }
 
     /// Of equations, likewise.
-    pub(super) fn of_equations(
+    pub(in crate::cli) fn of_equations(
         equations: Box<Equations>,
         basis: Option<Basis>,
         expansion: &mut Expansion<'_>,
@@ -81,7 +81,7 @@ impl Found {
     }
 
     /// Eliminates B, the columns of `keep` being kept before others.
-    pub(super) fn eliminate(&mut self, keep: &[String]) -> Result<(), Failure> {
+    pub(in crate::cli) fn eliminate(&mut self, keep: &[String]) -> Result<(), Failure> {
         self.theta = Some(match &mut self.subject {
             Subject::Model(_, found) => {
                 found.theta(&self.decomposition, keep).map_err(Failure::Decompose)?
@@ -92,7 +92,7 @@ impl Found {
     }
 
     /// A LaTeX document.
-    pub(super) fn latex(&self) -> Result<String, Failure> {
+    pub(in crate::cli) fn latex(&self) -> Result<String, Failure> {
         let formulas = self.decomposition.functions.len() + self.decomposition.nonzeros();
         if formulas > MOST_FORMULAS {
             return Err(Failure::TooLongToSet { name: self.name().to_owned(), formulas });
@@ -108,6 +108,16 @@ impl Found {
         Ok(document.expect("our template has a place for each value"))
     }
 
+    /// f and B.
+    pub(in crate::cli) fn decomposition(&self) -> &Decomposition {
+        &self.decomposition
+    }
+
+    /// The rank of B, once it is eliminated.
+    pub(in crate::cli) fn rank(&self) -> Option<usize> {
+        self.theta.as_ref().map(Theta::rank)
+    }
+
     fn name(&self) -> &str {
         match &self.subject {
             Subject::Model(robot, _) => &robot.name,
@@ -116,7 +126,7 @@ impl Found {
     }
 
     /// Everything as text.
-    pub(super) fn texts(self) -> Texts {
+    pub(in crate::cli) fn texts(self) -> Texts {
         let name = self.name().to_owned();
         let Self { subject, decomposition, theta } = self;
         let (mut dag, equations, columns, left) = match subject {
@@ -175,7 +185,7 @@ fn plain(dag: &Dag, exprs: &[ExprId]) -> Vec<String> {
 
 /// f and B as texts.
 #[derive(Serialize)]
-pub(super) struct Texts {
+pub(in crate::cli) struct Texts {
     model: String,
     basis: &'static str,
     /// Names of joints, or the equations themselves.
@@ -211,7 +221,7 @@ struct Entry {
 
 impl Texts {
     /// For people: in full if it can be read.
-    pub(super) fn write(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(in crate::cli) fn write(&self, out: &mut dyn Write) -> Result<(), Failure> {
         writeln!(
             out,
             "{}: {} functions in the {} basis; B is {} x {} with {} entries",

@@ -279,6 +279,12 @@ fn the_demo_writes_its_files_and_passes_its_checks() {
             assert_eq!(file["bytes"], size, "{path:?}");
         }
     }
+    // A.86 and A.93 of the thesis: eleven functions, eight base parameters
+    let decomposed = &demo["decomposed"];
+    assert_eq!((&decomposed["functions"], &decomposed["rank"]), (&11.into(), &8.into()));
+    let path = directory.path.join(decomposed["file"]["file"].as_str().expect("a path"));
+    let text = std::fs::read_to_string(path).expect("the document");
+    assert!(text.contains(r"\section{Decomposition}"), "{text}");
     let another = run_in(&directory.path, &["demo", "--out", "here"]);
     assert_eq!(another.code, Some(0));
     assert!(another.stdout.contains("seed 1") && another.stdout.contains("all checks passed"));

@@ -270,6 +270,14 @@ fn base_and_words(letters: &str) -> (String, String) {
     if let Some((_, greek)) = GREEK.iter().find(|(name, _)| *name == letters) {
         return ((*greek).to_owned(), String::new());
     }
+    // tauM is tau with the subscript M.
+    let with_words = GREEK.iter().find_map(|(name, greek)| {
+        let words = letters.strip_prefix(name)?;
+        words.starts_with(|first: char| first.is_ascii_uppercase()).then_some((greek, words))
+    });
+    if let Some((greek, words)) = with_words {
+        return ((*greek).to_owned(), words.to_owned());
+    }
     match letters.len() {
         0 => (r"\_".to_owned(), String::new()),
         1 => (letters.to_owned(), String::new()),

@@ -40,7 +40,7 @@ struct Check<'r> {
 pub(super) fn check(file: &ModelFile, hash: u64, report: &mut Report) -> Robot {
     let mut check = Check {
         report,
-        scope: Scope::new(declare::declared_names(file)),
+        scope: Scope::new(declare::declared_names(file), "constants"),
         parameters: PrimaryMap::new(),
         links: PrimaryMap::new(),
         link_ids: FxHashMap::default(),

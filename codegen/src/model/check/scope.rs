@@ -22,17 +22,20 @@ pub(in crate::model) struct Scope {
     declared: FxHashMap<String, ExprId>,
     /// Every name that the file declares, now or later.
     names: BTreeSet<String>,
+    section: &'static str,
     text_bytes: usize,
 }
 
 impl Scope {
     /// A scope in which nothing is declared yet; `names` are those that the file will declare.
-    pub(in crate::model) fn new(names: BTreeSet<String>) -> Self {
+    /// `section` is the key of the file under which a known quantity is declared.
+    pub(in crate::model) fn new(names: BTreeSet<String>, section: &'static str) -> Self {
         Self {
             dag: Dag::new(),
             facts: Facts::default(),
             declared: FxHashMap::default(),
             names,
+            section,
             text_bytes: 0,
         }
     }
@@ -247,7 +250,8 @@ impl Scope {
         }
         let names = self.names.iter().map(String::as_str);
         let nearest = if report.wants_hints() { nearest(&name, names) } else { None };
-        Cause::UnknownSymbol { text, nearest: nearest.map(str::to_owned), name }
+        let nearest = nearest.map(str::to_owned);
+        Cause::UnknownSymbol { text, nearest, name, section: self.section }
     }
 }
 

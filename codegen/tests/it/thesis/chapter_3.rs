@@ -14,9 +14,9 @@ use denavit_codegen::regressor::{
 #[test]
 fn eq_3_10_has_more_offsets_than_can_be_found() {
     let source = br#"{"format": "denavit-equations/1", "name": "trajectory",
- "variables": {"q": {}, "w": {}, "t": {}},
+ "variables": {"q": {}, "wt": {}},
  "unknowns": {"a1": {}, "a2": {}, "b1": {}, "b2": {}},
- "equations": ["q = a1*sin(w*t) + b1 + a2*sin(2*w*t) + b2"]}"#;
+ "equations": ["q = a1*sin(wt) + b1 + a2*sin(2*wt) + b2"]}"#;
     let equations = read("trajectory.json", source).unwrap_or_else(|error| panic!("{error}"));
     let mut expansion = Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
     let found = equations_regressor(&equations, Basis::Fourier, &mut expansion).expect("linear");

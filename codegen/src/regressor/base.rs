@@ -1,10 +1,11 @@
 //! Base parameters: the combinations of parameters that the torques depend on, theta = B_Eu theta0
 //! (thesis 3.5).
 
-use super::column::{Regressor, RegressorError, RegressorOptions, column_symbol};
+use super::column::{Regressor, RegressorError, RegressorOptions};
 use super::dependence::relations;
 use super::eliminate::{Reduced, eliminate};
 use super::rank::{PARAMETERS, Ranking, rank};
+use super::theta::column_symbol;
 use crate::expr::{Dag, EvaluateError, ExprId, Residues, evaluate, text};
 use crate::fundamental::{CanonicalError, Fraction};
 use crate::model::Robot;

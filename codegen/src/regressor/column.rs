@@ -428,17 +428,6 @@ impl Builder<'_> {
     }
 }
 
-/// The symbol that stands for a column's parameter in formulas: a product stands for itself.
-pub(super) fn column_symbol(dag: &mut Dag, column: &Column) -> ExprId {
-    if let Some(id) = dag.find_symbol(&column.name) {
-        return dag.symbol_expr(id);
-    }
-    match column.parameter {
-        Some(_) => dag.symbol(&column.name, SymbolClass::Inertia),
-        None => column.value,
-    }
-}
-
 fn name_of(dag: &Dag, expr: ExprId) -> String {
     text::print(dag, expr).to_string()
 }

@@ -1,13 +1,11 @@
 //! R0_ij = f^T b_ij of a robot, in the columns of its regressor; a floating base in torso
 //! coordinates.
 
-use super::column::{
-    Column, Feature, Regressor, RegressorError, RegressorOptions, column_symbol, row_scales,
-};
+use super::column::{Column, Feature, Regressor, RegressorError, RegressorOptions, row_scales};
 use super::pull::{
     Equation, MatterRegressor, MotionTerms, TorsoMotion, fixed_base_regressor, torso_regressor,
 };
-use super::theta::{Theta, order_of};
+use super::theta::{Theta, column_symbol, order_of};
 use crate::arena::Handle;
 use crate::expr::{ClassSet, Dag, ExprId, Symbol, SymbolId};
 use crate::fundamental::{

@@ -9,7 +9,8 @@
 //! - [`Certificate`]: a proof of all that, and its verification by other means
 //! - [`functions`]: the regressor functions for emission
 //! - [`equations`]: given equations, not of a model (`denavit-equations/1`)
-//! - [`decompose_robot`]: f and B of a model's regressor; [`Theta`]: theta from B_E, the thesis's way
+//! - [`decompose_robot`]: f and B of a model's regressor
+//! - [`Theta`]: theta from B_E, the thesis's way
 //! - `pull`: the equations for decomposition, of arms and of robots on a moving torso
 
 pub mod base;

@@ -1,9 +1,10 @@
 //! theta = B_Eu theta0 by elimination of B (thesis 3.3-3.5): the base parameters of whatever has
 //! been decomposed, of a model or of given equations.
 
+use super::column::Column;
 use crate::expr::{
-    ClassSet, Dag, EvaluateError, ExprId, Node, Residues, UnaryFunction, angle_atoms, evaluate,
-    substitute,
+    ClassSet, Dag, EvaluateError, ExprId, Node, Residues, SymbolClass, UnaryFunction, angle_atoms,
+    evaluate, substitute,
 };
 use crate::fundamental::{Decomposition, Echelon, EchelonError, echelon};
 use crate::number::{Rational, Residue};
@@ -159,4 +160,15 @@ pub(super) fn order_of<N: AsRef<str>>(
     let rest: Vec<usize> = (0..count).filter(|place| !order.contains(place)).collect();
     order.extend(rest);
     Ok(order)
+}
+
+/// The symbol that stands for a column's parameter in formulas: a product stands for itself.
+pub(super) fn column_symbol(dag: &mut Dag, column: &Column) -> ExprId {
+    if let Some(id) = dag.find_symbol(&column.name) {
+        return dag.symbol_expr(id);
+    }
+    match column.parameter {
+        Some(_) => dag.symbol(&column.name, SymbolClass::Inertia),
+        None => column.value,
+    }
 }

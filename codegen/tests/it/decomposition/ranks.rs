@@ -65,8 +65,8 @@ fn coriolis_terms_add_no_relation_and_take_none() {
     }
 }
 
-/// What all columns of a robot are in the kept ones, by the structure of its tree: proved relations,
-/// with the rank that the torques have modulo a prime.
+/// What all columns of a robot are in the kept ones, by the structure of its tree: proved
+/// relations, with the rank that the torques have modulo a prime.
 fn relations_of(name: &str, coriolis: bool) -> (Vec<usize>, Vec<(String, String)>) {
     let mut robot = load(name);
     robot.terms = Terms { coriolis, ..robot.terms };

@@ -1,5 +1,5 @@
-//! The thesis's own way, Gauss-Jordan on B (3.3-3.5), against the relations that the structure of the
-//! tree gives: two ways that share the columns' definitions and nothing else.
+//! The thesis's own way, Gauss-Jordan on B (3.3-3.5), against the relations that the structure of
+//! the tree gives: two ways that share the columns' definitions and nothing else.
 
 use crate::robots::load;
 use denavit_codegen::expr::{Dag, ExprId, text};

@@ -113,8 +113,8 @@ fn the_loop_deletes_the_pivots() {
 }
 
 /// `if isempty(m) f = [f;a]; B{length(f),n,r} = ..; if n<=size(B,2) .. end`: without an else, what
-/// belongs to a function that is there already is never stored. (`[Bm,n,r e..]` for `[B{m,n,r} e..]`
-/// is no expression of the language at all.)
+/// belongs to a function that is there already is never stored. (`[Bm,n,r e..]` for
+/// `[B{m,n,r} e..]` is no expression of the language at all.)
 #[test]
 fn without_an_else_entries_of_known_functions_are_lost() {
     let (found, _) = pendulum();

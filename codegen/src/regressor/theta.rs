@@ -109,22 +109,18 @@ impl Theta {
     }
 }
 
-/// The same with every variable replaced by a multiple of itself, so that no angle has a fraction
-/// of one: modulo a prime, half an angle is a point of its own. What holds for all values of the
-/// variables holds of their multiples, and the other way round.
+/// The same with every symbol replaced by a multiple of itself, so that no angle has a fraction of
+/// one: modulo a prime, half an angle is a point of its own. What holds for all values of the
+/// symbols holds of their multiples, and the other way round.
 fn with_whole_angles(dag: &mut Dag, exprs: &[ExprId]) -> Vec<ExprId> {
-    let is_variable = |dag: &Dag, expr: ExprId| {
-        dag.as_symbol(expr).is_some_and(|symbol| ClassSet::of(symbol.class).is_run_time())
-    };
     let mut common = Rational::one();
     for expr in dag.topological(exprs) {
-        let (Node::Unary(UnaryFunction::Sin, angle) | Node::Unary(UnaryFunction::Cos, angle)) =
-            dag.node(expr)
-        else {
+        let Node::Unary(UnaryFunction::Sin | UnaryFunction::Cos, angle) = dag.node(expr) else {
             continue;
         };
         for (atom, multiple) in angle_atoms(dag, angle) {
-            if atom.iter().any(|&(factor, exponent)| exponent > 0 && is_variable(dag, factor)) {
+            let is_number = atom.iter().all(|&(factor, _)| dag.as_symbol(factor).is_none());
+            if !is_number {
                 // lcm(a, b) = a (b / gcd(a, b))
                 let left = &common * multiple;
                 common *= Rational::from_integer(left.denom().clone());
@@ -134,12 +130,13 @@ fn with_whole_angles(dag: &mut Dag, exprs: &[ExprId]) -> Vec<ExprId> {
     if common.is_one() {
         return exprs.to_vec();
     }
-    let common = dag.constant(common);
     let mut multiples = FxHashMap::default();
     for expr in dag.topological(exprs) {
-        if is_variable(dag, expr) {
-            multiples.insert(expr, dag.mul(common, expr));
-        }
+        let Some(symbol) = dag.as_symbol(expr) else { continue };
+        // Variables are divided by constants, a few at most.
+        let power = if ClassSet::of(symbol.class).is_run_time() { 4 } else { 1 };
+        let factor = dag.constant(common.pow(power));
+        multiples.insert(expr, dag.mul(factor, expr));
     }
     substitute(dag, exprs, &multiples)
 }

@@ -138,6 +138,7 @@ fn what_was_eliminated_is_still_what_was_given() {
     for equation in [
         "0 = a*cos(x/2) + b*cos(x)",
         "y = a*cos(x/3)*cos(x/2)^2 + b*cos(pi/5 + x)",
+        "0 = a*cos(k/2 + x/3)*sin(x/(2*k)) + b*cos(k)*sin(x/k)",
         "0 = a*cos(x*y/4) + b*cos(k*x) + a*b*cos(x*y)",
         "x = (a + b)^3*tan(y) + a*sqrt(x) + b*exp(-abs(y))",
         "x = a*x/(x + y) + b*k/(1 + k)*y",

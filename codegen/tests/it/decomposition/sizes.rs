@@ -51,6 +51,33 @@ fn puma_has_the_counted_functions() {
     }
 }
 
+/// On its torso, with every term, body by body down one leg: torso, hip z, x, y, knee, ankle, foot.
+#[test]
+fn a_leg_of_tulip_has_the_counted_functions() {
+    let case = Case::torso("tulip", FULL);
+    let expected = [12, 67, 391, 2264, 5997, 11_963, 39_599];
+    for (body, functions) in (5..).zip(expected) {
+        // The foot takes a while.
+        if functions > 20_000 && cfg!(debug_assertions) {
+            continue;
+        }
+        let own = 10 * body..10 * (body + 1);
+        let rows = case.rows.iter().map(|row| row[own.clone()].to_vec()).collect();
+        let (robot, dag, chains) = (case.robot.clone(), case.dag.clone(), case.chains.clone());
+        let found = Case { robot, dag, rows, chains }.decompose(&[Fourier]);
+        assert_eq!(found[0].functions.len(), functions, "body {body}");
+    }
+}
+
+/// In the coordinates of the virtual chain there are many more functions than on the torso.
+#[test]
+fn the_virtual_chain_of_tulip_has_the_counted_functions() {
+    // 2 GB, and a minute without optimisation.
+    if !cfg!(debug_assertions) {
+        assert_sizes("tulip", WITHOUT_CORIOLIS, &[(Fourier, 176_037)]);
+    }
+}
+
 #[test]
 fn iiwa_has_the_counted_functions() {
     assert_sizes("iiwa", WITHOUT_CORIOLIS, &[(Fourier, 25_954)]);

@@ -69,12 +69,16 @@ fn a_leg_of_tulip_has_the_counted_functions() {
     }
 }
 
-/// In the coordinates of the virtual chain there are many more functions than on the torso.
+/// In the coordinates of the virtual chain there are many more functions than on the torso. The
+/// first five bodies of the chain have no mass and no columns.
 #[test]
 fn the_virtual_chain_of_tulip_has_the_counted_functions() {
-    // 2 GB, and a minute without optimisation.
+    // A minute without optimisation.
     if !cfg!(debug_assertions) {
-        assert_sizes("tulip", WITHOUT_CORIOLIS, &[(Fourier, 176_037)]);
+        let mut case = Case::new("tulip", WITHOUT_CORIOLIS);
+        case.rows.iter_mut().for_each(|row| _ = row.drain(..50));
+        let found = case.decompose(&[Fourier]);
+        assert_eq!((found[0].functions.len(), found[0].shape()), (176_037, (3_168_666, 130)));
     }
 }
 

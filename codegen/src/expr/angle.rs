@@ -5,7 +5,8 @@ use crate::number::{Rational, integer};
 use num_traits::Zero;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A product of powers, as (factor, exponent) in order of handle; the empty product is the number 1.
+/// A product of powers, as (factor, exponent) in order of handle; the empty product is the number
+/// 1.
 pub(crate) type AngleAtom = Vec<(ExprId, i64)>;
 
 /// A sum of multiples of atoms, none of them 0.

@@ -46,7 +46,8 @@ pub(super) fn fraction_of_pi(coefficient: &Rational) -> ([Residue; 2], Rational)
     }
     let odd = denominator >> twos;
     let power = BigInt::one() << twos;
-    // n / (2^j d) = a / 2^j + b / d: b is n divided by 2^j modulo d, and (d + 1)/2 is the inverse of 2.
+    // n / (2^j d) = a / 2^j + b / d: b is n divided by 2^j modulo d, and (d + 1)/2 is the inverse
+    // of 2.
     let half: BigInt = (&odd + 1_u32) >> 1;
     let mut b = numerator * half.modpow(&BigInt::from(twos), &odd) % &odd;
     if b.clone() + &b > odd {

@@ -130,26 +130,31 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if arguments.json {
         write_answer(out, &equations)?;
     } else {
-        write!(out, "{}: {}, method {}", equations.model, equations.law(), equations.method)?;
-        writeln!(out, "\n\njoints: {}", numbered(&equations.joints))?;
-        let nodes = equations.nodes();
-        let most = MULTIPLIED_OUT_NODES[usize::from(equations.joints.len() > FEW_JOINTS)];
-        let multiplied_out = match nodes <= most {
-            true => equations.written_out(READABLE_TERMS),
-            false => None,
-        };
-        match multiplied_out {
-            Some(entries) => write_in_full(out, &equations, &entries, u64::MAX)?,
-            None if nodes <= READABLE_NODES => {
-                write_in_full(out, &equations, &equations.entries_of_terms(), PLAIN_NODES)?;
-            }
-            None => write_summary(out, &equations)?,
-        }
+        write_for_people(out, &mut equations)?;
         if let Some(file) = &arguments.latex {
             writeln!(out, "\nwrote {}", file.display())?;
         }
     }
     Ok(Answer::Done)
+}
+
+/// In full where that can be read, else a summary.
+fn write_for_people(out: &mut dyn Write, equations: &mut Equations) -> Result<(), Failure> {
+    writeln!(out, "{}: {}, method {}", equations.model, equations.law(), equations.method)?;
+    writeln!(out, "\njoints: {}", numbered(&equations.joints))?;
+    let nodes = equations.nodes();
+    let most = MULTIPLIED_OUT_NODES[usize::from(equations.joints.len() > FEW_JOINTS)];
+    let multiplied_out = match nodes <= most {
+        true => equations.written_out(READABLE_TERMS),
+        false => None,
+    };
+    match multiplied_out {
+        Some(entries) => write_in_full(out, equations, &entries, u64::MAX),
+        None if nodes <= READABLE_NODES => {
+            write_in_full(out, equations, &equations.entries_of_terms(), PLAIN_NODES)
+        }
+        None => write_summary(out, equations),
+    }
 }
 
 fn numbered(joints: &[String]) -> String {

@@ -2,7 +2,9 @@
 
 use super::{Directory, answer, run_in};
 
-const COMMANDS: [&str; 7] = ["demo", "inspect", "derive", "decompose", "count", "emit", "schema"];
+/// In an order in which an example may read what one before it wrote: `verify` checks a certificate.
+const COMMANDS: [&str; 9] =
+    ["demo", "inspect", "derive", "decompose", "count", "emit", "base", "verify", "schema"];
 
 /// The command lines of a help text's examples; three blanks begin a remark.
 fn examples(help: &str) -> Vec<Vec<String>> {
@@ -17,17 +19,17 @@ fn examples(help: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn every_example_of_every_help_text_runs() {
+    let directory = Directory::new("examples");
     let helps = COMMANDS.map(|command| answer(&[command, "--help"])).into_iter();
     for help in helps.chain([answer(&["--help"])]) {
         let examples = examples(&help);
         assert!(!examples.is_empty(), "no example in:\n{help}");
         for example in examples {
-            let directory = Directory::new("example");
             let words: Vec<&str> = example.iter().map(String::as_str).collect();
             let run = run_in(&directory.path, &words);
             assert_eq!(run.code, Some(0), "{example:?}: {}", run.stderr);
             assert!(!run.stdout.is_empty(), "{example:?} says nothing");
-            for option in ["--svg", "--latex", "-o"] {
+            for option in ["--svg", "--latex", "--certificate", "-o"] {
                 let at = words.iter().position(|word| *word == option);
                 let file = at.and_then(|at| words.get(at + 1)).filter(|file| **file != "-");
                 if let Some(file) = file {

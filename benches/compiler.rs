@@ -1,13 +1,13 @@
 //! How long the compiler takes: from a model's text to functions, to a program, to Rust.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use denavit::derive::{Flavour, derive};
+use denavit::derive::{Flavour, bake, derive};
 use denavit::emit::rust::module;
 use denavit::function::FunctionName;
 use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};
 use denavit::model::{self, Robot};
 use denavit::program::lower;
-use denavit::regressor::{RegressorOptions, decompose_robot};
+use denavit::regressor::{RegressorOptions, base_parameters, decompose_robot};
 use std::hint::black_box;
 
 const MODELS: [(&str, &str); 3] = [
@@ -62,5 +62,21 @@ fn decompositions(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, stages, decompositions);
+/// Base parameters, with lengths as symbols and as numbers.
+fn base(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("base parameters");
+    group.sample_size(20);
+    for (name, text) in MODELS {
+        let robot = read(name, text);
+        let numeric = bake(&robot).expect("shipped models have values");
+        for (kind, robot) in [("symbolic", &robot), ("numeric", &numeric)] {
+            let find = || base_parameters(robot, RegressorOptions::default(), &[]);
+            find().expect("shipped models have base parameters");
+            group.bench_function(format!("{kind}/{name}"), |b| b.iter(find));
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, stages, decompositions, base);
 criterion_main!(benches);

@@ -140,6 +140,11 @@ impl<K: Handle, V: Clone> SecondaryMap<K, V> {
         }
         self.rows[key.index()] = value;
     }
+
+    /// The values, row by row.
+    pub fn values(&self) -> std::slice::Iter<'_, V> {
+        self.rows.iter()
+    }
 }
 
 impl<K: Handle, V> std::ops::Index<K> for SecondaryMap<K, V> {

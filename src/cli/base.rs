@@ -1,17 +1,20 @@
 //! `denavit base`: what can be identified, exactly.
 
 mod given;
+mod json;
+mod markdown;
+mod text;
 
 use super::Answer;
 use super::failure::Failure;
 use super::files::{Input, read_input, write_whole};
-use super::json::{Ordered, write_json};
 use super::options::{Term, terms};
 use clap::{Args, ValueEnum};
+use denavit::emit::latex::base_document;
 use denavit::model::Robot;
-use denavit::number::Residue;
-use denavit::regressor::{BaseParameters, Certificate, RegressorOptions, base_parameters};
-use denavit::report::{Align, Table};
+use denavit::regressor::functions::modelled;
+use denavit::regressor::{BaseParameters, Certificate, Part, RegressorOptions, base_parameters};
+use denavit::report::{Values, short};
 use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
@@ -27,6 +30,7 @@ Examples:
   denavit base double_pendulum
   denavit base puma560 --with friction,rotor --json
   denavit base double_pendulum_drives
+  denavit base tulip --latex tulip.tex --markdown tulip.md
   denavit base tulip_leg --terms inertia,gravity --certificate leg.certificate.json")]
 pub(crate) struct Arguments {
     /// Path of a model or of a file of equations, name of a shipped one, or - for standard input
@@ -38,9 +42,16 @@ pub(crate) struct Arguments {
     /// The terms of the equations, instead of those of the model, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     terms: Option<Vec<Term>>,
-    /// Parameters to keep before others, separated by commas, most wanted first
+    /// Parameters to keep before others, separated by commas, most wanted first: names, or
+    /// prefixes for those of all links (Izz,mx)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     keep: Vec<String>,
+    /// Write the base parameters as a LaTeX document; - is standard output
+    #[arg(long, value_name = "FILE")]
+    latex: Option<PathBuf>,
+    /// Write them as Markdown; - is standard output
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
     /// Write a certificate that `denavit verify` checks
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
@@ -58,33 +69,8 @@ pub(crate) enum With {
     Rotor,
     /// A constant torque
     Offset,
-}
-
-#[derive(Serialize)]
-struct BaseJson<'a> {
-    model: &'a str,
-    columns: Vec<&'a str>,
-    rank: usize,
-    zero: Vec<&'a str>,
-    dependent: Vec<DependentJson<'a>>,
-    parameters: Vec<ParameterJson<'a>>,
-    certificate: CertificateJson,
-}
-
-#[derive(Serialize)]
-struct DependentJson<'a> {
-    name: &'a str,
-    relation: String,
-}
-
-#[derive(Serialize)]
-struct ParameterJson<'a> {
-    name: &'a str,
-    expression: String,
-    latex: String,
-    unit: &'a str,
-    members: Ordered<String>,
-    alone: bool,
+    /// Those that the model has, as in the emitted functions
+    Modelled,
 }
 
 /// What was checked, and modulo which prime.
@@ -94,14 +80,39 @@ struct CertificateJson {
     prime: u64,
 }
 
-/// What a list of joint parameters asks for.
-pub(crate) fn regressor_options(with: &[With]) -> RegressorOptions {
-    let has = |one| with.contains(&one);
-    RegressorOptions {
-        friction: has(With::Friction),
-        rotor: has(With::Rotor),
-        offset: has(With::Offset),
-        ..RegressorOptions::default()
+/// Base parameters with all that is shown of them.
+pub(crate) struct Found<'a> {
+    robot: &'a Robot,
+    base: &'a BaseParameters,
+    /// The values of the base parameters; none where the model gives none.
+    values: Vec<Option<f64>>,
+    verified: bool,
+}
+
+impl<'a> Found<'a> {
+    pub(crate) fn new(robot: &'a Robot, base: &'a BaseParameters, verified: bool) -> Self {
+        let mut values = Values::in_graph(&base.regressor.dag, robot);
+        let values = base.parameters.iter().map(|parameter| values.number(parameter.value));
+        Self { robot, base, values: values.collect(), verified }
+    }
+
+    /// The values as a person writes them; none at all if the model gives only zeros.
+    pub(super) fn shown_values(&self) -> Vec<String> {
+        let says = |value: &Option<f64>| value.is_some_and(|value| value != 0.0);
+        match self.values.iter().any(says) {
+            true => self.values.iter().map(|value| value.map_or(String::new(), short)).collect(),
+            false => Vec::new(),
+        }
+    }
+
+    fn names(&self, columns: Vec<usize>) -> Vec<&str> {
+        columns.into_iter().map(|column| self.base.name(column)).collect()
+    }
+
+    /// The columns that are sums of others, with their relations.
+    fn sums(&self) -> impl Iterator<Item = (&str, &[Part])> {
+        let sums = self.base.dependent.iter().filter(|one| !one.relation.is_empty());
+        sums.map(|one| (self.base.name(one.column), &one.parts[..]))
     }
 }
 
@@ -113,7 +124,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let Some(list) = &arguments.terms {
         robot.terms = terms(list);
     }
-    let options = regressor_options(&arguments.with);
+    let options = regressor_options(&robot, &arguments.with);
     let base = base_parameters(&robot, options, &arguments.keep)
         .map_err(|error| Failure::Base(Box::new(error)))?;
     let certificate = Certificate::new(&robot, options, &base);
@@ -123,107 +134,54 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         bytes.push(b'\n');
         write_whole(path, &bytes)?;
     }
-    if arguments.json {
-        write_json(out, &json(&robot, &base, verified))?;
-    } else {
-        print(out, &robot, &base, verified)?;
+    let found = Found::new(&robot, &base, verified);
+    let mut is_answered = false;
+    for (path, format) in
+        [(&arguments.latex, Format::Latex), (&arguments.markdown, Format::Markdown)]
+    {
+        let Some(path) = path else { continue };
+        let document = match format {
+            Format::Latex => latex(&found),
+            Format::Markdown => markdown::document(&found),
+        };
+        if path.as_os_str() == "-" {
+            out.write_all(document.as_bytes())?;
+            is_answered = true;
+        } else {
+            write_whole(path, document.as_bytes())?;
+        }
+    }
+    match (arguments.json, is_answered) {
+        (true, _) => json::write(out, &found)?,
+        (false, true) => {}
+        (false, false) => text::write(out, &found)?,
     }
     Ok(if verified { Answer::Done } else { Answer::Negative })
 }
 
-fn json<'a>(robot: &'a Robot, base: &'a BaseParameters, verified: bool) -> BaseJson<'a> {
-    let dependent = base.dependent.iter().filter(|dependent| !dependent.relation.is_empty());
-    let parameters = base.parameters.iter().map(|parameter| ParameterJson {
-        name: base.name(parameter.column),
-        expression: base.text(parameter.expression),
-        latex: latex(&base.text(parameter.expression)),
-        unit: &base.regressor.columns[parameter.column].unit,
-        members: Ordered(
-            parameter
-                .members
-                .iter()
-                .map(|&(column, factor)| (base.name(column).to_owned(), base.text(factor)))
-                .collect(),
-        ),
-        alone: parameter.is_alone(),
-    });
-    BaseJson {
-        model: &robot.name,
-        columns: base.regressor.columns.iter().map(|column| column.name.as_str()).collect(),
-        rank: base.rank(),
-        zero: base.zero().into_iter().map(|column| base.name(column)).collect(),
-        dependent: dependent
-            .map(|dependent| DependentJson {
-                name: base.name(dependent.column),
-                relation: base.relation_text(dependent),
-            })
-            .collect(),
-        parameters: parameters.collect(),
-        certificate: CertificateJson { verified, prime: Residue::MODULUS },
-    }
+#[derive(Clone, Copy)]
+enum Format {
+    Latex,
+    Markdown,
 }
 
-/// A formula of names, whole numbers and `+ - * / ^ ( )` as LaTeX: names upright.
-fn latex(formula: &str) -> String {
-    let mut result = String::new();
-    let mut rest = formula;
-    while let Some(first) = rest.chars().next() {
-        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        let length = match first {
-            c if is_word(c) => rest.find(|c| !is_word(c)).unwrap_or(rest.len()),
-            c => c.len_utf8(),
-        };
-        let (token, after) = rest.split_at(length);
-        match token {
-            "*" => result.push_str("\\,"),
-            "sin" | "cos" | "tan" => result.push_str(&format!("\\{token}")),
-            "pi" => result.push_str("\\pi"),
-            _ if first.is_ascii_alphabetic() => {
-                let name = token.replace('_', "\\_");
-                result.push_str(&format!("\\mathrm{{{name}}}"));
-            }
-            _ if result.ends_with('^') => result.push_str(&format!("{{{token}}}")),
-            _ => result.push_str(token),
-        }
-        rest = after;
-    }
-    result
+/// The base parameters as a LaTeX document.
+pub(crate) fn latex(found: &Found<'_>) -> String {
+    base_document(found.robot, found.base, &found.shown_values())
+        .expect("our template has a place for each value")
 }
 
-fn print(
-    out: &mut dyn Write,
-    robot: &Robot,
-    base: &BaseParameters,
-    verified: bool,
-) -> Result<(), Failure> {
-    let columns = base.regressor.columns.len();
-    writeln!(out, "{}: {} base parameters of {columns} columns\n", robot.name, base.rank())?;
-    let mut table = Table::new(&[
-        ("kept", Align::Left),
-        ("unit", Align::Left),
-        ("base parameter", Align::Left),
-    ]);
-    for parameter in &base.parameters {
-        table.push(vec![
-            base.name(parameter.column).to_owned(),
-            base.regressor.columns[parameter.column].unit.clone(),
-            base.text(parameter.expression),
-        ]);
+/// What a list of joint parameters asks for.
+pub(crate) fn regressor_options(robot: &Robot, with: &[With]) -> RegressorOptions {
+    let has = |one| with.contains(&one);
+    if has(With::Modelled) && with.len() == 1 {
+        return modelled(robot);
     }
-    write!(out, "{table}")?;
-    let zero: Vec<&str> = base.zero().into_iter().map(|column| base.name(column)).collect();
-    if !zero.is_empty() {
-        writeln!(out, "\nwithout any effect: {}", zero.join(", "))?;
+    RegressorOptions {
+        friction: has(With::Friction) || has(With::Modelled) && robot.terms.friction,
+        rotor: has(With::Rotor) || has(With::Modelled) && robot.terms.rotor,
+        offset: has(With::Offset) || has(With::Modelled),
+        only_modelled: has(With::Modelled),
+        ..RegressorOptions::default()
     }
-    let dependent = base.dependent.iter().filter(|dependent| !dependent.relation.is_empty());
-    let dependent: Vec<_> = dependent.collect();
-    if !dependent.is_empty() {
-        writeln!(out, "\ncolumns that are sums of kept columns:")?;
-    }
-    for dependent in dependent {
-        let relation = base.relation_text(dependent);
-        writeln!(out, "  {} = {relation}", base.name(dependent.column))?;
-    }
-    let verdict = if verified { "verified" } else { "NOT verified" };
-    Ok(writeln!(out, "\ncertificate {verdict} (exact; rank modulo {})", Residue::MODULUS)?)
 }

@@ -7,6 +7,7 @@ mod decomposed;
 mod states;
 
 use super::Answer;
+use super::base::{Found, latex};
 use super::emit::Emitted;
 use super::failure::Failure;
 use super::files::{make_directory, read_model, write_whole};
@@ -21,13 +22,14 @@ use denavit::derive::{Derivation, Flavour, StageReport};
 use denavit::emit::latex::document;
 use denavit::function::FunctionName;
 use denavit::model::Robot;
+use denavit::regressor::{Certificate, RegressorOptions, base_parameters};
 use denavit::report::{Align, Pose, Table, picture};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Derive, emit, draw and check the humanoid TUlip and the arm PUMA 560
+/// Derive, emit, draw, find base parameters of and check the humanoid TUlip and the arm PUMA 560
 ///
 /// Needs no file: the models are part of the command. Its functions were generated when it was
 /// built; they are run at random states against equations of motion that are derived in another
@@ -58,6 +60,7 @@ struct Outcome {
     degrees_of_freedom: usize,
     stages: Ordered<StageJson>,
     operations: Ordered<Comparison>,
+    base: BaseJson,
     files: Vec<Written>,
     checks: Vec<Check>,
 }
@@ -66,6 +69,16 @@ struct Outcome {
 struct StageJson {
     milliseconds: f64,
     nodes: usize,
+}
+
+/// What was found of the base parameters.
+#[derive(Serialize)]
+struct BaseJson {
+    columns: usize,
+    rank: usize,
+    alone: usize,
+    verified: bool,
+    milliseconds: f64,
 }
 
 /// A file that was written.
@@ -110,7 +123,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if !arguments.json {
         decomposed.write(out)?;
     }
-    let passed = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
+    let checked = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
+    let passed = checked && outcomes.iter().all(|outcome| outcome.base.verified);
     let seconds = started.elapsed().as_secs_f64();
     if arguments.json {
         let seed = arguments.seed;
@@ -141,6 +155,8 @@ fn one_robot(
     let document = equations(&robot, &emitted.derivation);
     let what = "D, C, G and W^T as LaTeX".to_owned();
     files.push(write(directory, &format!("{name}_equations.tex"), &document, what)?);
+    progress.show(&format!("{name}: finding base parameters"));
+    let base = base(&robot, directory, &mut files)?;
     progress.show(&format!("{name}: drawing"));
     let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(name.to_owned(), e))?;
     let drawn = picture(&robot, &pose);
@@ -162,9 +178,31 @@ fn one_robot(
         degrees_of_freedom: robot.degrees_of_freedom(),
         stages: Ordered(stages),
         operations: Ordered(operations),
+        base,
         files,
         checks,
     })
+}
+
+/// Finds the base parameters, proves them, and writes both.
+fn base(robot: &Robot, directory: &Path, files: &mut Vec<Written>) -> Result<BaseJson, Failure> {
+    let name = &robot.name;
+    let options = RegressorOptions::default();
+    let started = Instant::now();
+    let base =
+        base_parameters(robot, options, &[]).map_err(|error| Failure::Base(Box::new(error)))?;
+    let milliseconds = 1e3 * started.elapsed().as_secs_f64();
+    let certificate = Certificate::new(robot, options, &base);
+    let verified = certificate.verify(robot).is_verified();
+    let document = latex(&Found::new(robot, &base, verified));
+    let what = "base parameters as LaTeX".to_owned();
+    files.push(write(directory, &format!("{name}_base_parameters.tex"), &document, what)?);
+    let mut text = serde_json::to_string_pretty(&certificate)?;
+    text.push('\n');
+    let what = "the certificate that they are exact".to_owned();
+    files.push(write(directory, &format!("{name}_certificate.json"), &text, what)?);
+    let (columns, rank) = (base.regressor.columns.len(), base.rank());
+    Ok(BaseJson { columns, rank, alone: base.alone().len(), verified, milliseconds })
 }
 
 /// D, C, G and, of a robot with contacts, W^T as a LaTeX document.
@@ -205,6 +243,13 @@ fn write_outcome(out: &mut dyn Write, outcome: &Outcome) -> Result<(), Failure> 
     stages.push(vec!["total".to_owned(), String::new(), format!("{total:.2}")]);
     writeln!(out, "\nstages (nodes: of the graph after it)\n{stages}")?;
     writeln!(out, "operations of one call (mul + add)\n{}", counts::table(&outcome.operations.0))?;
+    let BaseJson { columns, rank, alone, verified, milliseconds } = &outcome.base;
+    let verdict = if *verified { "verified" } else { "NOT VERIFIED" };
+    writeln!(
+        out,
+        "base parameters: {rank} of {columns} columns in {milliseconds:.1} ms, {alone} of them \
+         parameters alone; certificate {verdict}\n"
+    )?;
     writeln!(
         out,
         "checks, by running the generated functions\n{}",

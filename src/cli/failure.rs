@@ -127,7 +127,8 @@ impl fmt::Display for Failure {
             Self::Decompose(error) => write!(f, "{error}")?,
             Self::NotOfEquations(name) => write!(
                 f,
-                "{name}: equations have no --with, --terms or --certificate, which belong to models"
+                "{name}: equations have no --with, --terms, --certificate, --latex or --markdown \
+                 here: `denavit decompose` sets them"
             )?,
             Self::TooLongToSet { name, formulas } => {
                 write!(f, "{name}: {formulas} formulas are too many for a document")?;

@@ -27,12 +27,16 @@ enum Format {
     /// Equations as text
     #[value(alias = denavit::model::equations::FORMAT)]
     Equations,
+    /// A proof of base parameters
+    #[value(alias = denavit::regressor::certificate::FORMAT)]
+    Certificate,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
         Format::Equations => denavit::model::equations::schema(),
+        Format::Certificate => denavit::regressor::certificate::schema(),
     };
     writeln!(out, "{}", schema.trim_end())?;
     Ok(Answer::Done)

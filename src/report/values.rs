@@ -17,9 +17,14 @@ pub struct Values {
 impl Values {
     /// The values of `robot`.
     pub fn new(robot: &Robot) -> Self {
+        Self::in_graph(&robot.dag, robot)
+    }
+
+    /// The values of expressions in a graph that grew from that of `robot`.
+    pub fn in_graph(dag: &Dag, robot: &Robot) -> Self {
         let parameters = robot.parameters.values();
         let given = parameters.filter_map(|parameter| Some((parameter.symbol, parameter.default?)));
-        Self { dag: robot.dag.clone(), defaults: given.collect() }
+        Self { dag: dag.clone(), defaults: given.collect() }
     }
 
     /// The value of an expression of the robot; none if it needs a parameter that has none.

@@ -1,6 +1,7 @@
 //! The command as a user meets it: answers, exit codes, messages, files.
 
 mod answers;
+mod base;
 mod decompose;
 mod errors;
 mod help;

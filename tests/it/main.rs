@@ -3,5 +3,7 @@
 mod cli;
 mod contact;
 mod emitted;
+mod singular_values;
 mod tidy;
 mod time_stepping;
+mod trees;

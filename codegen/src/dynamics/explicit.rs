@@ -38,7 +38,7 @@ type Terms = BTreeMap<Key, Rational>;
 
 /// The entries in closed form; `None` if they hold anything but sums, products, sines and cosines,
 /// or grow too long.
-pub(super) fn explicit(dag: &mut Dag, entries: &[ExprId]) -> Option<Vec<ExprId>> {
+pub(crate) fn explicit(dag: &mut Dag, entries: &[ExprId]) -> Option<Vec<ExprId>> {
     let expanded = expand_all(dag, entries)?;
     Some(expanded.iter().map(|terms| rebuild(dag, terms)).collect())
 }

@@ -5,7 +5,7 @@
 //! feels its spring instead: rotor and motor friction are then the motor's own equation (3.22).
 
 use crate::expr::{Dag, ExprId, Relation, UnaryFunction};
-use crate::model::{Link, Robot, Side};
+use crate::model::{LinkId, Robot, Side};
 use rustc_hash::FxHashMap;
 
 /// The terms of one joint.
@@ -21,10 +21,11 @@ pub(super) struct JointTerms {
 
 /// The terms of every joint, in joint order.
 pub(super) fn joint_terms(dag: &mut Dag, robot: &Robot) -> Vec<JointTerms> {
-    robot.joints().map(|(link, _)| terms_of(dag, robot, &robot.links[link])).collect()
+    robot.joints().map(|(link, _)| terms_of(dag, robot, link)).collect()
 }
 
-fn terms_of(dag: &mut Dag, robot: &Robot, link: &Link) -> JointTerms {
+fn terms_of(dag: &mut Dag, robot: &Robot, id: LinkId) -> JointTerms {
+    let link = &robot.links[id];
     let joint = &link.joint;
     let variables = joint.variables.expect("joints() lists moving joints");
     let drive = link.drive.unwrap_or_default();
@@ -36,7 +37,6 @@ fn terms_of(dag: &mut Dag, robot: &Robot, link: &Link) -> JointTerms {
         rotor = dag.mul(square, inertia);
     }
     let mut torque = dag.zero();
-    let mut energy = dag.zero();
     if robot.terms.friction {
         if let Some(viscous) = drive.viscous.filter(|_| stiff) {
             let reflected = dag.mul(square, viscous);
@@ -52,6 +52,21 @@ fn terms_of(dag: &mut Dag, robot: &Robot, link: &Link) -> JointTerms {
             torque = add_product(dag, torque, damping, variables.qd);
         }
     }
+    let (springs, energy) = spring_torque(dag, robot, id);
+    torque = dag.add(torque, springs);
+    if let Some(offset) = drive.offset {
+        torque = dag.add(torque, offset);
+    }
+    JointTerms { rotor, torque, energy }
+}
+
+/// Torque and elastic energy of the springs across one moving joint [N m, N; J].
+pub(crate) fn spring_torque(dag: &mut Dag, robot: &Robot, id: LinkId) -> (ExprId, ExprId) {
+    let link = &robot.links[id];
+    let joint = &link.joint;
+    let variables = joint.variables.expect("the joint moves");
+    let drive = link.drive.unwrap_or_default();
+    let (mut torque, mut energy) = (dag.zero(), dag.zero());
     if let Some(spring) = joint.spring.filter(|_| robot.terms.spring) {
         let stretch = dag.sub(variables.q, spring.angle);
         (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, stretch);
@@ -66,10 +81,7 @@ fn terms_of(dag: &mut Dag, robot: &Robot, link: &Link) -> JointTerms {
         let active = dag.select(Relation::Less, sides, stretch, zero);
         (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, active);
     }
-    if let Some(offset) = drive.offset {
-        torque = dag.add(torque, offset);
-    }
-    JointTerms { rotor, torque, energy }
+    (torque, energy)
 }
 
 fn add_product(dag: &mut Dag, sum: ExprId, a: ExprId, b: ExprId) -> ExprId {

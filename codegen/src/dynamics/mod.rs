@@ -23,6 +23,9 @@ mod forward;
 mod inverse;
 mod joint_torque;
 pub mod methods;
-pub(crate) mod motion;
+mod motion;
 mod outputs;
 pub mod portfolio;
+
+pub(crate) use explicit::explicit;
+pub(crate) use joint_torque::spring_torque;

@@ -10,7 +10,7 @@ use crate::kinematics::{Frames, Mechanism};
 use crate::model::Robot;
 
 /// Closed forms grow exponentially with the joints: beyond three they never pay.
-const MAX_EXPLICIT_JOINTS: usize = 3;
+pub(crate) const MAX_EXPLICIT_JOINTS: usize = 3;
 
 /// All formulations of one robot.
 pub struct Portfolio<'a> {

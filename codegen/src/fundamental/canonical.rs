@@ -5,16 +5,18 @@
 //! addition theorems. With s^2 = 1 - c^2 each sine is left at most once in a monomial, and the
 //! monomials c^k s^e (e = 0 or 1) of different angles are linearly independent: two expressions
 //! are the same function exactly if their polynomials are equal. Angles a quarter turn apart are
-//! known to be; other fractions of pi are refused, because their sines are algebraic numbers.
+//! known to be; other fractions of pi are refused, because their sines are algebraic numbers
+//! ([`canonical_generic`] takes them for variables).
 //!
 //! Functions without such a theory (`sqrt`, `sign`, `select`, ...) are atoms too, told apart by
 //! their canonical arguments: of these equal polynomials still mean equal expressions, but
 //! `sqrt(x)^2` is not seen to be `x`.
 
 use super::polynomial::{Monomial, Polynomial, TooManyTerms};
-use crate::expr::{Dag, ExprId, Node, UnaryFunction};
-use crate::number::{Rational, integer};
-use num_traits::{One, Signed, ToPrimitive};
+use crate::expr::{Dag, ExprId, Node, UnaryFunction, angle_atoms, is_pi};
+use crate::number::{Rational, integer, ratio};
+use num_bigint::BigInt;
+use num_traits::{One, Signed, ToPrimitive, Zero};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -82,13 +84,74 @@ pub(super) fn canonical_within(
     exprs: &[ExprId],
     limit: usize,
 ) -> Result<Vec<Polynomial>, CanonicalError> {
+    expand(dag, exprs, limit, None)
+}
+
+/// [`canonical_all`] in which an angle that is a number (0.3, pi/6) is a variable: its cosine and
+/// sine obey cos^2 + sin^2 = 1 and nothing else. What vanishes then vanishes for every such angle;
+/// what does not may still vanish for this one. Angles with the same denominator are multiples of
+/// one variable.
+pub fn canonical_generic(
+    dag: &mut Dag,
+    exprs: &[ExprId],
+) -> Result<Vec<Polynomial>, CanonicalError> {
+    let numbers = number_angles(dag, exprs);
+    expand(dag, exprs, MAX_TERMS, Some(numbers))
+}
+
+/// The numbers among the angles, beyond quarter turns: for each class (whether a multiple of pi)
+/// and denominator the greatest common divisor of the numerators.
+fn number_angles(dag: &Dag, exprs: &[ExprId]) -> NumberAngles {
+    let mut numbers = NumberAngles::new();
+    for expr in dag.topological(exprs) {
+        let Node::Unary(UnaryFunction::Sin | UnaryFunction::Cos | UnaryFunction::Tan, angle) =
+            dag.node(expr)
+        else {
+            continue;
+        };
+        for (atom, coefficient) in angle_atoms(dag, angle) {
+            let is_pi = is_pi(dag, &atom);
+            if is_pi || atom.is_empty() {
+                let rest = if is_pi { beyond_quarter_turns(&coefficient).1 } else { coefficient };
+                let entry = numbers.entry((is_pi, rest.denom().clone())).or_default();
+                *entry = common_divisor(entry.clone(), rest.numer().abs());
+            }
+        }
+    }
+    numbers
+}
+
+fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
+    while !b.is_zero() {
+        (a, b) = (b.clone(), a % b);
+    }
+    a
+}
+
+/// A multiple of pi as quarter turns and the rest, which is at most half of one. Opposite angles
+/// are taken apart into opposites, and an angle of at most half a quarter is its own rest.
+fn beyond_quarter_turns(multiple: &Rational) -> (BigInt, Rational) {
+    let size = (multiple.abs() * integer(2) - ratio(1, 2)).ceil();
+    let quarters = if multiple.is_negative() { -size } else { size };
+    (quarters.to_integer(), multiple - quarters / integer(2))
+}
+
+/// By (whether of pi, denominator): the greatest common divisor of the numerators.
+type NumberAngles = BTreeMap<(bool, BigInt), BigInt>;
+
+fn expand(
+    dag: &mut Dag,
+    exprs: &[ExprId],
+    limit: usize,
+    numbers: Option<NumberAngles>,
+) -> Result<Vec<Polynomial>, CanonicalError> {
     let mut uses: FxHashMap<ExprId, usize> = FxHashMap::default();
     let nodes = dag.topological(exprs);
     for &expr in &nodes {
         dag.node(expr).for_each_operand(|operand| *uses.entry(operand).or_default() += 1);
     }
     exprs.iter().for_each(|&expr| *uses.entry(expr).or_default() += 1);
-    let mut expansion = Expansion { dag, limit, cosine_of: FxHashMap::default() };
+    let mut expansion = Expansion { dag, limit, cosine_of: FxHashMap::default(), numbers };
     let mut known: FxHashMap<ExprId, Polynomial> = FxHashMap::default();
     for expr in nodes {
         let polynomial = expansion.node(expr, &known)?;
@@ -116,6 +179,8 @@ struct Expansion<'a> {
     limit: usize,
     /// The cosine atom of each sine atom.
     cosine_of: FxHashMap<ExprId, ExprId>,
+    /// Angles that are numbers, if they are taken for variables.
+    numbers: Option<NumberAngles>,
 }
 
 impl Expansion<'_> {
@@ -234,33 +299,57 @@ impl Expansion<'_> {
         let pi = self.dag.pi();
         for (monomial, coefficient) in angle.terms() {
             let is_pi = monomial.powers() == [(pi, 1)];
-            // An angle of 1 rad has no canonical sine: neither has a number without pi.
-            let times = if is_pi { coefficient * integer(2) } else { coefficient.clone() };
-            let whole = times.to_integer().to_i32().filter(|_| times.is_integer());
-            let whole = whole.filter(|_| !monomial.is_one()).ok_or(CanonicalError::Angle)?;
+            let mut rest = coefficient.clone();
             if is_pi {
-                for _ in 0..whole.rem_euclid(4) {
+                let quarters;
+                (quarters, rest) = beyond_quarter_turns(coefficient);
+                let quarters: BigInt = ((quarters % 4) + 4) % 4;
+                for _ in 0..quarters.to_u8().unwrap_or(0) {
                     point = (point.1.scaled(&integer(-1)), point.0);
                 }
+            }
+            if rest.is_zero() {
                 continue;
             }
-            if whole.abs() > MAX_MULTIPLE {
-                return Err(CanonicalError::Angle);
-            }
-            let (cosine, mut sine) = self.atom_point(monomial);
-            if coefficient.is_negative() {
+            let unit = self.unit_of(&rest, (monomial, is_pi))?;
+            let times = (&rest / &unit).to_integer().to_i32();
+            let times = times.filter(|times| times.abs() <= MAX_MULTIPLE);
+            let times = times.ok_or(CanonicalError::Angle)?;
+            let (cosine, mut sine) = self.atom_point(monomial, unit);
+            if times < 0 {
                 sine = sine.scaled(&integer(-1));
             }
-            for _ in 0..whole.abs() {
+            for _ in 0..times.abs() {
                 point = self.turned(&point, &(cosine.clone(), sine.clone()))?;
             }
         }
         Ok(point)
     }
 
+    /// The angle of which `rest` times a monomial is a whole multiple.
+    fn unit_of(
+        &self,
+        rest: &Rational,
+        (monomial, is_pi): (&Monomial, bool),
+    ) -> Result<Rational, CanonicalError> {
+        if is_pi || monomial.is_one() {
+            // An angle of 1 rad has no canonical sine: neither has a third of pi.
+            let numbers = self.numbers.as_ref().ok_or(CanonicalError::Angle)?;
+            let common = numbers.get(&(is_pi, rest.denom().clone()));
+            return Ok(match common {
+                Some(numerator) => Rational::new(numerator.clone(), rest.denom().clone()),
+                None => rest.abs(),
+            });
+        }
+        match rest.is_integer() {
+            true => Ok(Rational::one()),
+            false => Err(CanonicalError::Angle),
+        }
+    }
+
     /// (cos, sin) of an angle that is one monomial.
-    fn atom_point(&mut self, monomial: &Monomial) -> (Polynomial, Polynomial) {
-        let angle = Polynomial::term(monomial.clone(), Rational::one()).to_expr(self.dag);
+    fn atom_point(&mut self, monomial: &Monomial, unit: Rational) -> (Polynomial, Polynomial) {
+        let angle = Polynomial::term(monomial.clone(), unit).to_expr(self.dag);
         let (cosine, sine) = (self.dag.cos(angle), self.dag.sin(angle));
         self.cosine_of.insert(sine, cosine);
         (Polynomial::atom(cosine), Polynomial::atom(sine))

@@ -28,7 +28,9 @@ mod series;
 mod tests;
 mod whole;
 
-pub use canonical::{CanonicalError, MAX_TERMS, canonical, canonical_all, equal};
+pub use canonical::{
+    CanonicalError, MAX_TERMS, canonical, canonical_all, canonical_generic, equal,
+};
 pub use decompose::{
     Basis, Decomposition, Entry, FundamentalFunction, Matrix, Wave, decompose, smallest,
 };

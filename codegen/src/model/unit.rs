@@ -17,6 +17,8 @@ impl Dimension {
     pub const LENGTH: Self = Self([1, 0, 0, 0, 0, 0, 0]);
     /// Kilogram.
     pub const MASS: Self = Self([0, 1, 0, 0, 0, 0, 0]);
+    /// kg m.
+    pub const FIRST_MOMENT: Self = Self([1, 1, 0, 0, 0, 0, 0]);
     /// kg m^2.
     pub const INERTIA: Self = Self([2, 1, 0, 0, 0, 0, 0]);
     /// m/s^2.
@@ -62,8 +64,13 @@ impl Dimension {
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // the two products that everybody calls by one name
-        for (dimension, name) in [(Self::FORCE, "N"), (Self::TORQUE, "N m")] {
+        // products that everybody calls by one name, or writes the other way round
+        for (dimension, name) in [
+            (Self::FORCE, "N"),
+            (Self::TORQUE, "N m"),
+            (Self::FIRST_MOMENT, "kg m"),
+            (Self::INERTIA, "kg m^2"),
+        ] {
             if *self == dimension {
                 return write!(f, "{name}");
             }

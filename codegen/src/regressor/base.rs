@@ -4,6 +4,7 @@
 use super::column::{Regressor, RegressorError, RegressorOptions};
 use super::dependence::relations;
 use super::eliminate::{Reduced, eliminate};
+use super::formula::{Part, parts, sum_text};
 use super::rank::{PARAMETERS, Ranking, rank};
 use super::theta::column_symbol;
 use crate::expr::{Dag, EvaluateError, ExprId, Residues, evaluate, text};
@@ -30,6 +31,12 @@ pub enum BaseError {
         /// What was asked for.
         name: String,
     },
+    /// The relations of the table are not those at random points: an angle of the table is a number
+    /// whose sine obeys more than cos^2 + sin^2 = 1, and that matters here.
+    Special {
+        /// The model.
+        model: String,
+    },
     /// There are more dependencies than the table explains; holds how many of each.
     Unexplained {
         /// The model.
@@ -51,6 +58,11 @@ impl fmt::Display for BaseError {
                 f,
                 "{model}: there is no parameter {name} to keep\n  hint: `denavit base {model}` \
                  lists them"
+            ),
+            Self::Special { model } => write!(
+                f,
+                "{model}: an angle of the table is a special number for these relations\n  hint: \
+                 declare it as a constant, to have the relations of a general angle"
             ),
             Self::Unexplained { model, needed, proved } => write!(
                 f,
@@ -82,6 +94,10 @@ pub struct Dependent {
     pub column: usize,
     /// What it is the sum of: columns that stay, with their known factors; none if it is 0.
     pub relation: Vec<(usize, ExprId)>,
+    /// That sum, each column written as its parameter.
+    pub expression: ExprId,
+    /// The same by parts.
+    pub parts: Vec<Part>,
 }
 
 /// One base parameter.
@@ -93,6 +109,8 @@ pub struct BaseParameter {
     pub members: Vec<(usize, ExprId)>,
     /// The sum, with members of the same factor grouped, in the names of the columns.
     pub expression: ExprId,
+    /// The same by parts.
+    pub parts: Vec<Part>,
     /// The sum in the symbols of the model.
     pub value: ExprId,
 }
@@ -117,6 +135,7 @@ pub struct BaseParameters {
     pub dependent: Vec<Dependent>,
     /// Rank, pivots and their rows modulo p.
     pub ranking: Ranking,
+    symbols: Vec<ExprId>,
 }
 
 impl BaseParameters {
@@ -141,11 +160,20 @@ impl BaseParameters {
         text::print(&self.regressor.dag, expr).to_string()
     }
 
-    /// The right side of a dependent column's relation as text, columns by their parameters.
-    pub fn relation_text(&self, dependent: &Dependent) -> String {
-        let mut regressor = self.regressor.clone();
-        let sum = combination(&mut regressor, &dependent.relation, &[]);
-        text::print(&regressor.dag, sum).to_string()
+    /// A sum of parameters as text.
+    pub fn sum_text(&self, parts: &[Part]) -> String {
+        sum_text(&self.regressor, parts)
+    }
+
+    /// The symbol, or the product, that stands for a column's parameter in the formulas.
+    pub fn symbol(&self, column: usize) -> ExprId {
+        self.symbols[column]
+    }
+
+    /// The parameters that can be identified by themselves: their columns are in no relation.
+    pub fn alone(&self) -> Vec<usize> {
+        let alone = self.parameters.iter().filter(|parameter| parameter.is_alone());
+        alone.map(|parameter| parameter.column).collect()
     }
 }
 
@@ -175,25 +203,37 @@ pub fn reduce(mut regressor: Regressor, keep: &[String]) -> Result<BaseParameter
             proved: reduced.len(),
         });
     }
-    let dependent = dependents(&mut regressor.dag, &reduced);
-    check(&regressor.dag, &dependent, &ranking)?;
+    let dependent = dependents(&mut regressor, &reduced);
+    check((&regressor.dag, &regressor.model), &dependent, &ranking)?;
     let parameters = ranking
         .pivots
         .iter()
         .map(|&column| base_parameter(&mut regressor, column, &reduced))
         .collect();
-    Ok(BaseParameters { regressor, order, parameters, dependent, ranking })
+    let Regressor { dag, columns, .. } = &mut regressor;
+    let symbols = columns.iter().map(|column| column_symbol(dag, column)).collect();
+    Ok(BaseParameters { regressor, order, parameters, dependent, ranking, symbols })
 }
 
+/// `keep` names columns, or by their prefix (`mx`) those of all links.
 fn order(regressor: &Regressor, keep: &[String]) -> Result<Vec<usize>, BaseError> {
-    let mut order = Vec::new();
+    let mut order: Vec<usize> = Vec::new();
     for name in keep {
-        let found = regressor.find(name).ok_or_else(|| BaseError::NoColumn {
-            model: regressor.model.clone(),
-            name: name.clone(),
-        })?;
-        if !order.contains(&found) {
-            order.push(found);
+        let is_of = |column: usize| {
+            let owner = regressor.columns[column].owner;
+            owner.is_some_and(|(_, prefix)| prefix == name.as_str())
+        };
+        let found: Vec<usize> = match regressor.find(name) {
+            Some(column) => vec![column],
+            None => (0..regressor.columns.len()).filter(|&column| is_of(column)).collect(),
+        };
+        if found.is_empty() {
+            return Err(BaseError::NoColumn { model: regressor.model.clone(), name: name.clone() });
+        }
+        for column in found {
+            if !order.contains(&column) {
+                order.push(column);
+            }
         }
     }
     let first: BTreeSet<usize> = order.iter().copied().collect();
@@ -201,19 +241,26 @@ fn order(regressor: &Regressor, keep: &[String]) -> Result<Vec<usize>, BaseError
     Ok(order)
 }
 
-fn dependents(dag: &mut Dag, reduced: &BTreeMap<usize, Reduced>) -> Vec<Dependent> {
+fn dependents(regressor: &mut Regressor, reduced: &BTreeMap<usize, Reduced>) -> Vec<Dependent> {
     let mut dependents = Vec::new();
     for (&column, row) in reduced {
         let others = row.iter().filter(|&(&other, _)| other != column);
-        let relation =
-            others.map(|(&other, value)| (other, value.negated().to_expr(dag))).collect();
-        dependents.push(Dependent { column, relation });
+        let relation: Vec<_> = others
+            .map(|(&other, value)| (other, value.negated().to_expr(&mut regressor.dag)))
+            .collect();
+        let expression = combination(regressor, &relation, &[]);
+        let parts = parts(regressor, &relation);
+        dependents.push(Dependent { column, relation, expression, parts });
     }
     dependents
 }
 
 /// The exact factors against those found modulo p: two computations that share nothing.
-fn check(dag: &Dag, dependent: &[Dependent], ranking: &Ranking) -> Result<(), BaseError> {
+fn check(
+    (dag, model): (&Dag, &str),
+    dependent: &[Dependent],
+    ranking: &Ranking,
+) -> Result<(), BaseError> {
     let mut ring = Residues::with_parameters(PARAMETERS, PARAMETERS);
     for (column, values) in &ranking.dependent {
         let exact = dependent.iter().find(|exact| exact.column == *column);
@@ -223,7 +270,9 @@ fn check(dag: &Dag, dependent: &[Dependent], ranking: &Ranking) -> Result<(), Ba
         for (&pivot, &value) in ranking.pivots.iter().zip(values) {
             let place = relation.iter().position(|&(other, _)| other == pivot);
             let ours = place.map_or(Residue::ZERO, |place| residues[place]);
-            assert!(ours == value && exact.is_some(), "exact and modular elimination differ");
+            if ours != value || exact.is_none() {
+                return Err(BaseError::Special { model: model.to_owned() });
+            }
         }
     }
     Ok(())
@@ -253,7 +302,8 @@ fn base_parameter(
         let product = dag.mul(factor, regressor.columns[member].value);
         value = dag.add(value, product);
     }
-    BaseParameter { column, members, expression, value }
+    let parts = parts(regressor, &members);
+    BaseParameter { column, members, expression, parts, value }
 }
 
 /// Members of the same factor, up to sign: the place of the first of them, and the sign to it.

@@ -5,12 +5,14 @@
 //! - rank <= r: each other column's relation vanishes, exactly. The relation is read as matter, one
 //!   amount a body, and settled: from the tips to the base each body hands on what its carrier
 //!   feels alike, and what is left must be what the body does not feel. No elimination is done.
+//!   Of small robots the relation is multiplied out too, and is 0 in every torque.
 
 use super::base::BaseParameters;
 use super::column::{Regressor, RegressorError, RegressorOptions, Unknowns};
 use super::rank::{PARAMETERS, rows_at};
-use super::settle::settle;
-use crate::expr::text;
+use super::settle::{settle, without_denominators};
+use crate::expr::{Dag, ExprId, angle_atoms, is_pi, text};
+use crate::fundamental::canonical_generic;
 use crate::model::{Robot, Terms};
 use crate::number::Residue;
 use serde::{Deserialize, Serialize};
@@ -19,6 +21,14 @@ use std::fmt;
 
 /// The tag of a certificate file.
 pub const FORMAT: &str = "denavit-certificate/1";
+
+/// The JSON Schema of a certificate file.
+pub fn schema() -> &'static str {
+    include_str!("certificate-schema.json")
+}
+
+/// Relations of robots of at most so many joints are multiplied out as well, torque by torque.
+const MULTIPLIED_OUT_JOINTS: usize = 3;
 
 /// A certificate, as it stands in its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,6 +48,10 @@ pub struct Certificate {
     pub prime: u64,
     /// The seed of the known parameters' values modulo the prime.
     pub parameters: u64,
+    /// Known angles that are numbers, beyond quarter turns. Cosine and sine of each are taken for
+    /// variables: rank and relations are those of almost every such angle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub generic_angles: Vec<String>,
     /// The names of all columns, in order.
     pub columns: Vec<String>,
     /// The columns that stay, each with a row (point, joint) of the determinant.
@@ -79,6 +93,8 @@ pub enum Verdict {
     OtherModel(String),
     /// The model has other columns.
     OtherColumns,
+    /// The model has other angles whose sines are taken for variables.
+    OtherAngles,
     /// Pivots and relations do not add up: this column is in both, in none, or twice.
     NotAPartition(String),
     /// The determinant is 0, or a row is named twice.
@@ -98,6 +114,7 @@ impl fmt::Display for Verdict {
                 write!(f, "the certificate is of `{name}` with another content")
             }
             Self::OtherColumns => write!(f, "the model has other columns"),
+            Self::OtherAngles => write!(f, "the model has other angles that are numbers"),
             Self::NotAPartition(column) => {
                 write!(f, "{column} is not either one that stays or one that depends")
             }
@@ -113,6 +130,24 @@ impl Verdict {
     pub fn is_verified(&self) -> bool {
         matches!(self, Self::Verified(_))
     }
+}
+
+/// The constant parts of angles of the table that are numbers, beyond quarter turns, as text.
+fn generic_angles(regressor: &Regressor) -> Vec<String> {
+    let dag = &regressor.dag;
+    let mechanism = &regressor.mechanism;
+    let bodies = mechanism.bodies.iter();
+    let turns = bodies.flat_map(|body| body.turns.iter().map(|turn| turn.angle));
+    let placements = mechanism.placements.values();
+    let of_links = placements.flat_map(|place| place.turns.iter().map(|turn| turn.angle));
+    let angles: BTreeSet<ExprId> = turns.chain(of_links).collect();
+    let is_generic = |angle: &ExprId| {
+        angle_atoms(dag, *angle).iter().any(|(atom, multiple)| match is_pi(dag, atom) {
+            true => !(multiple + multiple).is_integer(),
+            false => atom.is_empty(),
+        })
+    };
+    angles.into_iter().filter(is_generic).map(|angle| text::print(dag, angle).to_string()).collect()
 }
 
 fn hash_text(robot: &Robot) -> String {
@@ -158,6 +193,7 @@ impl Certificate {
             with: with.iter().filter(|(on, _)| *on).map(|(_, name)| (*name).to_owned()).collect(),
             prime: Residue::MODULUS,
             parameters: PARAMETERS,
+            generic_angles: generic_angles(&base.regressor),
             columns: base.regressor.columns.iter().map(|column| column.name.clone()).collect(),
             pivots: pivots.collect(),
             relations: relations.collect(),
@@ -196,6 +232,9 @@ impl Certificate {
         let names = regressor.columns.iter().map(|column| &column.name);
         if !names.eq(self.columns.iter()) {
             return Verdict::OtherColumns;
+        }
+        if self.generic_angles != generic_angles(&regressor) {
+            return Verdict::OtherAngles;
         }
         if let Some(column) = self.not_a_partition() {
             return Verdict::NotAPartition(column);
@@ -282,7 +321,7 @@ fn holds(regressor: &Regressor, relation: &NullVector) -> bool {
         None => return false,
     }
     for (factor, name) in &relation.sum {
-        let resolve = &mut |dag: &mut crate::expr::Dag, name: &str| {
+        let resolve = &mut |dag: &mut Dag, name: &str| {
             let id = dag.find_symbol(name)?;
             let known = !crate::expr::ClassSet::of(dag.symbols()[id].class).is_run_time();
             known.then(|| dag.symbol_expr(id))
@@ -294,4 +333,19 @@ fn holds(regressor: &Regressor, relation: &NullVector) -> bool {
         }
     }
     settle(regressor, &mut dag, &amounts)
+        && (regressor.joints.len() > MULTIPLIED_OUT_JOINTS
+            || vanishes(regressor, &mut dag, &amounts))
+}
+
+/// Whether the columns in these amounts sum to 0 in every torque, multiplied out.
+fn vanishes(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, ExprId)]) -> bool {
+    let Some(amounts) = without_denominators(dag, amounts) else { return false };
+    let mut sums = vec![dag.zero(); regressor.joints.len()];
+    for (column, amount) in amounts {
+        for (sum, &entry) in sums.iter_mut().zip(&regressor.columns[column].entries) {
+            let product = dag.mul(amount, entry);
+            *sum = dag.add(*sum, product);
+        }
+    }
+    canonical_generic(dag, &sums).is_ok_and(|forms| forms.iter().all(|form| form.is_zero()))
 }

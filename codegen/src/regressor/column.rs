@@ -1,14 +1,15 @@
 //! The columns of the regressor: one for each unknown parameter, or product of unknowns.
 
-use super::matter::{ENTRIES, entries, from_entries, shares};
+use super::inertial::{ENTRIES, PARAMETERS, about_origin, entries, unit_matter};
+use super::link_frames::{Shortcuts, link_shares};
 use super::monomial::{InUnknowns, NotPolynomial, Unknown, in_unknowns, to_expr};
+use super::pull::{MatterRegressor, MotionTerms, fixed_base_regressor};
 use crate::arena::Handle;
-use crate::dynamics::motion::{self, motion};
+use crate::dynamics::spring_torque;
 use crate::expr::{Dag, ExprId, SymbolClass, UnaryFunction, text};
 use crate::kinematics::{Frames, Mechanism};
 use crate::model::{
-    About, Base, Body, BodyEntry, Dimension, Drive, JointEntry, Link, LinkId, Robot, Role,
-    TorqueSide,
+    About, Base, Body, BodyEntry, Dimension, Drive, JointEntry, LinkId, Robot, Role, TorqueSide,
 };
 use crate::spatial::PseudoInertia;
 use std::collections::{BTreeMap, BTreeSet};
@@ -94,6 +95,9 @@ pub struct Column {
     pub unit: String,
     /// The torque of each joint per unit of the parameter.
     pub entries: Vec<ExprId>,
+    /// The link whose body or joint has the parameter, and the prefix of its name (`mx`, `fv`);
+    /// none for a product of the model's own unknowns.
+    pub owner: Option<(LinkId, &'static str)>,
     /// The column as a combination of features.
     pub(super) definition: Vec<(Feature, ExprId)>,
     /// The link of whose ten parameters it is one, and which.
@@ -109,7 +113,8 @@ pub struct Regressor {
     pub dag: Dag,
     /// The columns, in order.
     pub columns: Vec<Column>,
-    /// What each torque has besides the unknowns: it moves to the left side.
+    /// What each torque has besides the unknowns, and moves to the left side: matter that is known,
+    /// joint parameters that are, and springs.
     pub known: Vec<ExprId>,
     /// The links whose joints the rows belong to.
     pub joints: Vec<String>,
@@ -127,17 +132,18 @@ impl Regressor {
         options: RegressorOptions,
         side: TorqueSide,
     ) -> Result<Self, RegressorError> {
+        Self::with_shortcuts(robot, options, side, Shortcuts::default())
+    }
+
+    /// The same with fewer operations, by relations that are proved elsewhere.
+    pub(super) fn with_shortcuts(
+        robot: &Robot,
+        options: RegressorOptions,
+        side: TorqueSide,
+        shortcuts: Shortcuts,
+    ) -> Result<Self, RegressorError> {
         let mut dag = robot.dag.clone();
         let mechanism = Mechanism::new(&mut dag, robot);
-        let frames = Frames::plain(&mut dag, &mechanism);
-        let wanted = robot.terms;
-        let terms = motion::Terms {
-            rates: wanted.coriolis,
-            accelerations: wanted.inertia,
-            gravity: wanted.gravity,
-        };
-        let motion = motion(&mut dag, &frames, terms, None);
-        let shares = shares(&mut dag, &frames, &motion);
         let mut builder = Builder {
             robot,
             options,
@@ -155,25 +161,44 @@ impl Regressor {
             builder.add_joint(joint, link);
         }
         let Builder { mut dag, mut columns, known: known_features, mechanism, .. } = builder;
-        let n = frames.len();
-        let scales = row_scales(&mut dag, robot, side);
-        let torques = |dag: &mut Dag, definition: &[(Feature, ExprId)]| {
-            let mut rows = vec![dag.zero(); n];
-            for &(feature, factor) in definition {
-                for (joint, value) in feature_torques(dag, robot, &shares, feature) {
-                    let product = dag.mul(factor, value);
-                    rows[joint] = dag.add(rows[joint], product);
-                }
+        let n = mechanism.degrees_of_freedom();
+        let terms = MotionTerms {
+            rates: robot.terms.coriolis,
+            accelerations: robot.terms.inertia,
+            gravity: robot.terms.gravity,
+        };
+        let mut torques = Torques { robot, mechanism: &mechanism, terms, of_matter: None };
+        let known = torques.of(&mut dag, &known_features);
+        let springs = robot.joints().map(|(link, _)| spring_torque(&mut dag, robot, link).0);
+        let springs: Vec<ExprId> = springs.collect();
+        let known: Vec<_> = known.iter().zip(springs).map(|(&a, b)| dag.add(a, b)).collect();
+        for column in columns.iter_mut().filter(|column| column.parameter.is_none()) {
+            column.entries = torques.of(&mut dag, &column.definition);
+        }
+        let links: Vec<LinkId> = columns
+            .iter()
+            .filter_map(|column| column.parameter.filter(|&(_, place)| place == 0))
+            .map(|(link, _)| link)
+            .collect();
+        let shares = link_shares(&mut dag, robot, &mechanism, terms, (&links, shortcuts));
+        for column in &mut columns {
+            let Some((link, place)) = column.parameter else { continue };
+            let at = links.iter().position(|&other| other == link).expect("it has ten columns");
+            column.entries = vec![dag.zero(); n];
+            for (joint, torques) in &shares[at] {
+                column.entries[*joint] = torques[place];
             }
-            (0..n).map(|row| dag.mul(scales[row], rows[row])).collect::<Vec<_>>()
+        }
+        let scales = row_scales(&mut dag, robot, side);
+        let mut scaled = |rows: &[ExprId]| -> Vec<ExprId> {
+            rows.iter().zip(&scales).map(|(&row, &scale)| dag.mul(scale, row)).collect()
         };
         for column in &mut columns {
-            column.entries = torques(&mut dag, &column.definition);
+            column.entries = scaled(&column.entries);
         }
-        let known = torques(&mut dag, &known_features);
+        let known = scaled(&known);
         let joints = robot.joints().map(|(link, _)| robot.links[link].name.clone()).collect();
-        let model = robot.name.clone();
-        let terms = wanted;
+        let (model, terms) = (robot.name.clone(), robot.terms);
         Ok(Self { model, dag, columns, known, joints, mechanism, terms, known_features })
     }
 
@@ -190,17 +215,41 @@ impl Regressor {
     }
 }
 
-fn feature_torques(
-    dag: &mut Dag,
-    robot: &Robot,
-    shares: &[Vec<super::matter::Share>],
-    feature: Feature,
-) -> Vec<(usize, ExprId)> {
-    match feature {
-        Feature::Matter { body, entry } => {
-            shares[body].iter().map(|share| (share.joint, share.torques[entry])).collect()
+/// Joint torques of combinations of features.
+struct Torques<'a> {
+    robot: &'a Robot,
+    mechanism: &'a Mechanism,
+    terms: MotionTerms,
+    /// Those of all bodies' entries, once they are asked for.
+    of_matter: Option<MatterRegressor>,
+}
+
+impl Torques<'_> {
+    fn of(&mut self, dag: &mut Dag, definition: &[(Feature, ExprId)]) -> Vec<ExprId> {
+        let mut rows = vec![dag.zero(); self.mechanism.degrees_of_freedom()];
+        for &(feature, factor) in definition {
+            for (joint, row) in rows.iter_mut().enumerate() {
+                let value = self.feature(dag, feature, joint);
+                let product = dag.mul(factor, value);
+                *row = dag.add(*row, product);
+            }
         }
-        Feature::Joint { joint, function } => vec![(joint, function.of(dag, robot, joint))],
+        rows
+    }
+
+    fn feature(&mut self, dag: &mut Dag, feature: Feature, row: usize) -> ExprId {
+        match feature {
+            Feature::Matter { body, entry } => {
+                let (mechanism, terms) = (self.mechanism, self.terms);
+                let matter = self.of_matter.get_or_insert_with(|| {
+                    let frames = Frames::plain(dag, mechanism);
+                    fixed_base_regressor(dag, &frames, terms)
+                });
+                matter.rows[row][body][entry]
+            }
+            Feature::Joint { joint, .. } if joint != row => dag.zero(),
+            Feature::Joint { joint, function } => function.of(dag, self.robot, joint),
+        }
     }
 }
 
@@ -311,6 +360,7 @@ impl Builder<'_> {
             value,
             unit,
             entries: Vec::new(),
+            owner: None,
             definition: Vec::new(),
             parameter: None,
         });
@@ -356,6 +406,7 @@ impl Builder<'_> {
                 value: values[place],
                 unit: unit.to_owned(),
                 entries: Vec::new(),
+                owner: Some((link, prefix)),
                 definition,
                 parameter: Some((link, place)),
             });
@@ -394,18 +445,26 @@ impl Builder<'_> {
             (of.offset, JointEntry::Offset, offset, JointFunction::One, one),
         ] {
             if wanted && (given.is_some() || !of.only_modelled) {
-                self.joint_column(link, entry, given, (Feature::Joint { joint, function }, factor));
+                self.joint_column(id, entry, given, (Feature::Joint { joint, function }, factor));
             }
         }
     }
 
     fn joint_column(
         &mut self,
-        link: &Link,
+        id: LinkId,
         entry: JointEntry,
         given: Option<ExprId>,
         definition: (Feature, ExprId),
     ) {
+        let mut parameters = self.robot.parameters.values();
+        let own = parameters.find(|parameter| parameter.role == Role::Joint(id, entry));
+        if let Some((value, true)) = given.zip(own.map(|parameter| parameter.known)) {
+            let (feature, factor) = definition;
+            self.known.push((feature, self.dag.mul(factor, value)));
+            return;
+        }
+        let link = &self.robot.links[id];
         let name = format!("{}_{}", entry.prefix(), link.name);
         let value = given.unwrap_or_else(|| self.dag.symbol(&name, SymbolClass::Drive));
         let slides = link.joint.kind == crate::model::JointKind::Prismatic;
@@ -422,6 +481,7 @@ impl Builder<'_> {
             value,
             unit: unit.to_owned(),
             entries: Vec::new(),
+            owner: Some((id, entry.prefix())),
             definition: vec![definition],
             parameter: None,
         });
@@ -430,65 +490,4 @@ impl Builder<'_> {
 
 fn name_of(dag: &Dag, expr: ExprId) -> String {
     text::print(dag, expr).to_string()
-}
-
-/// The prefixes and units of the ten parameters about the origin of the link frame.
-pub(super) const PARAMETERS: [(&str, &str); ENTRIES] = [
-    ("m", "kg"),
-    ("mx", "kg m"),
-    ("my", "kg m"),
-    ("mz", "kg m"),
-    ("Ixx", "kg m^2"),
-    ("Iyy", "kg m^2"),
-    ("Izz", "kg m^2"),
-    ("Ixy", "kg m^2"),
-    ("Ixz", "kg m^2"),
-    ("Iyz", "kg m^2"),
-];
-
-/// The matter of one unit of one parameter.
-fn unit_matter(dag: &mut Dag, place: usize) -> PseudoInertia {
-    let (zero, one) = (dag.zero(), dag.one());
-    let unit = |at: usize| if at == place { one } else { zero };
-    let mut matter =
-        PseudoInertia::from_body(dag, zero, [zero; 3], [4, 5, 6, 7, 8, 9].map(unit), false);
-    matter.mass = unit(0);
-    matter.first = [1, 2, 3].map(unit);
-    matter
-}
-
-/// Matter as the ten parameters of a frame.
-pub(super) fn parameters_of(dag: &mut Dag, matter: &PseudoInertia) -> [ExprId; ENTRIES] {
-    let tensor = matter.tensor(dag);
-    let [x, y, z] = matter.first;
-    let [xx, yy, zz] = [0, 1, 2].map(|i| tensor[i][i]);
-    [matter.mass, x, y, z, xx, yy, zz, tensor[0][1], tensor[0][2], tensor[1][2]]
-}
-
-/// The ten parameters of a body about the origin of its frame, in the symbols of the model.
-fn about_origin(dag: &mut Dag, body: &Body) -> [ExprId; ENTRIES] {
-    let first = body.com.map(|c| dag.mul(body.mass, c));
-    let mut tensor = body.inertia;
-    if body.about == About::Com {
-        // Steiner: I + m (c.c 1 - c c^T)
-        let c = body.com;
-        let squares = [0, 1, 2].map(|k| dag.mul(first[k], c[k]));
-        for (place, (i, j)) in [(1, 2), (0, 2), (0, 1)].into_iter().enumerate() {
-            let sum = dag.add(squares[i], squares[j]);
-            tensor[place] = dag.add(tensor[place], sum);
-        }
-        for (place, (i, j)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
-            let product = dag.mul(first[i], c[j]);
-            tensor[3 + place] = dag.sub(tensor[3 + place], product);
-        }
-    }
-    let [xx, yy, zz, xy, xz, yz] = tensor;
-    [body.mass, first[0], first[1], first[2], xx, yy, zz, xy, xz, yz]
-}
-
-/// The matter of a list of ten entries, all 0 but one.
-pub(super) fn unit_entry(dag: &Dag, entry: usize) -> PseudoInertia {
-    let mut list = [dag.zero(); ENTRIES];
-    list[entry] = dag.one();
-    from_entries(list)
 }

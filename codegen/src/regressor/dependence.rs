@@ -6,8 +6,8 @@
 //! axis, or on the line, or its second moments. Each such statement is one relation: a combination
 //! of features whose torques vanish for every motion. Rank modulo p tells if any is missing.
 
-use super::column::{Feature, JointFunction, Regressor, parameters_of, unit_entry};
-use super::matter::{ENTRIES, entries, from_entries};
+use super::column::{Feature, JointFunction, Regressor};
+use super::inertial::{ENTRIES, entries, from_entries, parameters_of, unit_entry};
 use super::turning::{
     Turning, from_axis, gravity_at_seat, is_alone, is_along_z, like_rotor, screws, seat_is_still,
     to_child, turnings, unturned,

@@ -6,7 +6,7 @@
 
 use super::dependence::{Place, Relation};
 use crate::expr::{Dag, ExprId, Node, UnaryFunction};
-use crate::fundamental::{CanonicalError, Field, Fraction, Polynomial, canonical_all};
+use crate::fundamental::{CanonicalError, Field, Fraction, Polynomial, canonical_generic};
 use std::collections::BTreeMap;
 
 /// A dependent column: itself, with coefficient 1, and columns that stay; the sum vanishes.
@@ -20,7 +20,7 @@ pub(super) fn eliminate(
     order: &[usize],
 ) -> Result<(Field, BTreeMap<usize, Reduced>), CanonicalError> {
     let exprs: Vec<_> = relations.iter().flat_map(|relation| relation.values().copied()).collect();
-    let polynomials = canonical_all(dag, &exprs)?;
+    let polynomials = canonical_generic(dag, &exprs)?;
     let field = field_of(dag, &polynomials);
     let mut polynomials = polynomials.into_iter();
     let mut rows: Vec<Row> = relations

@@ -8,9 +8,12 @@
 //! coordinates; its six equations are the moment and the force on it. Whatever holds for the
 //! columns in these variables holds in those of a virtual chain, which determine them.
 
+use super::inertial::ENTRIES;
+use super::matter::{FrameMotion, power_on_entries};
 use crate::expr::{Dag, ExprId, SymbolClass};
-use crate::kinematics::{Frame, Frames};
-use crate::spatial::{Matrix, Vector, add, cross, dot, negate, zero, zero_matrix};
+use crate::kinematics::Frames;
+use crate::model::JointVariables;
+use crate::spatial::{Turn, Vector, add, cross, dot, negate, zero};
 
 /// Which terms the equations have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,29 +26,13 @@ pub struct MotionTerms {
     pub gravity: bool,
 }
 
-/// The ten entries of a pseudo-inertia, in the order of the columns of [`MatterRegressor`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)] // the names are the documentation
-pub enum MatterEntry {
-    Mass,
-    FirstX,
-    FirstY,
-    FirstZ,
-    K11,
-    K22,
-    K33,
-    K12,
-    K13,
-    K23,
-}
-
 /// The equations of motion as a linear function of the pseudo-inertias of the bodies about the
 /// origins of their frames.
 #[derive(Clone, Debug)]
 pub struct MatterRegressor {
-    /// For each equation, for each body, the factors of its ten entries in the order of
-    /// [`MatterEntry`].
-    pub rows: Vec<Vec<[ExprId; 10]>>,
+    /// For each equation, for each body, the factors of its ten entries: mass, first moment x, y,
+    /// z, then K11, K22, K33, K12, K13, K23.
+    pub rows: Vec<Vec<[ExprId; ENTRIES]>>,
     /// The equation of each row.
     pub equations: Vec<Equation>,
 }
@@ -61,30 +48,115 @@ pub enum Equation {
     Joint(usize),
 }
 
+/// The twist of one equation at unit rate, in a frame's coordinates.
+#[derive(Clone, Copy)]
+pub(super) struct Twist {
+    /// The row.
+    pub(super) row: usize,
+    /// Angular part.
+    pub(super) angular: Vector,
+    /// Velocity of the frame's origin.
+    pub(super) linear: Vector,
+}
+
 /// The motion of one frame and the twists of all equations there.
 #[derive(Clone)]
-struct State {
-    angular: Vector,
-    angular_rate: Vector,
-    /// Acceleration of the origin minus gravity.
-    linear: Vector,
-    /// U = \[wd\]x + \[w\]x \[w\]x.
-    spread: Matrix,
-    /// (row, angular part, linear part).
-    twists: Vec<(usize, Vector, Vector)>,
+pub(super) struct State {
+    pub(super) motion: FrameMotion,
+    pub(super) twists: Vec<Twist>,
+}
+
+impl State {
+    /// Frame 0 of a robot on a fixed base.
+    pub(super) fn fixed(dag: &mut Dag, gravity: Vector, terms: MotionTerms) -> Self {
+        let still = zero(dag);
+        let linear = if terms.gravity { negate(dag, gravity) } else { still };
+        let motion = FrameMotion { angular: still, angular_rate: still, linear };
+        Self { motion, twists: Vec::new() }
+    }
+
+    /// The frame fixed in the same body whose origin is at `offset` (in the coordinates before the
+    /// turns) and which is turned by `turns`.
+    pub(super) fn moved_then_turned<'a>(
+        &self,
+        dag: &mut Dag,
+        offset: Vector,
+        turns: impl Iterator<Item = &'a Turn> + Clone,
+    ) -> Self {
+        let mut moved = self.clone();
+        moved.shift(dag, offset);
+        moved.turned(dag, turns)
+    }
+
+    /// The same with the offset in the coordinates after the turns.
+    pub(super) fn turned_then_moved<'a>(
+        &self,
+        dag: &mut Dag,
+        offset: Vector,
+        turns: impl Iterator<Item = &'a Turn> + Clone,
+    ) -> Self {
+        let mut turned = self.turned(dag, turns);
+        turned.shift(dag, offset);
+        turned
+    }
+
+    fn shift(&mut self, dag: &mut Dag, offset: Vector) {
+        if offset == zero(dag) {
+            return;
+        }
+        let spread = self.motion.spread(dag).map(|row| dot(dag, row, offset));
+        self.motion.linear = add(dag, self.motion.linear, spread);
+        for twist in &mut self.twists {
+            let lever = cross(dag, twist.angular, offset);
+            twist.linear = add(dag, twist.linear, lever);
+        }
+    }
+
+    fn turned<'a>(&self, dag: &mut Dag, turns: impl Iterator<Item = &'a Turn> + Clone) -> Self {
+        let mut turn =
+            |vector: Vector| turns.clone().fold(vector, |vector, turn| turn.to_child(dag, vector));
+        let FrameMotion { angular, angular_rate, linear } = self.motion;
+        let motion = FrameMotion {
+            angular: turn(angular),
+            angular_rate: turn(angular_rate),
+            linear: turn(linear),
+        };
+        let twists = self.twists.iter().map(|twist| Twist {
+            row: twist.row,
+            angular: turn(twist.angular),
+            linear: turn(twist.linear),
+        });
+        Self { motion, twists: twists.collect() }
+    }
+
+    /// The frame that a joint moves, from the one it would be without rates of its own.
+    pub(super) fn jointed(
+        mut self,
+        dag: &mut Dag,
+        (variables, is_revolute): (JointVariables, bool),
+        (row, terms): (usize, MotionTerms),
+    ) -> Self {
+        let (zero, one) = (dag.zero(), dag.one());
+        let qd = if terms.rates { variables.qd } else { zero };
+        let qdd = if terms.accelerations { variables.qdd } else { zero };
+        let motion = &mut self.motion;
+        let rate = if is_revolute { qd } else { dag.add(qd, qd) };
+        let (x, y) = (dag.mul(rate, motion.angular[1]), dag.mul(rate, motion.angular[0]));
+        let changed = if is_revolute { &mut motion.angular_rate } else { &mut motion.linear };
+        *changed = [dag.add(changed[0], x), dag.sub(changed[1], y), dag.add(changed[2], qdd)];
+        let (along, none) = ([zero, zero, one], [zero; 3]);
+        let (angular, linear) = if is_revolute { (along, none) } else { (none, along) };
+        if is_revolute {
+            motion.angular[2] = dag.add(motion.angular[2], qd);
+        }
+        self.twists.push(Twist { row, angular, linear });
+        self
+    }
 }
 
 /// The regressor of a robot on a fixed base. Bodies are the frames.
 pub fn fixed_base_regressor(dag: &mut Dag, frames: &Frames, terms: MotionTerms) -> MatterRegressor {
-    let linear = if terms.gravity { negate(dag, frames.gravity) } else { zero(dag) };
-    let still = zero(dag);
-    let base = State {
-        angular: still,
-        angular_rate: still,
-        linear,
-        spread: zero_matrix(dag),
-        twists: Vec::new(),
-    };
+    let base = State::fixed(dag, frames.gravity, terms);
     let equations = (0..frames.len()).map(Equation::Joint).collect();
     pull(dag, frames, None, &base, (equations, terms))
 }
@@ -118,9 +190,11 @@ pub fn torso_regressor(
         })
     };
     let accelerates = terms.accelerations;
-    let angular = free("w", SymbolClass::Rate, turns, terms.rates);
-    let angular_rate = free("wd", SymbolClass::Acceleration, turns, accelerates);
-    let linear = free("a", SymbolClass::Acceleration, moves, accelerates || terms.gravity);
+    let motion = FrameMotion {
+        angular: free("w", SymbolClass::Rate, turns, terms.rates),
+        angular_rate: free("wd", SymbolClass::Acceleration, turns, accelerates),
+        linear: free("a", SymbolClass::Acceleration, moves, accelerates || terms.gravity),
+    };
     let unit = |axis: usize| [0, 1, 2].map(|k| if k == axis { one } else { zero });
     let none = [zero; 3];
     let moments = turns.iter().map(|&axis| (Equation::TorsoMoment(axis), unit(axis), none));
@@ -128,12 +202,10 @@ pub fn torso_regressor(
     let (mut equations, mut twists) = (Vec::new(), Vec::new());
     for (row, (equation, angular, linear)) in moments.chain(forces).enumerate() {
         equations.push(equation);
-        twists.push((row, angular, linear));
+        twists.push(Twist { row, angular, linear });
     }
-    let spread = spread(dag, angular, angular_rate);
-    let base = State { angular, angular_rate, linear, spread, twists };
     equations.extend((torso + 1..frames.len()).map(Equation::Joint));
-    pull(dag, frames, Some(torso), &base, (equations, terms))
+    pull(dag, frames, Some(torso), &State { motion, twists }, (equations, terms))
 }
 
 fn pull(
@@ -144,7 +216,7 @@ fn pull(
     (equations, terms): (Vec<Equation>, MotionTerms),
 ) -> MatterRegressor {
     let zero = dag.zero();
-    let mut rows = vec![vec![[zero; 10]; frames.len()]; equations.len()];
+    let mut rows = vec![vec![[zero; ENTRIES]; frames.len()]; equations.len()];
     let mut states: Vec<Option<State>> = Vec::new();
     for (i, frame) in frames.frames.iter().enumerate() {
         let state = if torso == Some(i) {
@@ -156,103 +228,18 @@ fn pull(
                 (None, Some(_)) => None,
             };
             let row = equations.iter().position(|&equation| equation == Equation::Joint(i));
-            parent
-                .zip(row)
-                .map(|(parent, row)| step(dag, frames, (i, frame), &parent, (row, terms)))
+            parent.zip(row).map(|(parent, row)| {
+                let turns = frame.seat.iter().chain(&frame.joint_turn);
+                let seat = parent.moved_then_turned(dag, frame.offset, turns);
+                seat.jointed(dag, (frame.variables, frame.is_revolute), (row, terms))
+            })
         };
-        if let Some(state) = &state {
-            for &(row, angular, linear) in &state.twists {
-                rows[row][i] = powers(dag, state, angular, linear);
+        if let Some(State { motion, twists }) = &state {
+            for twist in twists {
+                rows[twist.row][i] = power_on_entries(dag, motion, (twist.angular, twist.linear));
             }
         }
         states.push(state);
     }
     MatterRegressor { rows, equations }
-}
-
-/// The state of frame `i` from that of its parent.
-fn step(
-    dag: &mut Dag,
-    frames: &Frames,
-    (i, frame): (usize, &Frame),
-    parent: &State,
-    (row, terms): (usize, MotionTerms),
-) -> State {
-    let (zero, one) = (dag.zero(), dag.one());
-    let qd = if terms.rates { frame.variables.qd } else { zero };
-    let qdd = if terms.accelerations { frame.variables.qdd } else { zero };
-    let turning = parent.spread.map(|row| dot(dag, row, frame.offset));
-    let linear = add(dag, parent.linear, turning);
-    let mut linear = frames.to_child(dag, i, linear);
-    let mut angular = frames.to_child(dag, i, parent.angular);
-    let mut angular_rate = frames.to_child(dag, i, parent.angular_rate);
-    let mut twists = Vec::new();
-    for &(row, w, v) in &parent.twists {
-        let moved = cross(dag, w, frame.offset);
-        let v = add(dag, v, moved);
-        twists.push((row, frames.to_child(dag, i, w), frames.to_child(dag, i, v)));
-    }
-    let (along, none) = ([zero, zero, one], [zero; 3]);
-    let rate = if frame.is_revolute { qd } else { dag.add(qd, qd) };
-    let (x, y) = (dag.mul(rate, angular[1]), dag.mul(rate, angular[0]));
-    let changed = if frame.is_revolute { &mut angular_rate } else { &mut linear };
-    *changed = [dag.add(changed[0], x), dag.sub(changed[1], y), dag.add(changed[2], qdd)];
-    if frame.is_revolute {
-        angular[2] = dag.add(angular[2], qd);
-        twists.push((row, along, none));
-    } else {
-        twists.push((row, none, along));
-    }
-    let spread = spread(dag, angular, angular_rate);
-    State { angular, angular_rate, linear, spread, twists }
-}
-
-/// U = \[wd\]x + \[w\]x \[w\]x.
-fn spread(dag: &mut Dag, w: Vector, wd: Vector) -> Matrix {
-    let mut product = |i: usize, j: usize| dag.mul(w[i], w[j]);
-    let (xx, yy, zz) = (product(0, 0), product(1, 1), product(2, 2));
-    let (xy, xz, yz) = (product(0, 1), product(0, 2), product(1, 2));
-    let mut minus_sum = |a, b| {
-        let sum = dag.add(a, b);
-        dag.neg(sum)
-    };
-    let (a, b, c) = (minus_sum(yy, zz), minus_sum(xx, zz), minus_sum(xx, yy));
-    [
-        [a, dag.sub(xy, wd[2]), dag.add(xz, wd[1])],
-        [dag.add(xy, wd[2]), b, dag.sub(yz, wd[0])],
-        [dag.sub(xz, wd[1]), dag.add(yz, wd[0]), c],
-    ]
-}
-
-/// The power of the wrench of each unit of matter on a twist (w, v).
-///
-/// The wrench of matter is force = U s + m a, moment = vee(U K - (U K)^T) + s x a; what is said
-/// here are its coefficients, entry by entry.
-fn powers(dag: &mut Dag, state: &State, w: Vector, v: Vector) -> [ExprId; 10] {
-    let (u, a) = (&state.spread, state.linear);
-    let mut difference_of_products = |x: [ExprId; 2], y: [ExprId; 2]| {
-        let (left, right) = (dag.mul(x[0], x[1]), dag.mul(y[0], y[1]));
-        dag.sub(left, right)
-    };
-    let k11 = difference_of_products([w[2], u[1][0]], [w[1], u[2][0]]);
-    let k22 = difference_of_products([w[0], u[2][1]], [w[2], u[0][1]]);
-    let k33 = difference_of_products([w[1], u[0][2]], [w[0], u[1][2]]);
-    let k12 = difference_of_products([w[0], u[2][0]], [w[1], u[2][1]]);
-    let k13 = difference_of_products([w[2], u[1][2]], [w[0], u[1][0]]);
-    let k23 = difference_of_products([w[1], u[0][1]], [w[2], u[0][2]]);
-    let mut with_diagonal = |sum: ExprId, w: ExprId, i: usize, j: usize| {
-        let difference = dag.sub(u[i][i], u[j][j]);
-        let product = dag.mul(w, difference);
-        dag.add(sum, product)
-    };
-    let k12 = with_diagonal(k12, w[2], 1, 0);
-    let k13 = with_diagonal(k13, w[1], 0, 2);
-    let k23 = with_diagonal(k23, w[0], 2, 1);
-    let lever = cross(dag, a, w);
-    let first = [0, 1, 2].map(|k| {
-        let turning = dot(dag, v, [u[0][k], u[1][k], u[2][k]]);
-        dag.add(turning, lever[k])
-    });
-    let mass = dot(dag, v, a);
-    [mass, first[0], first[1], first[2], k11, k22, k33, k12, k13, k23]
 }

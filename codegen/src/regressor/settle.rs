@@ -2,13 +2,13 @@
 //! and what is left at each body must be what the body does not feel.
 
 use super::column::{Feature, JointFunction, Regressor};
-use super::matter::{ENTRIES, entries, from_entries};
+use super::inertial::{ENTRIES, entries, from_entries};
 use super::turning::{
     Turning, gravity_at_seat, is_alone, is_along_z, like_rotor, screws, seat_is_still, to_child,
     turnings,
 };
 use crate::expr::{Dag, ExprId, Node};
-use crate::fundamental::canonical_all;
+use crate::fundamental::canonical_generic;
 use crate::kinematics::Placement;
 use crate::spatial::{PseudoInertia, cross};
 use std::collections::BTreeMap;
@@ -40,39 +40,51 @@ pub(super) fn settle(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, Ex
     let Settling { mut left, functions, .. } = settling;
     left.extend(functions.into_values());
     // What has no exact form is not shown to vanish.
-    canonical_all(dag, &left).is_ok_and(|forms| forms.iter().all(|form| form.is_zero()))
+    canonical_generic(dag, &left).is_ok_and(|forms| forms.iter().all(|form| form.is_zero()))
 }
 
 /// The amounts times their denominators, which must not vanish.
-fn without_denominators(
+pub(super) fn without_denominators(
     dag: &mut Dag,
     amounts: &[(usize, ExprId)],
 ) -> Option<Vec<(usize, ExprId)>> {
-    let split = |dag: &Dag, amount: ExprId| match dag.node(amount) {
-        Node::Div(top, bottom) => (top, Some(bottom), false),
-        Node::Neg(inner) => match dag.node(inner) {
-            Node::Div(top, bottom) => (top, Some(bottom), true),
-            _ => (amount, None, false),
-        },
-        _ => (amount, None, false),
-    };
-    let mut bottoms: Vec<ExprId> =
-        amounts.iter().filter_map(|&(_, amount)| split(dag, amount).1).collect();
+    let fractions: Vec<(ExprId, Option<ExprId>)> =
+        amounts.iter().map(|&(_, amount)| fraction(dag, amount)).collect();
+    let mut bottoms: Vec<ExprId> = fractions.iter().filter_map(|&(_, bottom)| bottom).collect();
     bottoms.sort_unstable();
     bottoms.dedup();
-    let forms = canonical_all(dag, &bottoms).ok()?;
+    let forms = canonical_generic(dag, &bottoms).ok()?;
     if forms.iter().any(|form| form.is_zero()) {
         return None;
     }
     let mut result = Vec::new();
-    for &(column, amount) in amounts {
-        let (mut value, own, is_negative) = split(dag, amount);
-        for &bottom in bottoms.iter().filter(|&&bottom| Some(bottom) != own) {
-            value = dag.mul(value, bottom);
-        }
-        result.push((column, if is_negative { dag.neg(value) } else { value }));
+    for (&(column, _), &(top, own)) in amounts.iter().zip(&fractions) {
+        let others = bottoms.iter().filter(|&&bottom| Some(bottom) != own);
+        let value = others.fold(top, |value, &bottom| dag.mul(value, bottom));
+        result.push((column, value));
     }
     Some(result)
+}
+
+/// An expression as numerator and denominator, as far as products and quotients go.
+fn fraction(dag: &mut Dag, expr: ExprId) -> (ExprId, Option<ExprId>) {
+    let (mut top, mut bottom) = (dag.one(), None);
+    let mut pending = vec![expr];
+    while let Some(expr) = pending.pop() {
+        match dag.node(expr) {
+            Node::Div(above, below) => {
+                pending.push(above);
+                bottom = Some(bottom.map_or(below, |bottom| dag.mul(bottom, below)));
+            }
+            Node::Mul(a, b) => pending.extend([a, b]),
+            Node::Neg(a) => {
+                top = dag.neg(top);
+                pending.push(a);
+            }
+            _ => top = dag.mul(top, expr),
+        }
+    }
+    (top, bottom)
 }
 
 struct Settling<'a> {

@@ -1,8 +1,9 @@
 //! The base parameters of given equations.
 
-use super::super::elimination::{Elimination, columns};
-use super::super::progress::Progress;
-use super::{Answer, Arguments, CertificateJson, Failure, write_json};
+use super::{Answer, Arguments, CertificateJson, Failure};
+use crate::cli::elimination::{Elimination, columns};
+use crate::cli::json::write_json;
+use crate::cli::progress::Progress;
 use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};
 use denavit::model::equations::Equations;
 use denavit::number::Residue;
@@ -26,7 +27,8 @@ pub(super) fn run(
     out: &mut dyn Write,
 ) -> Result<Answer, Failure> {
     let is_of_models = !arguments.with.is_empty() || arguments.terms.is_some();
-    if is_of_models || arguments.certificate.is_some() {
+    let files = [&arguments.certificate, &arguments.latex, &arguments.markdown];
+    if is_of_models || files.iter().any(|file| file.is_some()) {
         return Err(Failure::NotOfEquations(equations.name.clone()));
     }
     let progress = Progress::new();

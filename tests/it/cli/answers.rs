@@ -268,7 +268,9 @@ fn the_demo_writes_its_files_and_passes_its_checks() {
             assert!(check["max_relative_difference"].as_f64().expect("a number") > 0.0, "{check}");
         }
         let files = robot["files"].as_array().expect("files");
-        for ending in ["_dynamics.rs", "_equations.tex", ".svg"] {
+        for ending in
+            ["_dynamics.rs", "_equations.tex", "_base_parameters.tex", "_certificate.json", ".svg"]
+        {
             let has_ending =
                 |file: &Value| file["file"].as_str().is_some_and(|f| f.ends_with(ending));
             assert!(files.iter().any(has_ending), "{ending}");

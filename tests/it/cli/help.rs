@@ -2,7 +2,8 @@
 
 use super::{Directory, answer, run_in};
 
-/// In an order in which an example may read what one before it wrote: `verify` checks a certificate.
+/// In an order in which an example may read what one before it wrote: `verify` reads a
+/// certificate.
 const COMMANDS: [&str; 9] =
     ["demo", "inspect", "derive", "decompose", "count", "emit", "base", "verify", "schema"];
 

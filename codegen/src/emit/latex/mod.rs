@@ -3,8 +3,10 @@
 //! - [`Notation`]: how symbols and angles are written (`\dot q_1`, `m_{2}`, `s_{12}`)
 //! - [`write_expressions`]: formulas, with intermediates named where they are long or shared
 //! - [`document()`]: the equations of motion of a robot as a complete document
+//! - [`base_document`]: its base parameters
 //! - [`robot_decomposition`], [`equations_decomposition`]: f, B and theta as one
 
+mod base_parameters;
 mod decomposition;
 mod document;
 mod expression;
@@ -14,6 +16,7 @@ mod term;
 #[cfg(test)]
 mod tests;
 
+pub use base_parameters::{base_document, base_notation, base_sum};
 pub use decomposition::{equations_decomposition, robot_decomposition};
 pub use document::document;
 pub use expression::{Extent, Written, write_expression, write_expressions};

@@ -41,6 +41,12 @@ pub(super) fn nomenclature(robot: &Robot, dag: &Dag, notation: &Notation) -> Str
         .join("\n")
 }
 
+/// The tables of joints and of the parameters that the file declares, for a document whose bodies
+/// are explained otherwise.
+pub(super) fn known_symbols(robot: &Robot, dag: &Dag, notation: &Notation) -> String {
+    format!("{}{}", joints(robot), parameters(robot, dag, notation))
+}
+
 fn joints(robot: &Robot) -> String {
     let mut text = "Joint $j$ has the position $q_j$ [rad, m], the rate $\\dot{q}_j$, the \
                     acceleration $\\ddot{q}_j$ and the torque or force $\\tau_j$ [N\\,m, N]:\n\

@@ -139,7 +139,8 @@ impl Notation {
         }
     }
 
-    fn set(&mut self, dag: &Dag, expr: ExprId, latex: String) {
+    /// Writes a symbol so, unless the model's file says how it is written.
+    pub(super) fn set(&mut self, dag: &Dag, expr: ExprId, latex: String) {
         if let Node::Symbol(id) = dag.node(expr)
             && dag.symbols()[id].latex.is_none()
         {
@@ -266,7 +267,7 @@ fn without_dots(head: &str, dots: usize) -> (&str, &str, usize) {
 }
 
 /// The base letter of a run of letters, and what of them is a subscript: `Ixx` is I and xx.
-fn base_and_words(letters: &str) -> (String, String) {
+pub(super) fn base_and_words(letters: &str) -> (String, String) {
     if let Some((_, greek)) = GREEK.iter().find(|(name, _)| *name == letters) {
         return ((*greek).to_owned(), String::new());
     }
@@ -279,6 +280,7 @@ fn base_and_words(letters: &str) -> (String, String) {
         return ((*greek).to_owned(), words.to_owned());
     }
     match letters.len() {
+        _ if letters == "off" => (r"\mathrm{off}".to_owned(), String::new()),
         0 => (r"\_".to_owned(), String::new()),
         1 => (letters.to_owned(), String::new()),
         2 | 3 => (letters[..1].to_owned(), letters[1..].to_owned()),
@@ -287,7 +289,7 @@ fn base_and_words(letters: &str) -> (String, String) {
 }
 
 /// A subscript: numbers and single letters as they are, words upright.
-fn word(text: &str) -> String {
+pub(super) fn word(text: &str) -> String {
     let is_plain = text.len() < 2 || text.bytes().all(|byte| byte.is_ascii_digit());
     if is_plain { escape(text) } else { format!(r"\mathrm{{{}}}", escape(text)) }
 }

@@ -73,7 +73,7 @@ fn relations_of(name: &str, coriolis: bool) -> (Vec<usize>, Vec<(String, String)
     let options = RegressorOptions::default();
     let found = base_parameters(&robot, options, &[]).unwrap_or_else(|error| panic!("{error}"));
     let relation = |dependent: &Dependent| {
-        (found.name(dependent.column).to_owned(), found.relation_text(dependent))
+        (found.name(dependent.column).to_owned(), found.text(dependent.expression))
     };
     let relations = found.dependent.iter().map(relation).collect();
     (found.parameters.iter().map(|parameter| parameter.column).collect(), relations)

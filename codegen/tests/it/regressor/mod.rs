@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod counts;
+mod files;
 mod laws;
 mod oracle;
 

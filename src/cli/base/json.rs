@@ -1,0 +1,72 @@
+//! Base parameters as JSON.
+
+use super::{CertificateJson, Found};
+use crate::cli::failure::Failure;
+use crate::cli::json::{Ordered, write_json};
+use denavit::emit::latex::{base_notation, base_sum};
+use denavit::number::Residue;
+use serde::Serialize;
+use std::io::Write;
+
+#[derive(Serialize)]
+struct BaseJson<'a> {
+    model: &'a str,
+    columns: Vec<&'a str>,
+    rank: usize,
+    zero: Vec<&'a str>,
+    dependent: Vec<DependentJson<'a>>,
+    /// The columns that are in no relation: what can be identified by itself.
+    alone: Vec<&'a str>,
+    parameters: Vec<ParameterJson<'a>>,
+    certificate: CertificateJson,
+}
+
+#[derive(Serialize)]
+struct DependentJson<'a> {
+    name: &'a str,
+    relation: String,
+}
+
+#[derive(Serialize)]
+struct ParameterJson<'a> {
+    name: &'a str,
+    expression: String,
+    latex: String,
+    unit: &'a str,
+    members: Ordered<String>,
+    alone: bool,
+    value: Option<f64>,
+}
+
+pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failure> {
+    let base = found.base;
+    let notation = base_notation(found.robot, base);
+    let parameters = base.parameters.iter().zip(&found.values).map(|(parameter, &value)| {
+        let members = parameter.members.iter();
+        let members =
+            members.map(|&(column, factor)| (base.name(column).to_owned(), base.text(factor)));
+        ParameterJson {
+            name: base.name(parameter.column),
+            expression: base.sum_text(&parameter.parts),
+            latex: base_sum(base, &parameter.parts, &notation),
+            unit: &base.regressor.columns[parameter.column].unit,
+            members: Ordered(members.collect()),
+            alone: parameter.is_alone(),
+            value,
+        }
+    });
+    let dependent = found.sums();
+    let dependent =
+        dependent.map(|(name, sum)| DependentJson { name, relation: base.sum_text(sum) });
+    let json = BaseJson {
+        model: &found.robot.name,
+        columns: base.regressor.columns.iter().map(|column| column.name.as_str()).collect(),
+        rank: base.rank(),
+        zero: found.names(base.zero()),
+        dependent: dependent.collect(),
+        alone: found.names(base.alone()),
+        parameters: parameters.collect(),
+        certificate: CertificateJson { verified: found.verified, prime: Residue::MODULUS },
+    };
+    write_json(out, &json)
+}

@@ -1,0 +1,140 @@
+//! `denavit base` and `denavit verify`.
+
+use super::{Directory, answer, json, run_in};
+use serde_json::Value;
+
+fn text(value: &Value) -> &str {
+    value.as_str().expect("text")
+}
+
+/// Ixx, Iyy, Izz of a link about the origin of its frame, its mass and its first moment, from the
+/// model's file by Steiner's law.
+fn about_origin(link: &Value) -> [f64; 7] {
+    let number = |value: &Value| value.as_f64().unwrap_or(0.0);
+    let body = &link["body"];
+    assert_eq!(body["about"], "com");
+    let mass = number(&body["mass"]);
+    let [x, y, z] = [0, 1, 2].map(|k| number(&body["com"][k]));
+    let [xx, yy, zz] = ["xx", "yy", "zz"].map(|key| number(&body["inertia"][key]));
+    [
+        xx + mass * (y * y + z * z),
+        yy + mass * (x * x + z * z),
+        zz + mass * (x * x + y * y),
+        mass,
+        mass * x,
+        mass * y,
+        mass * z,
+    ]
+}
+
+/// The closed forms of Khalil and Dombre, in numbers.
+#[test]
+fn values_are_those_of_the_closed_forms() {
+    let file = std::fs::read_to_string("models/rx90.json").expect("the model");
+    let file: Value = serde_json::from_str(&file).expect("JSON");
+    let links: Vec<[f64; 7]> =
+        file["links"].as_array().expect("links").iter().map(about_origin).collect();
+    let [d3, rl4] = ["D3", "RL4"].map(|name| file["constants"][name]["value"].as_f64().unwrap());
+    let mass = |from: usize| links[from - 1..].iter().map(|link| link[3]).sum::<f64>();
+    let [xx, yy, zz, mx, mz] = [0, 1, 2, 4, 6];
+    let of = |link: usize, entry: usize| links[link - 1][entry];
+    let expected = [
+        ("Izz_j1", of(1, zz) + of(2, yy) + of(3, yy) + d3 * d3 * mass(3)),
+        ("Ixx_j2", of(2, xx) - of(2, yy) - d3 * d3 * mass(3)),
+        ("mx_j2", of(2, mx) + d3 * mass(3)),
+        ("Izz_j3", of(3, zz) + of(4, yy) + 2.0 * rl4 * of(4, mz) + rl4 * rl4 * mass(4)),
+        ("Ixx_j6", of(6, xx) - of(6, yy)),
+    ];
+    let keep = "Ixx,Ixy,Ixz,Iyz,Izz,mx,my";
+    let found = json(&["base", "rx90", "--keep", keep, "--json"]);
+    assert_eq!((&found["rank"], &found["model"]), (&36.into(), &"rx90".into()));
+    let parameters = found["parameters"].as_array().expect("parameters");
+    for (name, value) in expected {
+        let parameter = parameters.iter().find(|one| one["name"] == name).expect(name);
+        let ours = parameter["value"].as_f64().expect("a value");
+        assert!(
+            (ours - value).abs() <= 1e-12 * value.abs().max(1.0),
+            "{name}: {ours}, not {value}"
+        );
+    }
+    let grouped = parameters.iter().find(|one| one["name"] == "Ixx_j2").expect("Ixx_j2");
+    assert_eq!(text(&grouped["expression"]), "Ixx_j2 - Iyy_j2 - D3^2*(m_j3 + m_j4 + m_j5 + m_j6)");
+    assert_eq!(text(&grouped["latex"]), r"I_{xx,2} - I_{yy,2} - D_3^2\,(m_3 + m_4 + m_5 + m_6)");
+    assert_eq!((text(&grouped["unit"]), text(&grouped["members"]["m_j5"])), ("kg m^2", "-D3^2"));
+}
+
+/// A.93 of the thesis, its sign corrected, where m2 and m1 c1 are wanted last.
+#[test]
+fn the_pendulum_of_the_thesis_is_grouped_as_in_its_appendix() {
+    let found = json(&["base", "double_pendulum", "--keep", "c2*m2,c1*m1,m2", "--json"]);
+    let parameters = found["parameters"].as_array().expect("parameters");
+    let of = |name: &str| parameters.iter().find(|one| one["name"] == name).expect(name);
+    assert_eq!(text(&of("c1*m1")["expression"]), "c1*m1 - (m1*c1^2 + I1)/l1");
+    assert_eq!(text(&of("m2")["expression"]), "m2 + (m1*c1^2 + I1)/l1^2");
+    assert_eq!(found["alone"], serde_json::json!(["c2*m2"]));
+    assert_eq!(found["zero"], serde_json::json!(["m1"]));
+    assert_eq!(found["certificate"]["verified"], true);
+}
+
+#[test]
+fn base_writes_documents() {
+    let directory = Directory::new("base");
+    let files = ["--latex", "base.tex", "--markdown", "base.md"];
+    let run =
+        run_in(&directory.path, &[&["base", "tulip", "--with", "modelled"][..], &files].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let read = |name: &str| std::fs::read_to_string(directory.path.join(name)).expect(name);
+    let (latex, markdown) = (read("base.tex"), read("base.md"));
+    let found = json(&["base", "tulip", "--with", "modelled", "--json"]);
+    let rank = found["rank"].as_u64().expect("a number") as usize;
+    let rows = markdown.lines().filter(|line| line.starts_with("| ") && line.contains(" | `"));
+    assert_eq!(rows.count(), rank);
+    assert!(latex.starts_with('%') && latex.ends_with("\\end{document}\n"));
+    for parameter in found["parameters"].as_array().expect("parameters") {
+        assert!(latex.contains(text(&parameter["latex"])), "{parameter}");
+        assert!(markdown.contains(text(&parameter["expression"])), "{parameter}");
+    }
+    assert_eq!(answer(&["base", "tulip", "--with", "modelled", "--markdown", "-"]), markdown);
+}
+
+#[test]
+fn certificates_are_verified_and_tampered_ones_refused() {
+    let directory = Directory::new("verify");
+    let run = run_in(&directory.path, &["base", "puma560", "--certificate", "good.json"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let verify = |file: &str, model: &str| run_in(&directory.path, &["verify", file, model]);
+    let good = verify("good.json", "puma560");
+    assert_eq!(
+        (good.code, good.stdout.as_str()),
+        (Some(0), "puma560: verified: 36 base parameters\n")
+    );
+    assert_eq!(verify("good.json", "rx90").code, Some(1));
+    let certificate = std::fs::read_to_string(directory.path.join("good.json")).expect("a file");
+    for (from, to) in
+        [("1/a2", "2/a2"), ("\"joint\": 1", "\"joint\": 0"), ("Ixz_elbow", "Ixz_shoulder")]
+    {
+        assert!(certificate.contains(from), "{from}");
+        let changed = certificate.replacen(from, to, 1);
+        std::fs::write(directory.path.join("changed.json"), changed).expect("a file");
+        let run = verify("changed.json", "puma560");
+        assert_eq!((run.code, run.stderr.as_str()), (Some(1), ""), "{from}: {}", run.stdout);
+    }
+    std::fs::write(directory.path.join("broken.json"), "{}").expect("a file");
+    let broken = verify("broken.json", "puma560");
+    assert_eq!(broken.code, Some(2));
+    assert!(broken.stderr.contains("broken.json"), "{}", broken.stderr);
+}
+
+#[test]
+fn the_schema_of_certificates_is_printed() {
+    let schema: Value = json(&["schema", "certificate"]);
+    assert_eq!(schema["title"], "denavit-certificate/1");
+}
+
+#[test]
+fn what_cannot_be_kept_is_said() {
+    let directory = Directory::new("keep");
+    let run = run_in(&directory.path, &["base", "puma560", "--keep", "Ixx_knee"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.stderr.contains("Ixx_knee") && run.stderr.contains("hint"), "{}", run.stderr);
+}

@@ -1,0 +1,86 @@
+//! Exact ranks against singular values: another arithmetic, another algorithm.
+
+use crate::trees::random_tree;
+use denavit::expr::{Floats, evaluate};
+use denavit::model;
+use denavit::regressor::{BaseParameters, RegressorOptions, base_parameters};
+use nalgebra::DMatrix;
+
+/// A number between -1 and 1 that a name and a point have.
+fn value(name: &str, point: u64) -> f64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325 ^ point.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    for byte in name.bytes() {
+        hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    }
+    hash ^= hash >> 29;
+    hash = hash.wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (hash >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// R0 at random points, one below the other; constants keep their values.
+fn stacked(base: &BaseParameters) -> DMatrix<f64> {
+    let regressor = &base.regressor;
+    let (n, columns) = (regressor.joints.len(), regressor.columns.len());
+    let entries = regressor.entries();
+    let mut rows = Vec::new();
+    for point in 1..=(3 * columns / n + 5) as u64 {
+        let of = |name: &str| {
+            let moves = name.starts_with('q');
+            Some(value(name, if moves { point } else { 0 }) * if moves { 3.0 } else { 1.0 })
+        };
+        rows.extend(evaluate(&regressor.dag, &entries, &mut Floats::new(of)).unwrap());
+    }
+    DMatrix::from_row_slice(rows.len() / columns, columns, &rows)
+}
+
+#[test]
+fn ranks_are_those_of_singular_values() {
+    let mut separated = 0;
+    for seed in 0..24 {
+        let joints = 2 + seed as usize % 6;
+        let robot = model::read("random", &random_tree(joints, 100 + seed)).unwrap();
+        let friction = seed % 2 == 0;
+        let options = RegressorOptions { friction, rotor: friction, ..RegressorOptions::default() };
+        let base = base_parameters(&robot, options, &[]).unwrap();
+        let matrix = stacked(&base);
+        let columns: Vec<_> = (0..matrix.ncols())
+            .map(|column| matrix.column(column).into_owned())
+            .filter(|column| column.norm() > 1e-12)
+            .map(|column| column.normalize())
+            .collect();
+        let singular = DMatrix::from_columns(&columns).singular_values();
+        let relative = singular.iter().map(|value| value / singular.max());
+        let relative: Vec<f64> = relative.collect();
+        if relative.iter().any(|value| (1e-12..1e-6).contains(value)) {
+            continue;
+        }
+        separated += 1;
+        let rank = relative.iter().filter(|&&value| value >= 1e-6).count();
+        assert_eq!(base.rank(), rank, "seed {seed}");
+    }
+    assert!(separated >= 16, "{separated} of 24 trees are well separated");
+}
+
+#[test]
+fn dependent_columns_are_what_their_relations_say() {
+    for seed in 0..12 {
+        let joints = 2 + seed as usize % 6;
+        let robot = model::read("random", &random_tree(joints, 200 + seed)).unwrap();
+        let base = base_parameters(&robot, RegressorOptions::default(), &[]).unwrap();
+        let matrix = stacked(&base);
+        for dependent in &base.dependent {
+            let mut left = matrix.column(dependent.column).into_owned();
+            let mut size = left.amax().max(1e-3);
+            for &(column, factor) in &dependent.relation {
+                let of = |name: &str| Some(value(name, 0));
+                let dag = &base.regressor.dag;
+                let factor = evaluate(dag, &[factor], &mut Floats::new(of)).unwrap()[0];
+                let part = matrix.column(column) * factor;
+                size = size.max(part.amax());
+                left -= part;
+            }
+            let name = base.name(dependent.column);
+            assert!(left.amax() <= 1e-9 * size, "seed {seed}, {name}: {}", left.amax());
+        }
+    }
+}

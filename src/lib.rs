@@ -4,12 +4,16 @@
 //! - [`shipped`]: robots whose model files are part of the library
 //! - [`tulip`], [`puma560`]: what the compiler made of two of them when this library was built
 //! - [`simulate`]: robots in motion, on the ground
+//! - [`plants`]: robots as numbers, generated or interpreted
+//! - [`trajectory`]: references for their joints
 //! - [`report`]: tables and pictures of robots
 
 mod generated;
+pub mod plants;
 pub mod report;
 pub mod shipped;
 pub mod simulate;
+pub mod trajectory;
 
 pub use denavit_codegen::*;
 pub use generated::{puma560, tulip};

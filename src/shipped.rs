@@ -3,7 +3,7 @@
 /// A model file, or a file of equations, that is part of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShippedModel {
-    /// The model's name; the file is `models/NAME.json`, or `models/equations/NAME.json`.
+    /// The name; the file is `models/NAME.json`, or in `equations`, `bodies` or `scenarios` there.
     pub name: &'static str,
     /// The content of the file.
     pub text: &'static str,
@@ -40,6 +40,30 @@ pub const MODELS: &[ShippedModel] = &shipped!["models":
 /// Every shipped file of equations, by name.
 pub const EQUATIONS: &[ShippedModel] = &shipped!["models/equations": "double_pendulum_drives"];
 
+/// Bodies of the shipped scenarios, by name: a ball, a rod, passive walkers.
+pub const BODIES: &[ShippedModel] = &shipped!["models/bodies":
+    "ball",
+    "block",
+    "compass",
+    "rimless_wheel",
+    "rod",
+    "slope",
+];
+
+/// Every shipped scenario, by name.
+pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
+    "bouncing_ball",
+    "cradle",
+    "double_pendulum",
+    "falling_rod",
+    "planar_biped_limit_cycle_gait",
+    "planar_biped_zmp_gait",
+    "rocking_block",
+    "sliding_block",
+    "tulip_leg_tracking",
+    "tulip_standing",
+];
+
 /// The shipped model of that name.
 pub fn find(name: &str) -> Option<&'static ShippedModel> {
     MODELS.iter().find(|model| model.name == name)
@@ -48,6 +72,16 @@ pub fn find(name: &str) -> Option<&'static ShippedModel> {
 /// The shipped equations of that name.
 pub fn find_equations(name: &str) -> Option<&'static ShippedModel> {
     EQUATIONS.iter().find(|equations| equations.name == name)
+}
+
+/// The shipped body of that name.
+pub fn find_body(name: &str) -> Option<&'static ShippedModel> {
+    BODIES.iter().find(|body| body.name == name)
+}
+
+/// The shipped scenario of that name.
+pub fn find_scenario(name: &str) -> Option<&'static ShippedModel> {
+    SCENARIOS.iter().find(|scenario| scenario.name == name)
 }
 
 #[cfg(test)]
@@ -74,6 +108,9 @@ mod tests {
         };
         assert_eq!(names(MODELS), stems("models"));
         assert_eq!(names(EQUATIONS), stems("models/equations"));
+        assert_eq!(names(BODIES), stems("models/bodies"));
+        assert_eq!(names(SCENARIOS), stems("models/scenarios"));
         assert!(names(MODELS).is_disjoint(&names(EQUATIONS)));
+        assert!(names(MODELS).is_disjoint(&names(BODIES)));
     }
 }

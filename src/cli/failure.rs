@@ -6,6 +6,8 @@ use denavit::model::ModelError;
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
+use denavit::simulate::StartError;
+use denavit::simulate::scenario::ScenarioError;
 use std::fmt;
 use std::io;
 
@@ -45,6 +47,10 @@ pub(crate) enum Failure {
     NotOfEquations(String),
     /// A document would be too long to be read, or set.
     TooLongToSet { name: String, formulas: usize },
+    /// A scenario file is wrong.
+    Scenario(ScenarioError),
+    /// A scenario cannot begin; holds its name and why.
+    Start(String, StartError),
     /// The answer cannot be written to standard output.
     Stdout(io::Error),
 }
@@ -106,7 +112,12 @@ impl Failure {
             Self::Certificate { .. } => {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
+            Self::Start(_, StartError::Penetration(..)) => {
+                "raise the robot, or give `on_ground` in `initial`".to_owned()
+            }
             Self::Model(_)
+            | Self::Scenario(_)
+            | Self::Start(..)
             | Self::Base(_)
             | Self::Decompose(..)
             | Self::Equations(_)
@@ -158,6 +169,8 @@ impl fmt::Display for Failure {
             Self::Certificate { file, error } => {
                 write!(f, "{file}: is no certificate: {error}")?;
             }
+            Self::Scenario(error) => write!(f, "{error}")?,
+            Self::Start(scenario, error) => write!(f, "{scenario}: {error}")?,
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;
             }

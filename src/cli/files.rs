@@ -86,6 +86,22 @@ fn no_model(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Failure {
     Failure::NoModel { name: name.to_owned(), nearest, is_path }
 }
 
+/// A model that another file refers to: a shipped one, or a path from that file's directory. The
+/// error is a sentence.
+pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
+    if let Some(shipped) = shipped::find(model).or_else(|| shipped::find_body(model)) {
+        return Ok(shipped.text.as_bytes().to_vec());
+    }
+    let directory = file.parent().unwrap_or(Path::new(""));
+    fs::read(directory.join(model)).map_err(|error| {
+        let shipped = shipped::MODELS.iter().chain(shipped::BODIES).map(|model| model.name);
+        match denavit::expr::text::nearest(model, shipped) {
+            Some(nearest) => format!("{error} (`{nearest}` is a shipped model)"),
+            None => error.to_string(),
+        }
+    })
+}
+
 /// Writes a file whole: into a new file beside it, which then takes its name. What was there stays
 /// until then. `-` is standard output.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

@@ -17,6 +17,7 @@ mod json;
 mod options;
 mod progress;
 mod schema;
+mod simulate;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -50,6 +51,7 @@ enum Command {
     Base(base::Arguments),
     Verify(verify::Arguments),
     Schema(schema::Arguments),
+    Simulate(simulate::Arguments),
 }
 
 /// What a command that ran to its end says.
@@ -96,6 +98,7 @@ impl Command {
             Self::Base(arguments) => base::run(arguments, out),
             Self::Verify(arguments) => verify::run(arguments, out),
             Self::Schema(arguments) => schema::run(arguments, out),
+            Self::Simulate(arguments) => simulate::run(arguments, out),
         }
     }
 }

@@ -30,6 +30,9 @@ enum Format {
     /// A proof of base parameters
     #[value(alias = denavit::regressor::certificate::FORMAT)]
     Certificate,
+    /// A simulation
+    #[value(alias = denavit::simulate::scenario::FORMAT)]
+    Scenario,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
@@ -37,6 +40,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Format::Model => denavit::model::schema(),
         Format::Equations => denavit::model::equations::schema(),
         Format::Certificate => denavit::regressor::certificate::schema(),
+        Format::Scenario => denavit::simulate::scenario::schema(),
     };
     writeln!(out, "{}", schema.trim_end())?;
     Ok(Answer::Done)

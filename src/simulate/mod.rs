@@ -1,7 +1,36 @@
 //! Simulation of robots on the ground.
 //!
+//! - [`simulate`]: smooth motion from event to event, with contacts, impacts and controllers
+//! - [`scenario`]: files that say what is simulated
 //! - [`contact`]: forces and impulses of contacts and their modes, decided by complementarity
 //! - [`time_stepping`]: the schemes that take contacts into account over whole steps
 
+mod audit;
+mod breakdown;
 pub mod contact;
+mod control;
+mod drive;
+mod event;
+mod ground;
+pub mod integrate;
+mod log;
+mod measure;
+mod motion;
+mod record;
+mod run;
+pub mod scenario;
+mod settle;
+mod start;
+mod state;
 pub mod time_stepping;
+
+pub use audit::{Audit, Tolerances};
+pub use breakdown::{Breakdown, Stop};
+pub use control::{Compensation, Control, Feedback, JointControl};
+pub use drive::DriveModelling;
+pub use log::Log;
+pub use measure::{Measurement, Random};
+pub use run::{Event, EventKind, Run, Simulation, simulate};
+pub use settle::{Scuffing, Touching};
+pub use start::StartError;
+pub use state::State;

@@ -3,6 +3,7 @@
 mod cli;
 mod contact;
 mod emitted;
+mod simulate;
 mod singular_values;
 mod tidy;
 mod time_stepping;

@@ -4,8 +4,18 @@ use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
 /// certificate.
-const COMMANDS: [&str; 9] =
-    ["demo", "inspect", "derive", "decompose", "count", "emit", "base", "verify", "schema"];
+const COMMANDS: [&str; 10] = [
+    "demo",
+    "inspect",
+    "derive",
+    "decompose",
+    "count",
+    "emit",
+    "base",
+    "verify",
+    "schema",
+    "simulate",
+];
 
 /// The command lines of a help text's examples; three blanks begin a remark.
 fn examples(help: &str) -> Vec<Vec<String>> {

@@ -1,0 +1,118 @@
+//! A model read at run time, derived with its values folded in, and interpreted.
+
+use super::model::baked;
+use super::{Override, Plant, PlantError, PlantModel};
+use denavit_codegen::derive::{Flavour, derive};
+use denavit_codegen::function::FunctionName;
+use denavit_codegen::model::Robot;
+use denavit_codegen::program::{Evaluator, Program, lower};
+
+const FUNCTIONS: [FunctionName; 10] = [
+    FunctionName::MassMatrix,
+    FunctionName::Bias,
+    FunctionName::LinkTransforms,
+    FunctionName::ContactPositions,
+    FunctionName::ContactJacobian,
+    FunctionName::ContactBias,
+    FunctionName::KineticEnergy,
+    FunctionName::PotentialEnergy,
+    FunctionName::CenterOfMass,
+    FunctionName::Momentum,
+];
+
+/// A plant of any model file.
+#[derive(Clone, Debug)]
+pub struct InterpretedPlant {
+    model: PlantModel,
+    /// In the order of `FUNCTIONS`; none where the robot has no contact point.
+    evaluators: [Option<Evaluator<f64>>; FUNCTIONS.len()],
+}
+
+impl InterpretedPlant {
+    /// Derives the functions of a robot, with values that replace the model's own.
+    pub fn new(robot: &Robot, overrides: &[Override]) -> Result<Self, PlantError> {
+        let mut robot = baked(robot, overrides)?;
+        let model = PlantModel::of_baked(&robot);
+        for link in robot.links.values_mut() {
+            if let Some(drive) = &mut link.drive {
+                // no function of the rate at rest: the simulation adds it
+                drive.coulomb = None;
+            }
+        }
+        let derivation = derive(&robot, Flavour::Baked, &FUNCTIONS).map_err(PlantError::Bake)?;
+        let program = lower(&derivation.dag, &derivation.functions).map_err(PlantError::Lower)?;
+        let evaluators = FUNCTIONS.map(|function| evaluator(&program, function));
+        Ok(Self { model, evaluators })
+    }
+
+    fn call(&mut self, function: FunctionName, arguments: &[&[f64]], outputs: &mut [f64]) {
+        let index = FUNCTIONS.iter().position(|known| *known == function);
+        let evaluator = index.and_then(|index| self.evaluators[index].as_mut());
+        match evaluator {
+            Some(evaluator) => evaluator
+                .evaluate(arguments, outputs)
+                .expect("the caller's slices have the sizes of the plant"),
+            None => assert!(outputs.is_empty(), "only functions of contacts can be missing"),
+        }
+    }
+}
+
+fn evaluator(program: &Program, function: FunctionName) -> Option<Evaluator<f64>> {
+    let routine = program.find(function, None)?;
+    // baked: there is nothing left that depends on parameters alone
+    Some(Evaluator::new(routine, &[]))
+}
+
+impl Plant for InterpretedPlant {
+    fn model(&self) -> &PlantModel {
+        &self.model
+    }
+
+    fn mass_matrix(&mut self, q: &[f64], mass: &mut [f64]) {
+        self.call(FunctionName::MassMatrix, &[q], mass);
+    }
+
+    fn bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]) {
+        self.call(FunctionName::Bias, &[q, qd], bias);
+    }
+
+    fn contact_positions(&mut self, q: &[f64], positions: &mut [f64]) {
+        self.call(FunctionName::ContactPositions, &[q], positions);
+    }
+
+    fn contact_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]) {
+        self.call(FunctionName::ContactJacobian, &[q], jacobian);
+    }
+
+    fn contact_bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]) {
+        self.call(FunctionName::ContactBias, &[q, qd], bias);
+    }
+
+    fn kinetic_energy(&mut self, q: &[f64], qd: &[f64]) -> f64 {
+        let mut energy = [0.0];
+        self.call(FunctionName::KineticEnergy, &[q, qd], &mut energy);
+        energy[0]
+    }
+
+    fn potential_energy(&mut self, q: &[f64]) -> f64 {
+        let mut energy = [0.0];
+        self.call(FunctionName::PotentialEnergy, &[q], &mut energy);
+        energy[0]
+    }
+
+    fn center_of_mass(&mut self, q: &[f64]) -> [f64; 3] {
+        let mut position = [0.0; 3];
+        self.call(FunctionName::CenterOfMass, &[q], &mut position);
+        position
+    }
+
+    fn momentum(&mut self, q: &[f64], qd: &[f64]) -> [f64; 6] {
+        let mut momentum = [0.0; 6];
+        self.call(FunctionName::Momentum, &[q, qd], &mut momentum);
+        momentum
+    }
+
+    fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]) {
+        self.call(FunctionName::LinkTransforms, &[q], transforms);
+    }
+}

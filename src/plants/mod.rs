@@ -1,0 +1,91 @@
+//! Robots as numbers: one trait for generated modules, models read at run time, and plants written
+//! by hand.
+//!
+//! - [`Plant`]: the functions of a robot, into the caller's memory
+//! - [`PlantModel`]: what a simulation must know of it besides: names, drives, contact points
+//! - [`InterpretedPlant`]: any model file, derived and interpreted
+//! - [`Cradle`]: balls that collide with each other
+//! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
+//!
+//! Matrices are row-major slices, the shape in which emitted code returns them. All units are SI,
+//! all vectors and positions are those of the world frame.
+
+mod cradle;
+mod generated;
+mod interpreted;
+mod model;
+
+pub use cradle::Cradle;
+pub use generated::{plant_of, puma560, tulip};
+pub use interpreted::InterpretedPlant;
+pub use model::{
+    DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
+    SeriesElasticModel,
+};
+
+/// The functions of a robot with n joints and c contact points. Each may use memory of its own,
+/// hence `&mut self`; none changes what another returns.
+pub trait Plant {
+    /// Names, drives, contact points and ground.
+    fn model(&self) -> &PlantModel;
+
+    /// D(q), n x n, symmetric [kg m^2, kg m, kg]; rotors of stiff drives included.
+    fn mass_matrix(&mut self, q: &[f64], mass: &mut [f64]);
+
+    /// C qd + G, joint springs and viscous friction: the torque needed at qdd = 0 [N m, N], n
+    /// entries. Coulomb friction is not part of it ([`JointModel::coulomb`] is): it is no
+    /// function of the rate where the joint rests.
+    fn bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]);
+
+    /// Contact points, 3 c entries [m].
+    fn contact_positions(&mut self, q: &[f64], positions: &mut [f64]);
+
+    /// W^T = d(contact points)/dq, 3 c x n (thesis 2.47).
+    fn contact_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]);
+
+    /// (d/dt W^T) qd, 3 c entries [m/s^2].
+    fn contact_bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]);
+
+    /// Kinetic energy, rotors of stiff drives included \[J\].
+    fn kinetic_energy(&mut self, q: &[f64], qd: &[f64]) -> f64;
+
+    /// Potential energy of gravity and joint springs \[J\].
+    fn potential_energy(&mut self, q: &[f64]) -> f64;
+
+    /// Centre of mass [m].
+    fn center_of_mass(&mut self, q: &[f64]) -> [f64; 3];
+
+    /// Linear momentum [kg m/s], then angular momentum about the centre of mass [kg m^2/s].
+    fn momentum(&mut self, q: &[f64], qd: &[f64]) -> [f64; 6];
+
+    /// For each link the upper three rows of its homogeneous transform, 12 entries a link.
+    fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]);
+
+    /// Number of guards: events of its own that a plant written by hand may have, beside those of
+    /// its contacts (a knee that locks, a heel strike in a limit of vanishing masses).
+    fn guards(&self) -> usize {
+        0
+    }
+
+    /// The value of a guard: it fires when it falls below 0.
+    fn guard(&mut self, guard: usize, q: &[f64], qd: &[f64]) -> f64 {
+        let _ = (guard, q, qd);
+        f64::INFINITY
+    }
+
+    /// What happens when a guard fires: positions and rates may jump, and the plant may change.
+    fn jump(&mut self, guard: usize, q: &mut [f64], qd: &mut [f64]) {
+        let _ = (guard, q, qd);
+    }
+}
+
+/// World positions of points fixed in links, 3 entries each, of the links' transforms.
+pub fn point_positions(points: &[PointModel], transforms: &[f64], positions: &mut [f64]) {
+    for (point, position) in points.iter().zip(positions.chunks_exact_mut(3)) {
+        let rows = &transforms[12 * point.link..12 * (point.link + 1)];
+        for (row, entry) in rows.chunks_exact(4).zip(position) {
+            let along: f64 = row[..3].iter().zip(point.position).map(|(r, p)| r * p).sum();
+            *entry = along + row[3];
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Audits: laws of mechanics that a run must obey, measured on what it did.
+
+use super::ground::{cross, dot};
+use super::motion::Motion;
+
+/// What a run may miss the laws by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Energy, work and impact losses [J]; also this part of the energy that was exchanged.
+    pub energy_j: f64,
+    /// Change of momentum at impacts against their impulses [N s].
+    pub momentum_ns: f64,
+    /// Depth of a contact point below the ground [m].
+    pub penetration_m: f64,
+    /// Product of force and height of a closed contact [N m].
+    pub complementarity_nm: f64,
+    /// Pull of the ground on a contact [N].
+    pub adhesion_n: f64,
+    /// Normal speed of a closed contact [m/s].
+    pub separation_m_s: f64,
+    /// Zero moment point from forces against that from momentum [m].
+    pub zmp_m: f64,
+    /// Contact forces against the change of momentum [N].
+    pub force_n: f64,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Self {
+            energy_j: 1e-5,
+            momentum_ns: 1e-9,
+            penetration_m: 1e-7,
+            complementarity_nm: 1e-5,
+            adhesion_n: 1e-6,
+            separation_m_s: 1e-6,
+            zmp_m: 1e-7,
+            force_n: 1e-6,
+        }
+    }
+}
+
+/// The worst of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Audit {
+    /// |E - E0 - work + losses - impacts| \[J\].
+    pub energy_j: f64,
+    /// Work put in, either way, impact losses included: what the energy error is compared with
+    /// \[J\].
+    pub exchanged_j: f64,
+    /// Linear momentum across impacts [N s].
+    pub momentum_ns: f64,
+    /// Largest energy that an impact made [J]; 0 if all lost.
+    pub impact_gain_j: f64,
+    /// [m].
+    pub penetration_m: f64,
+    /// [N m].
+    pub complementarity_nm: f64,
+    /// [N].
+    pub adhesion_n: f64,
+    /// [m/s].
+    pub separation_m_s: f64,
+    /// Largest |F_t| / F_n of the forces on one link.
+    pub friction_demand: f64,
+    /// Largest |F_t| / F_n of all contact forces together.
+    pub friction_total: f64,
+    /// [m].
+    pub zmp_m: f64,
+    /// [N].
+    pub force_n: f64,
+    /// Distance of the zero moment point from the edge of the support polygon, the least in time;
+    /// negative outside, infinite if never defined [m].
+    pub zmp_margin_m: f64,
+    /// Largest torque on a joint [N m, N].
+    pub torque: f64,
+}
+
+impl Audit {
+    pub(super) fn new() -> Self {
+        Self { zmp_margin_m: f64::INFINITY, ..Self::default() }
+    }
+
+    /// The laws that were missed by more than is tolerated: name, by how much, tolerance.
+    pub fn broken(&self, tolerances: &Tolerances) -> Vec<(&'static str, f64, f64)> {
+        let t = tolerances;
+        let energy = t.energy_j * self.exchanged_j.max(1.0);
+        let checks = [
+            ("energy", self.energy_j, energy),
+            ("impact_gain", self.impact_gain_j, energy),
+            ("momentum", self.momentum_ns, t.momentum_ns),
+            ("penetration", self.penetration_m, t.penetration_m),
+            ("complementarity", self.complementarity_nm, t.complementarity_nm),
+            ("adhesion", self.adhesion_n, t.adhesion_n),
+            ("separation", self.separation_m_s, t.separation_m_s),
+            ("zmp", self.zmp_m, t.zmp_m),
+            ("force_balance", self.force_n, t.force_n),
+        ];
+        // NaN breaks a law too
+        checks.into_iter().filter(|(_, found, allowed)| !(found <= allowed)).collect()
+    }
+}
+
+/// Forces on the ground, and what follows from them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Balance {
+    /// Zero moment point from the contact forces [m]; not finite in flight.
+    pub(super) zmp: [f64; 3],
+    /// The same from the change of momentum.
+    pub(super) zmp_of_momentum: [f64; 3],
+    /// Contact forces minus the change of momentum [N].
+    pub(super) force_error: f64,
+    /// Normal force [N].
+    pub(super) normal_force: f64,
+}
+
+/// Step of the directional derivative of momentum [s].
+const DIFFERENCE_S: f64 = 2e-4;
+
+/// Compares contact forces with the change of momentum, for a plant that nothing else holds.
+/// `work` of the motion is that of `y`.
+pub(super) fn balance(motion: &mut Motion<'_>, y: &[f64]) -> Balance {
+    let rows = motion.ground.rows();
+    let ([mut force, mut moment], normal) = ([[0.0; 3]; 2], motion.ground.normal());
+    let origin = motion.plant.model().ground.point;
+    for (index, closed) in motion.closed.iter().enumerate() {
+        let world = motion.ground.to_world(&motion.work.force[index * rows..(index + 1) * rows]);
+        let at = &motion.work.positions[3 * closed.contact..3 * closed.contact + 3];
+        let arm = std::array::from_fn(|axis| at[axis] - origin[axis]);
+        add(&mut force, world);
+        add(&mut moment, cross(arm, world));
+    }
+    let (mut rate, gravity) = (momentum_rate(motion, y), motion.plant.model().gravity);
+    let mass = motion.plant.model().mass_kg;
+    let parts = motion.layout.parts(y);
+    let center = motion.plant.center_of_mass(parts.q);
+    for axis in 0..3 {
+        rate[axis] -= mass * gravity[axis];
+    }
+    let needed = [rate[0], rate[1], rate[2]];
+    let arm = std::array::from_fn(|axis| center[axis] - origin[axis]);
+    let mut needed_moment = cross(arm, needed);
+    add(&mut needed_moment, [rate[3], rate[4], rate[5]]);
+    let error = (0..3).map(|axis| (force[axis] - needed[axis]).powi(2)).sum::<f64>().sqrt();
+    let point = |force: [f64; 3], moment: [f64; 3]| {
+        let size = dot(normal, &force);
+        let arm = cross(normal, moment);
+        std::array::from_fn(|axis| origin[axis] + arm[axis] / size)
+    };
+    let normal_force = dot(normal, &force);
+    // below a hundredth of the weight a moment has no point
+    let weight = mass * dot(gravity, &gravity).sqrt();
+    let loaded = normal_force > 0.01 * weight;
+    let undefined = [f64::NAN; 3];
+    Balance {
+        zmp: if loaded { point(force, moment) } else { undefined },
+        zmp_of_momentum: if loaded { point(needed, needed_moment) } else { undefined },
+        force_error: error,
+        normal_force,
+    }
+}
+
+fn add(sum: &mut [f64; 3], term: [f64; 3]) {
+    sum.iter_mut().zip(term).for_each(|(entry, term)| *entry += term);
+}
+
+/// d/dt of linear and angular momentum: the derivative along (qd, qdd), by differences of order 4.
+fn momentum_rate(motion: &mut Motion<'_>, y: &[f64]) -> [f64; 6] {
+    let parts = motion.layout.parts(y);
+    let acceleration = &motion.work.acceleration;
+    let mut at = |time: f64| {
+        let moved = |base: &[f64], rate: &[f64]| -> Vec<f64> {
+            base.iter().zip(rate).map(|(base, rate)| base + time * rate).collect()
+        };
+        motion.plant.momentum(&moved(parts.q, parts.qd), &moved(parts.qd, acceleration))
+    };
+    let h = DIFFERENCE_S;
+    let [far_back, back, ahead, far_ahead] = [-2.0 * h, -h, h, 2.0 * h].map(&mut at);
+    std::array::from_fn(|i| {
+        (8.0 * (ahead[i] - back[i]) - (far_ahead[i] - far_back[i])) / (12.0 * h)
+    })
+}
+
+/// Distance of a point from the edge of the convex hull of others, seen along the normal; negative
+/// outside, and minus the distance for hulls without area.
+pub(super) fn support_margin(motion: &Motion<'_>, point: [f64; 3]) -> f64 {
+    let tangents = motion.ground.tangents();
+    let flat = |position: &[f64]| tangents.map(|tangent| dot(tangent, position));
+    let at = flat(&point);
+    let corners: Vec<[f64; 2]> = motion
+        .closed
+        .iter()
+        .map(|c| flat(&motion.work.positions[3 * c.contact..3 * c.contact + 3]))
+        .collect();
+    if motion.ground.rows() == 2 {
+        let ends = |pick: fn(f64, f64) -> f64, start: f64| {
+            corners.iter().fold(start, |sum, corner| pick(sum, corner[0]))
+        };
+        let (low, high) = (ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY));
+        return (at[0] - low).min(high - at[0]);
+    }
+    hull_margin(&corners, at)
+}
+
+fn hull_margin(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
+    let mut margin = f64::INFINITY;
+    let mut edges = 0;
+    for (i, a) in corners.iter().enumerate() {
+        for b in corners.iter().skip(i + 1).chain(&corners[..i]) {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let size = along[0].hypot(along[1]);
+            if size < 1e-9 {
+                continue;
+            }
+            let left = |p: &[f64; 2]| (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / size;
+            // an edge has every corner on its left
+            if corners.iter().all(|corner| left(corner) >= -1e-9) {
+                edges += 1;
+                margin = margin.min(left(&at));
+            }
+        }
+    }
+    if edges >= 3 { margin } else { -nearest(corners, at) }
+}
+
+fn nearest(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
+    let distance = |corner: &[f64; 2]| (corner[0] - at[0]).hypot(corner[1] - at[1]);
+    corners.iter().map(distance).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_margin_of_a_square_is_the_distance_from_its_nearest_edge() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]];
+        assert!((hull_margin(&square, [0.5, 1.0]) - 0.5).abs() < 1e-15);
+        assert!((hull_margin(&square, [1.0, 2.25]) + 0.25).abs() < 1e-15);
+    }
+}

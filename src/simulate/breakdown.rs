@@ -1,0 +1,90 @@
+//! Why a motion cannot go on, and how a run ended.
+
+use super::contact::ContactFailure;
+use std::fmt;
+
+/// Why the equations of motion have no answer at some time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breakdown {
+    /// The mass matrix is not positive definite: a massless part, or a singular base pose.
+    Singular {
+        /// The coordinate at which its factorisation failed.
+        coordinate: usize,
+    },
+    /// A torque, a state or a rate is not finite.
+    NotFinite,
+    /// The contacts have no forces, or no impulses.
+    Contact(ContactFailure),
+    /// A slipping contact has no force that obeys Coulomb's law (Painleve 1895).
+    Painleve,
+    /// The step that the accuracy asks for is below what time resolves.
+    StepTooSmall,
+}
+
+impl fmt::Display for Breakdown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Singular { coordinate } => {
+                write!(f, "the mass matrix is singular at coordinate {}", coordinate + 1)
+            }
+            Self::NotFinite => write!(f, "a torque or a rate is not finite"),
+            Self::Contact(failure) => write!(f, "{failure}"),
+            Self::Painleve => {
+                write!(f, "a slipping contact jams: no force obeys Coulomb's law (Painleve)")
+            }
+            Self::StepTooSmall => write!(f, "the steps became shorter than time resolves"),
+        }
+    }
+}
+
+impl std::error::Error for Breakdown {}
+
+/// Why a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stop {
+    /// The end time is reached.
+    End,
+    /// A point that must not touch the ground did; holds its name.
+    Fall(String),
+    /// As many events happened as are allowed.
+    EventLimit,
+    /// As many evaluations were made as are allowed.
+    EvaluationLimit,
+    /// Events follow each other without end.
+    Zeno,
+    /// The equations have no answer.
+    Breakdown(Breakdown),
+}
+
+impl Stop {
+    /// One word for logs and JSON.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::End => "end",
+            Self::Fall(_) => "fall",
+            Self::EventLimit => "event_limit",
+            Self::EvaluationLimit => "evaluation_limit",
+            Self::Zeno => "zeno",
+            Self::Breakdown(breakdown) => match breakdown {
+                Breakdown::Singular { .. } => "singular",
+                Breakdown::NotFinite => "not_finite",
+                Breakdown::Contact(_) => "no_solution",
+                Breakdown::Painleve => "painleve",
+                Breakdown::StepTooSmall => "step_too_small",
+            },
+        }
+    }
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::End => write!(f, "reached the end"),
+            Self::Fall(point) => write!(f, "fell: `{point}` touched the ground"),
+            Self::EventLimit => write!(f, "stopped at the limit of events"),
+            Self::EvaluationLimit => write!(f, "stopped at the limit of evaluations"),
+            Self::Zeno => write!(f, "stopped: events follow each other without end"),
+            Self::Breakdown(breakdown) => write!(f, "stopped: {breakdown}"),
+        }
+    }
+}

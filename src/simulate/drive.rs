@@ -1,0 +1,155 @@
+//! Drives: from commanded torque to the torque that reaches the joint.
+//!
+//! A stiff drive passes its command on; rotor and viscous friction stand in the plant's D and
+//! bias. A series elastic one has a motor of its own (thesis 3.18-3.24): with motor angle th,
+//! th_N = th / N behind the gear, and the spring force F = k (r_M th_N - r_L q),
+//!
+//! > Ia th'' = tau_M - fv th' - fc sign(th') - r_M F / N,  tau_joint = r_L F.
+
+use super::control::Feedback;
+use super::state::Parts;
+use crate::plants::{PlantModel, SeriesElasticModel};
+use denavit_runtime::Transcendental;
+
+/// How drives are modelled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DriveModelling {
+    /// Commands reach the joints; series elastic joints count as stiff and frictionless.
+    #[default]
+    Ideal,
+    /// As the model says, with the motors of series elastic joints and with Coulomb friction.
+    Model,
+}
+
+/// Below this rate Coulomb friction is a steep line through 0 [rad/s, m/s], joint side.
+const STICTION_RATE: f64 = 1e-2;
+
+/// The drives of a plant.
+#[derive(Clone, Debug)]
+pub(super) struct Drives {
+    modelling: DriveModelling,
+    /// Joint number of each series elastic motor.
+    pub(super) elastic: Vec<usize>,
+}
+
+/// What the drives do at one instant.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DriveOutput {
+    /// Torque on each joint from its drive, friction taken off [N m, N].
+    pub(super) torque: Vec<f64>,
+    /// Acceleration of each motor [rad/s^2].
+    pub(super) motor_acceleration: Vec<f64>,
+    /// Power put in, and power lost to friction [W].
+    pub(super) power: [f64; 2],
+}
+
+impl Drives {
+    pub(super) fn new(model: &PlantModel, modelling: DriveModelling) -> Self {
+        let is_elastic = |index: &usize| {
+            let drive = model.joints[*index].drive;
+            modelling == DriveModelling::Model
+                && drive.is_some_and(|d| d.series_elastic.is_some() && d.rotor_inertia > 0.0)
+        };
+        let elastic = (0..model.joints.len()).filter(is_elastic).collect();
+        Self { modelling, elastic }
+    }
+
+    /// The motor angle at which the spring of elastic joint number `index` is relaxed [rad].
+    pub(super) fn relaxed(&self, model: &PlantModel, index: usize, q: &[f64]) -> f64 {
+        let joint = self.elastic[index];
+        model.joints[joint].drive.map_or(0.0, |drive| {
+            drive.series_elastic.map_or(0.0, |elastic| {
+                drive.gear_ratio * elastic.load_radius / elastic.motor_radius * q[joint]
+            })
+        })
+    }
+
+    /// What a controller sees of positions and rates.
+    pub(super) fn measured(
+        &self,
+        model: &PlantModel,
+        feedback: Feedback,
+        parts: Parts<'_>,
+        q: &mut Vec<f64>,
+        qd: &mut Vec<f64>,
+    ) {
+        q.clear();
+        q.extend_from_slice(parts.q);
+        qd.clear();
+        qd.extend_from_slice(parts.qd);
+        if feedback == Feedback::Joint {
+            return;
+        }
+        for (index, &joint) in self.elastic.iter().enumerate() {
+            if let Some((drive, elastic)) = elastic_drive(model, joint) {
+                let ratio = elastic.motor_radius / (elastic.load_radius * drive.gear_ratio);
+                q[joint] = ratio * parts.motor[index];
+                qd[joint] = ratio * parts.motor_rate[index];
+            }
+        }
+    }
+
+    pub(super) fn respond(
+        &self,
+        model: &PlantModel,
+        command: &[f64],
+        parts: Parts<'_>,
+        output: &mut DriveOutput,
+    ) {
+        output.torque.clear();
+        output.torque.extend_from_slice(command);
+        output.motor_acceleration.clear();
+        let [mut power, mut lost] = [0.0; 2];
+        for (index, joint) in model.joints.iter().enumerate() {
+            let (rate, torque) = (parts.qd[index], &mut output.torque[index]);
+            power += *torque * rate;
+            // what the plant's bias takes
+            lost += (joint.viscous * rate + joint.offset) * rate;
+            if self.modelling == DriveModelling::Model && joint.coulomb > 0.0 {
+                let friction = joint.coulomb * (rate / STICTION_RATE).hyperbolic_tangent();
+                *torque -= friction;
+                lost += friction * rate;
+            }
+        }
+        for (index, &joint) in self.elastic.iter().enumerate() {
+            let Some((drive, elastic)) = elastic_drive(model, joint) else { continue };
+            let (rate, gear) = (parts.motor_rate[index], drive.gear_ratio);
+            let force = spring_force(gear, elastic, parts.motor[index], parts.q[joint]);
+            power -= command[joint] * parts.qd[joint];
+            let motor = command[joint] * elastic.motor_radius / (elastic.load_radius * gear);
+            let reference = STICTION_RATE * gear.abs();
+            let friction =
+                drive.viscous * rate + drive.coulomb * (rate / reference).hyperbolic_tangent();
+            power += motor * rate;
+            lost += friction * rate;
+            output.torque[joint] = elastic.load_radius * force;
+            let net = motor - friction - elastic.motor_radius * force / gear;
+            output.motor_acceleration.push(net / drive.rotor_inertia);
+        }
+        output.power = [power, lost];
+    }
+
+    /// Energy of springs and rotors of the series elastic drives \[J\].
+    pub(super) fn energy(&self, model: &PlantModel, parts: Parts<'_>) -> f64 {
+        let one = |(index, joint): (usize, &usize)| {
+            elastic_drive(model, *joint).map_or(0.0, |(drive, elastic)| {
+                let gear = drive.gear_ratio;
+                let force = spring_force(gear, elastic, parts.motor[index], parts.q[*joint]);
+                0.5 * force * force / elastic.stiffness
+                    + 0.5 * drive.rotor_inertia * parts.motor_rate[index].powi(2)
+            })
+        };
+        self.elastic.iter().enumerate().map(one).sum()
+    }
+}
+
+fn elastic_drive(
+    model: &PlantModel,
+    joint: usize,
+) -> Option<(crate::plants::DriveModel, SeriesElasticModel)> {
+    model.joints[joint].drive.and_then(|drive| Some((drive, drive.series_elastic?)))
+}
+
+fn spring_force(gear: f64, elastic: SeriesElasticModel, motor: f64, q: f64) -> f64 {
+    elastic.stiffness * (elastic.motor_radius * motor / gear - elastic.load_radius * q)
+}

@@ -1,0 +1,286 @@
+//! Events inside a step: what is watched, and where it changes sign.
+//!
+//! A watched value fires when it falls below zero after it was positive. Dense output brackets the
+//! crossing, steps of the very length locate it. A value that starts at zero (a contact that has
+//! just bounced) is armed by the first positive sample, which is looked for ever closer to the
+//! start; a contact may rise and fall inside one step.
+
+use super::breakdown::Breakdown;
+use super::contact::{ContactProblem, Mode};
+use super::integrate::Stepper;
+use super::motion::Motion;
+use crate::plants::point_positions;
+
+/// What is watched during smooth motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Watched {
+    /// Height of an open contact point.
+    Gap(usize),
+    /// Height of a point that must not touch.
+    FallPoint(usize),
+    /// How far the forces are from pulling, or from leaving a cone.
+    Margin,
+    /// Speed of a slipping contact along its direction: position in the list of closed ones.
+    SlipSpeed(usize),
+    /// A guard of the plant.
+    Guard(usize),
+}
+
+impl Watched {
+    /// Values this little below zero are rounding.
+    fn floor(self) -> f64 {
+        match self {
+            Self::Margin => 0.0,
+            _ => 1e-11,
+        }
+    }
+}
+
+/// An event: what fired, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fired {
+    pub(super) watched: Watched,
+    pub(super) t_s: f64,
+}
+
+/// Samples inside a step, its end included.
+const SAMPLES: usize = 8;
+/// Crossings are located to this [s].
+const RESOLUTION_S: f64 = 1e-13;
+
+/// Looks for events; keeps what must be known of contacts that have just opened.
+#[derive(Clone, Debug)]
+pub(super) struct Watch {
+    /// Height at which each open contact counts as on the ground: below 0 by the error it had when
+    /// it opened, until it has risen.
+    pub(super) level: Vec<f64>,
+    transforms: Vec<f64>,
+    points: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Watch {
+    pub(super) fn new(contacts: usize, links: usize, fall_points: usize, len: usize) -> Self {
+        Self {
+            level: vec![0.0; contacts],
+            transforms: vec![0.0; 12 * links],
+            points: vec![0.0; 3 * fall_points],
+            y: vec![0.0; len],
+        }
+    }
+
+    /// Everything to be watched with the contacts as they are.
+    fn list(motion: &Motion<'_>) -> Vec<Watched> {
+        let model = motion.plant.model();
+        let mut list: Vec<Watched> = (0..model.contacts.len())
+            .filter(|contact| motion.closed.iter().all(|closed| closed.contact != *contact))
+            .map(Watched::Gap)
+            .collect();
+        list.extend((0..model.fall_points.len()).map(Watched::FallPoint));
+        list.extend((0..motion.plant.guards()).map(Watched::Guard));
+        let slips = |(index, closed): (usize, &super::motion::Closed)| match closed.mode {
+            Mode::Slip(direction) if direction != [0.0; 2] => Some(Watched::SlipSpeed(index)),
+            _ => None,
+        };
+        list.extend(motion.closed.iter().enumerate().filter_map(slips));
+        if !motion.closed.is_empty() {
+            list.push(Watched::Margin);
+        }
+        list
+    }
+
+    /// The earliest event of the last step.
+    pub(super) fn find(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+    ) -> Result<Option<Fired>, Breakdown> {
+        let (t0, t1) = (stepper.start_time(), stepper.time());
+        let mut first: Option<Fired> = None;
+        for watched in Self::list(motion) {
+            let samples = if watched == Watched::Margin { 1 } else { SAMPLES };
+            let mut last = (t0, self.value(motion, stepper, watched, t0)?);
+            for sample in 1..=samples {
+                let t = t0 + (t1 - t0) * sample as f64 / samples as f64;
+                let value = self.value(motion, stepper, watched, t)?;
+                if value < -watched.floor() {
+                    let armed = self.arm(motion, stepper, watched, last, t)?;
+                    let t_s = match armed {
+                        Some(positive) => {
+                            self.locate(motion, stepper, watched, positive, (t, value))?
+                        }
+                        None => t0,
+                    };
+                    if first.is_none_or(|found| t_s < found.t_s) {
+                        first = Some(Fired { watched, t_s });
+                    }
+                    break;
+                }
+                if value > 0.0 || last.1 <= 0.0 {
+                    last = (t, value);
+                }
+            }
+        }
+        if first.is_none() {
+            self.lower_levels(motion, stepper);
+        }
+        Ok(first)
+    }
+
+    /// Contacts that have risen count from the ground again.
+    fn lower_levels(&mut self, motion: &mut Motion<'_>, stepper: &Stepper) {
+        motion.place(stepper.state());
+        for contact in 0..self.level.len() {
+            if motion.gap(contact) > 0.0 {
+                self.level[contact] = 0.0;
+            }
+        }
+    }
+
+    /// A time before `before` with a positive value.
+    fn arm(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &Stepper,
+        watched: Watched,
+        last: (f64, f64),
+        before: f64,
+    ) -> Result<Option<(f64, f64)>, Breakdown> {
+        if last.1 > 0.0 {
+            return Ok(Some(last));
+        }
+        let mut t = before;
+        for _ in 0..40 {
+            t = last.0 + 0.5 * (t - last.0);
+            let value = self.value(motion, stepper, watched, t)?;
+            if value > 0.0 {
+                return Ok(Some((t, value)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The crossing between a positive and a negative value.
+    fn locate(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+        watched: Watched,
+        positive: (f64, f64),
+        negative: (f64, f64),
+    ) -> Result<f64, Breakdown> {
+        let ((mut a, mut fa), (mut b, mut fb)) = (positive, negative);
+        // Illinois: false position that halves the value of an end that stays
+        for _ in 0..80 {
+            if b - a <= RESOLUTION_S {
+                break;
+            }
+            let guess = a + (b - a) * fa / (fa - fb);
+            let t = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
+            let value = self.value(motion, stepper, watched, t)?;
+            if value > 0.0 {
+                (a, fa, fb) = (t, value, 0.5 * fb);
+            } else {
+                (b, fb, fa) = (t, value, 0.5 * fa);
+            }
+        }
+        self.polish(motion, stepper, watched, 0.5 * (a + b))
+    }
+
+    /// Newton's method on steps of the very length, from a root of the dense output.
+    fn polish(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+        watched: Watched,
+        guess: f64,
+    ) -> Result<f64, Breakdown> {
+        let (t0, t1) = (stepper.start_time(), stepper.time());
+        let width = (1e-4 * (t1 - t0)).max(1e-12);
+        let before = self.value(motion, stepper, watched, guess - width)?;
+        let after = self.value(motion, stepper, watched, guess + width)?;
+        let slope = (after - before) / (2.0 * width);
+        let mut t = guess;
+        for _ in 0..6 {
+            let mut y = std::mem::take(&mut self.y);
+            stepper.restep(motion, t, &mut y)?;
+            let value = self.measure(motion, watched, t, &y)?;
+            self.y = y;
+            let change = value / slope;
+            // a crossing without slope stays where dense output saw it
+            if !change.is_finite() || change.abs() > 0.5 * (t1 - t0) {
+                return Ok(guess);
+            }
+            t = (t - change).clamp(t0, t1);
+            if change.abs() <= RESOLUTION_S {
+                break;
+            }
+        }
+        Ok(t)
+    }
+
+    fn value(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &Stepper,
+        watched: Watched,
+        t_s: f64,
+    ) -> Result<f64, Breakdown> {
+        let mut y = std::mem::take(&mut self.y);
+        stepper.interpolate(t_s, &mut y);
+        let value = self.measure(motion, watched, t_s, &y);
+        self.y = y;
+        value
+    }
+
+    /// A watched value at a state.
+    fn measure(
+        &mut self,
+        motion: &mut Motion<'_>,
+        watched: Watched,
+        t_s: f64,
+        y: &[f64],
+    ) -> Result<f64, Breakdown> {
+        let parts = motion.layout.parts(y);
+        Ok(match watched {
+            Watched::Gap(contact) => {
+                motion.place(y);
+                motion.gap(contact) - self.level[contact]
+            }
+            Watched::FallPoint(point) => {
+                motion.plant.link_transforms(parts.q, &mut self.transforms);
+                let points = &motion.plant.model().fall_points;
+                point_positions(points, &self.transforms, &mut self.points);
+                motion.ground.gap(&self.points[3 * point..3 * point + 3])
+            }
+            Watched::Guard(guard) => motion.plant.guard(guard, parts.q, parts.qd),
+            Watched::SlipSpeed(index) => slip_speed(motion, index, y),
+            Watched::Margin => margin(motion, t_s, y)?,
+        })
+    }
+}
+
+fn slip_speed(motion: &mut Motion<'_>, index: usize, y: &[f64]) -> f64 {
+    let closed = motion.closed[index];
+    motion.project(y, &[closed.contact]);
+    let Mode::Slip(direction) = closed.mode else { return 0.0 };
+    let tangents = motion.ground.rows() - 1;
+    motion.work.velocity[..tangents].iter().zip(direction).map(|(v, d)| v * d).sum()
+}
+
+/// Least force to spare, and what counts as none: adhesion of that size is rounding [N].
+fn margin(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<f64, Breakdown> {
+    motion.constrained_motion(t_s, y)?;
+    let work = &motion.work;
+    let problem = ContactProblem {
+        space: motion.ground.space,
+        contacts: &work.contacts,
+        delassus: motion.delassus.matrix(),
+        free: &work.free,
+        tolerance: motion.holding.tolerance,
+    };
+    let largest = work.force.iter().fold(0.0_f64, |sum, force| sum.max(force.abs()));
+    let spare = motion.solver.margin(&problem, &work.modes).map_err(Breakdown::Contact)?;
+    let tolerance = motion.holding.tolerance;
+    Ok(spare.min(1e9) + 4.0 * (tolerance.force + tolerance.relative * largest))
+}

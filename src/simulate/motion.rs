@@ -1,0 +1,346 @@
+//! The equations of motion between two events (thesis 2.43 and 2.50): the set of closed contacts
+//! and what each of them does stay as they are.
+
+use super::breakdown::Breakdown;
+use super::contact::delassus::Delassus;
+use super::contact::minimum_norm::MinimumNorm;
+use super::contact::solver::ContactSolver;
+use super::contact::{Contact, ContactFailure, ContactProblem, Friction, Mode, Tolerance};
+use super::control::{Control, ControlMemory};
+use super::drive::{DriveOutput, Drives};
+use super::ground::Ground;
+use super::integrate::Rates;
+use super::state::{INTEGRALS, Layout};
+use crate::plants::Plant;
+
+/// A contact that carries force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Closed {
+    /// Which contact point.
+    pub(super) contact: usize,
+    /// Sticks or slips; never open.
+    pub(super) mode: Mode,
+    /// Where it stands along the tangents, if it sticks [m].
+    pub(super) anchor: [f64; 2],
+}
+
+/// How contacts are held together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Holding {
+    /// Errors of position and velocity of a closed contact decay at this rate (Baumgarte) [1/s].
+    pub(super) drift_rate: f64,
+    pub(super) tolerance: Tolerance,
+}
+
+/// The smooth motion of a plant under control, with the contacts as they are.
+pub(super) struct Motion<'a> {
+    pub(super) plant: &'a mut dyn Plant,
+    pub(super) control: &'a Control,
+    pub(super) drives: Drives,
+    pub(super) ground: Ground,
+    /// Law of each contact point.
+    pub(super) friction: Vec<Friction>,
+    pub(super) holding: Holding,
+    pub(super) layout: Layout,
+    pub(super) closed: Vec<Closed>,
+    /// Torque held by a sampled controller; none controls continuously.
+    pub(super) held: Option<Vec<f64>>,
+    /// References are those before this time: at it they may jump.
+    pub(super) segment_end: f64,
+    measured: [Vec<f64>; 2],
+    pub(super) solver: ContactSolver,
+    pub(super) delassus: Delassus,
+    memory: ControlMemory,
+    pub(super) work: Work,
+}
+
+/// Values of the last evaluation.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Work {
+    pub(super) mass: Vec<f64>,
+    pub(super) bias: Vec<f64>,
+    pub(super) command: Vec<f64>,
+    pub(super) drive: DriveOutput,
+    pub(super) acceleration: Vec<f64>,
+    pub(super) positions: Vec<f64>,
+    pub(super) jacobian: Vec<f64>,
+    pub(super) contact_bias: Vec<f64>,
+    /// Rows of the contacts of the problem, along the ground's directions.
+    pub(super) rows: Vec<f64>,
+    /// Their velocities.
+    pub(super) velocity: Vec<f64>,
+    /// Their accelerations without contact forces.
+    pub(super) free: Vec<f64>,
+    /// Forces of the closed contacts, rows of each in turn.
+    pub(super) force: Vec<f64>,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) modes: Vec<Mode>,
+    scratch: Vec<f64>,
+}
+
+impl<'a> Motion<'a> {
+    pub(super) fn new(
+        plant: &'a mut dyn Plant,
+        control: &'a Control,
+        drives: Drives,
+        friction: Vec<Friction>,
+        holding: Holding,
+    ) -> Self {
+        let model = plant.model();
+        let (n, points) = (model.joints.len(), model.contacts.len());
+        let ground = Ground::new(model);
+        let zeros = |len: usize| vec![0.0; len];
+        let work = Work {
+            mass: zeros(n * n),
+            bias: zeros(n),
+            command: zeros(n),
+            acceleration: zeros(n),
+            positions: zeros(3 * points),
+            jacobian: zeros(3 * points * n),
+            contact_bias: zeros(3 * points),
+            scratch: zeros(n),
+            ..Work::default()
+        };
+        let layout = Layout { joints: n, motors: drives.elastic.len() };
+        Self {
+            plant,
+            control,
+            drives,
+            ground,
+            friction,
+            holding,
+            layout,
+            closed: Vec::new(),
+            held: None,
+            segment_end: f64::INFINITY,
+            measured: [Vec::new(), Vec::new()],
+            solver: ContactSolver::new(),
+            delassus: Delassus::new(),
+            memory: ControlMemory::default(),
+            work,
+        }
+    }
+
+    /// A time at which references are still those of this segment.
+    pub(super) fn reference_time(&self, t_s: f64) -> f64 {
+        t_s.min(self.segment_end - 4e-12)
+    }
+
+    /// Commanded torques at a time, from what is measured.
+    pub(super) fn command(&mut self, t_s: f64, q: &[f64], qd: &[f64], command: &mut [f64]) {
+        self.control.command(self.plant, t_s, q, qd, &mut self.memory, command);
+    }
+
+    /// Accelerations without contact forces, into `work.acceleration`; factors the mass matrix.
+    pub(super) fn free_motion(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
+        let parts = self.layout.parts(y);
+        let time = self.reference_time(t_s);
+        match &self.held {
+            Some(held) => self.work.command.copy_from_slice(held),
+            None => {
+                let [q, qd] = &mut self.measured;
+                self.drives.measured(self.plant.model(), self.control.feedback, parts, q, qd);
+                let command = &mut self.work.command;
+                self.control.command(self.plant, time, q, qd, &mut self.memory, command);
+            }
+        }
+        let Work { mass, bias, acceleration, drive, command, .. } = &mut self.work;
+        self.drives.respond(self.plant.model(), command, parts, drive);
+        self.plant.mass_matrix(parts.q, mass);
+        self.plant.bias(parts.q, parts.qd, bias);
+        self.delassus
+            .factor(mass, self.layout.joints)
+            .map_err(|error| Breakdown::Singular { coordinate: error.coordinate })?;
+        for (entry, (torque, bias)) in acceleration.iter_mut().zip(drive.torque.iter().zip(bias)) {
+            *entry = torque - *bias;
+        }
+        self.delassus.solve_mass(acceleration);
+        match acceleration.iter().all(|entry| entry.is_finite()) {
+            true => Ok(()),
+            false => Err(Breakdown::NotFinite),
+        }
+    }
+
+    /// Rows, velocities and G of the listed contact points; positions of all points.
+    pub(super) fn project(&mut self, y: &[f64], contacts: &[usize]) {
+        let (n, parts) = (self.layout.joints, self.layout.parts(y));
+        let Work { positions, jacobian, rows, velocity, .. } = &mut self.work;
+        self.plant.contact_positions(parts.q, positions);
+        self.plant.contact_jacobian(parts.q, jacobian);
+        rows.clear();
+        for &contact in contacts {
+            let world = &jacobian[3 * contact * n..3 * (contact + 1) * n];
+            self.ground.append_rows(world, n, rows);
+        }
+        velocity.clear();
+        let speed = |row: &[f64]| row.iter().zip(parts.qd).map(|(w, v)| w * v).sum::<f64>();
+        velocity.extend(rows.chunks_exact(n).map(speed));
+        self.delassus.project(rows);
+    }
+
+    /// Accelerations of the listed contact points without contact forces, after `free_motion` and
+    /// `project`.
+    pub(super) fn free_response(&mut self, y: &[f64], contacts: &[usize]) {
+        let (n, parts) = (self.layout.joints, self.layout.parts(y));
+        let Work { contact_bias, rows, free, acceleration, .. } = &mut self.work;
+        self.plant.contact_bias(parts.q, parts.qd, contact_bias);
+        free.clear();
+        for &contact in contacts {
+            self.ground.append(&contact_bias[3 * contact..3 * contact + 3], free);
+        }
+        for (entry, row) in free.iter_mut().zip(rows.chunks_exact(n)) {
+            *entry += row.iter().zip(&*acceleration).map(|(w, a)| w * a).sum::<f64>();
+        }
+    }
+
+    /// Accelerations with contact forces: `work.acceleration`, `work.force`.
+    pub(super) fn constrained_motion(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
+        self.free_motion(t_s, y)?;
+        self.work.force.clear();
+        if self.closed.is_empty() {
+            return Ok(());
+        }
+        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        self.project(y, &listed);
+        self.free_response(y, &listed);
+        self.hold();
+        let Work { free, force, contacts, modes, acceleration, scratch, .. } = &mut self.work;
+        force.resize(free.len(), 0.0);
+        let problem = ContactProblem {
+            space: self.ground.space,
+            contacts,
+            delassus: self.delassus.matrix(),
+            free,
+            tolerance: self.holding.tolerance,
+        };
+        self.solver.forces(&problem, modes, force).map_err(|failure| match failure {
+            ContactFailure::NotFinite => Breakdown::NotFinite,
+            failure => Breakdown::Contact(failure),
+        })?;
+        self.delassus.respond(force, acceleration, scratch);
+        Ok(())
+    }
+
+    /// Modes and laws of the closed contacts, and the drift terms of their held directions.
+    fn hold(&mut self) {
+        let (rows, rate) = (self.ground.rows(), self.holding.drift_rate);
+        let tangents = rows - 1;
+        let Work { positions, velocity, free, contacts, modes, .. } = &mut self.work;
+        contacts.clear();
+        modes.clear();
+        let mut along = Vec::with_capacity(rows);
+        for (index, closed) in self.closed.iter().enumerate() {
+            let position = &positions[3 * closed.contact..3 * closed.contact + 3];
+            let block = index * rows..(index + 1) * rows;
+            let (speed, free) = (&velocity[block.clone()], &mut free[block]);
+            free[tangents] += rate * (2.0 * speed[tangents] + rate * self.ground.gap(position));
+            let mut contact = Contact::resting(self.friction[closed.contact]);
+            let mut mode = closed.mode;
+            match &mut mode {
+                Mode::Stick => {
+                    along.clear();
+                    self.ground.append(position, &mut along);
+                    for axis in 0..tangents {
+                        let error = along[axis] - closed.anchor[axis];
+                        free[axis] += rate * (2.0 * speed[axis] + rate * error);
+                    }
+                }
+                Mode::Slip(direction) => {
+                    let size = speed[..tangents].iter().map(|v| v * v).sum::<f64>().sqrt();
+                    // in a plane the direction changes by an event alone
+                    if tangents == 2 && size > 1e-9 && *direction != [0.0; 2] {
+                        *direction = [speed[0] / size, speed[1] / size];
+                    }
+                    contact.slipping = Some(*direction);
+                }
+                Mode::Open => {}
+            }
+            contacts.push(contact);
+            modes.push(mode);
+        }
+    }
+
+    /// Gaps of all contact points [m], after `positions` of `work` are those of `y`.
+    pub(super) fn place(&mut self, y: &[f64]) {
+        let parts = self.layout.parts(y);
+        self.plant.contact_positions(parts.q, &mut self.work.positions);
+    }
+
+    /// Height of a contact point, where `place` or `project` last saw it [m].
+    pub(super) fn gap(&self, contact: usize) -> f64 {
+        self.ground.gap(&self.work.positions[3 * contact..3 * contact + 3])
+    }
+
+    /// Total energy, drives included \[J\].
+    pub(super) fn energy(&mut self, y: &[f64]) -> f64 {
+        let parts = self.layout.parts(y);
+        let drives = self.drives.energy(self.plant.model(), parts);
+        let kinetic = self.plant.kinetic_energy(parts.q, parts.qd);
+        kinetic + self.plant.potential_energy(parts.q) + drives
+    }
+}
+
+impl Rates for Motion<'_> {
+    fn rates(&mut self, t_s: f64, y: &[f64], dy: &mut [f64]) -> Result<(), Breakdown> {
+        self.constrained_motion(t_s, y)?;
+        let (n, m) = (self.layout.joints, self.layout.motors);
+        let parts = self.layout.parts(y);
+        dy[..n].copy_from_slice(parts.qd);
+        dy[n..2 * n].copy_from_slice(&self.work.acceleration);
+        dy[2 * n..2 * n + m].copy_from_slice(parts.motor_rate);
+        dy[2 * n + m..2 * n + 2 * m].copy_from_slice(&self.work.drive.motor_acceleration);
+        let rows = self.ground.rows();
+        let mut rubbed = 0.0;
+        for (index, closed) in self.closed.iter().enumerate() {
+            if matches!(closed.mode, Mode::Slip(_)) {
+                for row in index * rows..(index + 1) * rows - 1 {
+                    rubbed -= self.work.force[row] * self.work.velocity[row];
+                }
+            }
+        }
+        let [put_in, lost] = self.work.drive.power;
+        dy[2 * n + 2 * m] = put_in;
+        dy[2 * n + 2 * m + 1] = lost + rubbed;
+        match dy.iter().all(|entry| entry.is_finite()) {
+            true => Ok(()),
+            false => Err(Breakdown::NotFinite),
+        }
+    }
+
+    fn integrals(&self) -> usize {
+        INTEGRALS
+    }
+}
+
+impl Motion<'_> {
+    /// Adds the rates that impulses of the projected rows make: v+ = v- + D^-1 W P.
+    pub(super) fn apply_impulses(&mut self, impulse: &[f64], y: &mut [f64]) {
+        let n = self.layout.joints;
+        self.delassus.respond(impulse, &mut y[n..2 * n], &mut self.work.scratch);
+    }
+
+    /// Takes the velocities of the listed rows of the projected contacts out of `y`: what is left
+    /// after the last of infinitely many bounces, and of rounding. Returns the impulses of all rows
+    /// that this takes, none if there is nothing to take out.
+    pub(super) fn still(&mut self, held: &[usize], y: &mut [f64]) -> Option<Vec<f64>> {
+        let largest = held.iter().fold(0.0_f64, |sum, row| sum.max(self.work.velocity[*row].abs()));
+        if largest <= 1e-14 {
+            return None;
+        }
+        let (total, size) = (self.delassus.rows(), held.len());
+        let matrix = self.delassus.matrix();
+        let mut system = MinimumNorm::default();
+        let block: Vec<f64> = held
+            .iter()
+            .flat_map(|row| held.iter().map(move |column| matrix[row * total + column]))
+            .collect();
+        system.factor(&block, size, 1e-10);
+        let right: Vec<f64> = held.iter().map(|row| -self.work.velocity[*row]).collect();
+        let mut impulse = vec![0.0; size];
+        system.solve(&right, &mut impulse);
+        let mut all = vec![0.0; total];
+        held.iter().zip(impulse).for_each(|(row, p)| all[*row] = p);
+        self.apply_impulses(&all, y);
+        Some(all)
+    }
+}

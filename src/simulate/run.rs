@@ -1,0 +1,459 @@
+//! A run: smooth motion from event to event (thesis 2.3.4, figure 2.4a).
+
+use super::audit::Audit;
+use super::breakdown::{Breakdown, Stop};
+use super::contact::{Friction, Tolerance};
+use super::control::Control;
+use super::drive::{DriveModelling, Drives};
+use super::event::{Fired, Watch, Watched};
+use super::integrate::{Method, Statistics, Stepper};
+use super::log::Log;
+use super::measure::{Instrument, Measurement};
+use super::motion::{Holding, Motion};
+use super::record::Recorder;
+use super::settle::{Scuffing, Settler, TOUCH_M, Touching};
+use super::start::{StartError, check};
+use super::state::State;
+use crate::plants::Plant;
+
+/// How a run is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// When it ends [s].
+    pub end_s: f64,
+    /// The method of integration.
+    pub method: Method,
+    /// How drives are modelled.
+    pub drives: DriveModelling,
+    /// What a sampled controller sees.
+    pub measurement: Measurement,
+    /// Seed of the measurement's noise.
+    pub seed: u64,
+    /// Friction of all contacts.
+    pub friction: Friction,
+    /// Laws of impacts.
+    pub touching: Touching,
+    /// Errors of closed contacts decay at this rate [1/s].
+    pub drift_rate: f64,
+    /// Period of the log's rows [s].
+    pub log_period_s: f64,
+    /// More events end the run.
+    pub max_events: usize,
+    /// More evaluations of the equations of motion end the run.
+    pub max_evaluations: usize,
+}
+
+impl Default for Simulation {
+    fn default() -> Self {
+        Self {
+            end_s: 1.0,
+            method: Method::default(),
+            drives: DriveModelling::default(),
+            measurement: Measurement::default(),
+            seed: 0,
+            friction: Friction::NoSlip,
+            touching: Touching {
+                restitution: 0.0,
+                rest_speed: 1e-4,
+                fallback_friction: None,
+                scuffing: Scuffing::Counts,
+            },
+            drift_rate: 50.0,
+            log_period_s: 0.01,
+            max_events: 100_000,
+            max_evaluations: 50_000_000,
+        }
+    }
+}
+
+/// What happened at an instant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventKind {
+    /// The start, with contacts already closed.
+    Start,
+    /// A contact point reached the ground.
+    Touch(usize),
+    /// Forces reached a limit: a contact opens, or begins to slip.
+    Limit,
+    /// A contact stopped slipping.
+    SlipEnds(usize),
+    /// A guard of the plant fired.
+    Jump(usize),
+}
+
+/// An event of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// When [s].
+    pub t_s: f64,
+    /// What.
+    pub kind: EventKind,
+    /// The contacts that are closed after it.
+    pub closed: Vec<usize>,
+    /// Impulse on each contact that was hit, world frame [N s].
+    pub impulses: Vec<(usize, [f64; 3])>,
+    /// Change of energy \[J\].
+    pub energy_j: f64,
+    /// Joint positions at it.
+    pub q: Vec<f64>,
+    /// Rates just before it.
+    pub before: Vec<f64>,
+    /// Rates just after it.
+    pub after: Vec<f64>,
+    /// Whether the fallback law of friction had to be used.
+    pub fell_back: bool,
+}
+
+/// What a run did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Why it ended.
+    pub stop: Stop,
+    /// The state at its end.
+    pub end: State,
+    /// The log.
+    pub log: Log,
+    /// The events.
+    pub events: Vec<Event>,
+    /// The audits.
+    pub audit: Audit,
+    /// What it cost.
+    pub statistics: Statistics,
+    /// The contacts that are closed at its end.
+    pub closed: Vec<usize>,
+}
+
+/// Contacts this near the ground are closed at the start [m].
+const START_TOUCH_M: f64 = 1e-6;
+/// This many events within `ZENO_S` are without end.
+const ZENO_EVENTS: usize = 200;
+const ZENO_S: f64 = 1e-9;
+/// Steps are audited at this distance at least, besides rows of the log [s].
+const AUDIT_S: f64 = 1e-3;
+
+/// Runs a plant under control from a state; deterministic.
+pub fn simulate(
+    plant: &mut dyn Plant,
+    control: &Control,
+    initial: &State,
+    simulation: &Simulation,
+) -> Result<Run, StartError> {
+    let mut state = initial.clone();
+    let drives = Drives::new(plant.model(), simulation.drives);
+    check(plant, control, &mut state, simulation, &drives)?;
+    let friction = vec![simulation.friction; plant.model().contacts.len()];
+    let holding = Holding {
+        drift_rate: simulation.drift_rate,
+        tolerance: Tolerance { force: 1e-9, response: 1e-9, relative: 1e-10 },
+    };
+    let model = plant.model();
+    let (points, links, falls) = (model.contacts.len(), model.links.len(), model.fall_points.len());
+    let mut motion = Motion::new(plant, control, drives, friction, holding);
+    let y = motion.layout.pack(&state);
+    let mut run = Runner {
+        watch: Watch::new(points, links, falls, y.len()),
+        stepper: Stepper::new(simulation.method, state.t_s, &y),
+        recorder: Recorder::new(&mut motion, &y),
+        settler: Settler::default(),
+        instrument: Instrument::new(simulation.measurement, simulation.seed),
+        events: Vec::new(),
+        recent: Vec::new(),
+        sample: 0,
+        row: 0,
+        start_s: state.t_s,
+        audited_s: state.t_s,
+        simulation,
+        motion,
+        y,
+    };
+    run.close_touching()?;
+    let stop = match run.go() {
+        Ok(stop) => stop,
+        Err(breakdown) => Stop::Breakdown(breakdown),
+    };
+    Ok(run.finish(stop))
+}
+
+struct Runner<'a> {
+    simulation: &'a Simulation,
+    motion: Motion<'a>,
+    stepper: Stepper,
+    watch: Watch,
+    recorder: Recorder,
+    settler: Settler,
+    instrument: Instrument,
+    events: Vec<Event>,
+    /// Times of the last events.
+    recent: Vec<f64>,
+    /// Number of the controller's next sample, and of the log's next row.
+    sample: u64,
+    row: u64,
+    start_s: f64,
+    /// Time of the last audit between rows.
+    audited_s: f64,
+    y: Vec<f64>,
+}
+
+impl Runner<'_> {
+    fn close_touching(&mut self) -> Result<(), StartError> {
+        self.sample_control(self.start_s);
+        self.motion.place(&self.y);
+        let touching: Vec<usize> = (0..self.watch.level.len())
+            .filter(|contact| self.motion.gap(*contact) < START_TOUCH_M)
+            .collect();
+        for &contact in &touching {
+            let depth = -self.motion.gap(contact);
+            if depth > START_TOUCH_M {
+                let name = self.motion.plant.model().contacts[contact].name.clone();
+                return Err(StartError::Penetration(name, depth));
+            }
+        }
+        if touching.is_empty() {
+            return Ok(());
+        }
+        self.happen(EventKind::Start, self.start_s, &touching, false).map_err(StartError::Breakdown)
+    }
+
+    fn go(&mut self) -> Result<Stop, Breakdown> {
+        let mut t = self.start_s;
+        loop {
+            self.sample_control(t);
+            self.write_rows(t, true)?;
+            if t >= self.simulation.end_s {
+                return Ok(Stop::End);
+            }
+            let stop = self.next_stop(t);
+            self.motion.segment_end = stop;
+            self.stepper.restart(t, &self.y);
+            if let Some(stop) = self.smooth(stop)? {
+                return Ok(stop);
+            }
+            t = self.stepper.time();
+        }
+    }
+
+    /// Smooth motion up to `stop_s`, or to the next event, which is dealt with.
+    fn smooth(&mut self, stop_s: f64) -> Result<Option<Stop>, Breakdown> {
+        while self.stepper.time() < stop_s {
+            if !self.stepper.advance(&mut self.motion, stop_s)? {
+                return Err(Breakdown::StepTooSmall);
+            }
+            if self.stepper.statistics.evaluations > self.simulation.max_evaluations {
+                return Ok(Some(Stop::EvaluationLimit));
+            }
+            if let Some(fired) = self.watch.find(&mut self.motion, &mut self.stepper)? {
+                self.write_rows(fired.t_s, false)?;
+                self.stepper.restep(&mut self.motion, fired.t_s, &mut self.y)?;
+                let stop = self.respond(fired)?;
+                self.stepper.restart(fired.t_s, &self.y);
+                return Ok(stop);
+            }
+            self.write_rows(self.stepper.time(), false)?;
+            self.y.copy_from_slice(self.stepper.state());
+            if self.stepper.time() - self.audited_s > AUDIT_S {
+                self.audited_s = self.stepper.time();
+                self.recorder.note(&mut self.motion, self.audited_s, &self.y, false)?;
+            }
+        }
+        Ok(None)
+    }
+
+    fn respond(&mut self, fired: Fired) -> Result<Option<Stop>, Breakdown> {
+        let t_s = fired.t_s;
+        match fired.watched {
+            Watched::FallPoint(point) => {
+                let name = self.motion.plant.model().fall_points[point].name.clone();
+                return Ok(Some(Stop::Fall(name)));
+            }
+            Watched::Gap(contact) => {
+                let touching = self.touching(contact);
+                self.happen(EventKind::Touch(contact), t_s, &touching, false)?;
+            }
+            Watched::Margin => self.happen(EventKind::Limit, t_s, &[], true)?,
+            Watched::SlipSpeed(index) => {
+                let contact = self.motion.closed[index].contact;
+                self.happen(EventKind::SlipEnds(contact), t_s, &[], false)?;
+            }
+            Watched::Guard(guard) => self.jump(guard, t_s),
+        }
+        self.recent.push(t_s);
+        if self.events.len() >= self.simulation.max_events {
+            return Ok(Some(Stop::EventLimit));
+        }
+        let before = self.recent.len().checked_sub(ZENO_EVENTS).map(|index| self.recent[index]);
+        if before.is_some_and(|before| t_s - before < ZENO_S) {
+            return Ok(Some(Stop::Zeno));
+        }
+        Ok(None)
+    }
+
+    /// The contact that touches, with others that do at the same time; none if it does not count.
+    fn touching(&mut self, contact: usize) -> Vec<usize> {
+        let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
+        let open = (0..self.watch.level.len()).filter(|c| !closed.contains(c));
+        let open: Vec<usize> = open.collect();
+        self.motion.project(&self.y, &open);
+        let rows = self.motion.ground.rows();
+        let mut touching = Vec::new();
+        for (index, &other) in open.iter().enumerate() {
+            let falls = self.motion.work.velocity[index * rows + rows - 1] < 1e-6;
+            let near = self.motion.gap(other) - self.watch.level[other] < TOUCH_M;
+            if other == contact || (near && falls) {
+                touching.push(other);
+            }
+        }
+        if self.simulation.touching.scuffing == Scuffing::IgnoredBehind {
+            let forward = self.motion.ground.tangents()[0];
+            let place = |contact: usize| {
+                let at = &self.motion.work.positions[3 * contact..3 * contact + 3];
+                super::ground::dot(forward, at)
+            };
+            touching.retain(|other| closed.iter().all(|c| place(*other) > place(*c)));
+        }
+        touching
+    }
+
+    fn happen(
+        &mut self,
+        kind: EventKind,
+        t_s: f64,
+        touching: &[usize],
+        released: bool,
+    ) -> Result<(), Breakdown> {
+        if let (EventKind::Touch(contact), []) = (&kind, touching) {
+            // passes through, by rule: it counts again once it has risen
+            self.watch.level[*contact] = f64::NEG_INFINITY;
+            return Ok(());
+        }
+        let n = self.motion.layout.joints;
+        let before = self.y[n..2 * n].to_vec();
+        let energy = self.motion.energy(&self.y);
+        let was: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
+        let settled = self.settler.settle(
+            &mut self.motion,
+            &self.simulation.touching,
+            touching,
+            released,
+            t_s,
+            &mut self.y,
+        )?;
+        let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
+        self.motion.place(&self.y);
+        for &contact in was.iter().chain(touching) {
+            if !closed.contains(&contact) {
+                // what it is off by while closed is not a fall of its own
+                self.watch.level[contact] = self.motion.gap(contact).min(0.0);
+            }
+        }
+        let energy_j = self.motion.energy(&self.y) - energy;
+        self.recorder.add_impact(energy_j);
+        let impulses: Vec<(usize, [f64; 3])> = settled
+            .impulses
+            .iter()
+            .map(|(contact, p)| (*contact, self.motion.ground.to_world(p)))
+            .collect();
+        let after = self.y[n..2 * n].to_vec();
+        self.audit_momentum(&before, &after, &impulses);
+        let fell_back = settled.fell_back;
+        let q = self.y[..n].to_vec();
+        let event = Event { t_s, kind, closed, impulses, energy_j, q, before, after, fell_back };
+        self.events.push(event);
+        Ok(())
+    }
+
+    fn audit_momentum(&mut self, before: &[f64], after: &[f64], impulses: &[(usize, [f64; 3])]) {
+        let model = self.motion.plant.model();
+        if impulses.is_empty() || model.joints.first().is_none_or(|joint| joint.drivable) {
+            return;
+        }
+        let q = &self.y[..before.len()];
+        let [old, new] = [before, after].map(|qd| self.motion.plant.momentum(q, qd));
+        let error = |axis: usize| {
+            let given: f64 = impulses.iter().map(|(_, impulse)| impulse[axis]).sum();
+            (new[axis] - old[axis] - given).abs()
+        };
+        let worst = (0..3).map(error).fold(0.0, f64::max);
+        self.recorder.audit.momentum_ns = self.recorder.audit.momentum_ns.max(worst);
+    }
+
+    fn jump(&mut self, guard: usize, t_s: f64) {
+        let n = self.motion.layout.joints;
+        let energy = self.motion.energy(&self.y);
+        let before = self.y[n..2 * n].to_vec();
+        let (q, rest) = self.y.split_at_mut(n);
+        self.motion.plant.jump(guard, q, &mut rest[..n]);
+        let energy_j = self.motion.energy(&self.y) - energy;
+        self.recorder.add_impact(energy_j);
+        self.events.push(Event {
+            t_s,
+            kind: EventKind::Jump(guard),
+            closed: self.motion.closed.iter().map(|c| c.contact).collect(),
+            impulses: Vec::new(),
+            energy_j,
+            q: self.y[..n].to_vec(),
+            before,
+            after: self.y[n..2 * n].to_vec(),
+            fell_back: false,
+        });
+    }
+
+    /// Takes the samples of the controller that are due.
+    fn sample_control(&mut self, t_s: f64) {
+        let Some(period_s) = self.motion.control.period_s else { return };
+        if t_s < self.start_s + self.sample as f64 * period_s - 1e-12 {
+            return;
+        }
+        self.sample += 1;
+        let parts = self.motion.layout.parts(&self.y);
+        let [mut q, mut qd] = [Vec::new(), Vec::new()];
+        let (model, feedback) = (self.motion.plant.model(), self.motion.control.feedback);
+        self.motion.drives.measured(model, feedback, parts, &mut q, &mut qd);
+        let (q, qd) = self.instrument.sample(&q, &qd, period_s);
+        let mut command = vec![0.0; q.len()];
+        self.motion.segment_end = f64::INFINITY;
+        self.motion.command(t_s, q, qd, &mut command);
+        self.motion.held = Some(command);
+    }
+
+    /// Where smooth motion ends at the latest.
+    fn next_stop(&self, t_s: f64) -> f64 {
+        let sample = self.motion.control.period_s.map(|p| self.start_s + self.sample as f64 * p);
+        // held torques do not see the references move
+        let jump = match sample {
+            None => self.motion.control.next_break(t_s),
+            Some(_) => None,
+        };
+        [sample, jump].into_iter().flatten().fold(self.simulation.end_s, f64::min)
+    }
+
+    /// Rows of the log up to a time, of the last step; at a state between steps if `here`.
+    fn write_rows(&mut self, t_s: f64, here: bool) -> Result<(), Breakdown> {
+        loop {
+            let row_s = self.start_s + self.row as f64 * self.simulation.log_period_s;
+            // the row of an instant shows what comes after it
+            let due = if here { row_s <= t_s + 1e-12 } else { row_s < t_s - 1e-12 };
+            if !due || row_s > self.simulation.end_s + 1e-12 {
+                return Ok(());
+            }
+            let mut y = self.y.clone();
+            if !here {
+                self.stepper.interpolate(row_s, &mut y);
+            }
+            self.recorder.note(&mut self.motion, row_s.min(t_s), &y, true)?;
+            self.row += 1;
+        }
+    }
+
+    fn finish(self, stop: Stop) -> Run {
+        let end = self.motion.layout.unpack(self.stepper.time(), &self.y);
+        Run {
+            stop,
+            end,
+            log: self.recorder.log,
+            events: self.events,
+            audit: self.recorder.audit,
+            statistics: self.stepper.statistics,
+            closed: self.motion.closed.iter().map(|closed| closed.contact).collect(),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! How a scenario is simulated: everything but the robot, its start and its control.
+
+use super::fault::Cause;
+use super::reader::{Fields, Report};
+use crate::simulate::audit::Tolerances;
+use crate::simulate::contact::Friction;
+use crate::simulate::drive::DriveModelling;
+use crate::simulate::integrate::{Accuracy, Method};
+use crate::simulate::measure::Measurement;
+use crate::simulate::run::Simulation;
+use crate::simulate::settle::Scuffing;
+
+pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation {
+    let mut simulation = Simulation::default();
+    fields.require("duration_s", report);
+    simulation.end_s = fields.not_negative("duration_s", 0.0, report);
+    simulation.log_period_s = fields.positive("log_period_s", simulation.log_period_s, report);
+    simulation.seed = fields.count("seed", 0, report) as u64;
+    if let Some(drives) = fields.get("drives") {
+        let meanings = [DriveModelling::Ideal, DriveModelling::Model];
+        simulation.drives = drives.word(&["ideal", "model"], &meanings, report).unwrap_or_default();
+    }
+    simulation.measurement = measurement(fields, report);
+    simulation.method = method(fields, report);
+    contact(fields, &mut simulation, report);
+    let limits = fields.get("limits").and_then(|n| n.fields(&["events", "evaluations"], report));
+    if let Some(limits) = limits {
+        simulation.max_events = limits.count("events", simulation.max_events, report);
+        simulation.max_evaluations =
+            limits.count("evaluations", simulation.max_evaluations, report);
+    }
+    simulation
+}
+
+fn measurement(fields: &Fields<'_>, report: &mut Report) -> Measurement {
+    let known = &["resolution", "position_noise", "rate_noise", "delay_samples", "differentiates"];
+    let Some(given) = fields.get("measurement").and_then(|node| node.fields(known, report)) else {
+        return Measurement::default();
+    };
+    Measurement {
+        resolution: given.not_negative("resolution", 0.0, report),
+        position_noise: given.not_negative("position_noise", 0.0, report),
+        rate_noise: given.not_negative("rate_noise", 0.0, report),
+        delay_samples: given.count("delay_samples", 0, report).min(10_000),
+        differentiates: given.flag("differentiates", report),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Explicit,
+    Implicit,
+    Fixed,
+}
+
+fn method(fields: &Fields<'_>, report: &mut Report) -> Method {
+    let known = &["method", "relative", "absolute", "max_step_s", "step_s"];
+    let Some(given) = fields.get("integrator").and_then(|node| node.fields(known, report)) else {
+        return Method::default();
+    };
+    let words = &["dormand_prince", "sdirk", "runge_kutta"];
+    let meanings = [Kind::Explicit, Kind::Implicit, Kind::Fixed];
+    let word = given.get("method").and_then(|node| node.word(words, &meanings, report));
+    let absent = Accuracy::default();
+    let accuracy = Accuracy {
+        relative: given.positive("relative", absent.relative, report).max(1e-14),
+        absolute: given.positive("absolute", absent.absolute, report),
+        max_step_s: given.positive("max_step_s", absent.max_step_s, report),
+    };
+    match word.unwrap_or(Kind::Explicit) {
+        Kind::Explicit => Method::DormandPrince(accuracy),
+        Kind::Implicit => Method::Sdirk(accuracy),
+        Kind::Fixed => {
+            // shorter steps than time resolves would never end
+            let step_s = given.positive("step_s", 1e-3, report).max(1e-9);
+            Method::RungeKutta { step_s }
+        }
+    }
+}
+
+fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report) {
+    let known = &[
+        "friction",
+        "restitution",
+        "rest_speed_m_s",
+        "fallback_friction",
+        "scuffing",
+        "drift_rate_per_s",
+    ];
+    let Some(given) = fields.get("contact").and_then(|node| node.fields(known, report)) else {
+        return;
+    };
+    let touching = &mut simulation.touching;
+    if let Some(friction) = given.get("friction") {
+        simulation.friction = if friction.value.is_number() {
+            Friction::Coulomb(given.not_negative("friction", 0.0, report))
+        } else {
+            let word = friction.word(&["no_slip"], &[Friction::NoSlip], report);
+            word.unwrap_or(Friction::NoSlip)
+        };
+    }
+    touching.restitution = given.not_negative("restitution", 0.0, report);
+    if touching.restitution > 1.0 {
+        report.push(&format!("{}/restitution", given.pointer), Cause::AboveOne);
+    }
+    touching.rest_speed = given.not_negative("rest_speed_m_s", touching.rest_speed, report);
+    if given.get("fallback_friction").is_some() {
+        touching.fallback_friction = Some(given.positive("fallback_friction", 1.0, report));
+    }
+    if let Some(word) = given.get("scuffing") {
+        let meanings = [Scuffing::Counts, Scuffing::IgnoredBehind];
+        touching.scuffing =
+            word.word(&["counts", "ignored_behind"], &meanings, report).unwrap_or_default();
+    }
+    simulation.drift_rate = given.not_negative("drift_rate_per_s", simulation.drift_rate, report);
+}
+
+pub(super) fn tolerances(fields: &Fields<'_>, report: &mut Report) -> Tolerances {
+    let mut tolerances = Tolerances::default();
+    let known = &[
+        "energy_j",
+        "momentum_ns",
+        "penetration_m",
+        "complementarity_nm",
+        "adhesion_n",
+        "separation_m_s",
+        "zmp_m",
+        "force_n",
+    ];
+    let Some(given) = fields.get("tolerances").and_then(|node| node.fields(known, report)) else {
+        return tolerances;
+    };
+    let t = &mut tolerances;
+    let entries: [&mut f64; 8] = [
+        &mut t.energy_j,
+        &mut t.momentum_ns,
+        &mut t.penetration_m,
+        &mut t.complementarity_nm,
+        &mut t.adhesion_n,
+        &mut t.separation_m_s,
+        &mut t.zmp_m,
+        &mut t.force_n,
+    ];
+    for (key, entry) in known.iter().zip(entries) {
+        *entry = given.positive(key, *entry, report);
+    }
+    tolerances
+}

@@ -1,0 +1,111 @@
+//! References of a scenario: an object with one key, the kind.
+
+use super::fault::Cause;
+use super::reader::{Fields, Node, Report};
+use crate::trajectory::{
+    Bezier, CosineProfile, CubicSpline, EndCondition, Fourier, Part, Polynomial, QuinticSpline,
+    Reference, Sequence, TrajectoryError,
+};
+
+const KINDS: &[&str] =
+    &["constant", "cubic", "quintic", "cosine", "bezier", "fourier", "polynomial", "sequence"];
+
+/// A reference, or nothing with its faults noted.
+pub(super) fn read(node: &Node<'_>, report: &mut Report) -> Option<Reference> {
+    if let Some(constant) = node.value.as_f64() {
+        return Some(Reference::Constant(constant));
+    }
+    let before = report.faults.len();
+    let fields = node.fields(KINDS, report)?;
+    let mut kinds = fields.all().filter(|(key, _)| KINDS.contains(key));
+    let Some((kind, inner)) = kinds.next() else {
+        report.push(&node.pointer, Cause::WrongKind("a number, or an object with one kind"));
+        return None;
+    };
+    if let Some((_, other)) = kinds.next() {
+        report.push(&other.pointer, Cause::WrongKind("one kind of reference, not two"));
+    }
+    let made = make(kind, &inner, report)?;
+    if report.faults.len() > before {
+        return None;
+    }
+    made.map_err(|error| report.push(&inner.pointer, Cause::Reference(error))).ok()
+}
+
+fn make(
+    kind: &str,
+    node: &Node<'_>,
+    report: &mut Report,
+) -> Option<Result<Reference, TrajectoryError>> {
+    Some(match kind {
+        "constant" => Ok(Reference::Constant(node.number(report)?)),
+        "polynomial" => Polynomial::new(node.numbers(report)).map(Reference::Polynomial),
+        "cubic" => cubic(&node.fields(&["times", "values", "end_rates"], report)?, report)?,
+        "quintic" => {
+            let known = &["times", "values", "rates", "accelerations"];
+            quintic(&node.fields(known, report)?, report)
+        }
+        "cosine" => {
+            let fields = node.fields(&["times", "values"], report)?;
+            let [times, values] = [pair(&fields, "times", report), pair(&fields, "values", report)];
+            CosineProfile::new(times?, values?).map(Reference::Cosine)
+        }
+        "bezier" => {
+            let fields = node.fields(&["times", "values"], report)?;
+            let (times, values) =
+                (pair(&fields, "times", report), fields.numbers("values", report));
+            Bezier::new(times?, values).map(Reference::Bezier)
+        }
+        "fourier" => {
+            let known = &["frequency_rad_s", "offset", "sines", "cosines"];
+            let fields = node.fields(known, report)?;
+            let frequency = fields.positive("frequency_rad_s", 0.0, report);
+            let offset = fields.number("offset", 0.0, report);
+            let [sines, cosines] = ["sines", "cosines"].map(|key| fields.numbers(key, report));
+            Fourier::new(frequency, offset, sines, cosines).map(Reference::Fourier)
+        }
+        _ => sequence(&node.fields(&["parts", "repeat"], report)?, report),
+    })
+}
+
+fn cubic(fields: &Fields<'_>, report: &mut Report) -> Option<Result<Reference, TrajectoryError>> {
+    let [times, values] = ["times", "values"].map(|key| fields.numbers(key, report));
+    let ends = match fields.get("end_rates") {
+        Some(_) => pair(fields, "end_rates", report)?.map(EndCondition::Rate),
+        None => [EndCondition::Natural; 2],
+    };
+    Some(CubicSpline::new(times, values, ends).map(Reference::Cubic))
+}
+
+fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
+    let [times, values] = ["times", "values"].map(|key| fields.numbers(key, report));
+    let still = |key: &str, report: &mut Report| match fields.get(key) {
+        Some(node) => node.numbers(report),
+        None => vec![0.0; times.len()],
+    };
+    let (rates, accelerations) = (still("rates", report), still("accelerations", report));
+    QuinticSpline::new(times, values, &rates, &accelerations).map(Reference::Quintic)
+}
+
+fn sequence(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
+    let items = fields.require("parts", report).map_or_else(Vec::new, |node| node.items(report));
+    let mut parts = Vec::new();
+    for item in items {
+        let Some(part) = item.fields(&["duration_s", "reference"], report) else { continue };
+        let duration_s = part.positive("duration_s", 0.0, report);
+        let reference = part.require("reference", report);
+        let reference = reference.and_then(|node| read(&node, report));
+        parts.extend(reference.map(|reference| Part { duration_s, reference }));
+    }
+    Sequence::new(parts, fields.flag("repeat", report)).map(Reference::Sequence)
+}
+
+fn pair(fields: &Fields<'_>, key: &'static str, report: &mut Report) -> Option<[f64; 2]> {
+    let numbers = fields.numbers(key, report);
+    let pair = <[f64; 2]>::try_from(numbers);
+    pair.map_err(|numbers| {
+        let pointer = format!("{}/{key}", fields.pointer);
+        report.push(&pointer, Cause::WrongLength(2, numbers.len()));
+    })
+    .ok()
+}

@@ -1,0 +1,83 @@
+//! What a run must begin with.
+
+use super::breakdown::Breakdown;
+use super::control::Control;
+use super::drive::Drives;
+use super::run::Simulation;
+use super::state::State;
+use crate::plants::Plant;
+use std::fmt;
+
+/// Why a run does not begin.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StartError {
+    /// A vector has not one entry for each joint (or motor): name, entries needed and found.
+    Length(&'static str, usize, usize),
+    /// A number of the initial state or of the options is not finite, or not positive.
+    Number(&'static str),
+    /// A contact point starts below the ground: its name and depth [m].
+    Penetration(String, f64),
+    /// The equations of motion have no answer at the start.
+    Breakdown(Breakdown),
+}
+
+impl fmt::Display for StartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length(what, needed, found) => {
+                write!(f, "{what}: {needed} values expected, {found} given")
+            }
+            Self::Number(what) => write!(f, "{what} is not a usable number"),
+            Self::Penetration(contact, depth) => {
+                write!(f, "`{contact}` starts {depth:.3e} m below the ground")
+            }
+            Self::Breakdown(breakdown) => write!(f, "at the start: {breakdown}"),
+        }
+    }
+}
+
+impl std::error::Error for StartError {}
+
+/// Checks the numbers of a run and completes its initial state: motors with relaxed springs.
+pub(super) fn check(
+    plant: &mut dyn Plant,
+    control: &Control,
+    state: &mut State,
+    simulation: &Simulation,
+    drives: &Drives,
+) -> Result<(), StartError> {
+    let n = plant.model().joints.len();
+    let lengths = [("q", state.q.len()), ("qd", state.qd.len()), ("control", control.joints.len())];
+    for (what, found) in lengths {
+        if found != n {
+            return Err(StartError::Length(what, n, found));
+        }
+    }
+    if state.motor.is_empty() {
+        state.motor =
+            (0..drives.elastic.len()).map(|i| drives.relaxed(plant.model(), i, &state.q)).collect();
+    }
+    if state.motor_rate.is_empty() {
+        state.motor_rate = vec![0.0; state.motor.len()];
+    }
+    for (what, found) in [("motor", state.motor.len()), ("motor_rate", state.motor_rate.len())] {
+        if found != drives.elastic.len() {
+            return Err(StartError::Length(what, drives.elastic.len(), found));
+        }
+    }
+    let all = [&state.q, &state.qd, &state.motor, &state.motor_rate];
+    if !all.into_iter().flatten().all(|entry| entry.is_finite()) {
+        return Err(StartError::Number("a position or rate of the initial state"));
+    }
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if !positive(simulation.log_period_s) {
+        return Err(StartError::Number("the period of the log"));
+    }
+    if control.period_s.is_some_and(|period| !positive(period)) {
+        return Err(StartError::Number("the period of the controller"));
+    }
+    if !(simulation.end_s >= state.t_s && simulation.end_s.is_finite()) {
+        return Err(StartError::Number("the end of the run"));
+    }
+    Ok(())
+}

@@ -1,0 +1,134 @@
+//! The shipped scenarios run to their end within their tolerances; bad ones are refused in full.
+
+use super::assert_near;
+use denavit::shipped;
+use denavit::simulate::scenario::{self, Scenario, ScenarioError};
+use denavit::simulate::{Run, Stop};
+
+fn load(name: &str) -> Result<Vec<u8>, String> {
+    let found = shipped::find(name).or_else(|| shipped::find_body(name));
+    found.map(|model| model.text.as_bytes().to_vec()).ok_or_else(|| "no such model".to_owned())
+}
+
+fn open(name: &str) -> Scenario {
+    let shipped = shipped::find_scenario(name).unwrap();
+    scenario::read(name, shipped.text.as_bytes(), &load).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn run(name: &str) -> (Scenario, Run) {
+    let mut scenario = open(name);
+    let run = scenario.run().unwrap_or_else(|error| panic!("{name}: {error}"));
+    (scenario, run)
+}
+
+fn assert_good(name: &str) -> (Scenario, Run) {
+    let (scenario, run) = run(name);
+    assert_eq!(run.stop, Stop::End, "{name}");
+    let broken = run.audit.broken(&scenario.tolerances);
+    assert!(broken.is_empty(), "{name}: {broken:?}");
+    (scenario, run)
+}
+
+#[test]
+fn bodies_run_to_their_end() {
+    for name in ["bouncing_ball", "rocking_block", "falling_rod", "cradle", "sliding_block"] {
+        assert_good(name);
+    }
+}
+
+#[test]
+fn the_double_pendulum_swings() {
+    assert_good("double_pendulum");
+}
+
+#[test]
+fn the_leg_tracks() {
+    let (_, run) = assert_good("tulip_leg_tracking");
+    assert_near(run.end.q[3], 0.0, 0.1);
+}
+
+/// How often one foot takes over from the other: new contacts of a foot that had none.
+fn steps(scenario: &Scenario, run: &Run) -> usize {
+    let contacts = &scenario.plant.model().contacts;
+    let on = |closed: &[usize], link: usize| closed.iter().any(|c| contacts[*c].link == link);
+    let feet: std::collections::BTreeSet<usize> = contacts.iter().map(|c| c.link).collect();
+    let pairs = run.events.windows(2);
+    pairs
+        .map(|pair| {
+            let lands = |foot: &&usize| !on(&pair[0].closed, **foot) && on(&pair[1].closed, **foot);
+            feet.iter().filter(lands).count()
+        })
+        .sum()
+}
+
+/// Thirty steps, feet flat; the figures are those of an independent simulator.
+#[test]
+fn the_biped_walks_thirty_steps_by_its_zero_moment_point() {
+    let (scenario, run) = assert_good("planar_biped_zmp_gait");
+    assert!(steps(&scenario, &run) >= 30, "{} steps", steps(&scenario, &run));
+    // a step is 0.1 m, less or more what the joints give way
+    assert_near(run.end.q[1], 30.0 * 0.1 - 0.02, 30.0 * 0.002);
+    assert!(run.audit.zmp_margin_m > 0.03 && run.audit.torque < 31.0, "{:?}", run.audit);
+    assert!(run.audit.friction_total < 0.35, "{:?}", run.audit);
+    assert!(run.audit.zmp_m < 1e-8, "{:?}", run.audit);
+}
+
+#[test]
+fn the_biped_walks_forty_steps_on_a_limit_cycle() {
+    let (scenario, run) = assert_good("planar_biped_limit_cycle_gait");
+    assert!(steps(&scenario, &run) >= 39, "{} steps", steps(&scenario, &run));
+    assert!((run.end.q[1] - run.log.rows().next().unwrap()[2]) / 18.0 > 0.6);
+}
+
+#[test]
+fn tulip_stands() {
+    assert_good("tulip_standing");
+}
+
+fn faults(text: &str) -> ScenarioError {
+    match scenario::read("bad.json", text.as_bytes(), &load) {
+        Ok(_) => panic!("a bad scenario was read"),
+        Err(error) => error,
+    }
+}
+
+#[test]
+fn all_faults_of_a_scenario_are_found_at_once() {
+    let error = faults(
+        r#"{
+ "format": "denavit-scenario/1",
+ "model": "planar_2r",
+ "duration_s": -1,
+ "initial": {"q": {"joint_1": 0, "nowhere": 1}},
+ "control": {"joints": {"link1": {
+  "kp": -5, "reference": {"cubic": {"times": [0, 0], "values": [1, 2]}}
+ }}},
+ "contact": {"restitution": 1.5, "frictoin": 1},
+ "seed": 1, "seed": 2
+}"#,
+    );
+    let text = error.to_string();
+    for part in [
+        "bad.json:4:16: /duration_s: the number must not be negative",
+        "/initial/q/nowhere: no joint is called `nowhere`",
+        "/contact/restitution: the number must not exceed 1",
+        "/contact/frictoin: unknown key `frictoin`\n  hint: `friction` is meant, perhaps",
+        "/seed: the key `seed` is given twice",
+    ] {
+        assert!(text.contains(part), "{part}\nis not in\n{text}");
+    }
+    assert!(error.faults.len() >= 6, "{text}");
+}
+
+#[test]
+fn broken_json_and_unknown_models_are_placed() {
+    assert!(faults("{\"format\": ").to_string().starts_with("bad.json:1:11: not JSON"));
+    let text = "{\"format\": \"denavit-scenario/1\", \"duration_s\": 1, \"model\": \"tulp\"}";
+    assert!(faults(text).to_string().contains("/model: tulp: cannot be read"));
+    let text = "{\"format\": \"x\", \"duration_s\": 1}";
+    let said = faults(text).to_string();
+    assert!(
+        said.contains("the format is `x`") && said.contains("key `model` is missing"),
+        "{said}"
+    );
+}

@@ -95,7 +95,7 @@ impl Audit {
             ("force_balance", self.force_n, t.force_n),
         ];
         // NaN breaks a law too
-        checks.into_iter().filter(|(_, found, allowed)| !(found <= allowed)).collect()
+        checks.into_iter().filter(|(_, found, allowed)| found.is_nan() || found > allowed).collect()
     }
 }
 
@@ -122,7 +122,7 @@ pub(super) fn balance(motion: &mut Motion<'_>, y: &[f64]) -> Balance {
     let ([mut force, mut moment], normal) = ([[0.0; 3]; 2], motion.ground.normal());
     let origin = motion.plant.model().ground.point;
     for (index, closed) in motion.closed.iter().enumerate() {
-        let world = motion.ground.to_world(&motion.work.force[index * rows..(index + 1) * rows]);
+        let world = motion.ground.in_world(&motion.work.force[index * rows..(index + 1) * rows]);
         let at = &motion.work.positions[3 * closed.contact..3 * closed.contact + 3];
         let arm = std::array::from_fn(|axis| at[axis] - origin[axis]);
         add(&mut force, world);

@@ -57,7 +57,7 @@ impl Ground {
     }
 
     /// The world vector of components along the used directions.
-    pub(super) fn to_world(&self, components: &[f64]) -> [f64; 3] {
+    pub(super) fn in_world(&self, components: &[f64]) -> [f64; 3] {
         let mut vector = [0.0; 3];
         for (&axis, component) in self.used().iter().zip(components) {
             for (entry, direction) in vector.iter_mut().zip(self.directions[axis]) {

@@ -145,7 +145,7 @@ impl Recorder {
         for contact in 0..points {
             let index = motion.closed.iter().position(|closed| closed.contact == contact);
             let force = index.map_or([0.0; 3], |index| {
-                motion.ground.to_world(&motion.work.force[index * rows..(index + 1) * rows])
+                motion.ground.in_world(&motion.work.force[index * rows..(index + 1) * rows])
             });
             values.extend(force);
         }

@@ -350,7 +350,7 @@ impl Runner<'_> {
         let impulses: Vec<(usize, [f64; 3])> = settled
             .impulses
             .iter()
-            .map(|(contact, p)| (*contact, self.motion.ground.to_world(p)))
+            .map(|(contact, p)| (*contact, self.motion.ground.in_world(p)))
             .collect();
         let after = self.y[n..2 * n].to_vec();
         self.audit_momentum(&before, &after, &impulses);

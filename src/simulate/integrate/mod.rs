@@ -167,7 +167,7 @@ impl Stepper {
             Method::RungeKutta { step_s } => {
                 let step = if left < step_s * (1.0 + 1e-9) { left } else { step_s };
                 self.runge_kutta(system, step)?;
-                return Ok(self.accept(system, step, stop_s)?);
+                return self.accept(system, step, stop_s);
             }
             Method::DormandPrince(accuracy) | Method::Sdirk(accuracy) => accuracy,
         };
@@ -201,7 +201,7 @@ impl Stepper {
                 let grown = if keeps { trial } else { trial * factor };
                 // a step cut short by a stop says nothing against the longer one
                 self.proposal = Some(if trial < capped { grown.max(capped) } else { grown });
-                return Ok(self.accept(system, trial, stop_s)?);
+                return self.accept(system, trial, stop_s);
             }
             self.statistics.rejected += 1;
             step = trial * factor.min(0.9);

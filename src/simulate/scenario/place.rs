@@ -134,7 +134,7 @@ mod tests {
         let text = "{\n \"a\": [1, {\"b/c\": 2}],\n \"a\": 3}";
         let places = Places::new(text);
         assert_eq!(places.find(text, "/a/1/b~1c").0, 2);
-        assert_eq!(places.find(text, "/a/1/b~1c").1, 22);
+        assert_eq!(places.find(text, "/a/1/b~1c").1, 19);
         assert_eq!(places.find(text, "/a/7").1, 7);
         assert_eq!(places.duplicates, [("/a".to_owned(), "a".to_owned())]);
     }

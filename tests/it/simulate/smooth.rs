@@ -107,7 +107,8 @@ fn computed_torque_makes_the_error_linear() {
     }
 }
 
-/// The leg of the thesis with its motors, springs and viscous friction, tracking: the books balance.
+/// The leg of the thesis with its motors, springs and viscous friction, tracking: the books
+/// balance.
 #[test]
 fn a_leg_with_series_elastic_drives_tracks_and_balances_its_energy() {
     let joints = ["hip_z", "hip_x", "hip_y", "knee", "ankle_y"];

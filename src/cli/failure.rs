@@ -25,6 +25,10 @@ pub(crate) enum Failure {
     TooLarge { file: String, limit: u64 },
     /// A file cannot be written.
     Write { file: String, error: io::Error },
+    /// A file that was read would be replaced by the output.
+    Overwrites(String),
+    /// A model has effects, which nothing adds to its equations yet; holds model and effect.
+    Effect(String, String),
     /// Values are missing that the baked flavour needs.
     Bake(BakeError),
     /// A model holds numbers that no computer arithmetic holds; holds model and cause.
@@ -91,6 +95,8 @@ impl Failure {
                 "check the permissions of the file and of its directories".to_owned()
             }
             Self::TooLarge { .. } => "a model is a table of some kilobytes: check the path".into(),
+            Self::Overwrites(_) => "choose another file for the output".to_owned(),
+            Self::Effect(..) => "take \"effects\" out of the model".to_owned(),
             Self::Write { error, .. } => match error.kind() {
                 io::ErrorKind::NotFound => "make the directory first".to_owned(),
                 io::ErrorKind::IsADirectory => "give the path of a file in it".to_owned(),
@@ -103,7 +109,13 @@ impl Failure {
             Self::Lower(..) | Self::Emit(..) => {
                 "check the exponents of the numbers in the model".to_owned()
             }
-            Self::NoFunction { .. } => "contacts are declared under \"contacts\"".to_owned(),
+            Self::NoFunction { asked, .. } if asked.iter().all(|name| name.contains("contact")) => {
+                "contacts are declared under \"contacts\"".to_owned()
+            }
+            Self::NoFunction { .. } => {
+                "its mass matrix has no inverse: a joint moves no mass, or none of its own"
+                    .to_owned()
+            }
             Self::NotOfEquations(_) => "write the terms into the equations".to_owned(),
             Self::TooLongToSet { .. } => {
                 "leave out terms (--terms inertia,gravity), or take --json".to_owned()
@@ -159,6 +171,12 @@ impl fmt::Display for Failure {
             }
             Self::Write { file, error } => {
                 write!(f, "{file}: cannot be written: {}", reason(error))?;
+            }
+            Self::Overwrites(file) => {
+                write!(f, "{file}: is what this command reads, and would be replaced")?;
+            }
+            Self::Effect(model, effect) => {
+                write!(f, "{model}: the equations do not have the effect `{effect}` yet")?;
             }
             Self::Lower(model, error) => write!(f, "{model}: {error}")?,
             Self::Emit(model, error) => write!(f, "{model}: {error}")?,

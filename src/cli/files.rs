@@ -6,15 +6,27 @@ use denavit::model::{self, Robot};
 use denavit::shipped::{self, ShippedModel};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 /// More is not read: the limit of [`model::read`], which refuses what has more.
 const MAX_MODEL_BYTES: u64 = 16 << 20;
 
+/// The files that this run has read: no output may take the place of one.
+static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
 /// The robot of a path, of a shipped model's name, or, for `-`, of standard input.
 pub(crate) fn read_model(place: &Path) -> Result<Robot, Failure> {
     let (name, bytes) = read_named(place, &[shipped::MODELS])?;
-    model::read(&name, &bytes).map_err(Failure::Model)
+    complete(model::read(&name, &bytes).map_err(Failure::Model)?)
+}
+
+/// A robot all of whose parts the equations have.
+fn complete(robot: Robot) -> Result<Robot, Failure> {
+    match robot.effects.first() {
+        Some(added) => Err(Failure::Effect(robot.name, added.effect.clone())),
+        None => Ok(robot),
+    }
 }
 
 /// What a command can be about that takes models and equations.
@@ -30,7 +42,7 @@ pub(crate) fn read_input(place: &Path) -> Result<Input, Failure> {
         let equations = equations::read(&name, &bytes).map_err(Failure::Model)?;
         return Ok(Input::Equations(Box::new(equations)));
     }
-    let robot = model::read(&name, &bytes).map_err(Failure::Model)?;
+    let robot = complete(model::read(&name, &bytes).map_err(Failure::Model)?)?;
     Ok(Input::Model(Box::new(robot)))
 }
 
@@ -52,7 +64,7 @@ fn read_path(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Result<Vec
     if let Some(model) = known.find(|model| model.name == name && !is_file) {
         return Ok(model.text.as_bytes().to_vec());
     }
-    match File::open(path) {
+    match open(path) {
         Ok(_) if path.is_dir() => Err(failure(io::ErrorKind::IsADirectory.into())),
         Ok(mut file) => read_all(name, &mut file),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Err(no_model(path, name, shipped)),
@@ -63,8 +75,16 @@ fn read_path(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Result<Vec
 /// The bytes of a file.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
     let name = path.display().to_string();
-    let mut file = File::open(path).map_err(|error| Failure::Read { file: name.clone(), error })?;
+    let mut file = open(path).map_err(|error| Failure::Read { file: name.clone(), error })?;
     read_all(&name, &mut file)
+}
+
+fn open(path: &Path) -> io::Result<File> {
+    let file = File::open(path)?;
+    if let (Ok(path), Ok(mut read)) = (path.canonicalize(), READ.lock()) {
+        read.push(path);
+    }
+    Ok(file)
 }
 
 fn read_all(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Failure> {
@@ -107,6 +127,10 @@ pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if path.as_os_str() == "-" {
         return Ok(io::stdout().lock().write_all(bytes)?);
+    }
+    let is_input = |target| READ.lock().is_ok_and(|read| read.contains(&target));
+    if path.is_file() && path.canonicalize().is_ok_and(is_input) {
+        return Err(Failure::Overwrites(path.display().to_string()));
     }
     replace(path, bytes)
         .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })

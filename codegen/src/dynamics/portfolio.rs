@@ -4,10 +4,12 @@ use super::candidate::Candidate;
 use super::explicit::explicit;
 use super::joint_torque::{JointTerms, joint_terms};
 use super::outputs;
-use crate::expr::{Dag, ExprId, Operations};
+use crate::expr::{Dag, ExprId, Operations, Residues, evaluate};
 use crate::function::{Argument, Form, Function, FunctionName, Output};
 use crate::kinematics::{Frames, Mechanism};
 use crate::model::Robot;
+use crate::number::Residue;
+use std::cell::OnceCell;
 
 /// Closed forms grow exponentially with the joints: beyond three they never pay.
 pub(crate) const MAX_EXPLICIT_JOINTS: usize = 3;
@@ -19,6 +21,8 @@ pub struct Portfolio<'a> {
     /// The frames of each formulation, the plain one first.
     forms: Vec<(Form, Frames)>,
     joints: Vec<JointTerms>,
+    /// Whether D has no inverse, whatever the values of q and of the parameters; once asked.
+    is_singular: OnceCell<bool>,
 }
 
 impl<'a> Portfolio<'a> {
@@ -26,16 +30,25 @@ impl<'a> Portfolio<'a> {
     pub fn new(dag: &mut Dag, robot: &'a Robot, mechanism: &'a Mechanism) -> Self {
         let mut forms = vec![(Form::Plain, Frames::plain(dag, mechanism))];
         forms.extend(Frames::grouped(dag, mechanism).map(|frames| (Form::Grouped, frames)));
-        Self { robot, mechanism, forms, joints: joint_terms(dag, robot) }
+        let joints = joint_terms(dag, robot);
+        Self { robot, mechanism, forms, joints, is_singular: OnceCell::new() }
     }
 
     /// The functions of a name: none if the robot cannot have it (contacts without contact
-    /// points), one for each link if it is of links.
+    /// points, the inverse of a mass matrix that has none), one for each link if it is of links.
     pub fn derive(&self, dag: &mut Dag, name: FunctionName) -> Vec<Function> {
-        use FunctionName::{ContactBias, ContactJacobian, ContactPositions, LinkJacobian};
+        use FunctionName::{
+            ContactBias, ContactJacobian, ContactPositions, ForwardDynamics,
+            ForwardDynamicsDerivatives, LinkJacobian, MassMatrixSolve,
+        };
         let robot = self.robot;
         match name {
             ContactPositions | ContactJacobian | ContactBias if robot.contacts.is_empty() => {
+                Vec::new()
+            }
+            ForwardDynamics | MassMatrixSolve | ForwardDynamicsDerivatives
+                if self.is_singular(dag) =>
+            {
                 Vec::new()
             }
             // Of the stage after this one.
@@ -57,6 +70,22 @@ impl<'a> Portfolio<'a> {
                 vec![self.cheapest(dag, (name, None), &build)]
             }
         }
+    }
+
+    /// Whether D is singular at random points modulo p: at one where it is not, it has an inverse.
+    fn is_singular(&self, dag: &mut Dag) -> bool {
+        *self.is_singular.get_or_init(|| {
+            let (_, frames) = &self.forms[0];
+            let (robot, mechanism) = (self.robot, self.mechanism);
+            let candidate = Candidate { robot, mechanism, frames, joints: &self.joints };
+            let name = FunctionName::MassMatrix;
+            let entries = outputs::outputs(dag, &candidate, name, Route::Only).remove(0).entries;
+            (1..=2).all(|seed| {
+                // Where a point divides by 0, nothing is known, and nothing left out.
+                evaluate(dag, &entries, &mut Residues::new(seed))
+                    .is_ok_and(|values| has_no_inverse(values, frames.len()))
+            })
+        })
     }
 
     /// Builds every formulation by every route and keeps the one of the lowest price.
@@ -91,6 +120,23 @@ impl<'a> Portfolio<'a> {
         let (_, form, outputs) = best.expect("the plain formulation is always there");
         Function { name, link, arguments: arguments(dag, self.robot, name), outputs, form }
     }
+}
+
+/// Whether Gauss's elimination of an n by n matrix, row by row, ends without a pivot.
+fn has_no_inverse(mut entries: Vec<Residue>, n: usize) -> bool {
+    for column in 0..n {
+        let pivot = (column..n).find(|row| entries[row * n + column] != Residue::ZERO);
+        let Some(pivot) = pivot else { return true };
+        (0..n).for_each(|k| entries.swap(column * n + k, pivot * n + k));
+        let inverse = entries[column * n + column].inverse().expect("a pivot is not 0");
+        for row in column + 1..n {
+            let factor = entries[row * n + column] * inverse;
+            for k in column..n {
+                entries[row * n + k] = entries[row * n + k] - factor * entries[column * n + k];
+            }
+        }
+    }
+    false
 }
 
 /// A way to one function; the cheapest is kept.

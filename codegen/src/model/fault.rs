@@ -199,6 +199,8 @@ pub enum Cause {
     BodyOnFixedBase,
     /// An entry that a fixed joint cannot have.
     NotOnFixedJoint(&'static str),
+    /// An unknown in a row of the table.
+    UnknownInRow(String),
     /// A drive of a fixed joint.
     DriveOnFixedJoint(String),
     /// Damping in the joint and viscous friction in its drive.

@@ -122,6 +122,9 @@ impl Cause {
             }
             Self::BodyOnFixedBase => write!(f, "a fixed base has no body"),
             Self::NotOnFixedJoint(key) => write!(f, "a fixed joint has no `{key}`"),
+            Self::UnknownInRow(name) => {
+                write!(f, "the unknown `{name}` stands in a row, which must be known")
+            }
             Self::DriveOnFixedJoint(link) => {
                 write!(f, "the joint of `{link}` is fixed: no motor can drive it")
             }
@@ -245,6 +248,7 @@ impl Cause {
                 "the body is that of a floating base: it belongs to base_pitch"
             }
             Self::NotOnFixedJoint(_) => "a joint that moves is \"revolute\" or \"prismatic\"",
+            Self::UnknownInRow(_) => "declare it under \"constants\"; unknowns belong to bodies",
             Self::DriveOnFixedJoint(_) => "remove the drive, or let the joint move",
             Self::DampingTwice(_) => {
                 "both are viscous friction: keep `viscous` (motor side) or `damping` (joint side)"

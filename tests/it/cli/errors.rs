@@ -42,6 +42,46 @@ fn a_misspelt_shipped_model_is_guessed() {
 }
 
 #[test]
+fn no_output_takes_the_place_of_an_input() {
+    let directory = Directory::new("input-kept");
+    let text = shipped::find("double_pendulum").expect("a model").text;
+    fs::write(directory.path.join("model.json"), text).expect("a file");
+    for arguments in [
+        ["emit", "model.json", "-o", "./model.json"],
+        ["inspect", "model.json", "--svg", "model.json"],
+        ["derive", "model.json", "--latex", "model.json"],
+        ["base", "model.json", "--certificate", "model.json"],
+    ] {
+        let message = refused(&directory, &arguments);
+        assert_says(&message, &["model.json", "would be replaced", "hint: "]);
+        let kept = fs::read_to_string(directory.path.join("model.json")).expect("a file");
+        assert_eq!(kept, text);
+    }
+}
+
+#[test]
+fn effects_that_nothing_adds_are_not_passed_over() {
+    let directory = Directory::new("effects");
+    let text = shipped::find("double_pendulum").expect("a model").text;
+    let added = r#""effects": [{"effect": "stribeck", "at": "model"}], "links""#;
+    fs::write(directory.path.join("model.json"), text.replacen("\"links\"", added, 1))
+        .expect("a file");
+    let message = refused(&directory, &["derive", "model.json"]);
+    assert_says(&message, &["`stribeck`", "hint: "]);
+}
+
+#[test]
+fn a_mass_matrix_without_an_inverse_leaves_forward_dynamics_out() {
+    let directory = Directory::new("singular");
+    let arguments = ["count", "puma560", "--terms", "gravity"];
+    let Run { code, stdout, stderr } = run_in(&directory.path, &arguments);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(stdout.contains("gravity_vector") && !stdout.contains("forward_dynamics"), "{stdout}");
+    let asked = [&arguments[..], &["--functions", "forward_dynamics"]].concat();
+    assert_says(&refused(&directory, &asked), &["forward_dynamics", "no inverse"]);
+}
+
+#[test]
 fn a_directory_is_no_model() {
     let directory = Directory::new("directory");
     fs::create_dir(directory.path.join("robots.json")).expect("a directory");

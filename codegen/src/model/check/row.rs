@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::tree::{Carrier, GENERATED};
-use crate::expr::ExprId;
+use crate::expr::{ExprId, SymbolClass, free_symbols};
 use crate::model::fault::Cause;
 use crate::model::file::{LimitsFile, LinkFile, ModelFile, Scalar, TorqueFile};
 use crate::model::robot::{Joint, JointKind, Limits, Link, LinkId};
@@ -42,7 +42,18 @@ impl Check<'_> {
         let [a, alpha, d, theta] = std::array::from_fn(|entry| {
             let Some(scalar) = &link.joint.row[entry] else { return self.scope.dag.zero() };
             let expr = self.scope.row_entry(scalar, self.report);
-            self.scope.expect(expr, names[entry], dimensions[entry], scalar.at, self.report);
+            let symbols = free_symbols(&self.scope.dag, &[expr]);
+            let mut symbols = symbols.into_iter().map(|id| &self.scope.dag.symbols()[id]);
+            match symbols.find(|symbol| symbol.class == SymbolClass::Inertia) {
+                Some(unknown) => {
+                    let name = unknown.name.clone();
+                    self.push(scalar.at, Cause::UnknownInRow(name));
+                }
+                None => {
+                    let (name, dimension) = (names[entry], dimensions[entry]);
+                    self.scope.expect(expr, name, dimension, scalar.at, self.report);
+                }
+            }
             expr
         });
         let kind = link.joint.kind;

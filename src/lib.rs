@@ -6,6 +6,7 @@
 //! - [`simulate`]: robots in motion, on the ground
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`trajectory`]: references for their joints
+//! - [`walk`]: gaits
 //! - [`report`]: tables and pictures of robots
 
 mod generated;
@@ -14,6 +15,7 @@ pub mod report;
 pub mod shipped;
 pub mod simulate;
 pub mod trajectory;
+pub mod walk;
 
 pub use denavit_codegen::*;
 pub use generated::{puma560, tulip};

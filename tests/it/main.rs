@@ -8,3 +8,4 @@ mod singular_values;
 mod tidy;
 mod time_stepping;
 mod trees;
+mod walk;

@@ -10,11 +10,16 @@
 //! - [`Scheme::Anitescu`] (Stewart and Trinkle, linearised): the law holds for the gap at the end
 //!   of the step, g + h u_n >= 0, without restitution; nothing penetrates beyond the curvature.
 //!
+//! [`simulate_by_steps`] makes a whole run, of a [`ControlledPlant`];
 //! [`TimeSteppingModel`] is all that a step asks of a system; [`TimeStepper`] makes the steps, and
 //! allocates nothing once it has seen the largest number of contacts.
 
+mod plant;
+mod run;
 mod stepper;
 
+pub use plant::ControlledPlant;
+pub use run::{SteppedAudit, SteppedRun, SteppedStop, simulate_by_steps};
 pub use stepper::TimeStepper;
 
 use super::contact::Space;

@@ -77,6 +77,12 @@ impl TimeSteppingModel for Tulip {
         for joint in 0..N {
             terms.force[joint] = -bias[joint];
         }
+        // Marching without a plan falls: a soft gantry holds the torso, as in the peers' setting.
+        for joint in if self.lift > 0.0 { 1..6 } else { 0..0 } {
+            let error = self.posture[joint] - at.q[joint];
+            terms.force[joint] += 500.0 * error - 50.0 * at.qd[joint];
+            terms.damping[joint * N + joint] = 50.0;
+        }
         for joint in 6..N {
             let error = self.reference(joint, at.t_s) - at.q[joint];
             terms.force[joint] += 1500.0 * error - 30.0 * at.qd[joint];

@@ -1,9 +1,9 @@
 //! A plant under control, as a model of time stepping.
 
 use super::{Instant, Terms, TimeSteppingModel};
-use crate::plants::Plant;
+use crate::plants::{JointModel, Plant};
 use crate::simulate::contact::Space;
-use crate::simulate::control::{Compensation, Control, ControlMemory};
+use crate::simulate::control::{Compensation, Control, ControlMemory, JointControl};
 use crate::simulate::ground::Ground;
 
 /// A plant on its ground under continuous control, with ideal drives: commands reach the joints.
@@ -14,8 +14,9 @@ pub struct ControlledPlant<'a> {
     control: &'a Control,
     ground: Ground,
     memory: ControlMemory,
-    /// Diagonal of the damping matrix.
-    damping: Vec<f64>,
+    /// Viscous friction, and damping of the feedback, of each joint.
+    viscous: Vec<f64>,
+    feedback: Vec<f64>,
     command: Vec<f64>,
     positions: Vec<f64>,
     jacobian: Vec<f64>,
@@ -28,17 +29,16 @@ impl<'a> ControlledPlant<'a> {
         let model = plant.model();
         let (n, points) = (model.joints.len(), model.contacts.len());
         assert_eq!(control.joints.len(), n, "control of every joint");
-        let damping = |(joint, law): (&crate::plants::JointModel, _)| {
-            let law: &crate::simulate::JointControl = law;
-            // Gains of computed torque are accelerations.
-            let feedback = law.reference.is_some()
-                && joint.drivable
-                && control.compensation != Compensation::ComputedTorque;
-            joint.viscous + if feedback { law.damping } else { 0.0 }
+        // Gains of computed torque are accelerations.
+        let are_gains = control.compensation != Compensation::ComputedTorque;
+        let feedback = |(joint, law): (&JointModel, &JointControl)| {
+            let follows = law.reference.is_some() && joint.drivable && are_gains;
+            if follows { law.damping } else { 0.0 }
         };
         Self {
             ground: Ground::new(model),
-            damping: model.joints.iter().zip(&control.joints).map(damping).collect(),
+            viscous: model.joints.iter().map(|joint| joint.viscous).collect(),
+            feedback: model.joints.iter().zip(&control.joints).map(feedback).collect(),
             plant,
             control,
             memory: ControlMemory::default(),
@@ -84,8 +84,10 @@ impl TimeSteppingModel for ControlledPlant<'_> {
         for (force, command) in terms.force.iter_mut().zip(command) {
             *force = *command - *force;
         }
-        for (joint, damping) in self.damping.iter().enumerate() {
-            terms.damping[joint * n + joint] = *damping;
+        for joint in 0..n {
+            let factor = self.control.joints[joint].gain_factor.as_ref();
+            let factor = factor.map_or(1.0, |factor| factor.at(at.t_s).position);
+            terms.damping[joint * n + joint] = self.viscous[joint] + factor * self.feedback[joint];
         }
         if closed.is_empty() {
             return;

@@ -113,7 +113,7 @@ fn total(ground: &Ground, impulses: &[f64]) -> [f64; 3] {
     for impulse in impulses.chunks_exact(ground.rows()) {
         sum.iter_mut().zip(impulse).for_each(|(sum, p)| *sum += p);
     }
-    ground.to_world(&sum)
+    ground.in_world(&sum)
 }
 
 fn audit_forces(
@@ -198,6 +198,6 @@ fn write(
         values.extend(control.setpoint(joint, end.t_s).map(|setpoint| setpoint.position));
     }
     for impulse in stepper.impulses().chunks_exact(ground.rows()) {
-        values.extend(ground.to_world(impulse).map(|p| p / stepper.stepping().step_s));
+        values.extend(ground.in_world(impulse).map(|p| p / stepper.stepping().step_s));
     }
 }

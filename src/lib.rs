@@ -6,7 +6,7 @@
 //! - [`simulate`]: robots in motion, on the ground
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`trajectory`]: references for their joints
-//! - [`walk`]: gaits
+//! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
 
 mod generated;

@@ -38,11 +38,11 @@ pub enum FunctionName {
     ContactJacobian,
     /// (d/dt W^T) qd.
     ContactBias,
-    /// World position of the centre of mass.
+    /// World position of the centre of mass of all that moves: what is fixed to the base is left out.
     CenterOfMass,
-    /// d(centre of mass)/dq.
+    /// d(centre of mass)/dq, of all that moves.
     CenterOfMassJacobian,
-    /// Linear momentum, and angular momentum about the centre of mass.
+    /// Linear momentum, and angular momentum about the centre of mass of all that moves.
     Momentum,
     /// Kinetic energy.
     KineticEnergy,

@@ -3,7 +3,7 @@
 // Written by denavit-codegen 0.1.0; do not edit, generate it again.
 //
 // model: scara, hash eea948bf1b36b8a4
-// parameters: baked in: the functions hold their values
+// parameters: none: the functions hold all values
 // description: SCARA arm: two parallel revolute joints, a vertical prismatic one, and a
 // revolute wrist.
 // source: The usual SCARA geometry (RRPR); numbers of this project.

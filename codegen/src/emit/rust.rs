@@ -102,7 +102,7 @@ impl<'a> Context<'a> {
 fn about(robot: &Robot, tunable: bool) -> String {
     let flavour = match tunable {
         true => "tunable at run time (`ModelParameters`)",
-        false => "baked in: the functions hold their values",
+        false => "none: the functions hold all values",
     };
     let mut lines = format!("// model: {}, hash {:016x}\n", one_line(&robot.name), robot.hash);
     lines += &format!("// parameters: {flavour}\n");

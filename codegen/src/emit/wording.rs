@@ -36,9 +36,11 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         FunctionName::ContactBias => {
             "Accelerations of the contact points without qdd: (d/dt W^T) qd."
         }
-        FunctionName::CenterOfMass => "Position of the centre of mass.",
-        FunctionName::CenterOfMassJacobian => "Jacobian of the centre of mass.",
-        FunctionName::Momentum => "Linear momentum, and angular momentum about the centre of mass.",
+        FunctionName::CenterOfMass => "Position of the centre of mass of all that moves.",
+        FunctionName::CenterOfMassJacobian => "Jacobian of the centre of mass of all that moves.",
+        FunctionName::Momentum => {
+            "Linear momentum, and angular momentum about the centre of mass of all that moves."
+        }
         FunctionName::KineticEnergy => "Kinetic energy.",
         FunctionName::PotentialEnergy => "Potential energy.",
         FunctionName::Regressor => "Regressor R0: torques per unit of each unknown parameter.",

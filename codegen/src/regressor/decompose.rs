@@ -7,6 +7,7 @@ use super::pull::{
 };
 use super::theta::{Theta, column_symbol, order_of};
 use crate::arena::Handle;
+use crate::dynamics::spring_torque;
 use crate::expr::{ClassSet, Dag, ExprId, Symbol, SymbolId};
 use crate::fundamental::{
     Basis, Decomposition, EchelonError, Expansion, FourierError, Matrix, decompose,
@@ -100,7 +101,7 @@ pub fn decompose_robot(
     let mut left = Vec::new();
     for (&equation, known) in balance.matter.equations.iter().zip(known) {
         let acting = match equation {
-            Equation::Joint(joint) => balance.variables(joint).tau,
+            Equation::Joint(joint) => balance.acting(&mut dag, joint),
             _ => dag.zero(),
         };
         left.push(dag.sub(acting, known));
@@ -150,9 +151,13 @@ struct Balance<'a> {
 }
 
 impl Balance<'_> {
-    fn variables(&self, joint: usize) -> crate::model::JointVariables {
-        let (_, variables) = self.robot.joints().nth(joint).expect("the joint is there");
-        *variables
+    /// The torque of a joint less that of its springs, which is known.
+    fn acting(&self, dag: &mut Dag, joint: usize) -> ExprId {
+        let (link, variables) = self.robot.joints().nth(joint).expect("the joint is there");
+        let tau = variables.tau;
+        let (spring, _) = spring_torque(dag, self.robot, link);
+        let spring = dag.mul(self.scales[joint], spring);
+        dag.sub(tau, spring)
     }
 
     /// The entries of a combination of features, equation by equation.

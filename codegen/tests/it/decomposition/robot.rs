@@ -1,11 +1,11 @@
 //! Whole robots, in the parameters that a user knows.
 
-use crate::robots::load;
+use crate::robots::{load, repository};
 use denavit_codegen::dynamics::methods::{Method, derive};
 use denavit_codegen::expr::{Residues, derivative, evaluate};
 use denavit_codegen::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, echelon, smallest};
-use denavit_codegen::model::{About, BodyEntry, Role};
-use denavit_codegen::number::Residue;
+use denavit_codegen::model::{self, About, BodyEntry, Role};
+use denavit_codegen::number::{Residue, integer, ratio};
 use denavit_codegen::regressor::{RegressorOptions, RobotDecomposition, decompose_robot};
 
 /// Every term, Coriolis terms among them or not.
@@ -84,4 +84,23 @@ fn floating_bases_have_equations_of_the_torso() {
     let joints = found.equations.len() - 3;
     let echelon = echelon(&mut found.dag, &least, &order).expect("small");
     assert_eq!(echelon.rank(), 4 + 3 * joints);
+}
+
+#[test]
+fn springs_are_on_the_left_side() {
+    let text = std::fs::read_to_string(repository().join("models/planar_2r.json")).unwrap();
+    let spring = r#""a": "l1", "spring": {"stiffness": 3, "angle": 0.2}"#;
+    let text = text.replacen(r#""a": "l1""#, spring, 1);
+    let robot = model::read("sprung", text.as_bytes()).expect("a model");
+    let mut expansion = Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
+    let options = RegressorOptions::default();
+    let mut found = decompose_robot(&robot, options, &[Basis::Product], &mut expansion).unwrap();
+    let variables = *robot.joints().next().expect("it has joints").1;
+    let dag = &mut found.dag;
+    let [angle, stiffness] = [ratio(1, 5), integer(3)].map(|value| dag.constant(value));
+    let stretch = dag.sub(variables.q, angle);
+    let torque = dag.mul(stiffness, stretch);
+    let expected = dag.sub(variables.tau, torque);
+    let values = evaluate(dag, &[found.left[0], expected], &mut Residues::new(5)).unwrap();
+    assert_eq!(values[0], values[1]);
 }

@@ -38,7 +38,7 @@ pub enum FunctionName {
     ContactJacobian,
     /// (d/dt W^T) qd.
     ContactBias,
-    /// World position of the centre of mass of all that moves: what is fixed to the base is left out.
+    /// World position of the centre of mass of all that moves, without what is fixed to the base.
     CenterOfMass,
     /// d(centre of mass)/dq, of all that moves.
     CenterOfMassJacobian,

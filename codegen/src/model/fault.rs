@@ -162,6 +162,9 @@ pub enum Cause {
     ValueNotKnown(String, String),
     /// A division by 0, at least with the values that the file gives; holds the expression.
     DivisionByZero(String),
+    /// The root of a negative number or the logarithm of one that is not positive, at least with
+    /// the values that the file gives; holds the expression.
+    NotReal(String),
     /// All expressions together are longer than the limit, which it holds (bytes).
     TooMuchText(usize),
     /// Not a finite number; holds the text.

@@ -83,6 +83,9 @@ impl Cause {
             Self::DivisionByZero(text) => {
                 write!(f, "in \"{}\": division by 0 with the values of this file", clip(text))
             }
+            Self::NotReal(text) => {
+                write!(f, "in \"{}\": no real number with the values of this file", clip(text))
+            }
             Self::TooMuchText(limit) => {
                 write!(f, "the expressions of the file are together longer than {limit} bytes")
             }
@@ -220,6 +223,7 @@ impl Cause {
             Self::ValueNotKnown(..) => {
                 "a value may use constants that are declared before it and have a value"
             }
+            Self::NotReal(_) => "roots are of what is not negative, logarithms of what is positive",
             Self::NotFinite(_) => "leave the entry out if it is not known",
             Self::HugeNumber => "quantities of robots fit in a few digits: check the exponent",
             Self::Unit(..) => {

@@ -32,6 +32,8 @@ pub(super) enum NodeFault {
     MixedSum(Dimension, Dimension),
     FunctionOfQuantity(Dimension),
     DivisionByZero,
+    /// The root of a negative number, or the logarithm of one that is not positive.
+    NotReal,
     HugeValue,
 }
 
@@ -100,6 +102,17 @@ impl Facts {
             && dag.as_constant(value_of(divisor)).is_some_and(Zero::is_zero)
         {
             faults.push(NodeFault::DivisionByZero);
+            return None;
+        }
+        if let Node::Unary(function, argument) = node
+            && let Some(argument) = dag.as_constant(value_of(argument))
+            && match function {
+                UnaryFunction::Sqrt => argument.is_negative(),
+                UnaryFunction::Log => !argument.is_positive(),
+                _ => false,
+            }
+        {
+            faults.push(NodeFault::NotReal);
             return None;
         }
         let value = rebuild(dag, expr, value_of);

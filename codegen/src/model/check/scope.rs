@@ -232,6 +232,7 @@ impl Scope {
                 NodeFault::MixedSum(left, right) => Cause::MixedSum(text, left, right),
                 NodeFault::FunctionOfQuantity(found) => Cause::FunctionOfQuantity(text, found),
                 NodeFault::DivisionByZero => Cause::DivisionByZero(text),
+                NodeFault::NotReal => Cause::NotReal(text),
                 NodeFault::HugeValue => Cause::HugeNumber,
             };
             report.push(scalar.at, cause);

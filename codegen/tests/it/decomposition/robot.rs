@@ -5,7 +5,7 @@ use denavit_codegen::dynamics::methods::{Method, derive};
 use denavit_codegen::expr::{Residues, derivative, evaluate};
 use denavit_codegen::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, echelon, smallest};
 use denavit_codegen::model::{self, About, BodyEntry, Role};
-use denavit_codegen::number::{Residue, integer, ratio};
+use denavit_codegen::number::Residue;
 use denavit_codegen::regressor::{RegressorOptions, RobotDecomposition, decompose_robot};
 
 /// Every term, Coriolis terms among them or not.
@@ -97,7 +97,10 @@ fn springs_are_on_the_left_side() {
     let mut found = decompose_robot(&robot, options, &[Basis::Product], &mut expansion).unwrap();
     let variables = *robot.joints().next().expect("it has joints").1;
     let dag = &mut found.dag;
-    let [angle, stiffness] = [ratio(1, 5), integer(3)].map(|value| dag.constant(value));
+    let [angle, stiffness] = ["qs_link1", "ks_link1"].map(|name| {
+        let symbol = dag.find_symbol(name).expect(name);
+        dag.symbol_expr(symbol)
+    });
     let stretch = dag.sub(variables.q, angle);
     let torque = dag.mul(stiffness, stretch);
     let expected = dag.sub(variables.tau, torque);

@@ -37,7 +37,7 @@ pub trait Plant {
     /// function of the rate where the joint rests.
     fn bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]);
 
-    /// Contact points, 3 c entries [m].
+    /// Contact points, 3 c entries \[m\].
     fn contact_positions(&mut self, q: &[f64], positions: &mut [f64]);
 
     /// W^T = d(contact points)/dq, 3 c x n (thesis 2.47).
@@ -52,7 +52,7 @@ pub trait Plant {
     /// Potential energy of gravity and joint springs \[J\].
     fn potential_energy(&mut self, q: &[f64]) -> f64;
 
-    /// Centre of mass [m].
+    /// Centre of mass \[m\].
     fn center_of_mass(&mut self, q: &[f64]) -> [f64; 3];
 
     /// Linear momentum [kg m/s], then angular momentum about the centre of mass [kg m^2/s].

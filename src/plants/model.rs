@@ -18,7 +18,7 @@ pub struct PlantModel {
     pub hash: u64,
     /// Whether it moves in the world x-z plane only, so that its contacts have no y direction.
     pub planar: bool,
-    /// Total mass [kg].
+    /// Total mass \[kg\].
     pub mass_kg: f64,
     /// Acceleration of free fall [m/s^2].
     pub gravity: [f64; 3],
@@ -80,9 +80,9 @@ pub struct DriveModel {
 pub struct SeriesElasticModel {
     /// [N/m].
     pub stiffness: f64,
-    /// Of the pulley on the gear's side [m].
+    /// Of the pulley on the gear's side \[m\].
     pub motor_radius: f64,
-    /// Of the pulley on the joint's side [m].
+    /// Of the pulley on the joint's side \[m\].
     pub load_radius: f64,
 }
 
@@ -93,14 +93,14 @@ pub struct PointModel {
     pub name: String,
     /// Row of [`PlantModel::links`].
     pub link: usize,
-    /// Place in the link's frame [m].
+    /// Place in the link's frame \[m\].
     pub position: [f64; 3],
 }
 
 /// The half space below a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundModel {
-    /// A point of the plane [m].
+    /// A point of the plane \[m\].
     pub point: [f64; 3],
     /// Unit vector away from the ground.
     pub normal: [f64; 3],

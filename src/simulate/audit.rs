@@ -6,21 +6,21 @@ use super::motion::Motion;
 /// What a run may miss the laws by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
-    /// Energy, work and impact losses [J]; also this part of the energy that was exchanged.
+    /// Energy, work and impact losses \[J\]; also this part of the energy that was exchanged.
     pub energy_j: f64,
     /// Change of momentum at impacts against their impulses [N s].
     pub momentum_ns: f64,
-    /// Depth of a contact point below the ground [m].
+    /// Depth of a contact point below the ground \[m\].
     pub penetration_m: f64,
     /// Product of force and height of a closed contact [N m].
     pub complementarity_nm: f64,
-    /// Pull of the ground on a contact [N].
+    /// Pull of the ground on a contact \[N\].
     pub adhesion_n: f64,
     /// Normal speed of a closed contact [m/s].
     pub separation_m_s: f64,
-    /// Zero moment point from forces against that from momentum [m].
+    /// Zero moment point from forces against that from momentum \[m\].
     pub zmp_m: f64,
-    /// Contact forces against the change of momentum [N].
+    /// Contact forces against the change of momentum \[N\].
     pub force_n: f64,
 }
 
@@ -49,13 +49,13 @@ pub struct Audit {
     pub exchanged_j: f64,
     /// Linear momentum across impacts [N s].
     pub momentum_ns: f64,
-    /// Largest energy that an impact made [J]; 0 if all lost.
+    /// Largest energy that an impact made \[J\]; 0 if all lost.
     pub impact_gain_j: f64,
-    /// [m].
+    /// \[m\].
     pub penetration_m: f64,
     /// [N m].
     pub complementarity_nm: f64,
-    /// [N].
+    /// \[N\].
     pub adhesion_n: f64,
     /// [m/s].
     pub separation_m_s: f64,
@@ -63,12 +63,12 @@ pub struct Audit {
     pub friction_demand: f64,
     /// Largest |F_t| / F_n of all contact forces together.
     pub friction_total: f64,
-    /// [m].
+    /// \[m\].
     pub zmp_m: f64,
-    /// [N].
+    /// \[N\].
     pub force_n: f64,
     /// Distance of the zero moment point from the edge of the support polygon, the least in time;
-    /// negative outside, infinite if never defined [m].
+    /// negative outside, infinite if never defined \[m\].
     pub zmp_margin_m: f64,
     /// Largest torque on a joint [N m, N].
     pub torque: f64,
@@ -102,17 +102,17 @@ impl Audit {
 /// Forces on the ground, and what follows from them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Balance {
-    /// Zero moment point from the contact forces [m]; not finite in flight.
+    /// Zero moment point from the contact forces \[m\]; not finite in flight.
     pub(super) zmp: [f64; 3],
     /// The same from the change of momentum.
     pub(super) zmp_of_momentum: [f64; 3],
-    /// Contact forces minus the change of momentum [N].
+    /// Contact forces minus the change of momentum \[N\].
     pub(super) force_error: f64,
-    /// Normal force [N].
+    /// Normal force \[N\].
     pub(super) normal_force: f64,
 }
 
-/// Step of the directional derivative of momentum [s].
+/// Step of the directional derivative of momentum \[s\].
 const DIFFERENCE_S: f64 = 2e-4;
 
 /// Compares contact forces with the change of momentum, for a plant that nothing else holds.

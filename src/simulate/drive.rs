@@ -54,7 +54,7 @@ impl Drives {
         Self { modelling, elastic }
     }
 
-    /// The motor angle at which the spring of elastic joint number `index` is relaxed [rad].
+    /// The motor angle at which the spring of elastic joint number `index` is relaxed \[rad\].
     pub(super) fn relaxed(&self, model: &PlantModel, index: usize, q: &[f64]) -> f64 {
         let joint = self.elastic[index];
         model.joints[joint].drive.map_or(0.0, |drive| {

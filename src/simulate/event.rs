@@ -45,7 +45,7 @@ pub(super) struct Fired {
 
 /// Samples inside a step, its end included.
 const SAMPLES: usize = 8;
-/// Crossings are located to this [s].
+/// Crossings are located to this \[s\].
 const RESOLUTION_S: f64 = 1e-13;
 
 /// Looks for events; keeps what must be known of contacts that have just opened.
@@ -268,7 +268,7 @@ fn slip_speed(motion: &mut Motion<'_>, index: usize, y: &[f64]) -> f64 {
     motion.work.velocity[..tangents].iter().zip(direction).map(|(v, d)| v * d).sum()
 }
 
-/// Least force to spare, and what counts as none: adhesion of that size is rounding [N].
+/// Least force to spare, and what counts as none: adhesion of that size is rounding \[N\].
 fn margin(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<f64, Breakdown> {
     motion.constrained_motion(t_s, y)?;
     let work = &motion.work;

@@ -37,7 +37,7 @@ impl Ground {
         }
     }
 
-    /// Height of a point above the ground [m].
+    /// Height of a point above the ground \[m\].
     pub(super) fn gap(&self, position: &[f64]) -> f64 {
         let above: [f64; 3] = std::array::from_fn(|axis| position[axis] - self.point[axis]);
         dot(self.directions[2], &above)

@@ -20,7 +20,7 @@ pub(super) struct Closed {
     pub(super) contact: usize,
     /// Sticks or slips; never open.
     pub(super) mode: Mode,
-    /// Where it stands along the tangents, if it sticks [m].
+    /// Where it stands along the tangents, if it sticks \[m\].
     pub(super) anchor: [f64; 2],
 }
 
@@ -260,13 +260,13 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Gaps of all contact points [m], after `positions` of `work` are those of `y`.
+    /// Gaps of all contact points \[m\], after `positions` of `work` are those of `y`.
     pub(super) fn place(&mut self, y: &[f64]) {
         let parts = self.layout.parts(y);
         self.plant.contact_positions(parts.q, &mut self.work.positions);
     }
 
-    /// Height of a contact point, where `place` or `project` last saw it [m].
+    /// Height of a contact point, where `place` or `project` last saw it \[m\].
     pub(super) fn gap(&self, contact: usize) -> f64 {
         self.ground.gap(&self.work.positions[3 * contact..3 * contact + 3])
     }

@@ -34,7 +34,7 @@ impl Recorder {
         }
     }
 
-    /// An event changed the energy by this much [J].
+    /// An event changed the energy by this much \[J\].
     pub(super) fn add_impact(&mut self, energy_j: f64) {
         self.impact_energy += energy_j;
         self.lost_in_impacts += energy_j.abs();

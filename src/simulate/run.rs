@@ -19,7 +19,7 @@ use crate::plants::Plant;
 /// How a run is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
-    /// When it ends [s].
+    /// When it ends \[s\].
     pub end_s: f64,
     /// The method of integration.
     pub method: Method,
@@ -35,7 +35,7 @@ pub struct Simulation {
     pub touching: Touching,
     /// Errors of closed contacts decay at this rate [1/s].
     pub drift_rate: f64,
-    /// Period of the log's rows [s].
+    /// Period of the log's rows \[s\].
     pub log_period_s: f64,
     /// More events end the run.
     pub max_events: usize,
@@ -84,7 +84,7 @@ pub enum EventKind {
 /// An event of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When [s].
+    /// When \[s\].
     pub t_s: f64,
     /// What.
     pub kind: EventKind,
@@ -123,12 +123,12 @@ pub struct Run {
     pub closed: Vec<usize>,
 }
 
-/// Contacts this near the ground are closed at the start [m].
+/// Contacts this near the ground are closed at the start \[m\].
 const START_TOUCH_M: f64 = 1e-6;
 /// This many events within `ZENO_S` are without end.
 const ZENO_EVENTS: usize = 200;
 const ZENO_S: f64 = 1e-9;
-/// Steps are audited at this distance at least, besides rows of the log [s].
+/// Steps are audited at this distance at least, besides rows of the log \[s\].
 const AUDIT_S: f64 = 1e-3;
 
 /// Runs a plant under control from a state; deterministic.

@@ -15,7 +15,7 @@ pub enum StartError {
     Length(&'static str, usize, usize),
     /// A number of the initial state or of the options is not finite, or not positive.
     Number(&'static str),
-    /// A contact point starts below the ground: its name and depth [m].
+    /// A contact point starts below the ground: its name and depth \[m\].
     Penetration(String, f64),
     /// The equations of motion have no answer at the start.
     Breakdown(Breakdown),

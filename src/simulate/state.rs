@@ -3,13 +3,13 @@
 /// Positions and rates of joints and motors at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
-    /// [s].
+    /// \[s\].
     pub t_s: f64,
     /// Joint positions, in the order of the plant [rad, m].
     pub q: Vec<f64>,
     /// Joint rates [rad/s, m/s].
     pub qd: Vec<f64>,
-    /// Motor angles of the series elastic joints, in joint order, before the gear [rad].
+    /// Motor angles of the series elastic joints, in joint order, before the gear \[rad\].
     pub motor: Vec<f64>,
     /// Their rates [rad/s].
     pub motor_rate: Vec<f64>,
@@ -23,7 +23,7 @@ impl State {
 }
 
 /// Where the parts of a state stand in the vector that is integrated: q, qd, motor angles, motor
-/// rates, then two integrals: work put in, and energy lost to friction [J].
+/// rates, then two integrals: work put in, and energy lost to friction \[J\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) joints: usize,

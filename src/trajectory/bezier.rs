@@ -11,7 +11,7 @@ pub struct Bezier {
 }
 
 impl Bezier {
-    /// Start and end [s], and at least one control value.
+    /// Start and end \[s\], and at least one control value.
     pub fn new(times: [f64; 2], controls: Vec<f64>) -> Result<Self, TrajectoryError> {
         check_times(&times)?;
         check_finite(&controls)?;

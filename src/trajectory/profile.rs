@@ -14,7 +14,7 @@ pub struct CosineProfile {
 }
 
 impl CosineProfile {
-    /// Start and end, times [s] and positions.
+    /// Start and end, times \[s\] and positions.
     pub fn new(times: [f64; 2], positions: [f64; 2]) -> Result<Self, TrajectoryError> {
         check_times(&times)?;
         check_finite(&positions)?;

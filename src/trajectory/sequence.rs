@@ -6,7 +6,7 @@ use super::{Reference, Setpoint};
 /// A reference that is followed for some time; its own time starts at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// How long it is followed [s].
+    /// How long it is followed \[s\].
     pub duration_s: f64,
     /// What is followed.
     pub reference: Reference,
@@ -80,5 +80,5 @@ impl Sequence {
     }
 }
 
-/// Times this close to a limit of a part are at the limit [s].
+/// Times this close to a limit of a part are at the limit \[s\].
 const LIMIT_S: f64 = 1e-12;

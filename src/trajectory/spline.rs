@@ -23,7 +23,7 @@ pub struct CubicSpline {
 }
 
 impl CubicSpline {
-    /// The spline through `values` at `times` [s] with conditions at its start and its end.
+    /// The spline through `values` at `times` \[s\] with conditions at its start and its end.
     pub fn new(
         times: Vec<f64>,
         values: Vec<f64>,
@@ -72,7 +72,7 @@ pub struct QuinticSpline {
 }
 
 impl QuinticSpline {
-    /// The spline with these values, rates and accelerations at `times` [s].
+    /// The spline with these values, rates and accelerations at `times` \[s\].
     pub fn new(
         times: Vec<f64>,
         values: Vec<f64>,

@@ -11,20 +11,20 @@ use crate::simulate::contact::minimum_norm::MinimumNorm;
 pub enum Condition {
     /// A coordinate has this value [rad, m].
     Coordinate(usize, f64),
-    /// A contact point has this world coordinate (0 to 2) [m].
+    /// A contact point has this world coordinate (0 to 2) \[m\].
     Point {
         /// Number of the contact point.
         contact: usize,
         /// 0 to 2.
         axis: usize,
-        /// [m].
+        /// \[m\].
         value: f64,
     },
-    /// The centre of mass has this world coordinate [m].
+    /// The centre of mass has this world coordinate \[m\].
     CenterOfMass {
         /// 0 to 2.
         axis: usize,
-        /// [m].
+        /// \[m\].
         value: f64,
     },
 }

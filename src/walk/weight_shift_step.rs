@@ -17,20 +17,20 @@ use denavit_runtime::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightShiftStep {
     /// The left heel rises until the foot is released, then the foot swings, lands, and the weight
-    /// shifts from the third time to the fourth [s].
+    /// shifts from the third time to the fourth \[s\].
     pub phases_s: [f64; 4],
-    /// How far the left foot goes [m].
+    /// How far the left foot goes \[m\].
     pub length_m: f64,
-    /// How high [m].
+    /// How high \[m\].
     pub lift_m: f64,
-    /// Rise of the heel before the release: pitch about the toe [rad].
+    /// Rise of the heel before the release: pitch about the toe \[rad\].
     pub heel_rise: f64,
     /// Centre of mass from the middle of the right sole, forward and to the left, until the weight
-    /// shifts [m].
+    /// shifts \[m\].
     pub weight_m: [f64; 2],
-    /// Bend of the right knee [rad].
+    /// Bend of the right knee \[rad\].
     pub knee: f64,
-    /// Distance of the postures [s].
+    /// Distance of the postures \[s\].
     pub interval_s: f64,
 }
 
@@ -55,7 +55,7 @@ pub enum GaitError {
     Missing(String),
     /// A posture is out of reach.
     Posture {
-        /// Its time [s].
+        /// Its time \[s\].
         t_s: f64,
         /// Why.
         error: PostureError,
@@ -82,7 +82,7 @@ impl std::error::Error for GaitError {}
 /// Postures of a gait.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gait {
-    /// [s].
+    /// \[s\].
     pub times_s: Vec<f64>,
     /// All coordinates at each time.
     pub postures: Vec<Vec<f64>>,
@@ -124,7 +124,7 @@ pub fn plan(plant: &mut dyn Plant, step: &WeightShiftStep) -> Result<Gait, GaitE
 struct Sole {
     /// Contact numbers: inner toe, outer toe, inner heel.
     points: [usize; 3],
-    /// Where these are when the robot stands upright: x and y in the world [m].
+    /// Where these are when the robot stands upright: x and y in the world \[m\].
     flat: [[f64; 2]; 3],
 }
 

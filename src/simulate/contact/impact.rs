@@ -34,7 +34,7 @@ pub struct Impact<'a> {
 /// What an impact did, beside its impulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactReport {
-    /// Change of kinetic energy, never positive beyond rounding [J].
+    /// Change of kinetic energy, never positive beyond rounding \[J\].
     pub energy_j: f64,
     /// The factor that was applied to all coefficients of restitution: 1 unless they would have
     /// made energy.

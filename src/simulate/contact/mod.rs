@@ -185,7 +185,7 @@ impl ContactProblem<'_> {
 /// What counts as zero: absolute parts plus `relative` times the size of the problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Of forces [N] or impulses [N s].
+    /// Of forces \[N\] or impulses [N s].
     pub force: f64,
     /// Of accelerations [m/s^2] or velocities [m/s].
     pub response: f64,
@@ -250,7 +250,7 @@ fn length(vector: &[f64]) -> f64 {
 pub struct ContactSolution {
     /// One per contact.
     pub modes: Vec<Mode>,
-    /// f, contact-major [N], or [N s] at impacts.
+    /// f, contact-major \[N\], or [N s] at impacts.
     pub force: Vec<f64>,
     /// w, contact-major [m/s^2], or [m/s] at impacts.
     pub response: Vec<f64>,

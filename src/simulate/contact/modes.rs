@@ -85,7 +85,7 @@ impl ModeSolver {
     }
 
     /// The largest t such that forces exist that keep the modes, with f_n >= t for every closed
-    /// contact and mu f_n - |f_t| >= t for every one that sticks [N].
+    /// contact and mu f_n - |f_t| >= t for every one that sticks \[N\].
     ///
     /// Continuous in time while the modes stay and the forces are determined; the first sign
     /// change from positive to negative is when a contact has to open or to slip. Infinite if no

@@ -35,7 +35,7 @@ pub struct Accuracy {
     pub relative: f64,
     /// Absolute, in the unit of the entry.
     pub absolute: f64,
-    /// No step is longer [s].
+    /// No step is longer \[s\].
     pub max_step_s: f64,
 }
 
@@ -54,7 +54,7 @@ pub enum Method {
     Sdirk(Accuracy),
     /// Explicit, fixed steps.
     RungeKutta {
-        /// Step [s].
+        /// Step \[s\].
         step_s: f64,
     },
 }
@@ -135,12 +135,12 @@ impl Stepper {
         self.known = false;
     }
 
-    /// Start of the last step [s].
+    /// Start of the last step \[s\].
     pub fn start_time(&self) -> f64 {
         self.t0
     }
 
-    /// End of the last step [s].
+    /// End of the last step \[s\].
     pub fn time(&self) -> f64 {
         self.t1
     }

@@ -37,7 +37,7 @@ pub trait TimeSteppingModel {
     /// Planar or spatial contacts.
     fn space(&self) -> Space;
 
-    /// Heights of all contact points above the ground [m].
+    /// Heights of all contact points above the ground \[m\].
     fn gaps(&mut self, q: &[f64], gaps: &mut [f64]);
 
     /// The terms of the equations of motion; `closed` lists the contacts whose rows are wanted.
@@ -47,7 +47,7 @@ pub trait TimeSteppingModel {
 /// Where terms are evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a> {
-    /// Time, of references and controllers [s].
+    /// Time, of references and controllers \[s\].
     pub t_s: f64,
     /// Coordinates.
     pub q: &'a [f64],
@@ -78,7 +78,7 @@ pub enum Scheme {
     MoreauMidpoint,
     /// (D + h B)(v+ - v) = h f(q, v) + J^T P, 0 <= P_n _|_ g(q)/h + u_n+ >= 0; q+ = q + h v+.
     Anitescu {
-        /// Contacts farther from the ground are left out [m].
+        /// Contacts farther from the ground are left out \[m\].
         reach_m: f64,
     },
 }
@@ -116,7 +116,7 @@ pub struct StepLaw {
 pub struct Stepping {
     /// The scheme.
     pub scheme: Scheme,
-    /// h [s].
+    /// h \[s\].
     pub step_s: f64,
     /// How contact problems are solved.
     pub solver: StepSolver,
@@ -131,7 +131,7 @@ pub struct StepReport {
     pub closed: usize,
     /// Sweeps or pivots; 0 if all contacts stick.
     pub iterations: usize,
-    /// The largest depth of a contact point where the contacts were looked for [m].
+    /// The largest depth of a contact point where the contacts were looked for \[m\].
     pub penetration_m: f64,
     /// Sweeps did not converge, and pivots solved the problem.
     pub fell_back: bool,

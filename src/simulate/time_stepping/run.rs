@@ -22,9 +22,9 @@ pub enum SteppedStop {
 /// The worst of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SteppedAudit {
-    /// Depth of a contact point where contacts were looked for [m]; of order h.
+    /// Depth of a contact point where contacts were looked for \[m\]; of order h.
     pub penetration_m: f64,
-    /// Change of linear momentum over a step, less gravity and contacts, per time [N]; of order h.
+    /// Change of linear momentum over a step, less gravity and contacts, per time \[N\]; of order h.
     pub force_n: f64,
     /// Tangential over normal force of all contacts together.
     pub friction_demand: f64,

@@ -24,7 +24,7 @@ pub enum SteppedStop {
 pub struct SteppedAudit {
     /// Depth of a contact point where contacts were looked for \[m\]; of order h.
     pub penetration_m: f64,
-    /// Change of linear momentum over a step, less gravity and contacts, per time \[N\]; of order h.
+    /// Change of linear momentum over a step, less gravity and contacts per time \[N\]; of order h.
     pub force_n: f64,
     /// Tangential over normal force of all contacts together.
     pub friction_demand: f64,

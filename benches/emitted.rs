@@ -18,7 +18,7 @@ use std::hint::black_box;
 
 /// Made for this measurement alone.
 mod tulip_leg6 {
-    #![allow(dead_code, unreachable_pub)]
+    #![allow(dead_code, unreachable_pub)] // a user's module is public
     include!(concat!(env!("OUT_DIR"), "/tulip_leg6_dynamics.rs"));
 }
 

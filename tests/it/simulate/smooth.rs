@@ -166,7 +166,7 @@ fn a_sampled_controller_sees_quantised_delayed_noise_from_its_seed() {
 
 /// A torque that saturates cannot lift what is heavier.
 #[test]
-fn saturation_and_overrides_are_felt() {
+fn overridden_gravity_is_felt() {
     let mut plant = plant_with("double_pendulum", &[("g", 0.0)]);
     let initial = State { qd: vec![1.0, 0.0], ..State::resting(vec![0.0, 0.0]) };
     let run = simulate(&mut plant, &Control::passive(2), &initial, &Simulation::default()).unwrap();

@@ -5,120 +5,95 @@
 //! docs/benchmarks.md: standing still, and marching on the spot.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use denavit::plants::{Plant, tulip};
+use denavit::simulate::Control;
 use denavit::simulate::contact::Space;
 use denavit::simulate::contact::gauss_seidel::SweepLimits;
 use denavit::simulate::time_stepping::{
-    Instant, Scheme, StepLaw, StepReport, StepSolver, Stepping, Terms, TimeStepper,
-    TimeSteppingModel,
+    ControlledPlant, Instant, Scheme, StepLaw, StepReport, StepSolver, Stepping, Terms,
+    TimeStepper, TimeSteppingModel,
 };
-use denavit::tulip;
+use denavit::trajectory::{Fourier, Part, Reference, Sequence};
+use std::f64::consts::TAU;
 
-const N: usize = tulip::DOF;
-const STEP_S: f64 = 1e-3;
+const N: usize = denavit::tulip::DOF;
 const STEPS: usize = 1000;
 
-/// TUlip under PD control; `lift` is the amplitude of marching [rad].
-struct Tulip {
-    parameters: tulip::Parameters<f64>,
-    posture: [f64; N],
-    lift: f64,
+/// Bent knees, soles on the ground.
+fn posture(plant: &mut dyn Plant) -> Vec<f64> {
+    let mut q = vec![0.0; N];
+    for leg in [6, 12] {
+        q[leg + 2] = -0.3;
+        q[leg + 3] = 0.6;
+        q[leg + 4] = -0.3;
+    }
+    let mut points = vec![0.0; 24];
+    plant.contact_positions(&q, &mut points);
+    q[0] -= points[2];
+    q
 }
 
-impl Tulip {
-    /// Bent knees, soles on the ground.
-    fn standing(lift: f64) -> Self {
-        let parameters = tulip::Parameters::new(&without_coulomb_friction());
-        let mut posture = [0.0; N];
-        for leg in [6, 12] {
-            posture[leg + 2] = -0.3;
-            posture[leg + 3] = 0.6;
-            posture[leg + 4] = -0.3;
+/// The legs are lifted in turn, half a second each, by half a period of a sine of this amplitude
+/// [rad].
+fn march(q: &[f64], lift: f64) -> Control {
+    let reference = |joint: usize| {
+        let share = [0.0, 0.0, -1.0, 2.0, -1.0, 0.0][joint.checked_sub(6)? % 6];
+        let bent = Fourier::new(TAU, q[joint], vec![lift * share], vec![0.0]).expect("a series");
+        let mut halves = [Reference::Fourier(bent), Reference::Constant(q[joint])];
+        if joint >= 12 {
+            halves.reverse();
         }
-        posture[0] -= tulip::contact_positions(&parameters, &posture)[0][2];
-        Self { parameters, posture, lift }
-    }
-
-    /// The legs are lifted in turn, half a second each.
-    fn reference(&self, joint: usize, t_s: f64) -> f64 {
-        let leg = if joint < 12 { 0.0 } else { 0.5 };
-        let phase = (t_s - leg).rem_euclid(1.0);
-        let bent = if phase < 0.5 { (std::f64::consts::TAU * phase).sin().max(0.0) } else { 0.0 };
-        let share = [0.0, 0.0, -1.0, 2.0, -1.0, 0.0][(joint - 6) % 6];
-        self.posture[joint] + self.lift * share * bent
-    }
+        let parts = halves.map(|reference| Part { duration_s: 0.5, reference });
+        Some(Reference::Sequence(Sequence::new(parts.into(), true).expect("two parts")))
+    };
+    Control::proportional((0..N).map(reference).collect(), 1500.0, 30.0)
 }
 
-impl TimeSteppingModel for Tulip {
+/// Marching without a plan falls: a soft gantry holds the torso, as in the peers' setting.
+struct OnGantry<'a> {
+    robot: ControlledPlant<'a>,
+    posture: Vec<f64>,
+    holds: bool,
+}
+
+impl TimeSteppingModel for OnGantry<'_> {
     fn dof(&self) -> usize {
-        N
+        self.robot.dof()
     }
 
     fn contacts(&self) -> usize {
-        8
+        self.robot.contacts()
     }
 
     fn space(&self) -> Space {
-        Space::Spatial
+        self.robot.space()
     }
 
     fn gaps(&mut self, q: &[f64], gaps: &mut [f64]) {
-        let points = tulip::contact_positions(&self.parameters, q.try_into().expect("n entries"));
-        for (gap, point) in gaps.iter_mut().zip(points) {
-            *gap = point[2];
-        }
+        self.robot.gaps(q, gaps);
     }
 
     fn terms(&mut self, at: Instant<'_>, closed: &[usize], terms: &mut Terms) {
-        let q = at.q.try_into().expect("n entries");
-        let qd = at.qd.try_into().expect("n entries");
-        let mass = tulip::mass_matrix(&self.parameters, q);
-        terms.mass.copy_from_slice(mass.as_flattened());
-        let bias = tulip::bias(&self.parameters, q, qd);
-        for joint in 0..N {
-            terms.force[joint] = -bias[joint];
-        }
-        // Marching without a plan falls: a soft gantry holds the torso, as in the peers' setting.
-        for joint in if self.lift > 0.0 { 1..6 } else { 0..0 } {
+        self.robot.terms(at, closed, terms);
+        for joint in if self.holds { 1..6 } else { 0..0 } {
             let error = self.posture[joint] - at.q[joint];
             terms.force[joint] += 500.0 * error - 50.0 * at.qd[joint];
-            terms.damping[joint * N + joint] = 50.0;
+            terms.damping[joint * N + joint] += 50.0;
         }
-        for joint in 6..N {
-            let error = self.reference(joint, at.t_s) - at.q[joint];
-            terms.force[joint] += 1500.0 * error - 30.0 * at.qd[joint];
-            terms.damping[joint * N + joint] = 30.0;
-        }
-        let rows = tulip::contact_jacobian(&self.parameters, q);
-        for (block, contact) in terms.jacobian.chunks_exact_mut(3 * N).zip(closed) {
-            block.copy_from_slice(rows[3 * contact..3 * contact + 3].as_flattened());
-        }
+    }
+
+    fn accept(&mut self, before: &[f64], after: &[f64], implicitness: f64) -> bool {
+        self.robot.accept(before, after, implicitness)
     }
 }
 
-/// The drives' Coulomb friction is a set-valued law, not a term of the equations of motion.
-fn without_coulomb_friction() -> tulip::ModelParameters<f64> {
-    tulip::ModelParameters {
-        fc_right_hip_z: 0.0,
-        fc_right_hip_x: 0.0,
-        fc_right_hip_y: 0.0,
-        fc_right_knee: 0.0,
-        fc_right_ankle_y: 0.0,
-        fc_left_hip_z: 0.0,
-        fc_left_hip_x: 0.0,
-        fc_left_hip_y: 0.0,
-        fc_left_knee: 0.0,
-        fc_left_ankle_y: 0.0,
-        ..tulip::ModelParameters::default()
-    }
-}
-
-/// State and stepper after the robot has settled.
-fn settled(robot: &mut Tulip, scheme: Scheme) -> (TimeStepper, [f64; N], [f64; N]) {
+/// Stepper and state after the robot has settled.
+fn settled(robot: &mut OnGantry<'_>, scheme: Scheme) -> (TimeStepper, Vec<f64>, Vec<f64>) {
     let laws = vec![StepLaw { friction: 1.0, restitution: 0.0 }; 8];
     let solver = StepSolver::Sweeps(SweepLimits { sweeps: 500, response: 1e-8 });
-    let stepping = Stepping { scheme, step_s: STEP_S, solver, laws };
-    let mut stepper = TimeStepper::new(stepping, robot);
-    let (mut q, mut qd) = (robot.posture, [0.0; N]);
+    let stepping = Stepping { scheme, solver, ..Stepping::default() };
+    let mut stepper = TimeStepper::new(stepping, laws, robot);
+    let (mut q, mut qd) = (robot.posture.clone(), vec![0.0; N]);
     for _ in 0..500 {
         stepper.step(robot, 0.0, &mut q, &mut qd).expect("a step");
     }
@@ -132,12 +107,16 @@ fn steps(criterion: &mut Criterion) {
         [("moreau", Scheme::MoreauMidpoint), ("anitescu", Scheme::Anitescu { reach_m: 0.01 })]
     {
         for (name, lift) in [("standing", 0.0), ("marching", 0.3)] {
-            let mut robot = Tulip::standing(lift);
+            let mut plant = tulip(&[]).expect("the generated plant");
+            let posture = posture(plant.as_mut());
+            let control = march(&posture, lift);
+            let robot = ControlledPlant::new(plant.as_mut(), &control);
+            let mut robot = OnGantry { robot, posture, holds: lift > 0.0 };
             let (stepper, q, qd) = settled(&mut robot, scheme);
             let mut second = |work: &mut dyn FnMut(StepReport)| {
-                let (mut stepper, mut q, mut qd) = (stepper.clone(), q, qd);
+                let (mut stepper, mut q, mut qd) = (stepper.clone(), q.clone(), qd.clone());
                 for step in 0..STEPS {
-                    let t_s = step as f64 * STEP_S;
+                    let t_s = step as f64 * 1e-3;
                     work(stepper.step(&mut robot, t_s, &mut q, &mut qd).expect("a step"));
                 }
             };

@@ -62,6 +62,7 @@ pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "sliding_block",
     "tulip_leg_tracking",
     "tulip_standing",
+    "tulip_step",
 ];
 
 /// The shipped model of that name.

@@ -4,6 +4,7 @@ mod checks;
 mod compiled;
 mod counts;
 mod decomposed;
+mod simulated;
 mod states;
 
 use super::Answer;
@@ -25,11 +26,12 @@ use denavit::model::Robot;
 use denavit::regressor::{Certificate, RegressorOptions, base_parameters};
 use denavit::report::{Align, Pose, Table, picture};
 use serde::Serialize;
+use simulated::Simulated;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Derive, emit, draw, find base parameters of and check the humanoid TUlip and the arm PUMA 560
+/// Derive, emit, draw, check and simulate the humanoid TUlip, the arm PUMA 560 and a biped
 ///
 /// Needs no file: the models are part of the command. Its functions were generated when it was
 /// built; they are run at random states against equations of motion that are derived in another
@@ -95,6 +97,7 @@ struct DemoJson<'a> {
     seed: u64,
     robots: &'a [Outcome],
     decomposed: &'a Decomposed,
+    simulated: &'a [Simulated],
     seconds: f64,
     passed: bool,
 }
@@ -118,18 +121,23 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         }
         outcomes.push(outcome);
     }
+    progress.show("simulating");
+    let simulated = Simulated::all(directory)?;
     drop(progress);
     let decomposed = Decomposed::new(directory)?;
     if !arguments.json {
         decomposed.write(out)?;
+        simulated::write_all(&simulated, out)?;
     }
     let checked = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
-    let passed = checked && outcomes.iter().all(|outcome| outcome.base.verified);
+    let walked = simulated.iter().all(Simulated::passed);
+    let passed = checked && walked && outcomes.iter().all(|outcome| outcome.base.verified);
     let seconds = started.elapsed().as_secs_f64();
     if arguments.json {
         let seed = arguments.seed;
-        let (robots, decomposed) = (&outcomes[..], &decomposed);
-        write_json(out, &DemoJson { version, seed, robots, decomposed, seconds, passed })?;
+        let (robots, decomposed, simulated) = (&outcomes[..], &decomposed, &simulated[..]);
+        let json = DemoJson { version, seed, robots, decomposed, simulated, seconds, passed };
+        write_json(out, &json)?;
     } else {
         let verdict = if passed { "all checks passed" } else { "A CHECK FAILED" };
         writeln!(out, "\n{verdict}; {seconds:.1} s")?;

@@ -4,9 +4,10 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::{load_beside, read_file, write_whole};
 use super::json::write_json;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
-use denavit::simulate::scenario::{self, Scenario};
+use denavit::simulate::scenario::{self, RunScheme, Scenario};
 use denavit::simulate::{Run, Stop};
 use serde_json::json as value;
 use std::io::Write;
@@ -16,10 +17,13 @@ use std::time::{Duration, Instant};
 /// Simulate a scenario: a robot, its start, its control, the ground
 ///
 /// Every run is audited: energy, momentum across impacts, penetration, complementarity, adhesion,
-/// and the zero moment point from forces against that from momentum. A run that breaks a tolerance,
-/// or that ends otherwise than at its end, exits with 1.
+/// friction cones, and the zero moment point from forces against that from momentum. A run that
+/// breaks a tolerance, or that ends otherwise than at its end, exits with 1.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  denavit simulate bouncing_ball -o ball.csv")]
+#[command(after_help = "\
+Examples:
+  denavit simulate bouncing_ball -o ball.csv
+  denavit simulate planar_biped_zmp_gait --scheme time-stepping --step 0.0005 -o gait.csv")]
 pub(crate) struct Arguments {
     /// The path of a scenario file, or the name of a shipped scenario
     #[arg(value_name = "SCENARIO")]
@@ -27,27 +31,97 @@ pub(crate) struct Arguments {
     /// Where the log goes, as CSV; - is standard output (and no summary)
     #[arg(short, long, value_name = "LOG")]
     output: Option<PathBuf>,
+    /// How the run is made, in place of what the scenario says
+    #[arg(long, value_enum)]
+    scheme: Option<SchemeName>,
+    /// The step of time stepping, in place of the scenario's
+    #[arg(long, value_name = "SECONDS", value_parser = step)]
+    step: Option<f64>,
+    /// Draw the run: figures, joints with references and torques, contact forces; - is standard
+    /// output
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// The part of the run that is drawn
+    #[arg(long, value_name = "FROM,TO", value_parser = window, requires = "svg")]
+    window: Option<[f64; 2]>,
     /// The summary as JSON
     #[arg(long)]
     json: bool,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SchemeName {
+    /// Smooth motion from event to event
+    Event,
+    /// Steps that take contacts, impacts and friction into account
+    TimeStepping,
+}
+
+fn window(text: &str) -> Result<[f64; 2], String> {
+    let numbers = text.split_once(',').and_then(|(from, to)| {
+        Some([from.trim().parse::<f64>().ok()?, to.trim().parse::<f64>().ok()?])
+    });
+    match numbers {
+        Some([from, to]) if from < to => Ok([from, to]),
+        _ => Err("two times in seconds, as 1.6,3.2".to_owned()),
+    }
+}
+
+fn step(text: &str) -> Result<f64, String> {
+    let step: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (1e-9..=1.0).contains(&step) { Ok(step) } else { Err("not from 1e-9 to 1 s".to_owned()) }
+}
+
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let mut scenario = open(&arguments.scenario)?;
+    match arguments.scheme {
+        Some(SchemeName::Event) => scenario.scheme = RunScheme::Event,
+        Some(SchemeName::TimeStepping) => scenario.scheme = RunScheme::TimeStepping,
+        None => {}
+    }
+    if let Some(step_s) = arguments.step {
+        scenario.set_step_s(step_s);
+    }
     let started = Instant::now();
     let run = scenario.run().map_err(|error| Failure::Start(shown(&arguments.scenario), error))?;
     let took = started.elapsed();
-    let broken = run.audit.broken(&scenario.tolerances);
+    let broken = scenario.broken(&run);
     if let Some(path) = &arguments.output {
         write_whole(path, run.log.to_csv().as_bytes())?;
     }
-    match (&arguments.output, arguments.json) {
-        (Some(path), _) if path.as_os_str() == "-" => {}
+    if let Some(path) = &arguments.svg {
+        let drawn = draw(&mut scenario, &run, arguments.window);
+        write_whole(path, drawn.as_bytes())?;
+    }
+    let is_out = |path: &Option<PathBuf>| path.as_ref().is_some_and(|p| p.as_os_str() == "-");
+    match (is_out(&arguments.output) || is_out(&arguments.svg), arguments.json) {
+        (true, _) => {}
         (_, true) => write_json(out, &summary(&scenario, &run, &broken))?,
         (_, false) => print(out, &scenario, &run, &broken, took)?,
     }
     let good = run.stop == Stop::End && broken.is_empty();
     Ok(if good { Answer::Done } else { Answer::Negative })
+}
+
+/// The picture of a run.
+pub(super) fn draw(scenario: &mut Scenario, run: &Run, window_s: Option<[f64; 2]>) -> String {
+    let title = scenario.name.replace('_', " ");
+    let subtitle = format!(
+        "{}, {}: {} at {:.3} s",
+        scenario.plant.model().name,
+        scheme_text(scenario),
+        run.stop,
+        run.end.t_s
+    );
+    let picture = RunPicture { title: &title, subtitle: &subtitle, log: &run.log, window_s };
+    run_picture(scenario.plant.as_mut(), &picture)
+}
+
+fn scheme_text(scenario: &Scenario) -> String {
+    match scenario.scheme {
+        RunScheme::Event => "from event to event".to_owned(),
+        RunScheme::TimeStepping => format!("by steps of {} s", scenario.stepping.step_s),
+    }
 }
 
 fn shown(path: &Path) -> String {
@@ -74,6 +148,7 @@ fn summary(
     value!({
         "scenario": scenario.name,
         "model": scenario.plant.model().name,
+        "scheme": scenario.scheme.word(),
         "stop": run.stop.word(),
         "message": run.stop.to_string(),
         "end_s": run.end.t_s,
@@ -89,7 +164,9 @@ fn summary(
             "complementarity_nm": audit.complementarity_nm,
             "adhesion_n": audit.adhesion_n,
             "separation_m_s": audit.separation_m_s,
+            "cone_n": audit.cone_n,
             "friction_demand": audit.friction_demand,
+            "friction_total": audit.friction_total,
             "zmp_m": audit.zmp_m,
             "zmp_margin_m": finite(audit.zmp_margin_m),
             "force_n": audit.force_n,
@@ -110,7 +187,8 @@ fn print(
     broken: &[(&'static str, f64, f64)],
     took: Duration,
 ) -> Result<(), Failure> {
-    writeln!(out, "{}: {} at {:.6} s", scenario.name, run.stop, run.end.t_s)?;
+    let scheme = scheme_text(scenario);
+    writeln!(out, "{}, {scheme}: {} at {:.6} s", scenario.name, run.stop, run.end.t_s)?;
     let simulated = run.end.t_s - scenario.initial.t_s;
     let speed = simulated / took.as_secs_f64().max(1e-9);
     let cost = &run.statistics;
@@ -133,6 +211,7 @@ fn print(
         ("speed of closed contacts [m/s]", audit.separation_m_s),
         ("forces against momentum [N]", audit.force_n),
         ("zero moment point against momentum [m]", audit.zmp_m),
+        ("friction beyond its cone [N]", audit.cone_n),
         ("friction demand", audit.friction_demand),
         ("largest torque [N m, N]", audit.torque),
     ];

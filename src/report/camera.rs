@@ -62,6 +62,11 @@ impl Camera {
         Self { right, up: cross(eye, right), eye, scale: 1.0, shift: [0.0; 2] }
     }
 
+    /// The camera that looks against the unit vector `eye`, at right angles to `up`; scale 1.
+    pub(super) fn from_eye(eye: Vec3, up: Vec3) -> Self {
+        Self { right: cross(up, eye), up, eye, scale: 1.0, shift: [0.0; 2] }
+    }
+
     /// How far apart the points are seen, each pair by the logarithm of its distance: what
     /// coincides counts most.
     fn spread(&self, points: &[Vec3]) -> f64 {

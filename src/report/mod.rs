@@ -3,6 +3,7 @@
 //! - [`Table`], [`paragraph`]: columns and lines of text
 //! - [`Values`]: the numbers behind a model's expressions
 //! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
+//! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
 //!
 //! Nothing here prints; text is handed to whoever does.
 
@@ -12,6 +13,7 @@ mod outline;
 mod paragraph;
 mod picture;
 mod pose;
+mod run;
 mod scene;
 mod space;
 mod svg;
@@ -21,5 +23,6 @@ mod values;
 pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
+pub use run::{RunPicture, run_picture};
 pub use table::{Align, Table};
 pub use values::{Values, short};

@@ -1,6 +1,6 @@
 //! Audits: laws of mechanics that a run must obey, measured on what it did.
 
-use super::ground::{cross, dot};
+use super::ground::{Ground, cross, dot};
 use super::motion::Motion;
 
 /// What a run may miss the laws by.
@@ -22,6 +22,39 @@ pub struct Tolerances {
     pub zmp_m: f64,
     /// Contact forces against the change of momentum \[N\].
     pub force_n: f64,
+    /// Tangential force beyond the friction cone of a contact \[N\].
+    pub cone_n: f64,
+}
+
+impl Tolerances {
+    /// Those of time stepping with steps of this length: in proportion to it, what a robot of
+    /// human size that walks or stumbles is off by.
+    pub fn of_steps(step_s: f64) -> Self {
+        Self {
+            energy_j: 50.0 * step_s,
+            momentum_ns: 100.0 * step_s,
+            penetration_m: 5.0 * step_s,
+            complementarity_nm: 1e3 * step_s,
+            adhesion_n: 1e-6,
+            separation_m_s: 1e-6,
+            zmp_m: 50.0 * step_s,
+            force_n: 1e4 * step_s,
+            cone_n: 1e-6,
+        }
+    }
+
+    /// For steps longer by this factor; what solvers miss stays.
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self {
+            energy_j: factor * self.energy_j,
+            momentum_ns: factor * self.momentum_ns,
+            penetration_m: factor * self.penetration_m,
+            complementarity_nm: factor * self.complementarity_nm,
+            zmp_m: factor * self.zmp_m,
+            force_n: factor * self.force_n,
+            ..self
+        }
+    }
 }
 
 impl Default for Tolerances {
@@ -35,6 +68,7 @@ impl Default for Tolerances {
             separation_m_s: 1e-6,
             zmp_m: 1e-7,
             force_n: 1e-6,
+            cone_n: 1e-6,
         }
     }
 }
@@ -67,6 +101,8 @@ pub struct Audit {
     pub zmp_m: f64,
     /// \[N\].
     pub force_n: f64,
+    /// Largest tangential force of a contact beyond its friction cone; 0 within all cones \[N\].
+    pub cone_n: f64,
     /// Distance of the zero moment point from the edge of the support polygon, the least in time;
     /// negative outside, infinite if never defined \[m\].
     pub zmp_margin_m: f64,
@@ -93,6 +129,7 @@ impl Audit {
             ("separation", self.separation_m_s, t.separation_m_s),
             ("zmp", self.zmp_m, t.zmp_m),
             ("force_balance", self.force_n, t.force_n),
+            ("friction_cone", self.cone_n, t.cone_n),
         ];
         // NaN breaks a law too
         checks.into_iter().filter(|(_, found, allowed)| found.is_nan() || found > allowed).collect()
@@ -140,22 +177,38 @@ pub(super) fn balance(motion: &mut Motion<'_>, y: &[f64]) -> Balance {
     let mut needed_moment = cross(arm, needed);
     add(&mut needed_moment, [rate[3], rate[4], rate[5]]);
     let error = (0..3).map(|axis| (force[axis] - needed[axis]).powi(2)).sum::<f64>().sqrt();
-    let point = |force: [f64; 3], moment: [f64; 3]| {
-        let size = dot(normal, &force);
-        let arm = cross(normal, moment);
-        std::array::from_fn(|axis| origin[axis] + arm[axis] / size)
-    };
     let normal_force = dot(normal, &force);
     // below a hundredth of the weight a moment has no point
     let weight = mass * dot(gravity, &gravity).sqrt();
     let loaded = normal_force > 0.01 * weight;
     let undefined = [f64::NAN; 3];
     Balance {
-        zmp: if loaded { point(force, moment) } else { undefined },
-        zmp_of_momentum: if loaded { point(needed, needed_moment) } else { undefined },
+        zmp: if loaded { point_of_moment(origin, normal, force, moment) } else { undefined },
+        zmp_of_momentum: if loaded {
+            point_of_moment(origin, normal, needed, needed_moment)
+        } else {
+            undefined
+        },
         force_error: error,
         normal_force,
     }
+}
+
+/// The point of the ground about which forces of this sum and of this moment about `origin` have no
+/// moment but about the normal.
+pub(super) fn point_of_moment(
+    origin: [f64; 3],
+    normal: [f64; 3],
+    force: [f64; 3],
+    moment: [f64; 3],
+) -> [f64; 3] {
+    let (size, arm) = (dot(normal, &force), cross(normal, moment));
+    std::array::from_fn(|axis| origin[axis] + arm[axis] / size)
+}
+
+/// The larger, or NaN: nothing hides behind a comparison.
+pub(super) fn worst(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
 }
 
 fn add(sum: &mut [f64; 3], term: [f64; 3]) {
@@ -181,16 +234,16 @@ fn momentum_rate(motion: &mut Motion<'_>, y: &[f64]) -> [f64; 6] {
 
 /// Distance of a point from the edge of the convex hull of others, seen along the normal; negative
 /// outside, and minus the distance for hulls without area.
-pub(super) fn support_margin(motion: &Motion<'_>, point: [f64; 3]) -> f64 {
-    let tangents = motion.ground.tangents();
+pub(super) fn support_margin<'a>(
+    ground: &Ground,
+    corners: impl Iterator<Item = &'a [f64]>,
+    point: [f64; 3],
+) -> f64 {
+    let tangents = ground.tangents();
     let flat = |position: &[f64]| tangents.map(|tangent| dot(tangent, position));
     let at = flat(&point);
-    let corners: Vec<[f64; 2]> = motion
-        .closed
-        .iter()
-        .map(|c| flat(&motion.work.positions[3 * c.contact..3 * c.contact + 3]))
-        .collect();
-    if motion.ground.rows() == 2 {
+    let corners: Vec<[f64; 2]> = corners.map(flat).collect();
+    if ground.rows() == 2 {
         let ends = |pick: fn(f64, f64) -> f64, start: f64| {
             corners.iter().fold(start, |sum, corner| pick(sum, corner[0]))
         };
@@ -221,9 +274,20 @@ fn hull_margin(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
     if edges >= 3 { margin } else { -nearest(corners, at) }
 }
 
+/// Distance from the nearest of the lines between corners.
 fn nearest(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
-    let distance = |corner: &[f64; 2]| (corner[0] - at[0]).hypot(corner[1] - at[1]);
-    corners.iter().map(distance).fold(f64::INFINITY, f64::min)
+    let mut least = f64::INFINITY;
+    for (i, a) in corners.iter().enumerate() {
+        for b in &corners[i..] {
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let (square, arm) = (along[0].powi(2) + along[1].powi(2), [at[0] - a[0], at[1] - a[1]]);
+            let share = (arm[0] * along[0] + arm[1] * along[1]) / square.max(1e-18);
+            let share = share.clamp(0.0, 1.0);
+            let apart = [arm[0] - share * along[0], arm[1] - share * along[1]];
+            least = least.min(apart[0].hypot(apart[1]));
+        }
+    }
+    least
 }
 
 #[cfg(test)]
@@ -235,5 +299,8 @@ mod tests {
         let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]];
         assert!((hull_margin(&square, [0.5, 1.0]) - 0.5).abs() < 1e-15);
         assert!((hull_margin(&square, [1.0, 2.25]) + 0.25).abs() < 1e-15);
+        // on an edge that two points alone support
+        assert_eq!(hull_margin(&square[..2], [0.7, 0.0]), 0.0);
+        assert_eq!(hull_margin(&square[..2], [3.0, 0.0]), -1.0);
     }
 }

@@ -86,6 +86,35 @@ impl Control {
         self.joints.iter().filter_map(followed).reduce(f64::min)
     }
 
+    /// Torque per rate that feedback of the measured rate makes: none where the command is at its
+    /// limit, and none of computed torque, whose gains are accelerations.
+    pub(super) fn rate_gain(
+        &self,
+        model: &PlantModel,
+        joint: usize,
+        t_s: f64,
+        command: f64,
+    ) -> f64 {
+        let law = &self.joints[joint];
+        let is_feedback = law.reference.is_some()
+            && model.joints[joint].drivable
+            && self.compensation != Compensation::ComputedTorque;
+        let limited = self.limits(model, joint).is_some_and(|[low, high]| {
+            // the command has been cut
+            command <= low || command >= high
+        });
+        if !is_feedback || limited {
+            return 0.0;
+        }
+        law.gain_factor.as_ref().map_or(1.0, |factor| factor.at(t_s).position) * law.damping
+    }
+
+    /// The torques at which commands of a joint are cut.
+    pub(super) fn limits(&self, model: &PlantModel, joint: usize) -> Option<[f64; 2]> {
+        let limits = model.joints[joint].torque_limits.filter(|_| self.saturates);
+        limits.map(|[low, high]| [low, high.max(low)])
+    }
+
     /// Commanded torques, joint side [N m, N].
     pub(super) fn command(
         &self,
@@ -142,8 +171,8 @@ impl Control {
                 continue;
             }
             *entry += joint.feed_forward.as_ref().map_or(0.0, |torque| torque.at(t_s).position);
-            if let (true, Some([low, high])) = (self.saturates, model.joints[index].torque_limits) {
-                *entry = entry.clamp(low, high.max(low));
+            if let Some([low, high]) = self.limits(model, index) {
+                *entry = entry.clamp(low, high);
             }
         }
     }

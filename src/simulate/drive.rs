@@ -129,6 +129,43 @@ impl Drives {
         output.power = [power, lost];
     }
 
+    /// Friction of each joint, then of each elastic motor, as a factor of its rate: the torque that
+    /// friction takes is factor times rate. Coulomb friction has the slope of its secant, so that
+    /// taken implicitly it stops a motion and never turns it round.
+    pub(super) fn friction_factors(
+        &self,
+        model: &PlantModel,
+        parts: Parts<'_>,
+        factors: &mut Vec<f64>,
+    ) {
+        factors.clear();
+        let rubs = self.modelling == DriveModelling::Model;
+        for (joint, rate) in model.joints.iter().zip(parts.qd) {
+            let coulomb = if rubs { joint.coulomb } else { 0.0 };
+            factors.push(joint.viscous + secant(coulomb, *rate, STICTION_RATE));
+        }
+        for (index, &joint) in self.elastic.iter().enumerate() {
+            let drive = model.joints[joint].drive;
+            factors.push(drive.map_or(0.0, |drive| {
+                let reference = STICTION_RATE * drive.gear_ratio.abs();
+                drive.viscous + secant(drive.coulomb, parts.motor_rate[index], reference)
+            }));
+        }
+    }
+
+    /// What a joint's rate and commanded torque are at its elastic motor: the motor's number, and
+    /// joint rate per motor rate (and motor torque per joint torque) for a relaxed spring.
+    pub(super) fn motor_of(&self, model: &PlantModel, joint: usize) -> Option<(usize, f64)> {
+        let index = self.elastic.iter().position(|elastic| *elastic == joint)?;
+        let (drive, elastic) = elastic_drive(model, joint)?;
+        Some((index, elastic.motor_radius / (elastic.load_radius * drive.gear_ratio)))
+    }
+
+    /// Inertia of the rotor of an elastic motor [kg m^2].
+    pub(super) fn rotor_inertia(&self, model: &PlantModel, index: usize) -> f64 {
+        model.joints[self.elastic[index]].drive.map_or(0.0, |drive| drive.rotor_inertia)
+    }
+
     /// Energy of springs and rotors of the series elastic drives \[J\].
     pub(super) fn energy(&self, model: &PlantModel, parts: Parts<'_>) -> f64 {
         let one = |(index, joint): (usize, &usize)| {
@@ -141,6 +178,17 @@ impl Drives {
         };
         self.elastic.iter().enumerate().map(one).sum()
     }
+}
+
+/// Coulomb friction, a steep line below the reference rate, over the rate.
+fn secant(coulomb: f64, rate: f64, reference: f64) -> f64 {
+    if coulomb == 0.0 {
+        return 0.0;
+    }
+    let share = rate / reference;
+    // below the root of the precision the hyperbolic tangent is its argument
+    let slope = if share.abs() < 1e-8 { 1.0 } else { share.hyperbolic_tangent() / share };
+    coulomb * slope / reference
 }
 
 fn elastic_drive(

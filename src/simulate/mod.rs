@@ -3,10 +3,12 @@
 //! - [`simulate`]: smooth motion from event to event, with contacts, impacts and controllers
 //! - [`scenario`]: files that say what is simulated
 //! - [`contact`]: forces and impulses of contacts and their modes, decided by complementarity
+//! - [`constraint_drift`]: how far joints come apart where they are explicit constraints
 //! - [`time_stepping`]: the schemes that take contacts into account over whole steps
 
 mod audit;
 mod breakdown;
+pub mod constraint_drift;
 pub mod contact;
 mod control;
 mod drive;
@@ -28,7 +30,7 @@ pub use audit::{Audit, Tolerances};
 pub use breakdown::{Breakdown, Stop};
 pub use control::{Compensation, Control, Feedback, JointControl};
 pub use drive::DriveModelling;
-pub use log::Log;
+pub use log::{Log, LogError, LogFault};
 pub use measure::{Measurement, Random};
 pub use run::{Event, EventKind, Run, Simulation, simulate};
 pub use settle::{Scuffing, Touching};

@@ -1,10 +1,12 @@
 //! Writes a run down: rows of the log, and the worst of every audit.
 
-use super::audit::{Audit, balance, support_margin};
+use super::audit::{Audit, balance, support_margin, worst};
 use super::breakdown::Breakdown;
-use super::contact::Mode;
+use super::contact::{Friction, Mode};
+use super::control::Control;
 use super::log::Log;
 use super::motion::Motion;
+use crate::plants::PlantModel;
 
 /// Log and audit of a run.
 #[derive(Clone, Debug)]
@@ -23,7 +25,7 @@ impl Recorder {
     pub(super) fn new(motion: &mut Motion<'_>, y: &[f64]) -> Self {
         let start_energy = motion.energy(y);
         let model = motion.plant.model();
-        let columns = columns(motion);
+        let columns = columns(model, motion.control, &motion.drives.elastic);
         Self {
             log: Log { columns, ..Log::default() },
             audit: Audit::new(),
@@ -74,7 +76,11 @@ impl Recorder {
                 let apart = |axis: usize| balance.zmp[axis] - balance.zmp_of_momentum[axis];
                 let distance = (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>().sqrt();
                 audit.zmp_m = worst(audit.zmp_m, distance);
-                audit.zmp_margin_m = audit.zmp_margin_m.min(support_margin(motion, balance.zmp));
+                let points = &motion.work.positions;
+                let corners =
+                    motion.closed.iter().map(|c| &points[3 * c.contact..3 * c.contact + 3]);
+                let margin = support_margin(&motion.ground, corners, balance.zmp);
+                audit.zmp_margin_m = audit.zmp_margin_m.min(margin);
             }
         }
         if writes {
@@ -97,6 +103,10 @@ impl Recorder {
             audit.separation_m_s = worst(audit.separation_m_s, work.velocity[normal].abs());
             let product = (force * motion.gap(closed.contact)).abs();
             audit.complementarity_nm = worst(audit.complementarity_nm, product);
+            if let Friction::Coulomb(mu) = motion.friction[closed.contact] {
+                let along = work.force[index * rows..normal].iter().map(|f| f * f).sum::<f64>();
+                audit.cone_n = worst(audit.cone_n, along.sqrt() - mu * force);
+            }
         }
         // of the forces on one link together: redundant ones are shared out arbitrarily
         let weight = model.mass_kg * model.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
@@ -164,13 +174,8 @@ impl Recorder {
     }
 }
 
-/// The larger, or NaN: nothing hides behind a comparison.
-fn worst(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b > a { b } else { a }
-}
-
-fn columns(motion: &Motion<'_>) -> Vec<String> {
-    let model = motion.plant.model();
+/// The columns of a log; `elastic` lists the joints with a motor of their own.
+pub(super) fn columns(model: &PlantModel, control: &Control, elastic: &[usize]) -> Vec<String> {
     let names = |prefix: &str| {
         model.joints.iter().map(move |joint| format!("{prefix}_{}", joint.name)).collect::<Vec<_>>()
     };
@@ -178,14 +183,13 @@ fn columns(motion: &Motion<'_>) -> Vec<String> {
     columns.extend(names("q"));
     columns.extend(names("qd"));
     for (joint, name) in names("ref").into_iter().enumerate() {
-        if motion.control.joints[joint].reference.is_some() {
+        if control.joints[joint].reference.is_some() {
             columns.push(name);
         }
     }
     columns.extend(names("tau"));
     columns.extend(names("tau_cmd"));
-    let motors = &motion.drives.elastic;
-    columns.extend(motors.iter().map(|joint| format!("motor_{}", model.joints[*joint].name)));
+    columns.extend(elastic.iter().map(|joint| format!("motor_{}", model.joints[*joint].name)));
     for contact in &model.contacts {
         columns.extend(["x", "y", "z"].map(|axis| format!("f_{}_{axis}", contact.name)));
     }

@@ -3,6 +3,7 @@
 use super::breakdown::Breakdown;
 use super::control::Control;
 use super::drive::Drives;
+use super::ground::Ground;
 use super::run::Simulation;
 use super::state::State;
 use crate::plants::Plant;
@@ -17,6 +18,10 @@ pub enum StartError {
     Number(&'static str),
     /// A contact point starts below the ground: its name and depth \[m\].
     Penetration(String, f64),
+    /// What the event-driven scheme alone can do.
+    EventSchemeOnly(&'static str),
+    /// What Moreau's scheme alone can do.
+    MoreauOnly(&'static str),
     /// The equations of motion have no answer at the start.
     Breakdown(Breakdown),
 }
@@ -30,6 +35,12 @@ impl fmt::Display for StartError {
             Self::Number(what) => write!(f, "{what} is not a usable number"),
             Self::Penetration(contact, depth) => {
                 write!(f, "`{contact}` starts {depth:.3e} m below the ground")
+            }
+            Self::EventSchemeOnly(what) => {
+                write!(f, "{what}: only the event-driven scheme has them")
+            }
+            Self::MoreauOnly(what) => {
+                write!(f, "{what}: Anitescu's scheme constrains gaps and has none")
             }
             Self::Breakdown(breakdown) => write!(f, "at the start: {breakdown}"),
         }
@@ -78,6 +89,23 @@ pub(super) fn check(
     }
     if !(simulation.end_s >= state.t_s && simulation.end_s.is_finite()) {
         return Err(StartError::Number("the end of the run"));
+    }
+    Ok(())
+}
+
+/// A contact point this far below the ground at the start is a fault \[m\].
+const DEPTH_M: f64 = 1e-6;
+
+/// Checks that no contact point starts below the ground.
+pub(super) fn check_gaps(plant: &mut dyn Plant, q: &[f64]) -> Result<(), StartError> {
+    let ground = Ground::new(plant.model());
+    let mut positions = vec![0.0; 3 * plant.model().contacts.len()];
+    plant.contact_positions(q, &mut positions);
+    for (contact, position) in plant.model().contacts.iter().zip(positions.chunks_exact(3)) {
+        let depth = -ground.gap(position);
+        if depth > DEPTH_M {
+            return Err(StartError::Penetration(contact.name.clone(), depth));
+        }
     }
     Ok(())
 }

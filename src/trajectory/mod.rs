@@ -8,6 +8,7 @@ mod error;
 mod fourier;
 mod polynomial;
 mod profile;
+mod samples;
 mod sequence;
 mod spline;
 
@@ -16,8 +17,9 @@ pub use error::TrajectoryError;
 pub use fourier::Fourier;
 pub use polynomial::Polynomial;
 pub use profile::CosineProfile;
+pub use samples::{Between, Samples};
 pub use sequence::{Part, Sequence};
-pub use spline::{CubicSpline, EndCondition, QuinticSpline};
+pub use spline::{CubicSpline, EndCondition, QuinticSpline, Spline};
 
 /// Position, rate and acceleration at one time [rad, m; per s; per s^2].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,7 +43,7 @@ impl Setpoint {
 pub enum Reference {
     /// One position for ever.
     Constant(f64),
-    /// Piecewise cubic, two derivatives continuous. A log is one, through its samples.
+    /// Piecewise cubic, two derivatives continuous. A log may be one, through its samples.
     Cubic(CubicSpline),
     /// Piecewise quintic with given rates and accelerations.
     Quintic(QuinticSpline),
@@ -53,6 +55,8 @@ pub enum Reference {
     Fourier(Fourier),
     /// A polynomial in time.
     Polynomial(Polynomial),
+    /// Samples, held or joined by lines: a log.
+    Samples(Samples),
     /// References one after the other, perhaps again and again.
     Sequence(Sequence),
 }
@@ -68,6 +72,7 @@ impl Reference {
             Self::Bezier(bezier) => bezier.at(t_s),
             Self::Fourier(series) => series.at(t_s),
             Self::Polynomial(polynomial) => polynomial.at(t_s),
+            Self::Samples(samples) => samples.at(t_s),
             Self::Sequence(sequence) => sequence.at(t_s),
         }
     }
@@ -81,6 +86,7 @@ impl Reference {
             Self::Quintic(spline) => ends(spline.range()),
             Self::Cosine(profile) => ends(profile.range()),
             Self::Bezier(bezier) => ends(bezier.range()),
+            Self::Samples(samples) => samples.next_break(t_s),
             Self::Sequence(sequence) => sequence.next_break(t_s),
         }
     }

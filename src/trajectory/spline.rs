@@ -13,13 +13,37 @@ pub enum EndCondition {
     Rate(f64),
 }
 
-/// Piecewise cubic through given values, rate and acceleration continuous inside.
+/// A polynomial of N coefficients for each interval between two knots; rests outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CubicSpline {
+pub struct Spline<const N: usize> {
     times: Vec<f64>,
     values: Vec<f64>,
     /// For each interval the coefficients of powers of the time since its start.
-    pieces: Vec<[f64; 4]>,
+    pieces: Vec<[f64; N]>,
+}
+
+/// Piecewise cubic through given values, rate and acceleration continuous inside.
+pub type CubicSpline = Spline<4>;
+
+/// Piecewise quintic with given values, rates and accelerations at its knots.
+pub type QuinticSpline = Spline<6>;
+
+impl<const N: usize> Spline<N> {
+    pub(super) fn range(&self) -> [f64; 2] {
+        [self.times[0], self.times[self.times.len() - 1]]
+    }
+
+    pub(super) fn at(&self, t_s: f64) -> Setpoint {
+        let last = self.times.len() - 1;
+        if t_s < self.times[0] {
+            return Setpoint::resting(self.values[0]);
+        }
+        if t_s > self.times[last] {
+            return Setpoint::resting(self.values[last]);
+        }
+        let i = (self.times.partition_point(|time| *time <= t_s) - 1).min(last - 1);
+        horner(&self.pieces[i], t_s - self.times[i])
+    }
 }
 
 impl CubicSpline {
@@ -49,26 +73,6 @@ impl CubicSpline {
         let pieces = pieces.collect();
         Ok(Self { times, values, pieces })
     }
-
-    pub(super) fn range(&self) -> [f64; 2] {
-        [self.times[0], self.times[self.times.len() - 1]]
-    }
-
-    pub(super) fn at(&self, t_s: f64) -> Setpoint {
-        match interval(&self.times, t_s) {
-            Interval::Before => Setpoint::resting(self.values[0]),
-            Interval::After => Setpoint::resting(self.values[self.values.len() - 1]),
-            Interval::Inside(i) => horner(&self.pieces[i], t_s - self.times[i]),
-        }
-    }
-}
-
-/// Piecewise quintic with given values, rates and accelerations at its knots.
-#[derive(Clone, Debug, PartialEq)]
-pub struct QuinticSpline {
-    times: Vec<f64>,
-    values: Vec<f64>,
-    pieces: Vec<[f64; 6]>,
 }
 
 impl QuinticSpline {
@@ -105,35 +109,6 @@ impl QuinticSpline {
         });
         let pieces = pieces.collect();
         Ok(Self { times, values, pieces })
-    }
-
-    pub(super) fn range(&self) -> [f64; 2] {
-        [self.times[0], self.times[self.times.len() - 1]]
-    }
-
-    pub(super) fn at(&self, t_s: f64) -> Setpoint {
-        match interval(&self.times, t_s) {
-            Interval::Before => Setpoint::resting(self.values[0]),
-            Interval::After => Setpoint::resting(self.values[self.values.len() - 1]),
-            Interval::Inside(i) => horner(&self.pieces[i], t_s - self.times[i]),
-        }
-    }
-}
-
-enum Interval {
-    Before,
-    Inside(usize),
-    After,
-}
-
-fn interval(times: &[f64], t_s: f64) -> Interval {
-    let last = times.len() - 1;
-    if t_s < times[0] {
-        Interval::Before
-    } else if t_s > times[last] {
-        Interval::After
-    } else {
-        Interval::Inside((times.partition_point(|time| *time <= t_s) - 1).min(last - 1))
     }
 }
 

@@ -6,6 +6,7 @@ mod decompose;
 mod errors;
 mod help;
 mod readme;
+mod simulate;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -18,6 +18,12 @@ pub struct SweepLimits {
     pub response: f64,
 }
 
+impl Default for SweepLimits {
+    fn default() -> Self {
+        Self { sweeps: 500, response: 1e-10 }
+    }
+}
+
 /// How the sweeps ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepReport {

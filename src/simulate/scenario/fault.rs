@@ -1,7 +1,10 @@
 //! What can be wrong with a scenario: where, why, and what to do about it.
 
 use crate::plants::PlantError;
+use crate::simulate::log::LogError;
+use crate::simulate::start::StartError;
 use crate::trajectory::TrajectoryError;
+use crate::walk::weight_shift_step::GaitError;
 use std::fmt;
 
 /// What is wrong at a place.
@@ -33,6 +36,22 @@ pub enum Cause {
     Negative,
     /// A number that must not exceed 1.
     AboveOne,
+    /// More rows of the log than there may be; holds the most.
+    TooManyRows(f64),
+    /// A log is wrong.
+    Log(LogError),
+    /// A log has no such column; holds it and the one that was meant, perhaps.
+    UnknownColumn(String, Option<String>),
+    /// A column of a log has an empty cell; holds it and the line.
+    EmptyCell(String, usize),
+    /// The gait cannot be planned.
+    Gait(GaitError),
+    /// The run cannot begin.
+    Start(StartError),
+    /// The mass matrix is singular at the start, at this joint.
+    Singular(String),
+    /// The torque on this joint is not finite at the start.
+    TorqueNotFinite(String),
     /// A file that cannot be read; holds its name and the reason.
     File(String, String),
     /// The numbers make no reference.
@@ -65,6 +84,22 @@ impl fmt::Display for Cause {
             Self::NotPositive => write!(f, "the number must be positive"),
             Self::Negative => write!(f, "the number must not be negative"),
             Self::AboveOne => write!(f, "the number must not exceed 1"),
+            Self::TooManyRows(most) => {
+                write!(f, "the log would have more than {most} rows")
+            }
+            Self::Log(error) => write!(f, "{error}"),
+            Self::UnknownColumn(name, _) => write!(f, "the log has no column `{name}`"),
+            Self::EmptyCell(column, line) => {
+                write!(f, "the column `{column}` has no number in line {line} of the log")
+            }
+            Self::Gait(error) => write!(f, "{error}"),
+            Self::Start(error) => write!(f, "{error}"),
+            Self::Singular(joint) => {
+                write!(f, "the mass matrix is singular at `{joint}`: it moves no mass")
+            }
+            Self::TorqueNotFinite(joint) => {
+                write!(f, "the torque on `{joint}` is not a finite number at the start")
+            }
             Self::File(file, reason) => write!(f, "{file}: cannot be read: {reason}"),
             Self::Reference(error) => write!(f, "{error}"),
             Self::Plant(error) => write!(f, "{error}"),
@@ -81,6 +116,26 @@ impl Cause {
             Self::UnknownKey(_, Some(nearest), _) => Some(format!("`{nearest}` is meant, perhaps")),
             Self::UnknownKey(_, None, known) => Some(format!("keys are {}", known.join(", "))),
             Self::UnknownWord(_, known) => Some(format!("words are {}", known.join(", "))),
+            Self::TooManyRows(_) => Some("write a row less often: `log_period_s`".to_owned()),
+            Self::Log(_) => {
+                Some("a log is a table with a column `t` (docs/scenario.md)".to_owned())
+            }
+            Self::UnknownColumn(_, Some(near)) => Some(format!("`{near}` is meant, perhaps")),
+            Self::EmptyCell(..) => Some("fill the gap, or cut the log before it".to_owned()),
+            Self::Gait(GaitError::Posture { .. }) => {
+                Some("a shorter or lower step, or a more bent knee, may be within reach".to_owned())
+            }
+            Self::Gait(GaitError::Missing(_)) => Some("this gait is TUlip's".to_owned()),
+            Self::Gait(_) => Some("`phases_s` are four times that increase".to_owned()),
+            Self::Start(StartError::Penetration(..)) => {
+                Some("raise the robot, or give `on_ground` in `initial`".to_owned())
+            }
+            Self::Singular(_) => {
+                Some("give the link a mass and inertia, or start in another position".to_owned())
+            }
+            Self::TorqueNotFinite(_) => {
+                Some("gains times errors, or a reference, exceed what a number holds".to_owned())
+            }
             Self::UnknownJoint(_, Some(nearest)) => Some(format!("`{nearest}` is meant, perhaps")),
             Self::Undrivable(_) => Some("control the joints between links".to_owned()),
             Self::NoPlacing => Some("give the position itself, without `on_ground`".to_owned()),

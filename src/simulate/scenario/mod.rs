@@ -4,11 +4,14 @@
 //! `denavit schema scenario` prints. All faults of a file are found in one run.
 
 mod fault;
+mod gait;
 mod options;
 mod place;
 mod read;
 mod reader;
 mod reference;
+mod start;
+mod stepping;
 
 pub use fault::{Cause, Fault, ScenarioError};
 pub use read::{Loader, read};
@@ -18,6 +21,7 @@ use super::control::Control;
 use super::run::{Run, Simulation, simulate};
 use super::start::StartError;
 use super::state::State;
+use super::time_stepping::{Scheme, Stepping, simulate_by_steps};
 use crate::plants::Plant;
 
 /// The tag of a scenario file.
@@ -26,6 +30,29 @@ pub const FORMAT: &str = "denavit-scenario/1";
 /// The JSON Schema (draft 2020-12) of a scenario file: its form, not its content.
 pub fn schema() -> &'static str {
     include_str!("schema.json")
+}
+
+/// The scheme that makes a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RunScheme {
+    /// Smooth motion from event to event.
+    #[default]
+    Event,
+    /// Steps that take contacts into account.
+    TimeStepping,
+}
+
+impl RunScheme {
+    /// What files and logs call them, in the order of the enum.
+    pub const WORDS: [&'static str; 2] = ["event", "time_stepping"];
+
+    /// What files and logs call it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Event => Self::WORDS[0],
+            Self::TimeStepping => Self::WORDS[1],
+        }
+    }
 }
 
 /// A scenario, ready to run.
@@ -42,38 +69,81 @@ pub struct Scenario {
     pub initial: State,
     /// How it is simulated.
     pub simulation: Simulation,
-    /// What the audits may miss.
+    /// What the audits of the event-driven scheme may miss.
     pub tolerances: Tolerances,
+    /// The scheme that makes the run.
+    pub scheme: RunScheme,
+    /// How steps are made.
+    pub stepping: Stepping,
+    /// What the audits of time stepping may miss.
+    pub stepping_tolerances: Tolerances,
 }
 
 impl Scenario {
-    /// Runs it by the event-driven scheme; the log's header says what it was made of.
+    /// Runs it by its scheme; the log's header says what it was made of.
     pub fn run(&mut self) -> Result<Run, StartError> {
-        let mut run =
-            simulate(self.plant.as_mut(), &self.control, &self.initial, &self.simulation)?;
+        let plant = self.plant.as_mut();
+        let mut run = match self.scheme {
+            RunScheme::Event => simulate(plant, &self.control, &self.initial, &self.simulation)?,
+            RunScheme::TimeStepping => simulate_by_steps(
+                plant,
+                &self.control,
+                &self.initial,
+                &self.simulation,
+                &self.stepping,
+            )?,
+        };
+        run.log.header = self.header(&run);
+        Ok(run)
+    }
+
+    /// Changes the step of time stepping \[s\], and in proportion to it what its audits may miss.
+    pub fn set_step_s(&mut self, step_s: f64) {
+        self.stepping_tolerances = self.stepping_tolerances.scaled(step_s / self.stepping.step_s);
+        self.stepping.step_s = step_s;
+    }
+
+    /// The laws that a run of this scenario missed by more than is tolerated: name, by how much,
+    /// tolerance.
+    pub fn broken(&self, run: &Run) -> Vec<(&'static str, f64, f64)> {
+        run.audit.broken(match self.scheme {
+            RunScheme::Event => &self.tolerances,
+            RunScheme::TimeStepping => &self.stepping_tolerances,
+        })
+    }
+
+    fn header(&self, run: &Run) -> Vec<(String, String)> {
         let model = self.plant.model();
-        run.log.header = vec![
-            ("denavit".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-            ("scenario".to_owned(), self.name.clone()),
-            ("model".to_owned(), model.name.clone()),
-            ("model_hash".to_owned(), format!("{:016x}", model.hash)),
-            ("seed".to_owned(), self.simulation.seed.to_string()),
-            ("scheme".to_owned(), "event".to_owned()),
-            ("stop".to_owned(), run.stop.word().to_owned()),
+        let mut header = vec![
+            ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
+            ("scenario", self.name.clone()),
+            ("model", model.name.clone()),
+            ("model_hash", format!("{:016x}", model.hash)),
+            ("seed", self.simulation.seed.to_string()),
+            ("scheme", self.scheme.word().to_owned()),
         ];
+        if self.scheme == RunScheme::TimeStepping {
+            let method = match self.stepping.scheme {
+                Scheme::MoreauMidpoint => "moreau",
+                Scheme::Anitescu { .. } => "anitescu",
+            };
+            header.push(("method", method.to_owned()));
+            header.push(("step_s", format!("{:e}", self.stepping.step_s)));
+        }
+        header.push(("stop", run.stop.word().to_owned()));
         let audit = &run.audit;
         let figures = [
-            ("energy_j", audit.energy_j),
-            ("momentum_ns", audit.momentum_ns),
-            ("penetration_m", audit.penetration_m),
-            ("complementarity_nm", audit.complementarity_nm),
-            ("adhesion_n", audit.adhesion_n),
-            ("zmp_m", audit.zmp_m),
-            ("force_n", audit.force_n),
-            ("friction_demand", audit.friction_demand),
+            ("audit_energy_j", audit.energy_j),
+            ("audit_momentum_ns", audit.momentum_ns),
+            ("audit_penetration_m", audit.penetration_m),
+            ("audit_complementarity_nm", audit.complementarity_nm),
+            ("audit_adhesion_n", audit.adhesion_n),
+            ("audit_zmp_m", audit.zmp_m),
+            ("audit_force_n", audit.force_n),
+            ("audit_cone_n", audit.cone_n),
+            ("audit_friction_demand", audit.friction_demand),
         ];
-        let lines = figures.map(|(name, value)| (format!("audit_{name}"), format!("{value:e}")));
-        run.log.header.extend(lines);
-        Ok(run)
+        header.extend(figures.map(|(name, value)| (name, format!("{value:e}"))));
+        header.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 }

@@ -10,11 +10,17 @@ use crate::simulate::measure::Measurement;
 use crate::simulate::run::Simulation;
 use crate::simulate::settle::Scuffing;
 
+/// A log with more rows would not fit into memory.
+const MAX_ROWS: f64 = 1e6;
+
 pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation {
     let mut simulation = Simulation::default();
     fields.require("duration_s", report);
     simulation.end_s = fields.not_negative("duration_s", 0.0, report);
     simulation.log_period_s = fields.positive("log_period_s", simulation.log_period_s, report);
+    if simulation.end_s / simulation.log_period_s > MAX_ROWS {
+        report.push(&format!("{}/log_period_s", fields.pointer), Cause::TooManyRows(MAX_ROWS));
+    }
     simulation.seed = fields.count("seed", 0, report) as u64;
     if let Some(drives) = fields.get("drives") {
         let meanings = [DriveModelling::Ideal, DriveModelling::Model];
@@ -99,10 +105,7 @@ fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report
             word.unwrap_or(Friction::NoSlip)
         };
     }
-    touching.restitution = given.not_negative("restitution", 0.0, report);
-    if touching.restitution > 1.0 {
-        report.push(&format!("{}/restitution", given.pointer), Cause::AboveOne);
-    }
+    touching.restitution = given.share("restitution", 0.0, report);
     touching.rest_speed = given.not_negative("rest_speed_m_s", touching.rest_speed, report);
     if given.get("fallback_friction").is_some() {
         touching.fallback_friction = Some(given.positive("fallback_friction", 1.0, report));
@@ -115,8 +118,13 @@ fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report
     simulation.drift_rate = given.not_negative("drift_rate_per_s", simulation.drift_rate, report);
 }
 
-pub(super) fn tolerances(fields: &Fields<'_>, report: &mut Report) -> Tolerances {
-    let mut tolerances = Tolerances::default();
+/// What audits may miss, by the object under `tolerances`.
+pub(super) fn tolerances(
+    fields: &Fields<'_>,
+    absent: Tolerances,
+    report: &mut Report,
+) -> Tolerances {
+    let mut tolerances = absent;
     let known = &[
         "energy_j",
         "momentum_ns",
@@ -126,12 +134,13 @@ pub(super) fn tolerances(fields: &Fields<'_>, report: &mut Report) -> Tolerances
         "separation_m_s",
         "zmp_m",
         "force_n",
+        "cone_n",
     ];
     let Some(given) = fields.get("tolerances").and_then(|node| node.fields(known, report)) else {
         return tolerances;
     };
     let t = &mut tolerances;
-    let entries: [&mut f64; 8] = [
+    let entries: [&mut f64; 9] = [
         &mut t.energy_j,
         &mut t.momentum_ns,
         &mut t.penetration_m,
@@ -140,6 +149,7 @@ pub(super) fn tolerances(fields: &Fields<'_>, report: &mut Report) -> Tolerances
         &mut t.separation_m_s,
         &mut t.zmp_m,
         &mut t.force_n,
+        &mut t.cone_n,
     ];
     for (key, entry) in known.iter().zip(entries) {
         *entry = given.positive(key, *entry, report);

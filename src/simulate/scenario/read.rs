@@ -1,12 +1,16 @@
 //! From the bytes of a scenario file to a scenario.
 
 use super::fault::{Cause, Fault, ScenarioError};
+use super::gait::gait;
 use super::options;
 use super::place::{Places, line_and_column};
 use super::reader::{Fields, Node, Report};
-use super::reference;
+use super::reference::{self, Logs};
+use super::start::find_start_faults;
+use super::stepping;
 use super::{FORMAT, Scenario};
 use crate::plants::{Cradle, Override, Plant, PlantModel, plant_of};
+use crate::simulate::audit::Tolerances;
 use crate::simulate::control::{Compensation, Control, Feedback, JointControl};
 use crate::simulate::ground::Ground;
 use crate::simulate::state::State;
@@ -33,6 +37,9 @@ const KEYS: &[&str] = &[
     "drives",
     "measurement",
     "seed",
+    "gait",
+    "scheme",
+    "time_stepping",
     "contact",
     "integrator",
     "log_period_s",
@@ -94,12 +101,30 @@ fn scenario(root: &Node<'_>, load: &Loader<'_>, report: &mut Report) -> Option<S
     };
     let (name, description) = (text("name", report), text("description", report));
     let mut simulation = options::simulation(&fields, report);
-    let tolerances = options::tolerances(&fields, report);
+    let tolerances = options::tolerances(&fields, Tolerances::default(), report);
+    let scheme = stepping::scheme(&fields, report);
+    let (stepping, stepping_tolerances) = stepping::stepping(&fields, report);
     let mut plant = plant(&fields, load, report)?;
-    let control = control(&fields, plant.model(), report);
-    let initial = initial(&fields, plant.as_mut(), report);
+    let mut control = control(&fields, plant.model(), &mut Logs::new(load), report);
+    let posture = gait(&fields, plant.as_mut(), &mut control, report);
+    let initial = initial(&fields, plant.as_mut(), posture, report);
     simulation.end_s += initial.t_s;
-    Some(Scenario { name, description, plant, control, initial, simulation, tolerances })
+    let mut scenario = Scenario {
+        name,
+        description,
+        plant,
+        control,
+        initial,
+        simulation,
+        tolerances,
+        scheme,
+        stepping,
+        stepping_tolerances,
+    };
+    if report.faults.is_empty() {
+        find_start_faults(&mut scenario, report);
+    }
+    Some(scenario)
 }
 
 fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Box<dyn Plant>> {
@@ -151,7 +176,12 @@ fn joint(model: &PlantModel, name: &str, node: &Node<'_>, report: &mut Report) -
     found
 }
 
-fn control(fields: &Fields<'_>, model: &PlantModel, report: &mut Report) -> Control {
+fn control(
+    fields: &Fields<'_>,
+    model: &PlantModel,
+    logs: &mut Logs<'_>,
+    report: &mut Report,
+) -> Control {
     let mut control = Control::passive(model.joints.len());
     let known = &["compensation", "feedback", "saturates", "period_s", "joints"];
     let Some(given) = fields.get("control").and_then(|node| node.fields(known, report)) else {
@@ -178,7 +208,8 @@ fn control(fields: &Fields<'_>, model: &PlantModel, report: &mut Report) -> Cont
             }
             let known = &["kp", "kd", "reference", "feed_forward", "gain_factor"];
             let Some(own) = node.fields(known, report) else { continue };
-            let mut follow = |key: &str| own.get(key).and_then(|n| reference::read(&n, report));
+            let mut follow =
+                |key: &str| own.get(key).and_then(|n| reference::read(&n, logs, report));
             let [reference, feed_forward, gain_factor] =
                 ["reference", "feed_forward", "gain_factor"].map(&mut follow);
             control.joints[index] = JointControl {
@@ -193,9 +224,14 @@ fn control(fields: &Fields<'_>, model: &PlantModel, report: &mut Report) -> Cont
     control
 }
 
-fn initial(fields: &Fields<'_>, plant: &mut dyn Plant, report: &mut Report) -> State {
+fn initial(
+    fields: &Fields<'_>,
+    plant: &mut dyn Plant,
+    posture: Option<Vec<f64>>,
+    report: &mut Report,
+) -> State {
     let model = plant.model().clone();
-    let mut state = State::resting(vec![0.0; model.joints.len()]);
+    let mut state = State::resting(posture.unwrap_or_else(|| vec![0.0; model.joints.len()]));
     let known = &["t_s", "q", "qd", "on_ground"];
     let Some(given) = fields.get("initial").and_then(|node| node.fields(known, report)) else {
         return state;

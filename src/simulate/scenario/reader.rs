@@ -149,6 +149,34 @@ impl<'v> Fields<'v> {
         absent
     }
 
+    /// A number from 0 to 1.
+    pub(super) fn share(&self, key: &str, absent: f64, report: &mut Report) -> f64 {
+        let number = self.not_negative(key, absent, report);
+        if number > 1.0 {
+            report.push(&format!("{}/{key}", self.pointer), Cause::AboveOne);
+        }
+        number
+    }
+
+    /// A list of so many numbers.
+    pub(super) fn array<const N: usize>(
+        &self,
+        key: &str,
+        absent: [f64; N],
+        report: &mut Report,
+    ) -> [f64; N] {
+        let Some(node) = self.get(key) else { return absent };
+        let before = report.faults.len();
+        let found = <[f64; N]>::try_from(node.numbers(report));
+        found.unwrap_or_else(|found| {
+            // a list with a wrong entry has been reported already
+            if report.faults.len() == before {
+                report.push(&node.pointer, Cause::WrongLength(N, found.len()));
+            }
+            absent
+        })
+    }
+
     pub(super) fn count(&self, key: &str, absent: usize, report: &mut Report) -> usize {
         let Some(node) = self.get(key) else { return absent };
         let count = node.value.as_u64().and_then(|count| usize::try_from(count).ok());

@@ -1,17 +1,50 @@
 //! References of a scenario: an object with one key, the kind.
 
 use super::fault::Cause;
+use super::read::Loader;
 use super::reader::{Fields, Node, Report};
+use crate::simulate::log::Log;
 use crate::trajectory::{
-    Bezier, CosineProfile, CubicSpline, EndCondition, Fourier, Part, Polynomial, QuinticSpline,
-    Reference, Sequence, TrajectoryError,
+    Between, Bezier, CosineProfile, CubicSpline, EndCondition, Fourier, Part, Polynomial,
+    QuinticSpline, Reference, Samples, Sequence, TrajectoryError,
 };
+use denavit_codegen::expr::text::nearest;
+use std::collections::BTreeMap;
 
-const KINDS: &[&str] =
-    &["constant", "cubic", "quintic", "cosine", "bezier", "fourier", "polynomial", "sequence"];
+const KINDS: &[&str] = &[
+    "constant",
+    "cubic",
+    "quintic",
+    "cosine",
+    "bezier",
+    "fourier",
+    "polynomial",
+    "sequence",
+    "log",
+];
+
+/// The logs that references follow, each read once.
+pub(super) struct Logs<'a> {
+    load: &'a Loader<'a>,
+    read: BTreeMap<String, Result<Log, Cause>>,
+}
+
+impl<'a> Logs<'a> {
+    pub(super) fn new(load: &'a Loader<'a>) -> Self {
+        Self { load, read: BTreeMap::new() }
+    }
+
+    fn get(&mut self, file: &str) -> &Result<Log, Cause> {
+        let load = self.load;
+        self.read.entry(file.to_owned()).or_insert_with(|| {
+            let bytes = load(file).map_err(|reason| Cause::File(file.to_owned(), reason))?;
+            Log::from_csv(file, &bytes).map_err(Cause::Log)
+        })
+    }
+}
 
 /// A reference, or nothing with its faults noted.
-pub(super) fn read(node: &Node<'_>, report: &mut Report) -> Option<Reference> {
+pub(super) fn read(node: &Node<'_>, logs: &mut Logs<'_>, report: &mut Report) -> Option<Reference> {
     if let Some(constant) = node.value.as_f64() {
         return Some(Reference::Constant(constant));
     }
@@ -25,7 +58,7 @@ pub(super) fn read(node: &Node<'_>, report: &mut Report) -> Option<Reference> {
     if let Some((_, other)) = kinds.next() {
         report.push(&other.pointer, Cause::WrongKind("one kind of reference, not two"));
     }
-    let made = make(kind, &inner, report)?;
+    let made = make(kind, &inner, logs, report)?;
     if report.faults.len() > before {
         return None;
     }
@@ -35,6 +68,7 @@ pub(super) fn read(node: &Node<'_>, report: &mut Report) -> Option<Reference> {
 fn make(
     kind: &str,
     node: &Node<'_>,
+    logs: &mut Logs<'_>,
     report: &mut Report,
 ) -> Option<Result<Reference, TrajectoryError>> {
     Some(match kind {
@@ -64,7 +98,8 @@ fn make(
             let [sines, cosines] = ["sines", "cosines"].map(|key| fields.numbers(key, report));
             Fourier::new(frequency, offset, sines, cosines).map(Reference::Fourier)
         }
-        _ => sequence(&node.fields(&["parts", "repeat"], report)?, report),
+        "log" => logged(&node.fields(&["file", "column", "between"], report)?, logs, report)?,
+        _ => sequence(&node.fields(&["parts", "repeat"], report)?, logs, report),
     })
 }
 
@@ -87,14 +122,63 @@ fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, Trajec
     QuinticSpline::new(times, values, &rates, &accelerations).map(Reference::Quintic)
 }
 
-fn sequence(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
+#[derive(Clone, Copy)]
+enum Interpolation {
+    Cubic,
+    Linear,
+    Hold,
+}
+
+/// A column of a log over its time.
+fn logged(
+    fields: &Fields<'_>,
+    logs: &mut Logs<'_>,
+    report: &mut Report,
+) -> Option<Result<Reference, TrajectoryError>> {
+    let [file, column] = ["file", "column"].map(|key| fields.require(key, report));
+    let (file, column) = (file?, column?);
+    let (file_name, name) = (file.text(report)?, column.text(report)?);
+    let meanings = [Interpolation::Cubic, Interpolation::Linear, Interpolation::Hold];
+    let word = fields.get("between");
+    let word = word.and_then(|n| n.word(&["cubic", "linear", "hold"], &meanings, report));
+    let log = match logs.get(file_name) {
+        Ok(log) => log,
+        Err(cause) => {
+            report.push(&file.pointer, cause.clone());
+            return None;
+        }
+    };
+    let Some(values) = log.column(name) else {
+        let near = nearest(name, log.columns.iter().map(String::as_str)).map(str::to_owned);
+        report.push(&column.pointer, Cause::UnknownColumn(name.to_owned(), near));
+        return None;
+    };
+    if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+        report.push(&column.pointer, Cause::EmptyCell(name.to_owned(), log.line_of_row(row)));
+        return None;
+    }
+    let times = log.column("t")?;
+    Some(match word.unwrap_or(Interpolation::Cubic) {
+        Interpolation::Cubic => {
+            CubicSpline::new(times, values, [EndCondition::Natural; 2]).map(Reference::Cubic)
+        }
+        Interpolation::Linear => Samples::new(times, values, Between::Line).map(Reference::Samples),
+        Interpolation::Hold => Samples::new(times, values, Between::Hold).map(Reference::Samples),
+    })
+}
+
+fn sequence(
+    fields: &Fields<'_>,
+    logs: &mut Logs<'_>,
+    report: &mut Report,
+) -> Result<Reference, TrajectoryError> {
     let items = fields.require("parts", report).map_or_else(Vec::new, |node| node.items(report));
     let mut parts = Vec::new();
     for item in items {
         let Some(part) = item.fields(&["duration_s", "reference"], report) else { continue };
         let duration_s = part.positive("duration_s", 0.0, report);
         let reference = part.require("reference", report);
-        let reference = reference.and_then(|node| read(&node, report));
+        let reference = reference.and_then(|node| read(&node, logs, report));
         parts.extend(reference.map(|reference| Part { duration_s, reference }));
     }
     Sequence::new(parts, fields.flag("repeat", report)).map(Reference::Sequence)

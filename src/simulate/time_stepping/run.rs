@@ -1,144 +1,224 @@
 //! Whole runs by time stepping: from a start to an end or a fall, with a log and audits.
 
 use super::plant::ControlledPlant;
-use super::{StepFailure, Stepping, TimeStepper};
+use super::record::{Made, StepRecorder};
+use super::{Scheme, StepFailure, StepLaw, Stepping, TimeStepper};
 use crate::plants::{Plant, PlantModel, point_positions};
+use crate::simulate::breakdown::{Breakdown, Stop};
+use crate::simulate::contact::{ContactFailure, Friction};
 use crate::simulate::control::Control;
+use crate::simulate::drive::Drives;
 use crate::simulate::ground::Ground;
-use crate::simulate::log::Log;
+use crate::simulate::integrate::Statistics;
+use crate::simulate::measure::Instrument;
+use crate::simulate::run::{Run, Simulation};
+use crate::simulate::settle::Scuffing;
+use crate::simulate::start::{StartError, check, check_gaps};
 use crate::simulate::state::State;
 
-/// Why a run ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SteppedStop {
-    /// The end time is reached.
-    End,
-    /// A point that must not touch the ground did; holds its name.
-    Fall(String),
-    /// A step could not be made.
-    Failure(StepFailure),
-}
-
-/// The worst of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SteppedAudit {
-    /// Depth of a contact point where contacts were looked for \[m\]; of order h.
-    pub penetration_m: f64,
-    /// Change of linear momentum over a step, less gravity and contacts per time \[N\]; of order h.
-    pub force_n: f64,
-    /// Tangential over normal force of all contacts together.
-    pub friction_demand: f64,
-    /// Steps whose sweeps did not converge, so that a pyramid stood in for the cones.
-    pub fallbacks: usize,
-    /// Steps.
-    pub steps: usize,
-}
-
-/// A run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SteppedRun {
-    /// Why it ended.
-    pub stop: SteppedStop,
-    /// The state at its end.
-    pub end: State,
-    /// Columns t, q, qd, ref of joints that follow one, and forces of contact points: means over
-    /// the step that ends at t.
-    pub log: Log,
-    /// The worst of it.
-    pub audit: SteppedAudit,
-}
-
-/// Makes steps from `initial` to `end_s`; a row of the log every `rows` steps, and one at the end.
+/// Runs a plant under control from a state by steps; deterministic.
 ///
-/// The state has an entry for each joint, the settings have a law for each contact point. Drives
-/// are ideal, control is continuous.
+/// Of `simulation`, the method of integration, the rest speed, the fallback friction and the drift
+/// rate belong to the event-driven scheme. Rows of the log, samples of the controller and jumps of
+/// references are at ends of steps.
 pub fn simulate_by_steps(
     plant: &mut dyn Plant,
     control: &Control,
     initial: &State,
+    simulation: &Simulation,
     stepping: &Stepping,
-    end_s: f64,
-    rows: usize,
-) -> SteppedRun {
-    let model = plant.model().clone();
-    let ground = Ground::new(&model);
-    let mut falls = FallWatch::new(&model);
-    let log = Log { columns: columns(&model, control), ..Log::default() };
-    let mut run = SteppedRun {
-        stop: SteppedStop::End,
-        end: State { motor: Vec::new(), motor_rate: Vec::new(), ..initial.clone() },
-        log,
-        audit: SteppedAudit::default(),
+) -> Result<Run, StartError> {
+    let mut state = initial.clone();
+    let drives = Drives::new(plant.model(), simulation.drives);
+    check(plant, control, &mut state, simulation, &drives)?;
+    check_stepping(simulation, stepping)?;
+    check_gaps(plant, &state.q)?;
+    let falls = FallWatch::new(plant.model());
+    let friction = match simulation.friction {
+        Friction::Coulomb(mu) => mu,
+        Friction::NoSlip => stepping.no_slip_friction,
     };
-    let mut system = ControlledPlant::new(plant, control);
-    let mut stepper = TimeStepper::new(stepping.clone(), &system);
-    let steps = ((end_s - initial.t_s) / stepping.step_s).round().max(0.0) as usize;
-    let mut momentum = system.plant().momentum(&run.end.q, &run.end.qd);
-    write(&mut run, &model, control, &ground, &stepper);
-    for step in 0..steps {
-        let t_s = initial.t_s + step as f64 * stepping.step_s;
-        match stepper.step(&mut system, t_s, &mut run.end.q, &mut run.end.qd) {
-            Ok(report) => {
-                let audit = &mut run.audit;
-                audit.steps += 1;
-                audit.fallbacks += usize::from(report.fell_back);
-                audit.penetration_m = audit.penetration_m.max(report.penetration_m);
-            }
-            Err(failure) => {
-                run.stop = SteppedStop::Failure(failure);
-                break;
-            }
-        }
-        run.end.t_s = initial.t_s + (step + 1) as f64 * stepping.step_s;
-        let now = system.plant().momentum(&run.end.q, &run.end.qd);
-        audit_forces(&mut run.audit, &model, &ground, &stepper, &momentum, &now);
-        momentum = now;
-        if let Some(name) = falls.fallen(system.plant(), &ground, &run.end.q) {
-            run.stop = SteppedStop::Fall(name);
-            break;
-        }
-        if (step + 1) % rows.max(1) == 0 || step + 1 == steps {
-            write(&mut run, &model, control, &ground, &stepper);
-        }
-    }
-    if run.stop != SteppedStop::End {
-        write(&mut run, &model, control, &ground, &stepper);
-    }
-    run
+    let law = StepLaw { friction, restitution: simulation.touching.restitution };
+    let laws = vec![law; plant.model().contacts.len()];
+    let ground = Ground::new(plant.model());
+    let mut system = ControlledPlant::with_drives(plant, control, simulation.drives);
+    let stepper = TimeStepper::new(*stepping, laws.clone(), &system);
+    let q = [&state.q[..], &state.motor].concat();
+    let qd = [&state.qd[..], &state.motor_rate].concat();
+    let recorder = StepRecorder::new(&mut system, control, laws, state.t_s, &q, &qd);
+    let mut runner = Runner {
+        control,
+        simulation,
+        longest_s: stepping.step_s,
+        instrument: Instrument::new(simulation.measurement, simulation.seed),
+        statistics: Statistics::default(),
+        start_s: state.t_s,
+        t_s: state.t_s,
+        sample: 0,
+        row: 0,
+        before: qd.clone(),
+        system,
+        stepper,
+        recorder,
+        falls,
+        ground,
+        q,
+        qd,
+    };
+    let stop = runner.go();
+    Ok(runner.finish(stop))
 }
 
-/// World impulses of all contacts together [N s].
-fn total(ground: &Ground, impulses: &[f64]) -> [f64; 3] {
-    let mut sum = vec![0.0; ground.rows()];
-    for impulse in impulses.chunks_exact(ground.rows()) {
-        sum.iter_mut().zip(impulse).for_each(|(sum, p)| *sum += p);
+fn check_stepping(simulation: &Simulation, stepping: &Stepping) -> Result<(), StartError> {
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if !positive(stepping.step_s) {
+        return Err(StartError::Number("the step"));
     }
-    ground.in_world(&sum)
+    if !(0.0..=1.0).contains(&stepping.implicitness) {
+        return Err(StartError::Number("the implicit part of the damping"));
+    }
+    if simulation.touching.scuffing != Scuffing::Counts {
+        return Err(StartError::EventSchemeOnly("contacts that do not count"));
+    }
+    let constrains_gaps = matches!(stepping.scheme, Scheme::Anitescu { .. });
+    if constrains_gaps && simulation.touching.restitution > 0.0 {
+        return Err(StartError::MoreauOnly("restitution"));
+    }
+    Ok(())
 }
 
-fn audit_forces(
-    audit: &mut SteppedAudit,
-    model: &PlantModel,
-    ground: &Ground,
-    stepper: &TimeStepper,
-    before: &[f64; 6],
-    after: &[f64; 6],
-) {
-    let h = stepper.stepping().step_s;
-    let impulse = total(ground, stepper.impulses());
-    // A robot on a fixed base is held by more than its contacts.
-    if model.joints.first().is_some_and(|joint| !joint.drivable) {
-        for axis in (0..3).filter(|axis| !(model.planar && *axis == 1)) {
-            let free = model.mass_kg * model.gravity[axis];
-            let error = (after[axis] - before[axis] - impulse[axis]) / h - free;
-            audit.force_n = audit.force_n.max(error.abs());
+struct Runner<'a> {
+    control: &'a Control,
+    simulation: &'a Simulation,
+    longest_s: f64,
+    system: ControlledPlant<'a>,
+    stepper: TimeStepper,
+    recorder: StepRecorder,
+    instrument: Instrument,
+    statistics: Statistics,
+    falls: FallWatch,
+    ground: Ground,
+    start_s: f64,
+    t_s: f64,
+    /// Number of the controller's next sample, and of the log's next row.
+    sample: u64,
+    row: u64,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    /// Rates before the last step.
+    before: Vec<f64>,
+}
+
+impl Runner<'_> {
+    fn go(&mut self) -> Stop {
+        loop {
+            self.sample_control();
+            if self.due(self.row, self.simulation.log_period_s) {
+                // a row shows the torque that is held from it on, or at the start the first one
+                if self.row == 0 || self.control.period_s.is_some() {
+                    self.system.drive(self.t_s, &self.q, &self.qd);
+                }
+                self.write_row();
+                self.row += 1;
+            }
+            if self.t_s >= self.simulation.end_s {
+                return Stop::End;
+            }
+            let stop_s = self.next_stop();
+            let (start_s, length_s) = (self.t_s, stop_s - self.t_s);
+            let steps = (length_s / self.longest_s - 1e-6).ceil().max(1.0);
+            self.stepper.set_step_s(length_s / steps);
+            let mut step = 0.0;
+            while step < steps {
+                step += 1.0;
+                let end_s = if step < steps { start_s + length_s * (step / steps) } else { stop_s };
+                if let Some(stop) = self.step(end_s) {
+                    return stop;
+                }
+            }
         }
     }
-    let normal: f64 = ground.normal().iter().zip(impulse).map(|(n, p)| n * p).sum();
-    let size: f64 = impulse.iter().map(|p| p * p).sum();
-    if normal > 0.05 * h * model.mass_kg * 9.81 {
-        let tangential = (size - normal * normal).max(0.0).sqrt();
-        audit.friction_demand = audit.friction_demand.max(tangential / normal);
+
+    /// Whether event number `number` of a period is due now.
+    fn due(&self, number: u64, period_s: f64) -> bool {
+        self.t_s >= self.start_s + number as f64 * period_s - 1e-12
+    }
+
+    /// Where a step must end: a sample, a row, a jump of a reference, the end.
+    fn next_stop(&self) -> f64 {
+        let sample = self.control.period_s.map(|p| self.start_s + self.sample as f64 * p);
+        let row = self.start_s + self.row as f64 * self.simulation.log_period_s;
+        // held torques do not see the references move
+        let jump = match sample {
+            None => self.control.next_break(self.t_s + 1e-12),
+            Some(_) => None,
+        };
+        [sample, jump, Some(row)].into_iter().flatten().fold(self.simulation.end_s, f64::min)
+    }
+
+    fn sample_control(&mut self) {
+        let Some(period_s) = self.control.period_s else { return };
+        if self.due(self.sample, period_s) {
+            self.sample += 1;
+            self.system.sample(self.t_s, &self.q, &self.qd, &mut self.instrument);
+        }
+    }
+
+    fn step(&mut self, end_s: f64) -> Option<Stop> {
+        self.before.copy_from_slice(&self.qd);
+        let made = self.stepper.step(&mut self.system, self.t_s, &mut self.q, &mut self.qd);
+        let report = match made {
+            Ok(report) => report,
+            Err(failure) => return Some(Stop::Breakdown(breakdown(failure))),
+        };
+        self.t_s = end_s;
+        self.statistics.steps += 1;
+        self.statistics.evaluations += report.passes;
+        self.statistics.rejected += report.passes - 1;
+        let settings = *self.stepper.stepping();
+        let (before, after) = (&self.before, &self.qd);
+        let work = self.system.finish_step(before, after, settings.step_s, settings.implicitness);
+        let made = Made { t_s: end_s, report, q: &self.q, before, after, work };
+        self.recorder.note_step(&self.system, &self.stepper, &made);
+        if let Some(name) = self.falls.fallen(self.system.plant(), &self.ground, &self.q) {
+            return Some(Stop::Fall(name));
+        }
+        if self.recorder.events.len() >= self.simulation.max_events {
+            return Some(Stop::EventLimit);
+        }
+        let spent = self.statistics.evaluations > self.simulation.max_evaluations;
+        spent.then_some(Stop::EvaluationLimit)
+    }
+
+    fn write_row(&mut self) {
+        let state = [&self.q[..], &self.qd];
+        self.recorder.write_row(&mut self.system, &self.stepper, self.control, self.t_s, state);
+    }
+
+    fn finish(mut self, stop: Stop) -> Run {
+        if stop != Stop::End {
+            self.write_row();
+        }
+        let n = self.control.joints.len();
+        let parts = |values: &[f64]| (values[..n].to_vec(), values[n..].to_vec());
+        let ((q, motor), (qd, motor_rate)) = (parts(&self.q), parts(&self.qd));
+        Run {
+            stop,
+            end: State { t_s: self.t_s, q, qd, motor, motor_rate },
+            log: self.recorder.log,
+            events: self.recorder.events,
+            audit: self.recorder.audit,
+            statistics: self.statistics,
+            closed: self.recorder.pushing,
+        }
+    }
+}
+
+fn breakdown(failure: StepFailure) -> Breakdown {
+    match failure {
+        StepFailure::Singular(error) => Breakdown::Singular { coordinate: error.coordinate },
+        StepFailure::NotFinite => Breakdown::NotFinite,
+        StepFailure::NoImpulses => Breakdown::Contact(ContactFailure::NoSolution),
     }
 }
 
@@ -158,46 +238,11 @@ impl FallWatch {
         if self.positions.is_empty() {
             return None;
         }
-        plant.link_transforms(q, &mut self.transforms);
+        let n = plant.model().joints.len();
+        plant.link_transforms(&q[..n], &mut self.transforms);
         let points = &plant.model().fall_points;
         point_positions(points, &self.transforms, &mut self.positions);
         let below = self.positions.chunks_exact(3).position(|at| ground.gap(at) < 0.0)?;
         Some(points[below].name.clone())
-    }
-}
-
-fn columns(model: &PlantModel, control: &Control) -> Vec<String> {
-    let mut columns = vec!["t".to_owned()];
-    for prefix in ["q", "qd"] {
-        columns.extend(model.joints.iter().map(|joint| format!("{prefix}_{}", joint.name)));
-    }
-    let followed = model.joints.iter().zip(&control.joints);
-    columns.extend(
-        followed
-            .filter(|(_, law)| law.reference.is_some())
-            .map(|(joint, _)| format!("ref_{}", joint.name)),
-    );
-    for contact in &model.contacts {
-        columns.extend(["x", "y", "z"].map(|axis| format!("f_{}_{axis}", contact.name)));
-    }
-    columns
-}
-
-fn write(
-    run: &mut SteppedRun,
-    model: &PlantModel,
-    control: &Control,
-    ground: &Ground,
-    stepper: &TimeStepper,
-) {
-    let (values, end) = (&mut run.log.values, &run.end);
-    values.push(end.t_s);
-    values.extend(&end.q);
-    values.extend(&end.qd);
-    for joint in 0..model.joints.len() {
-        values.extend(control.setpoint(joint, end.t_s).map(|setpoint| setpoint.position));
-    }
-    for impulse in stepper.impulses().chunks_exact(ground.rows()) {
-        values.extend(ground.in_world(impulse).map(|p| p / stepper.stepping().step_s));
     }
 }

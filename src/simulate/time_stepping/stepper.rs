@@ -12,11 +12,14 @@ use crate::simulate::contact::{Contact, ContactProblem, Friction, Space, Toleran
 
 /// Facets of the pyramid that stands in for cones on which sweeps do not converge.
 const FALLBACK_FACETS: usize = 16;
+/// What is added to the diagonal of their problem, relative to its mean, in turn.
+const GIVE: [f64; 4] = [0.0, 1e-11, 1e-9, 1e-7];
 
 /// Makes steps; holds the impulses of the last one, from which the next one starts.
 #[derive(Clone, Debug)]
 pub struct TimeStepper {
     stepping: Stepping,
+    laws: Vec<StepLaw>,
     space: Space,
     /// Of the last step, for all contacts.
     impulses: Vec<f64>,
@@ -24,12 +27,14 @@ pub struct TimeStepper {
     closed: Vec<usize>,
     gaps: Vec<f64>,
     middle: Vec<f64>,
+    mean: Vec<f64>,
     terms: Terms,
     delassus: Delassus,
     /// v without, then with contact impulses.
     rates: Vec<f64>,
     free: Vec<f64>,
     force: Vec<f64>,
+    softened: Vec<f64>,
     scratch: Vec<f64>,
     hold: Hold,
     pyramid: Pyramid,
@@ -37,23 +42,26 @@ pub struct TimeStepper {
 
 impl TimeStepper {
     /// Prepares steps of a model with as many contacts as there are laws.
-    pub fn new(stepping: Stepping, model: &impl TimeSteppingModel) -> Self {
+    pub fn new(stepping: Stepping, laws: Vec<StepLaw>, model: &impl TimeSteppingModel) -> Self {
         let (n, count) = (model.dof(), model.contacts());
-        assert_eq!(stepping.laws.len(), count, "a law for every contact");
+        assert_eq!(laws.len(), count, "a law for every contact");
         let space = model.space();
         Self {
             space,
             stepping,
+            laws,
             impulses: vec![0.0; count * space.rows()],
             contacts: Vec::with_capacity(count),
             closed: Vec::with_capacity(count),
             gaps: vec![0.0; count],
             middle: vec![0.0; n],
+            mean: vec![0.0; n],
             terms: Terms::default(),
             delassus: Delassus::new(),
             rates: vec![0.0; n],
             free: Vec::new(),
             force: Vec::new(),
+            softened: Vec::new(),
             scratch: vec![0.0; n],
             hold: Hold::new(),
             pyramid: Pyramid::new(),
@@ -70,9 +78,24 @@ impl TimeStepper {
         &self.closed
     }
 
+    /// Heights of all contact points where the last step looked for contacts \[m\].
+    pub fn gaps(&self) -> &[f64] {
+        &self.gaps
+    }
+
     /// The settings.
     pub fn stepping(&self) -> &Stepping {
         &self.stepping
+    }
+
+    /// The length of the steps from now on \[s\]; impulses, from which the next step starts, change
+    /// with it.
+    pub fn set_step_s(&mut self, step_s: f64) {
+        let share = step_s / self.stepping.step_s;
+        if share != 1.0 {
+            self.impulses.iter_mut().for_each(|impulse| *impulse *= share);
+            self.stepping.step_s = step_s;
+        }
     }
 
     /// One step from `t_s`: `q` and `qd` become those of `t_s` + h.
@@ -92,32 +115,78 @@ impl TimeStepper {
             *middle = q + ahead * qd;
         }
         self.find_closed(model);
-        self.terms.clear(n, self.closed.len() * self.space.rows());
-        let at = Instant { t_s: t_s + ahead, q: &self.middle, qd };
-        model.terms(at, &self.closed, &mut self.terms);
-        self.free_rates(qd)?;
         let mut report = StepReport {
             closed: self.closed.len(),
             penetration_m: self.gaps.iter().fold(0.0, |sum, gap| sum.max(-gap)),
             ..StepReport::default()
         };
-        if self.closed.is_empty() {
-            self.impulses.fill(0.0);
-        } else {
-            self.delassus.project(&self.terms.jacobian);
-            self.free_response(qd);
-            (report.iterations, report.fell_back) = self.solve_contacts()?;
-            self.delassus.respond(&self.force, &mut self.rates, &mut self.scratch);
-            self.keep_impulses();
+        self.mean.copy_from_slice(qd);
+        let mut corrections = self.stepping.corrections;
+        loop {
+            report.passes += 1;
+            self.terms.clear(n, self.closed.len() * self.space.rows());
+            let at = Instant { t_s: t_s + ahead, q: &self.middle, qd, smooth_qd: &self.mean };
+            model.terms(at, &self.closed, &mut self.terms);
+            self.new_rates(qd, &mut report)?;
+            // each refusal fixes a drive at its limit, so that there are few
+            let accepted = model.accept(qd, &self.rates, self.stepping.implicitness);
+            if corrections > 0 {
+                corrections -= 1;
+                for (mean, (old, new)) in self.mean.iter_mut().zip(qd.iter().zip(&self.rates)) {
+                    *mean = 0.5 * (old + new);
+                }
+            } else if accepted || report.passes > n + self.stepping.corrections {
+                break;
+            }
         }
-        if !self.rates.iter().all(|rate| rate.is_finite()) {
-            return Err(StepFailure::NotFinite);
-        }
+        (report.contact_work_j, report.law_error_m_s) = self.contact_figures(qd);
         for ((q, middle), rate) in q.iter_mut().zip(&self.middle).zip(&self.rates) {
             *q = middle + (h - ahead) * rate;
         }
         qd.copy_from_slice(&self.rates);
         Ok(report)
+    }
+
+    /// v+ into `rates`.
+    fn new_rates(&mut self, qd: &[f64], report: &mut StepReport) -> Result<(), StepFailure> {
+        self.free_rates(qd)?;
+        if self.closed.is_empty() {
+            self.impulses.fill(0.0);
+        } else {
+            self.delassus.project(&self.terms.jacobian);
+            self.free_response(qd);
+            let (iterations, fell_back) = self.solve_contacts()?;
+            report.iterations += iterations;
+            report.fell_back |= fell_back;
+            self.delassus.respond(&self.force, &mut self.rates, &mut self.scratch);
+            self.keep_impulses();
+        }
+        match self.rates.iter().all(|rate| rate.is_finite()) {
+            true => Ok(()),
+            false => Err(StepFailure::NotFinite),
+        }
+    }
+
+    /// Work of the impulses, and how far those that push miss the law of the scheme.
+    fn contact_figures(&self, qd: &[f64]) -> (f64, f64) {
+        let (n, rows, h) = (qd.len(), self.space.rows(), self.stepping.step_s);
+        let (mut work, mut error) = (0.0, 0.0_f64);
+        for (place, &contact) in self.closed.iter().enumerate() {
+            for row in place * rows..(place + 1) * rows {
+                let line = &self.terms.jacobian[row * n..(row + 1) * n];
+                let (before, after) = (dot(line, qd), dot(line, &self.rates));
+                let impulse = self.force[row];
+                work += 0.5 * impulse * (before + after);
+                if row + 1 == (place + 1) * rows && impulse > 0.0 {
+                    let wanted = match self.stepping.scheme {
+                        Scheme::MoreauMidpoint => -self.laws[contact].restitution * before.min(0.0),
+                        Scheme::Anitescu { .. } => -self.gaps[contact] / h,
+                    };
+                    error = error.max((after - wanted).abs());
+                }
+            }
+        }
+        (work, error)
     }
 
     fn find_closed(&mut self, model: &mut impl TimeSteppingModel) {
@@ -130,16 +199,17 @@ impl TimeStepper {
         let near = self.gaps.iter().enumerate().filter(|(_, gap)| **gap <= reach);
         self.closed.extend(near.map(|(contact, _)| contact));
         self.contacts.clear();
-        let friction = |contact: &usize| Friction::Coulomb(self.stepping.laws[*contact].friction);
+        let friction = |contact: &usize| Friction::Coulomb(self.laws[*contact].friction);
         self.contacts.extend(self.closed.iter().map(|c| Contact::resting(friction(c))));
     }
 
-    /// v + h (D + h B)^-1 f.
+    /// v + h (D + th h B)^-1 f.
     fn free_rates(&mut self, qd: &[f64]) -> Result<(), StepFailure> {
         let (n, h) = (qd.len(), self.stepping.step_s);
+        let implicit = self.stepping.implicitness * h;
         let Terms { mass, damping, force, .. } = &mut self.terms;
         for (entry, damping) in mass.iter_mut().zip(damping) {
-            *entry += h * *damping;
+            *entry += implicit * *damping;
         }
         self.delassus.factor(mass, n).map_err(StepFailure::Singular)?;
         for (rate, force) in self.rates.iter_mut().zip(force) {
@@ -159,7 +229,7 @@ impl TimeStepper {
         self.free.extend(self.terms.jacobian.chunks_exact(n).map(|row| dot(row, &self.rates)));
         for (place, &contact) in self.closed.iter().enumerate() {
             let normal = place * rows + rows - 1;
-            let StepLaw { restitution, .. } = self.stepping.laws[contact];
+            let StepLaw { restitution, .. } = self.laws[contact];
             self.free[normal] += match self.stepping.scheme {
                 Scheme::MoreauMidpoint if restitution == 0.0 => 0.0,
                 Scheme::MoreauMidpoint => {
@@ -185,27 +255,42 @@ impl TimeStepper {
             free: &self.free,
             tolerance: Tolerance::default(),
         };
-        let mut spent = 0;
-        let facets = match self.stepping.solver {
-            StepSolver::Pivots { facets } => facets,
-            StepSolver::Sweeps(limits) => {
-                if self.hold.solve(&problem, limits.response, &mut self.force) {
-                    return Ok((0, false));
-                }
-                let report = gauss_seidel::solve(&problem, limits, &mut self.force);
-                if report.converged {
-                    return Ok((report.sweeps, false));
-                }
-                spent = report.sweeps;
-                FALLBACK_FACETS
+        let limits = match self.stepping.solver {
+            StepSolver::Pivots { facets } => {
+                let report = self.pyramid.solve(&problem, facets, &mut self.force);
+                return match report.outcome {
+                    LcpOutcome::Solved => Ok((report.pivots, false)),
+                    _ => Err(StepFailure::NoImpulses),
+                };
             }
+            StepSolver::Sweeps(limits) => limits,
         };
-        let report = self.pyramid.solve(&problem, facets, &mut self.force);
-        if report.outcome == LcpOutcome::Solved {
-            Ok((spent + report.pivots, spent > 0))
-        } else {
-            Err(StepFailure::NoImpulses)
+        if self.hold.solve(&problem, limits.response, &mut self.force) {
+            return Ok((0, false));
         }
+        let report = gauss_seidel::solve(&problem, limits, &mut self.force);
+        if report.converged {
+            return Ok((report.sweeps, false));
+        }
+        let mut spent = report.sweeps;
+        // redundant contacts that slip sweep slowly; where friction locks them, rounding decides
+        // whether pivots end, and a little give, which moves them by as little, lets them
+        for give in GIVE {
+            self.softened.clear();
+            self.softened.extend_from_slice(problem.delassus);
+            let size = self.force.len();
+            let mean = (0..size).map(|i| problem.delassus[i * (size + 1)]).sum::<f64>();
+            for i in 0..size {
+                self.softened[i * (size + 1)] += give * mean / size as f64;
+            }
+            let softened = ContactProblem { delassus: &self.softened, ..problem };
+            let report = self.pyramid.solve(&softened, FALLBACK_FACETS, &mut self.force);
+            spent += report.pivots;
+            if report.outcome == LcpOutcome::Solved {
+                return Ok((spent, true));
+            }
+        }
+        Err(StepFailure::NoImpulses)
     }
 
     fn keep_impulses(&mut self) {

@@ -287,6 +287,13 @@ fn the_demo_writes_its_files_and_passes_its_checks() {
     let path = directory.path.join(decomposed["file"]["file"].as_str().expect("a path"));
     let text = std::fs::read_to_string(path).expect("the document");
     assert!(text.contains(r"\section{Decomposition}"), "{text}");
+    for run in demo["simulated"].as_array().expect("runs") {
+        assert_eq!((&run["stop"], &run["broken"]), (&"end".into(), &Value::Array(Vec::new())));
+        for file in run["files"].as_array().expect("files") {
+            let path = directory.path.join(file["file"].as_str().expect("a path"));
+            assert_eq!(file["bytes"], std::fs::metadata(&path).expect("a file").len(), "{path:?}");
+        }
+    }
     let another = run_in(&directory.path, &["demo", "--out", "here"]);
     assert_eq!(another.code, Some(0));
     assert!(another.stdout.contains("seed 1") && another.stdout.contains("all checks passed"));

@@ -1,6 +1,8 @@
 //! Simulation: plants against each other, runs against closed forms and published walkers.
 
 mod closed_forms;
+mod control;
+mod drift;
 mod scenarios;
 mod smooth;
 mod trajectory;

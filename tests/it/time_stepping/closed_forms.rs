@@ -1,7 +1,7 @@
 //! Closed forms, reached at the order of the scheme.
 
 use super::systems::{Cradle, GRAVITY, Oscillator, PlaneBody, Sample, order, run, stepping};
-use denavit::simulate::time_stepping::Scheme;
+use denavit::simulate::time_stepping::{Scheme, Stepping};
 
 const MOREAU: Scheme = Scheme::MoreauMidpoint;
 const ANITESCU: Scheme = Scheme::Anitescu { reach_m: 0.05 };
@@ -210,4 +210,20 @@ fn smooth_motion_is_of_second_order_and_stiff_damping_is_stable() {
     let mut damper = Oscillator { stiffness: 0.0, damping: 3e4 };
     let samples = run(&mut damper, stepping(MOREAU, 1e-3, 0, 0.0, 0.0), (&[0.0], &[1.0]), 0.05);
     assert!(samples.windows(2).all(|pair| pair[1].qd[0].abs() < pair[0].qd[0].abs()));
+}
+
+/// v = exp(-d t): half of the damping taken implicitly is of second order, all of it of first.
+#[test]
+fn damping_is_of_the_order_of_its_implicit_part() {
+    for (implicitness, expected) in [(1.0, 1.0), (0.5, 2.0)] {
+        let error = |h| {
+            let mut damper = Oscillator { stiffness: 0.0, damping: 3.0 };
+            let (steps, laws) = stepping(MOREAU, h, 0, 0.0, 0.0);
+            let laws = (Stepping { implicitness, ..steps }, laws);
+            let samples = run(&mut damper, laws, (&[0.0], &[1.0]), 1.0);
+            let last = samples.last().unwrap();
+            (last.qd[0] - (-3.0 * last.t_s).exp()).abs()
+        };
+        assert_order(order(1e-2, error), expected);
+    }
 }

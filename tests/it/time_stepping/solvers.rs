@@ -11,7 +11,8 @@ fn sweeps_and_pivots_agree_on_a_rocking_block() {
             let points = vec![[-0.1, -0.4], [0.1, -0.4]];
             let force = [0.0, -GRAVITY];
             let mut block = PlaneBody { mass: 1.0, inertia: 0.17 / 3.0, points, force };
-            let laws = Stepping { solver, ..stepping(scheme, 1e-3, 2, 0.6, 0.0) };
+            let (steps, laws) = stepping(scheme, 1e-3, 2, 0.6, 0.0);
+            let laws = (Stepping { solver, ..steps }, laws);
             let z = 0.1 * 0.1_f64.sin() + 0.4 * 0.1_f64.cos();
             run(&mut block, laws, (&[0.0, z, -0.1], &[0.0; 3]), 1.5)
         };
@@ -33,7 +34,8 @@ fn pivots_stand_in_for_sweeps() {
     let points = vec![[-0.1, -0.05], [0.1, -0.05]];
     let mut block = PlaneBody { mass: 1.0, inertia: 0.1, points, force: [4.0, -GRAVITY] };
     let solver = StepSolver::Sweeps(SweepLimits { sweeps: 1, response: 0.0 });
-    let laws = Stepping { solver, ..stepping(Scheme::MoreauMidpoint, 1e-3, 2, 0.3, 0.0) };
+    let (steps, laws) = stepping(Scheme::MoreauMidpoint, 1e-3, 2, 0.3, 0.0);
+    let laws = (Stepping { solver, ..steps }, laws);
     let samples = run(&mut block, laws, (&[0.0, 0.05, 0.0], &[0.0; 3]), 0.1);
     assert!(samples.iter().all(|sample| sample.report.fell_back));
     // It slips: 4 N is more than 0.3 times its weight.

@@ -2,8 +2,7 @@
 
 use denavit::simulate::contact::Space;
 use denavit::simulate::time_stepping::{
-    Instant, Scheme, StepLaw, StepReport, StepSolver, Stepping, Terms, TimeStepper,
-    TimeSteppingModel,
+    Instant, Scheme, StepLaw, StepReport, Stepping, Terms, TimeStepper, TimeSteppingModel,
 };
 
 pub(crate) const GRAVITY: f64 = 9.81;
@@ -125,10 +124,13 @@ pub(crate) fn stepping(
     contacts: usize,
     friction: f64,
     restitution: f64,
-) -> Stepping {
+) -> Laws {
     let laws = vec![StepLaw { friction, restitution }; contacts];
-    Stepping { scheme, step_s, solver: StepSolver::default(), laws }
+    (Stepping { scheme, step_s, ..Stepping::default() }, laws)
 }
+
+/// How steps are made, and the law of each contact.
+pub(crate) type Laws = (Stepping, Vec<StepLaw>);
 
 /// State after each step.
 pub(crate) struct Sample {
@@ -140,12 +142,12 @@ pub(crate) struct Sample {
 
 pub(crate) fn run(
     model: &mut impl TimeSteppingModel,
-    stepping: Stepping,
+    (stepping, laws): Laws,
     (q, qd): (&[f64], &[f64]),
     end_s: f64,
 ) -> Vec<Sample> {
     let h = stepping.step_s;
-    let mut stepper = TimeStepper::new(stepping, model);
+    let mut stepper = TimeStepper::new(stepping, laws, model);
     let (mut q, mut qd) = (q.to_vec(), qd.to_vec());
     (0..(end_s / h).round() as usize)
         .map(|step| {

@@ -1,0 +1,176 @@
+//! `denavit simulate`: its answers, and what it says of scenarios that cannot be run.
+
+use super::{Directory, Run, json, run_in};
+use std::fs;
+
+/// A scenario of the planar arm of two joints, with more entries.
+fn arm(entries: &str) -> String {
+    format!(
+        r#"{{"format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 1,
+{entries}}}"#
+    )
+}
+
+fn simulate(directory: &Directory, text: &str, more: &[&str]) -> Run {
+    fs::write(directory.path.join("bad.json"), text).expect("a file");
+    run_in(&directory.path, &[&["simulate", "bad.json"], more].concat())
+}
+
+/// The message for a scenario that must be refused, and of which nothing may be left behind.
+#[track_caller]
+fn refused(text: &str, parts: &[&str]) {
+    refused_beside(&[], text, parts);
+}
+
+#[track_caller]
+fn refused_beside(files: &[(&str, &str)], text: &str, parts: &[&str]) {
+    for scheme in ["event", "time-stepping"] {
+        let directory = Directory::new("bad-scenario");
+        for (name, content) in files {
+            fs::write(directory.path.join(name), content).expect("a file");
+        }
+        let run = simulate(&directory, text, &["--scheme", scheme, "-o", "log.csv"]);
+        assert_eq!(run.code, Some(2), "{text}: {}{}", run.stdout, run.stderr);
+        assert!(run.stdout.is_empty() && !run.stderr.contains("panicked"), "{}", run.stderr);
+        for part in parts.iter().chain(&["bad.json:", "hint: "]) {
+            assert!(run.stderr.contains(part), "no `{part}` in:\n{}", run.stderr);
+        }
+        assert_eq!(directory.files().len(), files.len() + 1, "nothing is left behind");
+    }
+}
+
+#[test]
+fn a_start_below_the_ground_is_refused() {
+    let text = r#"{"format": "denavit-scenario/1", "model": "planar_biped", "duration_s": 1,
+ "initial": {"q": {"base_z": 0.3}}}"#;
+    refused(text, &["bad.json:2:13: /initial: ", "below the ground", "`on_ground`"]);
+}
+
+#[test]
+fn unknown_joints_and_columns_are_guessed() {
+    let text = arm(r#" "initial": {"q": {"lnk1": 1}}"#);
+    refused(&text, &["/initial/q/lnk1: no joint is called `lnk1`", "`link1` is meant"]);
+    let text = arm(r#" "control": {"joints": {"link1": {"reference": {"log": {"file": "run.csv",
+   "column": "q_lnk1"}}}}}"#);
+    let parts = ["bad.json:3:14: ", "/reference/log/column: the log has no column", "`q_link1`"];
+    refused_beside(&[("run.csv", "t,q_link1\n0,1\n1,2\n")], &text, &parts);
+}
+
+#[test]
+fn impossible_references_are_refused() {
+    let reference = |text: &str| {
+        arm(&format!(r#" "control": {{"joints": {{"link1": {{"reference": {text}}}}}}}"#))
+    };
+    for (text, said) in [
+        (r#"{"cubic": {"times": [0, 1, 1], "values": [1, 2, 3]}}"#, "time number 3 is not after"),
+        (r#"{"cosine": {"times": [0, 1], "values": [1]}}"#, "expected 2 values, found 1"),
+        (r#"{"bezier": {"times": [0, 1], "values": []}}"#, "needs 1 values, 0 are given"),
+        (r#"{"quintic": {"times": [0, 1], "values": [1, 2, 3]}}"#, "have 2 and 3 values"),
+        (r#"{"fourier": {"frequency_rad_s": -1, "sines": [], "cosines": []}}"#, "be positive"),
+    ] {
+        let text = reference(text);
+        let directory = Directory::new("bad-reference");
+        let run = simulate(&directory, &text, &[]);
+        assert_eq!(run.code, Some(2), "{text}");
+        assert!(run.stderr.contains("bad.json:2:") && run.stderr.contains(said), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn parts_without_mass_are_refused() {
+    let text = r#"{"format": "denavit-scenario/1", "model": "ball", "duration_s": 1,
+ "parameters": {"m_base_pitch": 0}, "initial": {"q": {"base_z": 1}}}"#;
+    refused(text, &["/model: the mass matrix is singular at `base_", "mass and inertia"]);
+}
+
+#[test]
+fn torques_that_are_no_numbers_are_refused() {
+    let text = arm(r#" "control": {"joints": {"link2": {"kp": 1e300, "reference": 1e300}}}"#);
+    refused(
+        &text,
+        &["bad.json:2:", "/control/joints/link2: the torque on `link2` is not a finite"],
+    );
+    // of a log
+    let text =
+        arm(r#" "control": {"joints": {"link2": {"feed_forward": {"log": {"file": "tau.csv",
+   "column": "tau_link2"}}}}}"#);
+    for (log, said) in [
+        ("t,tau_link2\n0,1\n1,NaN\n", "tau.csv:3:2: `NaN` is not a finite number"),
+        ("t,tau_link2\n0,1\n1,\n", "the column `tau_link2` has no number in line 3"),
+        ("t,tau_link2\n0,1\n1\n", "tau.csv:3:1: 1 cells, where there are 2 columns"),
+        ("t,tau_link2\n0,1\n0,1\n", "tau.csv:3:1: the time is not after"),
+        ("time,tau_link2\n0,1\n", "tau.csv:1:1: no column `t`"),
+        ("", "tau.csv:1:1: no line with the names of columns"),
+    ] {
+        refused_beside(&[("tau.csv", log)], &text, &[said]);
+    }
+    // later on
+    let text = arm(r#" "control": {"joints": {"link2": {"feed_forward":
+   {"polynomial": [0, 1e300, 1e308, 1e308, 1e308, 1e308]}}}}, "initial": {"t_s": 0}"#)
+    .replace("\"duration_s\": 1", "\"duration_s\": 100");
+    for scheme in ["event", "time-stepping"] {
+        let directory = Directory::new("late-nan");
+        let run = simulate(&directory, &text, &["--scheme", scheme, "--json"]);
+        assert_eq!(run.code, Some(1), "{}{}", run.stdout, run.stderr);
+        let found: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+        assert!(found["end_s"].as_f64().expect("a number") < 100.0, "{found}");
+    }
+}
+
+/// Whatever a scenario asks for, a run ends: rows, steps and events are counted.
+#[test]
+fn no_run_goes_on_without_end() {
+    let text = arm(r#" "log_period_s": 1e-9"#);
+    refused(&text, &["/log_period_s: the log would have more than 1000000 rows"]);
+    let limited = arm(r#" "limits": {"evaluations": 2000}, "control": {"period_s": 1e-8},
+  "time_stepping": {"step_s": 1e-9}, "integrator": {"method": "runge_kutta", "step_s": 1e-9}"#);
+    for scheme in ["event", "time-stepping"] {
+        let directory = Directory::new("endless");
+        let run = simulate(&directory, &limited, &["--scheme", scheme, "--json"]);
+        assert_eq!(run.code, Some(1), "{}{}", run.stdout, run.stderr);
+        assert!(run.stdout.contains("\"evaluation_limit\""), "{}", run.stdout);
+    }
+}
+
+#[test]
+fn what_a_scheme_cannot_do_is_said() {
+    let directory = Directory::new("scheme");
+    let text = r#"{"format": "denavit-scenario/1", "model": "ball", "duration_s": 1,
+ "initial": {"q": {"base_z": 1}}, "contact": {"restitution": 0.5},
+ "time_stepping": {"method": "anitescu"}}"#;
+    let run = simulate(&directory, text, &["--scheme", "time-stepping"]);
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("bad.json: restitution: Anitescu's scheme"), "{}", run.stderr);
+    assert_eq!(simulate(&directory, text, &["--scheme", "event"]).code, Some(0));
+}
+
+/// Both schemes give the same summary and the same columns; the flag goes before the file.
+#[test]
+fn the_schemes_write_the_same_log() {
+    let directory = Directory::new("schemes");
+    let mut columns = Vec::new();
+    for scheme in ["event", "time-stepping"] {
+        let arguments =
+            ["simulate", "rocking_block", "--scheme", scheme, "-o", "log.csv", "--svg", "run.svg"];
+        let run = run_in(&directory.path, &arguments);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        let log = fs::read_to_string(directory.path.join("log.csv")).expect("a log");
+        let word = scheme.replace('-', "_");
+        assert!(log.contains(&format!("# scheme: {word}\n")), "{log}");
+        assert!(log.contains("# stop: end\n") && log.contains("# audit_energy_j: "), "{log}");
+        columns.push(log.lines().find(|line| line.starts_with("t,")).map(str::to_owned));
+        let svg = fs::read_to_string(directory.path.join("run.svg")).expect("a picture");
+        assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
+        assert!(!svg.contains("NaN") && svg.contains(">normal force of the ground<"));
+    }
+    assert_eq!(columns[0], columns[1]);
+    assert!(columns[0].is_some());
+    let [event, steps] = ["event", "time-stepping"]
+        .map(|scheme| json(&["simulate", "rocking_block", "--scheme", scheme, "--json"]));
+    assert_eq!(event["scheme"], "event");
+    assert_eq!(steps["scheme"], "time_stepping");
+    let keys = |value: &serde_json::Value| {
+        value["audit"].as_object().expect("audits").keys().cloned().collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&event), keys(&steps));
+}

@@ -1,11 +1,11 @@
 //! How long the compiler takes: from a model's text to functions, to a program, to Rust.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use denavit::derive::{Flavour, bake, derive};
+use denavit::derive::{Flavour, derive};
 use denavit::emit::rust::module;
 use denavit::function::FunctionName;
 use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};
-use denavit::model::{self, Robot};
+use denavit::model::{self, Robot, bake};
 use denavit::program::lower;
 use denavit::regressor::{RegressorOptions, base_parameters, decompose_robot};
 use std::hint::black_box;

@@ -14,10 +14,10 @@
 //! }
 //! ```
 
-use crate::derive::{BakeError, Flavour, derive};
+use crate::derive::{Flavour, derive};
 use crate::emit::rust::{EmitError, module};
 use crate::function::FunctionName;
-use crate::model::{self, ModelError, Robot};
+use crate::model::{self, BakeError, ModelError, Robot};
 use crate::program::{LowerError, lower};
 use std::fmt;
 use std::io;

@@ -7,11 +7,11 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{Input, read_input, write_whole};
+use super::files::{Input, on_stdout, read_input, write_whole};
 use super::options::{Term, terms};
 use clap::{Args, ValueEnum};
 use denavit::emit::latex::base_document;
-use denavit::model::Robot;
+use denavit::model::{Robot, bake_geometry};
 use denavit::regressor::functions::modelled;
 use denavit::regressor::{BaseParameters, Certificate, Part, RegressorOptions, base_parameters};
 use denavit::report::{Values, short};
@@ -29,7 +29,8 @@ use std::path::PathBuf;
 Examples:
   denavit base double_pendulum
   denavit base puma560 --with friction,rotor --json
-  denavit base double_pendulum_drives
+  denavit base double_pendulum_drives --markdown -
+  denavit base tulip --numeric
   denavit base tulip --latex tulip.tex --markdown tulip.md
   denavit base tulip_leg --terms inertia,gravity --certificate leg.certificate.json")]
 pub(crate) struct Arguments {
@@ -42,6 +43,9 @@ pub(crate) struct Arguments {
     /// The terms of the equations, instead of those of the model, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     terms: Option<Vec<Term>>,
+    /// Take the model's numbers for lengths, angles and gravity, in place of their symbols
+    #[arg(long)]
+    numeric: bool,
     /// Parameters to keep before others, separated by commas, most wanted first: names, or
     /// prefixes for those of all links (Izz,mx)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -52,7 +56,7 @@ pub(crate) struct Arguments {
     /// Write them as Markdown; - is standard output
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Write a certificate that `denavit verify` checks
+    /// Write a certificate that `denavit verify` checks; - is standard output
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
     /// Print JSON
@@ -117,17 +121,22 @@ impl<'a> Found<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let files = [&arguments.certificate, &arguments.latex, &arguments.markdown];
+    let is_answered = on_stdout(&files.map(Option::as_ref), arguments.json)?;
     let mut robot = match read_input(&arguments.model)? {
         Input::Model(robot) => robot,
-        Input::Equations(equations) => return given::run(arguments, &equations, out),
+        Input::Equations(equations) => return given::run(arguments, &equations, is_answered, out),
     };
     if let Some(list) = &arguments.terms {
         robot.terms = terms(list);
     }
+    if arguments.numeric {
+        *robot = bake_geometry(&robot).map_err(Failure::Bake)?;
+    }
     let options = regressor_options(&robot, &arguments.with);
     let base = base_parameters(&robot, options, &arguments.keep)
         .map_err(|error| Failure::Base(Box::new(error)))?;
-    let certificate = Certificate::new(&robot, options, &base);
+    let certificate = Certificate::new(&robot, options, &base, arguments.numeric);
     let verified = certificate.verify(&robot).is_verified();
     if let Some(path) = &arguments.certificate {
         let mut bytes = serde_json::to_vec_pretty(&certificate)?;
@@ -135,21 +144,11 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(path, &bytes)?;
     }
     let found = Found::new(&robot, &base, verified);
-    let mut is_answered = false;
-    for (path, format) in
-        [(&arguments.latex, Format::Latex), (&arguments.markdown, Format::Markdown)]
-    {
-        let Some(path) = path else { continue };
-        let document = match format {
-            Format::Latex => latex(&found),
-            Format::Markdown => markdown::document(&found),
-        };
-        if path.as_os_str() == "-" {
-            out.write_all(document.as_bytes())?;
-            is_answered = true;
-        } else {
-            write_whole(path, document.as_bytes())?;
-        }
+    if let Some(path) = &arguments.latex {
+        write_whole(path, latex(&found).as_bytes())?;
+    }
+    if let Some(path) = &arguments.markdown {
+        write_whole(path, markdown::document(&found).as_bytes())?;
     }
     match (arguments.json, is_answered) {
         (true, _) => json::write(out, &found)?,
@@ -157,12 +156,6 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         (false, false) => text::write(out, &found)?,
     }
     Ok(if verified { Answer::Done } else { Answer::Negative })
-}
-
-#[derive(Clone, Copy)]
-enum Format {
-    Latex,
-    Markdown,
 }
 
 /// The base parameters as a LaTeX document.

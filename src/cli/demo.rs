@@ -200,7 +200,7 @@ fn base(robot: &Robot, directory: &Path, files: &mut Vec<Written>) -> Result<Bas
     let base =
         base_parameters(robot, options, &[]).map_err(|error| Failure::Base(Box::new(error)))?;
     let milliseconds = 1e3 * started.elapsed().as_secs_f64();
-    let certificate = Certificate::new(robot, options, &base);
+    let certificate = Certificate::new(robot, options, &base, false);
     let verified = certificate.verify(robot).is_verified();
     let document = latex(&Found::new(robot, &base, verified));
     let what = "base parameters as LaTeX".to_owned();

@@ -83,6 +83,25 @@ impl Elimination {
         self.rank
     }
 
+    /// As tables and lists in Markdown.
+    pub(crate) fn markdown(&self) -> String {
+        let mut text = String::from("| | kept | unit | base parameter |\n|---:|---|---|---|\n");
+        for (row, Parameter { name, expression, unit, .. }) in self.parameters.iter().enumerate() {
+            text.push_str(&format!("| {} | `{name}` | {unit} | `{expression}` |\n", row + 1));
+        }
+        if !self.zero.is_empty() {
+            let names = self.zero.join("`, `");
+            text.push_str(&format!("\n## Without any effect\n\n`{names}`\n"));
+        }
+        if !self.dependent.is_empty() {
+            text.push_str("\n## Columns that are sums of kept columns\n\n");
+        }
+        for Dependent { name, relation } in &self.dependent {
+            text.push_str(&format!("- `{name} = {relation}`\n"));
+        }
+        text
+    }
+
     /// For people.
     pub(crate) fn write(&self, out: &mut dyn Write) -> Result<(), Failure> {
         let mut table = Table::new(&[

@@ -1,8 +1,7 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
-use denavit::derive::BakeError;
 use denavit::emit::rust::EmitError;
-use denavit::model::ModelError;
+use denavit::model::{BakeError, ModelError};
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
@@ -27,6 +26,8 @@ pub(crate) enum Failure {
     Write { file: String, error: io::Error },
     /// A file that was read would be replaced by the output.
     Overwrites(String),
+    /// Two documents were asked for on standard output.
+    TwoDocuments,
     /// A model has effects, which nothing adds to its equations yet; holds model and effect.
     Effect(String, String),
     /// Values are missing that the baked flavour needs.
@@ -96,6 +97,7 @@ impl Failure {
             }
             Self::TooLarge { .. } => "a model is a table of some kilobytes: check the path".into(),
             Self::Overwrites(_) => "choose another file for the output".to_owned(),
+            Self::TwoDocuments => "give all but one of them a file".to_owned(),
             Self::Effect(..) => "take \"effects\" out of the model".to_owned(),
             Self::Write { error, .. } => match error.kind() {
                 io::ErrorKind::NotFound => "make the directory first".to_owned(),
@@ -148,11 +150,9 @@ impl fmt::Display for Failure {
             Self::Bake(error) => write!(f, "{error}")?,
             Self::Equations(error) => write!(f, "{error}")?,
             Self::Decompose(error) => write!(f, "{error}")?,
-            Self::NotOfEquations(name) => write!(
-                f,
-                "{name}: equations have no --with, --terms, --certificate, --latex or --markdown \
-                 here: `denavit decompose` sets them"
-            )?,
+            Self::NotOfEquations(name) => {
+                write!(f, "{name}: equations have no --with, --terms, --numeric or --certificate")?
+            }
             Self::TooLongToSet { name, formulas } => {
                 write!(f, "{name}: {formulas} formulas are too many for a document")?;
             }
@@ -175,6 +175,7 @@ impl fmt::Display for Failure {
             Self::Overwrites(file) => {
                 write!(f, "{file}: is what this command reads, and would be replaced")?;
             }
+            Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::Effect(model, effect) => {
                 write!(f, "{model}: the equations do not have the effect `{effect}` yet")?;
             }

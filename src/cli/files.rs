@@ -122,6 +122,15 @@ pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
     })
 }
 
+/// Whether one of these outputs is standard output. Only one can be, JSON included.
+pub(crate) fn on_stdout(outputs: &[Option<&PathBuf>], json: bool) -> Result<bool, Failure> {
+    let documents = outputs.iter().flatten().filter(|path| path.as_os_str() == "-").count();
+    match documents + usize::from(json) {
+        0 | 1 => Ok(documents > 0),
+        _ => Err(Failure::TwoDocuments),
+    }
+}
+
 /// Writes a file whole: into a new file beside it, which then takes its name. What was there stays
 /// until then. `-` is standard output.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

@@ -3,8 +3,10 @@
 use super::Answer;
 use super::failure::Failure;
 use super::files::{read_file, read_model};
+use super::json::write_json;
 use clap::Args;
-use denavit::regressor::Certificate;
+use denavit::regressor::{Certificate, Verdict};
+use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -14,8 +16,9 @@ use std::path::PathBuf;
 /// Answers with exit code 1 if something does not hold.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Example:
-  denavit verify leg.certificate.json tulip_leg")]
+Examples:
+  denavit verify leg.certificate.json tulip_leg
+  denavit verify leg.certificate.json tulip_leg --json")]
 pub(crate) struct Arguments {
     /// Path of a certificate that `denavit base --certificate` wrote
     #[arg(value_name = "CERTIFICATE")]
@@ -23,6 +26,21 @@ pub(crate) struct Arguments {
     /// Path of a model file, name of a shipped model, or - for standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What a check found.
+#[derive(Serialize)]
+struct VerdictJson<'a> {
+    model: &'a str,
+    verified: bool,
+    /// The number of base parameters.
+    rank: Option<usize>,
+    /// Whether each relation was also written out in every torque.
+    multiplied_out: bool,
+    verdict: String,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
@@ -32,6 +50,16 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     })?;
     let robot = read_model(&arguments.model)?;
     let verdict = certificate.verify(&robot);
-    writeln!(out, "{}: {verdict}", robot.name)?;
+    if arguments.json {
+        let (rank, multiplied_out) = match verdict {
+            Verdict::Verified { rank, multiplied_out } => (Some(rank), multiplied_out),
+            _ => (None, false),
+        };
+        let (verified, model) = (verdict.is_verified(), robot.name.as_str());
+        let verdict = verdict.to_string();
+        write_json(out, &VerdictJson { model, verified, rank, multiplied_out, verdict })?;
+    } else {
+        writeln!(out, "{}: {verdict}", robot.name)?;
+    }
     Ok(if verdict.is_verified() { Answer::Done } else { Answer::Negative })
 }

@@ -1,10 +1,10 @@
 //! What a simulation knows of a robot besides its functions: names, drives, points, ground.
 
 use denavit_codegen::arena::Handle;
-use denavit_codegen::derive::{BakeError, bake};
+
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::expr::text::nearest;
-use denavit_codegen::model::{Base, Contact, Drive, JointKind, Link, Robot};
+use denavit_codegen::model::{BakeError, Base, Contact, Drive, JointKind, Link, Robot, bake};
 use denavit_codegen::number::parse_decimal;
 use denavit_codegen::program::{LowerError, constant_values};
 use std::fmt;

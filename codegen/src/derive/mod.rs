@@ -1,14 +1,10 @@
 //! The driver: from a checked robot to the functions asked for, one line per stage.
 
-mod bake;
-
-pub use bake::{BakeError, bake};
-
 use crate::dynamics::portfolio::Portfolio;
 use crate::expr::{Dag, Operations};
 use crate::function::{Function, FunctionName};
 use crate::kinematics::Mechanism;
-use crate::model::Robot;
+use crate::model::{BakeError, Robot, bake};
 use crate::regressor;
 use crate::regroup::regroup;
 use std::fmt;

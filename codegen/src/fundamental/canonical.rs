@@ -12,11 +12,12 @@
 //! their canonical arguments: of these equal polynomials still mean equal expressions, but
 //! `sqrt(x)^2` is not seen to be `x`.
 
+use super::number_angle::{NumberAngles, beyond_quarter_turns};
 use super::polynomial::{Monomial, Polynomial, TooManyTerms};
-use crate::expr::{Dag, ExprId, Node, UnaryFunction, angle_atoms, is_pi};
-use crate::number::{Rational, integer, ratio};
+use crate::expr::{Dag, ExprId, Node, UnaryFunction};
+use crate::number::{Rational, integer};
 use num_bigint::BigInt;
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_traits::{One, ToPrimitive, Zero};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -89,55 +90,19 @@ pub(super) fn canonical_within(
 
 /// [`canonical_all`] in which an angle that is a number (0.3, pi/6) is a variable: its cosine and
 /// sine obey cos^2 + sin^2 = 1 and nothing else. What vanishes then vanishes for every such angle;
-/// what does not may still vanish for this one. Angles with the same denominator are multiples of
-/// one variable.
+/// what does not may still vanish for this one. Small multiples of one angle share its variable.
 pub fn canonical_generic(
     dag: &mut Dag,
     exprs: &[ExprId],
 ) -> Result<Vec<Polynomial>, CanonicalError> {
-    let numbers = number_angles(dag, exprs);
+    let nodes = dag.topological(exprs);
+    let angles = nodes.into_iter().filter_map(|expr| match dag.node(expr) {
+        Node::Unary(UnaryFunction::Sin | UnaryFunction::Cos | UnaryFunction::Tan, a) => Some(a),
+        _ => None,
+    });
+    let numbers = NumberAngles::among(dag, angles);
     expand(dag, exprs, MAX_TERMS, Some(numbers))
 }
-
-/// The numbers among the angles, beyond quarter turns: for each class (whether a multiple of pi)
-/// and denominator the greatest common divisor of the numerators.
-fn number_angles(dag: &Dag, exprs: &[ExprId]) -> NumberAngles {
-    let mut numbers = NumberAngles::new();
-    for expr in dag.topological(exprs) {
-        let Node::Unary(UnaryFunction::Sin | UnaryFunction::Cos | UnaryFunction::Tan, angle) =
-            dag.node(expr)
-        else {
-            continue;
-        };
-        for (atom, coefficient) in angle_atoms(dag, angle) {
-            let is_pi = is_pi(dag, &atom);
-            if is_pi || atom.is_empty() {
-                let rest = if is_pi { beyond_quarter_turns(&coefficient).1 } else { coefficient };
-                let entry = numbers.entry((is_pi, rest.denom().clone())).or_default();
-                *entry = common_divisor(entry.clone(), rest.numer().abs());
-            }
-        }
-    }
-    numbers
-}
-
-fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
-    while !b.is_zero() {
-        (a, b) = (b.clone(), a % b);
-    }
-    a
-}
-
-/// A multiple of pi as quarter turns and the rest, which is at most half of one. Opposite angles
-/// are taken apart into opposites, and an angle of at most half a quarter is its own rest.
-fn beyond_quarter_turns(multiple: &Rational) -> (BigInt, Rational) {
-    let size = (multiple.abs() * integer(2) - ratio(1, 2)).ceil();
-    let quarters = if multiple.is_negative() { -size } else { size };
-    (quarters.to_integer(), multiple - quarters / integer(2))
-}
-
-/// By (whether of pi, denominator): the greatest common divisor of the numerators.
-type NumberAngles = BTreeMap<(bool, BigInt), BigInt>;
 
 fn expand(
     dag: &mut Dag,
@@ -335,11 +300,7 @@ impl Expansion<'_> {
         if is_pi || monomial.is_one() {
             // An angle of 1 rad has no canonical sine: neither has a third of pi.
             let numbers = self.numbers.as_ref().ok_or(CanonicalError::Angle)?;
-            let common = numbers.get(&(is_pi, rest.denom().clone()));
-            return Ok(match common {
-                Some(numerator) => Rational::new(numerator.clone(), rest.denom().clone()),
-                None => rest.abs(),
-            });
+            return Ok(numbers.unit(rest, is_pi));
         }
         match rest.is_integer() {
             true => Ok(Rational::one()),

@@ -1,11 +1,12 @@
 //! Which indeterminates an expansion has, and where their exponents stand in a key.
 
 use super::key::Key;
+use super::number_angle::{NumberAngles, beyond_quarter_turns};
 use crate::expr::{
     AngleAtom, Dag, ExprId, Node, SymbolId, UnaryFunction, angle_atoms, atom_to_expr, free_symbols,
     is_pi, quarter_turns,
 };
-use crate::number::{Rational, integer};
+use crate::number::Rational;
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -162,47 +163,38 @@ impl Layout {
             nodes.iter().filter_map(|&expr| as_wave(dag, expr)).map(|(angle, _)| angle).collect();
         arguments.sort_unstable();
         arguments.dedup();
+        let numbers = NumberAngles::among(dag, arguments.iter().copied());
+        let mut units = Units::default();
         let mut apart = Vec::new();
-        let mut denominators: Vec<(AngleAtom, BigInt)> = Vec::new();
         for argument in arguments {
-            let mut atoms: Vec<(AngleAtom, Rational)> = Vec::new();
+            let mut parts: Vec<(usize, Rational)> = Vec::new();
             let mut quarters = 0;
             for (atom, mut coefficient) in angle_atoms(dag, argument) {
-                if is_pi(dag, &atom) {
-                    let whole = (&coefficient * integer(2)).floor();
-                    coefficient -= &whole / integer(2);
-                    quarters = quarter_turns(&whole);
+                let is_pi = is_pi(dag, &atom);
+                if is_pi {
+                    let (whole, rest) = beyond_quarter_turns(&coefficient);
+                    quarters = quarter_turns(&Rational::from_integer(whole));
+                    coefficient = rest;
                 }
                 if !coefficient.is_zero() {
-                    atoms.push((atom, coefficient));
+                    let is_number = is_pi || atom.is_empty();
+                    let unit = is_number.then(|| numbers.unit(&coefficient, is_pi));
+                    parts.push((units.index(atom, &coefficient, unit), coefficient));
                 }
             }
-            for (atom, coefficient) in &atoms {
-                match denominators.iter_mut().find(|(known, _)| known == atom) {
-                    Some((_, common)) => {
-                        // lcm(a, b) = a (b / gcd(a, b))
-                        let b = coefficient.denom();
-                        *common *= Rational::new(common.clone(), b.clone()).denom().clone();
-                    }
-                    None => denominators.push((atom.clone(), coefficient.denom().clone())),
-                }
-            }
-            apart.push((argument, atoms, quarters));
+            apart.push((argument, parts, quarters));
         }
-        for (atom, denominator) in &denominators {
-            let unit = dag.constant(Rational::new(BigInt::one(), denominator.clone()));
+        for (atom, unit) in &units.0 {
+            let factor = dag.constant(unit.clone());
             let atom = atom_to_expr(dag, atom);
-            let unit = dag.mul(unit, atom);
-            self.angles.push(Atom::new(unit, depends_on_known(dag, unit, is_known)));
+            let angle = dag.mul(factor, atom);
+            self.angles.push(Atom::new(angle, depends_on_known(dag, angle, is_known)));
         }
-        for (argument, atoms, quarters) in apart {
+        for (argument, parts, quarters) in apart {
             let mut multiples = Vec::new();
-            for (atom, coefficient) in atoms {
-                let index = denominators.iter().position(|(known, _)| *known == atom);
-                let index = index.expect("every atom was listed");
-                let multiple = coefficient * Rational::from_integer(denominators[index].1.clone());
-                let multiple = multiple.to_integer().to_i64().ok_or(ExponentTooLarge)?;
-                multiples.push((index, multiple));
+            for (index, coefficient) in parts {
+                let multiple = (coefficient / &units.0[index].1).to_integer();
+                multiples.push((index, multiple.to_i64().ok_or(ExponentTooLarge)?));
             }
             self.angle_of.insert(argument, Angle { multiples, quarters });
         }
@@ -337,6 +329,36 @@ impl Layout {
             }
         }
         exponents
+    }
+}
+
+/// Angles of which all others are sums of whole multiples: an atom and the fraction of it.
+#[derive(Default)]
+struct Units(Vec<(AngleAtom, Rational)>);
+
+impl Units {
+    /// The unit of which `coefficient` times an atom is a whole multiple: the one given, or 1/n of
+    /// the atom, with n common to all its fractions.
+    fn index(&mut self, atom: AngleAtom, coefficient: &Rational, given: Option<Rational>) -> usize {
+        let is_wanted = |(other, unit): &(AngleAtom, Rational)| {
+            *other == atom && given.as_ref().is_none_or(|given| given == unit)
+        };
+        let one_of = |n: BigInt| Rational::new(BigInt::one(), n);
+        match (self.0.iter().position(is_wanted), given) {
+            (Some(index), given) => {
+                if given.is_none() {
+                    // lcm(a, b) = a (b / gcd(a, b))
+                    let (a, b) = (self.0[index].1.denom(), coefficient.denom());
+                    self.0[index].1 = one_of(a * Rational::new(a.clone(), b.clone()).denom());
+                }
+                index
+            }
+            (None, given) => {
+                let unit = given.unwrap_or_else(|| one_of(coefficient.denom().clone()));
+                self.0.push((atom, unit));
+                self.0.len() - 1
+            }
+        }
     }
 }
 

@@ -20,6 +20,7 @@ mod fraction;
 mod gcd;
 mod key;
 mod layout;
+mod number_angle;
 mod polynomial;
 mod readable;
 mod separate;

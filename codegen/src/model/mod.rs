@@ -8,6 +8,7 @@
 //! All faults are found in one run: [`ModelError`] lists them with file, line, column, JSON
 //! pointer, cause and hint. docs/model-file.md describes the format.
 
+mod bake;
 mod check;
 pub mod equations;
 mod fault;
@@ -24,6 +25,7 @@ mod spelling;
 mod tree;
 mod unit;
 
+pub use bake::{BakeError, bake, bake_geometry};
 pub use fault::{Cause, Fault, MAX_FAULTS, ModelError};
 pub use inertia::Unphysical;
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};

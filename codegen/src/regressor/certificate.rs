@@ -5,15 +5,16 @@
 //! - rank <= r: each other column's relation vanishes, exactly. The relation is read as matter, one
 //!   amount a body, and settled: from the tips to the base each body hands on what its carrier
 //!   feels alike, and what is left must be what the body does not feel. No elimination is done.
-//!   Of small robots the relation is multiplied out too, and is 0 in every torque.
+//!   Of robots of up to six joints the relations are multiplied out too, and are 0 in every torque.
 
 use super::base::BaseParameters;
 use super::column::{Regressor, RegressorError, RegressorOptions, Unknowns};
 use super::rank::{PARAMETERS, rows_at};
 use super::settle::{settle, without_denominators};
-use crate::expr::{Dag, ExprId, angle_atoms, is_pi, text};
-use crate::fundamental::canonical_generic;
-use crate::model::{Robot, Terms};
+use crate::arena::Handle;
+use crate::expr::{ClassSet, Dag, ExprId, SymbolId, angle_atoms, is_pi, text};
+use crate::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, Matrix, decompose};
+use crate::model::{BakeError, Robot, Terms, bake_geometry};
 use crate::number::Residue;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -27,8 +28,11 @@ pub fn schema() -> &'static str {
     include_str!("certificate-schema.json")
 }
 
+/// In [`Certificate::with`]: the geometry is numbers.
+const NUMERIC: &str = "numeric";
+
 /// Relations of robots of at most so many joints are multiplied out as well, torque by torque.
-const MULTIPLIED_OUT_JOINTS: usize = 3;
+const MULTIPLIED_OUT_JOINTS: usize = 6;
 
 /// A certificate, as it stands in its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,7 +46,8 @@ pub struct Certificate {
     pub model_hash: String,
     /// The terms: inertia, coriolis, gravity.
     pub terms: Vec<String>,
-    /// What was added: friction, rotor, offset; `products` if bodies are taken by products.
+    /// What was added: friction, rotor, offset; `products` if bodies are taken by products;
+    /// `numeric` if lengths, angles and gravity are the model's numbers.
     pub with: Vec<String>,
     /// The prime.
     pub prime: u64,
@@ -85,8 +90,14 @@ pub struct NullVector {
 /// What the check of a certificate found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Everything holds; the rank.
-    Verified(usize),
+    /// Everything holds.
+    Verified {
+        /// The number of base parameters.
+        rank: usize,
+        /// Whether the relations were also multiplied out in every torque, which is done for
+        /// robots of up to six joints whose torques fit the memory of an expansion.
+        multiplied_out: bool,
+    },
     /// It is no certificate of this format.
     Format(String),
     /// It belongs to another model, or to another content of the model.
@@ -103,12 +114,17 @@ pub enum Verdict {
     Relation(String),
     /// The model has no regressor.
     Regressor(RegressorError),
+    /// The model lacks the numbers that the certificate is about.
+    Bake(BakeError),
 }
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Verified(rank) => write!(f, "verified: {rank} base parameters"),
+            Self::Verified { rank, multiplied_out } => {
+                let by = if *multiplied_out { "by joint and in every torque" } else { "by joint" };
+                write!(f, "verified: {rank} base parameters (each relation {by})")
+            }
             Self::Format(tag) => write!(f, "`{tag}` is not {FORMAT} with its prime"),
             Self::OtherModel(name) => {
                 write!(f, "the certificate is of `{name}` with another content")
@@ -121,6 +137,7 @@ impl fmt::Display for Verdict {
             Self::RankTooLow => write!(f, "the columns that stay are not shown independent"),
             Self::Relation(column) => write!(f, "the relation of {column} does not hold"),
             Self::Regressor(error) => write!(f, "{error}"),
+            Self::Bake(error) => write!(f, "{error}"),
         }
     }
 }
@@ -128,7 +145,7 @@ impl fmt::Display for Verdict {
 impl Verdict {
     /// Whether everything holds.
     pub fn is_verified(&self) -> bool {
-        matches!(self, Self::Verified(_))
+        matches!(self, Self::Verified { .. })
     }
 }
 
@@ -161,14 +178,21 @@ fn term_names(terms: Terms) -> Vec<String> {
 }
 
 impl Certificate {
-    /// The certificate of base parameters found for `robot` with `options`.
-    pub fn new(robot: &Robot, options: RegressorOptions, base: &BaseParameters) -> Self {
+    /// The certificate of base parameters found with `options` for `robot`, in whose geometry
+    /// numbers took the place of symbols if it is `numeric` ([`bake_geometry`]).
+    pub fn new(
+        robot: &Robot,
+        options: RegressorOptions,
+        base: &BaseParameters,
+        numeric: bool,
+    ) -> Self {
         let with = [
             (options.friction, "friction"),
             (options.rotor, "rotor"),
             (options.offset, "offset"),
             (options.only_modelled, "only_modelled"),
             (options.unknowns == Unknowns::Products, "products"),
+            (numeric, NUMERIC),
         ];
         let name = |column: usize| base.name(column).to_owned();
         let pivots = base
@@ -221,7 +245,13 @@ impl Certificate {
                 Unknowns::Parameters
             },
         };
-        let mut robot = robot.clone();
+        let mut robot = match has(&self.with, NUMERIC) {
+            false => robot.clone(),
+            true => match bake_geometry(robot) {
+                Ok(robot) => robot,
+                Err(error) => return Verdict::Bake(error),
+            },
+        };
         robot.terms.inertia = has(&self.terms, "inertia");
         robot.terms.coriolis = has(&self.terms, "coriolis");
         robot.terms.gravity = has(&self.terms, "gravity");
@@ -242,12 +272,31 @@ impl Certificate {
         if !self.is_independent(&regressor) {
             return Verdict::RankTooLow;
         }
+        self.verify_relations(&regressor)
+    }
+
+    /// The check of the relations, after which nothing is left to check.
+    fn verify_relations(&self, regressor: &Regressor) -> Verdict {
+        let mut dag = regressor.dag.clone();
+        let joints = regressor.joints.len();
+        let is_small = joints <= MULTIPLIED_OUT_JOINTS;
+        let mut torques = vec![Vec::new(); joints];
         for relation in &self.relations {
-            if !holds(&regressor, relation) {
-                return Verdict::Relation(relation.column.clone());
+            let refuted = || Verdict::Relation(relation.column.clone());
+            let Some(amounts) = amounts(regressor, &mut dag, relation) else { return refuted() };
+            if !settle(regressor, &mut dag, &amounts) {
+                return refuted();
+            }
+            if is_small {
+                let Some(sums) = sums(regressor, &mut dag, &amounts) else { return refuted() };
+                torques.iter_mut().zip(sums).for_each(|(row, sum)| row.push(sum));
             }
         }
-        Verdict::Verified(self.pivots.len())
+        let vanish = if is_small { vanishing(&mut dag, &torques) } else { None };
+        match vanish.as_ref().map(|columns| columns.iter().position(|vanishes| !vanishes)) {
+            Some(Some(refuted)) => Verdict::Relation(self.relations[refuted].column.clone()),
+            _ => Verdict::Verified { rank: self.pivots.len(), multiplied_out: vanish.is_some() },
+        }
     }
 
     fn not_a_partition(&self) -> Option<String> {
@@ -311,41 +360,45 @@ fn determinant(mut matrix: Vec<Vec<Residue>>) -> Residue {
     product
 }
 
-/// Whether a relation vanishes exactly.
-fn holds(regressor: &Regressor, relation: &NullVector) -> bool {
-    let mut dag = regressor.dag.clone();
-    let mut amounts = Vec::new();
+/// What a relation says of the columns: amounts that sum to 0.
+fn amounts(
+    regressor: &Regressor,
+    dag: &mut Dag,
+    relation: &NullVector,
+) -> Option<Vec<(usize, ExprId)>> {
     let minus_one = dag.integer(-1);
-    match regressor.find(&relation.column) {
-        Some(column) => amounts.push((column, minus_one)),
-        None => return false,
-    }
+    let mut amounts = vec![(regressor.find(&relation.column)?, minus_one)];
     for (factor, name) in &relation.sum {
         let resolve = &mut |dag: &mut Dag, name: &str| {
             let id = dag.find_symbol(name)?;
-            let known = !crate::expr::ClassSet::of(dag.symbols()[id].class).is_run_time();
+            let known = !ClassSet::of(dag.symbols()[id].class).is_run_time();
             known.then(|| dag.symbol_expr(id))
         };
-        let factor = text::parse(&mut dag, factor, resolve);
-        match (factor, regressor.find(name)) {
-            (Ok(factor), Some(column)) => amounts.push((column, factor)),
-            _ => return false,
-        }
+        amounts.push((regressor.find(name)?, text::parse(dag, factor, resolve).ok()?));
     }
-    settle(regressor, &mut dag, &amounts)
-        && (regressor.joints.len() > MULTIPLIED_OUT_JOINTS
-            || vanishes(regressor, &mut dag, &amounts))
+    Some(amounts)
 }
 
-/// Whether the columns in these amounts sum to 0 in every torque, multiplied out.
-fn vanishes(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, ExprId)]) -> bool {
-    let Some(amounts) = without_denominators(dag, amounts) else { return false };
+/// The sums of columns in these amounts, times a common denominator, torque by torque.
+fn sums(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, ExprId)]) -> Option<Vec<ExprId>> {
     let mut sums = vec![dag.zero(); regressor.joints.len()];
-    for (column, amount) in amounts {
+    for (column, amount) in without_denominators(dag, amounts)? {
         for (sum, &entry) in sums.iter_mut().zip(&regressor.columns[column].entries) {
             let product = dag.mul(amount, entry);
             *sum = dag.add(*sum, product);
         }
     }
-    canonical_generic(dag, &sums).is_ok_and(|forms| forms.iter().all(|form| form.is_zero()))
+    Some(sums)
+}
+
+/// Which columns of a matrix vanish when it is written out as trigonometric polynomials, which are
+/// canonical. None if it cannot be written out.
+fn vanishing(dag: &mut Dag, rows: &[Vec<ExprId>]) -> Option<Vec<bool>> {
+    let known: Vec<bool> =
+        dag.symbols().values().map(|symbol| !ClassSet::of(symbol.class).is_run_time()).collect();
+    let is_known = |id: SymbolId| known[id.index()];
+    let matrix = Matrix { rows, is_known: &is_known, chains: &[] };
+    let expansion = &mut Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
+    let found = decompose(dag, &matrix, &[Basis::Fourier], expansion).ok()?;
+    Some(found[0].columns.iter().map(Vec::is_empty).collect())
 }

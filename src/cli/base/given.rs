@@ -1,9 +1,12 @@
 //! The base parameters of given equations.
 
+use super::markdown::escaped;
 use super::{Answer, Arguments, CertificateJson, Failure};
 use crate::cli::elimination::{Elimination, columns};
+use crate::cli::files::write_whole;
 use crate::cli::json::write_json;
 use crate::cli::progress::Progress;
+use denavit::emit::latex::equations_decomposition;
 use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};
 use denavit::model::equations::Equations;
 use denavit::number::Residue;
@@ -24,11 +27,14 @@ struct GivenJson<'a> {
 pub(super) fn run(
     arguments: &Arguments,
     equations: &Equations,
+    is_answered: bool,
     out: &mut dyn Write,
 ) -> Result<Answer, Failure> {
-    let is_of_models = !arguments.with.is_empty() || arguments.terms.is_some();
-    let files = [&arguments.certificate, &arguments.latex, &arguments.markdown];
-    if is_of_models || files.iter().any(|file| file.is_some()) {
+    let is_of_models = !arguments.with.is_empty()
+        || arguments.terms.is_some()
+        || arguments.numeric
+        || arguments.certificate.is_some();
+    if is_of_models {
         return Err(Failure::NotOfEquations(equations.name.clone()));
     }
     let progress = Progress::new();
@@ -43,6 +49,24 @@ pub(super) fn run(
     let elimination = Elimination::new(&mut found.dag, &theta, &named);
     let answer = if verified { Answer::Done } else { Answer::Negative };
     let columns: Vec<String> = named.into_iter().map(|column| column.name).collect();
+    if let Some(path) = &arguments.latex {
+        let document = equations_decomposition(equations, &found, Some(&theta))
+            .expect("our template has a place for each value");
+        write_whole(path, document.as_bytes())?;
+    }
+    if let Some(path) = &arguments.markdown {
+        let mut document = format!(
+            "# Base parameters of {}\n\n{} base parameters of {} columns.\n\n",
+            escaped(&equations.name),
+            theta.rank(),
+            columns.len()
+        );
+        document.push_str(&elimination.markdown());
+        write_whole(path, document.as_bytes())?;
+    }
+    if is_answered {
+        return Ok(answer);
+    }
     if arguments.json {
         let (model, prime) = (equations.name.as_str(), Residue::MODULUS);
         let certificate = CertificateJson { verified, prime };

@@ -49,6 +49,6 @@ pub(super) fn document(found: &Found<'_>) -> String {
 }
 
 /// A name in running text.
-fn escaped(name: &str) -> String {
+pub(super) fn escaped(name: &str) -> String {
     name.replace('_', "\\_")
 }

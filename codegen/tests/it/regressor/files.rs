@@ -14,7 +14,7 @@ fn certificates_are_of_their_schema_and_come_back() {
     let validator = jsonschema::draft202012::new(&schema).unwrap();
     for name in ["double_pendulum", "puma560", "scara"] {
         let robot = load(name);
-        let written = Certificate::new(&robot, INERTIAL, &base(&robot, INERTIAL));
+        let written = Certificate::new(&robot, INERTIAL, &base(&robot, INERTIAL), false);
         let mut value = serde_json::to_value(&written).unwrap();
         assert!(validator.is_valid(&value), "{name}");
         let back: Certificate = serde_json::from_value(value.clone()).unwrap();

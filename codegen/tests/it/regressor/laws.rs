@@ -116,8 +116,12 @@ fn coriolis_terms_add_no_base_parameter() {
 fn certified(robot: &Robot, options: RegressorOptions, keep: &[String]) -> Certificate {
     let found = base_parameters(robot, options, keep)
         .unwrap_or_else(|error| panic!("{}: {error}", robot.name));
-    let certificate = Certificate::new(robot, options, &found);
-    assert_eq!(certificate.verify(robot), Verdict::Verified(found.rank()), "{}", robot.name);
+    let certificate = Certificate::new(robot, options, &found, false);
+    let Verdict::Verified { rank, multiplied_out } = certificate.verify(robot) else {
+        panic!("{}: {}", robot.name, certificate.verify(robot));
+    };
+    assert_eq!(rank, found.rank(), "{}", robot.name);
+    assert_eq!(multiplied_out, robot.joints().count() <= 6, "{}", robot.name);
     certificate
 }
 

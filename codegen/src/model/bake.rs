@@ -1,7 +1,7 @@
 //! Baking: the values of the model in place of its parameter symbols.
 
-use crate::expr::{ExprId, substitute};
-use crate::model::{Body, Drive, Joint, Robot};
+use super::robot::{Body, Drive, Joint, Robot};
+use crate::expr::{ExprId, Node, SymbolClass, substitute};
 use rustc_hash::FxHashMap;
 use std::fmt;
 
@@ -19,7 +19,7 @@ impl fmt::Display for BakeError {
         write!(
             f,
             "{}: these parameters have no value to bake in: {}\n  hint: give each a value in the \
-             model file, or derive the tunable flavour",
+             model file, or leave the symbols as they are",
             self.model,
             self.parameters.join(", ")
         )
@@ -31,9 +31,22 @@ impl std::error::Error for BakeError {}
 /// The robot with the default value of every parameter in place of its symbol. Values are exact,
 /// so a zero folds everything that it multiplies.
 pub fn bake(robot: &Robot) -> Result<Robot, BakeError> {
+    bake_where(robot, |_| true)
+}
+
+/// The robot with numbers for lengths, angles and gravity; what is identified stays a symbol.
+pub fn bake_geometry(robot: &Robot) -> Result<Robot, BakeError> {
+    let is_geometry = |symbol: ExprId| match robot.dag.node(symbol) {
+        Node::Symbol(id) => robot.dag.symbols()[id].class == SymbolClass::Geometry,
+        _ => false,
+    };
+    bake_where(robot, is_geometry)
+}
+
+fn bake_where(robot: &Robot, is_baked: impl Fn(ExprId) -> bool) -> Result<Robot, BakeError> {
     let mut values: FxHashMap<ExprId, ExprId> = FxHashMap::default();
     let mut missing = Vec::new();
-    for parameter in robot.parameters.values() {
+    for parameter in robot.parameters.values().filter(|parameter| is_baked(parameter.symbol)) {
         match parameter.default {
             Some(value) => _ = values.insert(parameter.symbol, value),
             None => missing.push(parameter.name.clone()),

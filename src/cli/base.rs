@@ -130,6 +130,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let Some(list) = &arguments.terms {
         robot.terms = terms(list);
     }
+    if !robot.terms.inertia && !robot.terms.gravity {
+        return Err(Failure::NoMotionTerms(robot.name));
+    }
     if arguments.numeric {
         *robot = bake_geometry(&robot).map_err(Failure::Bake)?;
     }

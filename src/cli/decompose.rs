@@ -5,7 +5,7 @@ mod found;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{Input, read_input, write_whole};
+use super::files::{Input, on_stdout, read_input, write_whole};
 use super::json::write_json;
 use super::options::{Term, terms};
 use super::progress::Progress;
@@ -79,6 +79,7 @@ impl BasisName {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let is_answered = on_stdout(&[arguments.latex.as_ref()], arguments.json)?;
     let input = read_input(&arguments.input)?;
     let progress = Progress::new();
     let mut show = |at: Expanded| {
@@ -103,13 +104,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     progress.show("writing f and B");
     if let Some(file) = &arguments.latex {
-        let document = found.latex()?;
-        if file.as_os_str() == "-" {
-            progress.clear();
-            out.write_all(document.as_bytes())?;
-            return Ok(Answer::Done);
-        }
-        write_whole(file, document.as_bytes())?;
+        write_whole(file, found.latex()?.as_bytes())?;
+    }
+    if is_answered {
+        return Ok(Answer::Done);
     }
     let texts = found.texts();
     progress.clear();

@@ -4,7 +4,7 @@ mod equations;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_model, write_whole};
+use super::files::{on_stdout, read_model, write_whole};
 use super::json::{Ordered, write_json};
 use super::options::ModelArgument;
 use super::progress::Progress;
@@ -110,6 +110,7 @@ struct IntermediateJson<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let is_answered = on_stdout(&[arguments.latex.as_ref()], arguments.json)?;
     let robot = read_model(&arguments.model.model)?;
     let progress = Progress::new();
     progress.show(&format!("deriving {}", robot.name));
@@ -119,14 +120,12 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     };
     if let Some(file) = &arguments.latex {
         progress.show(&format!("setting the equations of {}", robot.name));
-        let document = equations.latex(&robot);
-        if file.as_os_str() == "-" {
-            out.write_all(document.as_bytes())?;
-            return Ok(Answer::Done);
-        }
-        write_whole(file, document.as_bytes())?;
+        write_whole(file, equations.latex(&robot).as_bytes())?;
     }
     drop(progress);
+    if is_answered {
+        return Ok(Answer::Done);
+    }
     if arguments.json {
         write_answer(out, &equations)?;
     } else {

@@ -2,7 +2,7 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_model, write_whole};
+use super::files::{on_stdout, read_model, write_whole};
 use super::json::write_json;
 use super::options::{FlavourOption, FunctionList, ModelArgument};
 use super::progress::Progress;
@@ -52,6 +52,7 @@ struct EmitJson<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let is_answered = on_stdout(&[Some(&arguments.output)], arguments.json)?;
     let robot = read_model(&arguments.model.model)?;
     let flavour = arguments.flavour.flavour();
     let progress = Progress::new();
@@ -59,11 +60,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let emitted = Emitted::new(&robot, flavour, &arguments.functions.wanted())?;
     drop(progress);
     let text = &emitted.text;
-    if arguments.output.as_os_str() == "-" {
-        out.write_all(text.as_bytes())?;
+    write_whole(&arguments.output, text.as_bytes())?;
+    if is_answered {
         return Ok(Answer::Done);
     }
-    write_whole(&arguments.output, text.as_bytes())?;
     let (file, lines) = (arguments.output.display().to_string(), text.lines().count());
     let functions: Vec<String> =
         emitted.program.routines.iter().map(|routine| routine.full_name()).collect();

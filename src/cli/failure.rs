@@ -40,6 +40,8 @@ pub(crate) enum Failure {
     NoFunction { model: String, asked: Vec<String> },
     /// The base parameters are not found.
     Base(Box<BaseError>),
+    /// No terms are left in which bodies act by themselves; holds the model.
+    NoMotionTerms(String),
     /// A file is no certificate.
     Certificate { file: String, error: serde_json::Error },
     /// A model is not decomposed.
@@ -97,6 +99,10 @@ impl Failure {
             }
             Self::TooLarge { .. } => "a model is a table of some kilobytes: check the path".into(),
             Self::Overwrites(_) => "choose another file for the output".to_owned(),
+            Self::NoMotionTerms(_) => {
+                "--terms inertia,gravity; --with friction,rotor adds the parameters of joints"
+                    .to_owned()
+            }
             Self::TwoDocuments => "give all but one of them a file".to_owned(),
             Self::Effect(..) => "take \"effects\" out of the model".to_owned(),
             Self::Write { error, .. } => match error.kind() {
@@ -174,6 +180,9 @@ impl fmt::Display for Failure {
             }
             Self::Overwrites(file) => {
                 write!(f, "{file}: is what this command reads, and would be replaced")?;
+            }
+            Self::NoMotionTerms(model) => {
+                write!(f, "{model}: base parameters need inertia or gravity among the terms")?;
             }
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::Effect(model, effect) => {

@@ -5,7 +5,7 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_model, write_whole};
+use super::files::{on_stdout, read_model, write_whole};
 use super::json::write_json;
 use super::options::ModelArgument;
 use clap::Args;
@@ -35,6 +35,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let is_answered = on_stdout(&[arguments.svg.as_ref()], arguments.json)?;
     let robot = match read_model(&arguments.model.model) {
         Ok(robot) => robot,
         Err(Failure::Model(error)) if arguments.json => {
@@ -47,9 +48,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let Some(file) = &arguments.svg {
         let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(robot.name.clone(), e))?;
         write_whole(file, picture(&robot, &pose).as_bytes())?;
-        if file.as_os_str() == "-" {
-            return Ok(Answer::Done);
-        }
+    }
+    if is_answered {
+        return Ok(Answer::Done);
     }
     let mut values = Values::new(&robot);
     if arguments.json {

@@ -74,18 +74,19 @@ pub trait Ring {
         argument: (&Dag, ExprId),
         values: &[Option<Self::Value>],
     ) -> Result<Self::Value, EvaluateError>;
-    /// A function of two arguments.
+    /// A function of two arguments, as expressions and by their values.
     fn binary(
         &mut self,
         function: BinaryFunction,
-        a: &Self::Value,
-        b: &Self::Value,
+        arguments: (&Dag, [ExprId; 2]),
+        values: [&Self::Value; 2],
     ) -> Result<Self::Value, EvaluateError>;
-    /// `then` where `left relation right`, else `otherwise`.
+    /// `then` where `left relation right`, else `otherwise`; the sides as those of `binary`.
     fn select(
         &mut self,
         relation: Relation,
-        sides: [&Self::Value; 2],
+        sides: (&Dag, [ExprId; 2]),
+        values: [&Self::Value; 2],
         then: &Self::Value,
         otherwise: &Self::Value,
     ) -> Self::Value;
@@ -112,9 +113,12 @@ pub fn evaluate<R: Ring>(
                 Node::Div(a, b) => ring.div(of(a), of(b))?,
                 Node::Pow(a, n) => power(ring, of(a), n),
                 Node::Unary(function, a) => ring.unary(function, (dag, a), &values)?,
-                Node::Binary(function, a, b) => ring.binary(function, of(a), of(b))?,
+                Node::Binary(function, a, b) => {
+                    ring.binary(function, (dag, [a, b]), [of(a), of(b)])?
+                }
                 Node::Select { relation, left, right, then, otherwise } => {
-                    ring.select(relation, [of(left), of(right)], of(then), of(otherwise))
+                    let sides = [of(left), of(right)];
+                    ring.select(relation, (dag, [left, right]), sides, of(then), of(otherwise))
                 }
             }
         };

@@ -71,15 +71,27 @@ impl<F: Fn(&str) -> Option<f64>> Ring for Floats<F> {
             UnaryFunction::Sign => x.signum(),
         })
     }
-    fn binary(&mut self, function: BinaryFunction, a: &f64, b: &f64) -> Result<f64, EvaluateError> {
+    fn binary(
+        &mut self,
+        function: BinaryFunction,
+        _: (&Dag, [ExprId; 2]),
+        [a, b]: [&f64; 2],
+    ) -> Result<f64, EvaluateError> {
         Ok(match function {
             BinaryFunction::Atan2 => a.atan2(*b),
             BinaryFunction::Min => a.min(*b),
             BinaryFunction::Max => a.max(*b),
         })
     }
-    fn select(&mut self, relation: Relation, sides: [&f64; 2], then: &f64, other: &f64) -> f64 {
-        if holds(relation, sides[0], sides[1]) { *then } else { *other }
+    fn select(
+        &mut self,
+        relation: Relation,
+        _: (&Dag, [ExprId; 2]),
+        [left, right]: [&f64; 2],
+        then: &f64,
+        otherwise: &f64,
+    ) -> f64 {
+        if holds(relation, left, right) { *then } else { *otherwise }
     }
 }
 
@@ -138,8 +150,8 @@ impl<F: Fn(&str) -> Option<Rational>> Ring for Rationals<F> {
     fn binary(
         &mut self,
         function: BinaryFunction,
-        a: &Rational,
-        b: &Rational,
+        _: (&Dag, [ExprId; 2]),
+        [a, b]: [&Rational; 2],
     ) -> Result<Rational, EvaluateError> {
         Ok(match function {
             BinaryFunction::Min => a.min(b).clone(),
@@ -151,11 +163,12 @@ impl<F: Fn(&str) -> Option<Rational>> Ring for Rationals<F> {
     fn select(
         &mut self,
         relation: Relation,
-        sides: [&Rational; 2],
+        _: (&Dag, [ExprId; 2]),
+        [left, right]: [&Rational; 2],
         then: &Rational,
         otherwise: &Rational,
     ) -> Rational {
-        if holds(relation, sides[0], sides[1]) { then.clone() } else { otherwise.clone() }
+        if holds(relation, left, right) { then.clone() } else { otherwise.clone() }
     }
 }
 
@@ -200,8 +213,10 @@ impl Residues {
         self
     }
 
-    fn seed_of(&self, dag: &Dag, expr: ExprId) -> u64 {
-        if dag.is_run_time(expr) { self.seed } else { self.parameter_seed }
+    /// What depends on parameters alone is the same at all points of the same parameters.
+    fn seed_of(&self, dag: &Dag, exprs: &[ExprId]) -> u64 {
+        let is_run_time = exprs.iter().any(|&expr| dag.is_run_time(expr));
+        if is_run_time { self.seed } else { self.parameter_seed }
     }
 
     /// (cos, sin) of the angle `argument`, by the addition theorems.
@@ -333,7 +348,7 @@ impl Ring for Residues {
                     UnaryFunction::Tanh | UnaryFunction::Sign => magnitude(value),
                     _ => (value, false),
                 };
-                let seed = self.seed_of(dag, argument);
+                let seed = self.seed_of(dag, &[argument]);
                 let result = self.opaque(seed, &format!("{function:?}"), &[value]);
                 Ok(if negated { -result } else { result })
             }
@@ -342,26 +357,29 @@ impl Ring for Residues {
     fn binary(
         &mut self,
         function: BinaryFunction,
-        a: &Residue,
-        b: &Residue,
+        arguments: (&Dag, [ExprId; 2]),
+        [a, b]: [&Residue; 2],
     ) -> Result<Residue, EvaluateError> {
         // Min and max do not know the order of their arguments.
         let (a, b) = match function {
             BinaryFunction::Atan2 => (a, b),
             BinaryFunction::Min | BinaryFunction::Max => (a.min(b), a.max(b)),
         };
-        Ok(self.opaque(self.seed, &format!("{function:?}"), &[*a, *b]))
+        let seed = self.seed_of(arguments.0, &arguments.1);
+        Ok(self.opaque(seed, &format!("{function:?}"), &[*a, *b]))
     }
     fn select(
         &mut self,
         relation: Relation,
-        sides: [&Residue; 2],
+        sides: (&Dag, [ExprId; 2]),
+        values: [&Residue; 2],
         then: &Residue,
         otherwise: &Residue,
     ) -> Residue {
         // The sides decide as a coin would, so that a selection keeps what holds of both branches:
         // it is linear in them, and its square is the selection of the squares.
-        let coin = self.opaque(self.seed, &format!("{relation:?}"), &[*sides[0], *sides[1]]);
+        let seed = self.seed_of(sides.0, &sides.1);
+        let coin = self.opaque(seed, &format!("{relation:?}"), &values.map(|value| *value));
         if coin.value().is_multiple_of(2) { *then } else { *otherwise }
     }
 }

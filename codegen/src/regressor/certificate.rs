@@ -13,7 +13,7 @@ use super::rank::{PARAMETERS, rows_at};
 use super::settle::{settle, without_denominators};
 use crate::arena::Handle;
 use crate::expr::{ClassSet, Dag, ExprId, SymbolId, angle_atoms, is_pi, text};
-use crate::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, Matrix, decompose};
+use crate::fundamental::{Basis, Expansion, Matrix, decompose};
 use crate::model::{BakeError, Robot, Terms, bake_geometry};
 use crate::number::Residue;
 use serde::{Deserialize, Serialize};
@@ -31,8 +31,12 @@ pub fn schema() -> &'static str {
 /// In [`Certificate::with`]: the geometry is numbers.
 const NUMERIC: &str = "numeric";
 
-/// Relations of robots of at most so many joints are multiplied out as well, torque by torque.
+/// Relations of robots of at most so many joints are multiplied out as well, torque by torque, but
+/// where an angle is a number: what is true of that number alone would not be seen.
 const MULTIPLIED_OUT_JOINTS: usize = 6;
+
+/// Memory for it: three times what PUMA 560 takes.
+const MULTIPLIED_OUT_BYTES: usize = 48 << 20;
 
 /// A certificate, as it stands in its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,7 +99,7 @@ pub enum Verdict {
         /// The number of base parameters.
         rank: usize,
         /// Whether the relations were also multiplied out in every torque, which is done for
-        /// robots of up to six joints whose torques fit the memory of an expansion.
+        /// robots of up to six joints, without angles that are numbers, that take little memory.
         multiplied_out: bool,
     },
     /// It is no certificate of this format.
@@ -279,7 +283,7 @@ impl Certificate {
     fn verify_relations(&self, regressor: &Regressor) -> Verdict {
         let mut dag = regressor.dag.clone();
         let joints = regressor.joints.len();
-        let is_small = joints <= MULTIPLIED_OUT_JOINTS;
+        let is_small = joints <= MULTIPLIED_OUT_JOINTS && self.generic_angles.is_empty();
         let mut torques = vec![Vec::new(); joints];
         for relation in &self.relations {
             let refuted = || Verdict::Relation(relation.column.clone());
@@ -398,7 +402,7 @@ fn vanishing(dag: &mut Dag, rows: &[Vec<ExprId>]) -> Option<Vec<bool>> {
         dag.symbols().values().map(|symbol| !ClassSet::of(symbol.class).is_run_time()).collect();
     let is_known = |id: SymbolId| known[id.index()];
     let matrix = Matrix { rows, is_known: &is_known, chains: &[] };
-    let expansion = &mut Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
+    let expansion = &mut Expansion { memory_bytes: MULTIPLIED_OUT_BYTES, progress: &mut |_| {} };
     let found = decompose(dag, &matrix, &[Basis::Fourier], expansion).ok()?;
     Some(found[0].columns.iter().map(Vec::is_empty).collect())
 }

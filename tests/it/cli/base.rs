@@ -106,7 +106,10 @@ fn certificates_are_verified_and_tampered_ones_refused() {
     let good = verify("good.json", "puma560");
     assert_eq!(
         (good.code, good.stdout.as_str()),
-        (Some(0), "puma560: verified: 36 base parameters\n")
+        (
+            Some(0),
+            "puma560: verified: 36 base parameters (each relation by joint and in every torque)\n"
+        )
     );
     assert_eq!(verify("good.json", "rx90").code, Some(1));
     let certificate = std::fs::read_to_string(directory.path.join("good.json")).expect("a file");
@@ -137,4 +140,62 @@ fn what_cannot_be_kept_is_said() {
     let run = run_in(&directory.path, &["base", "puma560", "--keep", "Ixx_knee"]);
     assert_eq!(run.code, Some(2));
     assert!(run.stderr.contains("Ixx_knee") && run.stderr.contains("hint"), "{}", run.stderr);
+}
+
+#[test]
+fn lengths_can_be_numbers() {
+    let directory = Directory::new("numeric");
+    let arguments = ["base", "puma560", "--numeric", "--json", "--certificate", "numbers.json"];
+    let run = run_in(&directory.path, &arguments);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let numbers: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let symbols = json(&["base", "puma560", "--json"]);
+    assert_eq!(numbers["rank"], symbols["rank"]);
+    assert!(!run.stdout.contains("a2"), "{}", run.stdout);
+    let values = |found: &Value| -> Vec<f64> {
+        let list = found["parameters"].as_array().expect("a list");
+        list.iter().map(|one| one["value"].as_f64().expect("a number")).collect()
+    };
+    for (number, symbol) in values(&numbers).into_iter().zip(values(&symbols)) {
+        assert!((number - symbol).abs() <= 1e-12 * symbol.abs().max(1.0), "{number} {symbol}");
+    }
+    let verdict: Value = {
+        let run = run_in(&directory.path, &["verify", "numbers.json", "puma560", "--json"]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        serde_json::from_str(&run.stdout).expect("JSON")
+    };
+    assert_eq!(verdict["verified"], true);
+    assert_eq!(verdict["rank"], 36);
+}
+
+#[test]
+fn standard_output_holds_one_document() {
+    let directory = Directory::new("documents");
+    for arguments in [
+        ["base", "planar_2r", "--certificate", "-", "--json"].as_slice(),
+        &["base", "planar_2r", "--latex", "-", "--markdown", "-"],
+    ] {
+        let run = run_in(&directory.path, arguments);
+        assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""));
+        assert!(run.stderr.contains("two documents") && run.stderr.contains("hint"));
+    }
+}
+
+#[test]
+fn base_parameters_of_equations_are_documents_too() {
+    let markdown = answer(&["base", "double_pendulum_drives", "--markdown", "-"]);
+    let found = json(&["base", "double_pendulum_drives", "--json"]);
+    for parameter in found["parameters"].as_array().expect("a list") {
+        assert!(markdown.contains(text(&parameter["expression"])), "{parameter}");
+    }
+    let latex = answer(&["base", "double_pendulum_drives", "--latex", "-"]);
+    assert!(latex.contains("Base parameters") && latex.contains("\\end{document}"));
+}
+
+#[test]
+fn terms_in_which_no_body_acts_are_refused() {
+    let directory = Directory::new("terms");
+    let run = run_in(&directory.path, &["base", "puma560", "--terms", "friction"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.stderr.contains("inertia or gravity") && run.stderr.contains("--with friction"));
 }

@@ -3,9 +3,11 @@
 use super::{Case, FULL, WITHOUT_CORIOLIS};
 use crate::robots::{load, shipped};
 use denavit_codegen::expr::text;
-use denavit_codegen::fundamental::{Basis, Echelon, Fraction, echelon};
-use denavit_codegen::model::Terms;
-use denavit_codegen::regressor::{Dependent, RegressorOptions, base_parameters};
+use denavit_codegen::fundamental::{
+    Basis, DEFAULT_MEMORY_BYTES, Echelon, Expansion, Fraction, echelon,
+};
+use denavit_codegen::model::{self, Terms};
+use denavit_codegen::regressor::{Dependent, RegressorOptions, base_parameters, decompose_robot};
 use std::collections::BTreeMap;
 
 fn eliminate(case: &mut Case) -> Echelon {
@@ -87,4 +89,44 @@ fn the_null_space_without_coriolis_terms_is_that_of_the_full_model() {
         assert!(!full.0.is_empty(), "{name}");
         assert_eq!(without, full, "{name}");
     }
+}
+
+/// Twists of 0.31, 0.47 and 0.7853 rad are multiples of 0.0001 rad, but not small ones: each has
+/// a cosine and a sine of its own. A first axis along gravity has 1 base parameter, any other
+/// joint 7.
+#[test]
+fn twists_that_are_numbers_are_generic() {
+    let link = |name: &str, row: &str| {
+        format!(
+            r#"{{"name": "{name}", "joint": {{"type": "revolute", {row}}}, "body": {{"mass": 1,
+                "com": [0.1, 0, 0], "inertia": {{"xx": 0.01, "yy": 0.01, "zz": 0.01}},
+                "about": "com"}}}}"#
+        )
+    };
+    let links = [
+        link("one", r#""alpha": 0.31, "a": "l""#),
+        link("two", r#""alpha": 0.47, "a": "l""#),
+        link("three", r#""alpha": 0.7853, "d": "l""#),
+        link("four", r#""alpha": 0"#),
+    ];
+    let file = format!(
+        r#"{{"format": "denavit-model/1", "name": "skew", "convention": "standard",
+            "gravity": [0, 0, "-g"],
+            "constants": {{"l": {{"value": 0.3, "unit": "m"}},
+                           "g": {{"value": 9.81, "unit": "m/s^2"}}}},
+            "links": [{}]}}"#,
+        links.join(", ")
+    );
+    let mut robot = model::read("skew.json", file.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    robot.terms.coriolis = false;
+    let options = RegressorOptions::default();
+    let expansion = &mut Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
+    let mut found = decompose_robot(&robot, options, &[Basis::Fourier], expansion)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let decomposition = found.decompositions.remove(0);
+    let theta = found.theta(&decomposition, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(theta.rank(), 1 + 7 * 3);
+    let base = base_parameters(&robot, options, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let kept: Vec<usize> = base.parameters.iter().map(|parameter| parameter.column).collect();
+    assert_eq!(theta.echelon.pivots, kept);
 }

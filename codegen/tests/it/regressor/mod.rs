@@ -36,8 +36,10 @@ fn tree(name: &str, gravity: [&str; 3], rows: &[(&str, &str, &str, &str, Option<
     let mut links = Vec::new();
     for (index, (kind, a, alpha, d, parent)) in rows.iter().enumerate() {
         for text in [a, alpha, d] {
-            let is_name = text.chars().next().is_some_and(char::is_alphabetic) && *text != "pi";
-            if is_name && !text.starts_with("pi") {
+            let is_name = text.starts_with(char::is_alphabetic)
+                && text.chars().all(char::is_alphanumeric)
+                && *text != "pi";
+            if is_name {
                 let unit = if text.starts_with("al") { "rad" } else { "m" };
                 constants.insert((*text).to_owned(), json!({"value": 0.5, "unit": unit}));
             }

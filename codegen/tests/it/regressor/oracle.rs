@@ -61,6 +61,20 @@ fn general_arms_have_the_ranks_of_the_formula() {
     }
 }
 
+/// A twist that is a function of lengths is the same at every pose, and as general as any.
+#[test]
+fn twists_may_be_functions_of_parameters() {
+    for twist in ["atan2(a0, d)", "max(a0, d)/d", "select(a0 < d, 0.3, 0.4)", "sqrt(a0/d)"] {
+        let rows = [
+            ("revolute", "a0", twist, "d", None),
+            ("revolute", "a1", twist, "d", Some(0)),
+            ("revolute", "a2", "0", "d", Some(1)),
+        ];
+        let upright = tree("skew", ["0", "0", "-g"], &rows);
+        assert_eq!(base(&upright, INERTIAL).rank(), 7 * 3 - 6, "{twist}");
+    }
+}
+
 #[test]
 fn planar_arms_have_the_ranks_of_the_formula() {
     for n in 1..=5usize {

@@ -10,11 +10,11 @@
 use super::breakdown::Breakdown;
 use super::integrate::{Method, Rates, Stepper};
 use crate::plants::{Plant, PlantError};
-use denavit_codegen::derive::bake;
+
 use denavit_codegen::dynamics::methods::newton_euler::dae;
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
-use denavit_codegen::model::Robot;
+use denavit_codegen::model::{Robot, bake};
 use denavit_codegen::program::{Evaluator, constant_values, lower};
 use nalgebra::{DMatrix, DVector};
 

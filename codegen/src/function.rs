@@ -52,6 +52,8 @@ pub enum FunctionName {
     Regressor,
     /// R of zeta = R theta: one column for each base parameter.
     BaseRegressor,
+    /// theta, from the values of all parameters.
+    BaseParameters,
 }
 
 impl FunctionName {
@@ -80,7 +82,7 @@ impl FunctionName {
     ];
 
     /// The functions for identification, which are derived where they are asked for by name.
-    pub const REGRESSORS: [Self; 2] = [Self::Regressor, Self::BaseRegressor];
+    pub const REGRESSORS: [Self; 3] = [Self::Regressor, Self::BaseRegressor, Self::BaseParameters];
 
     /// The name in JSON, flags and emitted code.
     pub const fn as_str(self) -> &'static str {
@@ -107,6 +109,7 @@ impl FunctionName {
             Self::PotentialEnergy => "potential_energy",
             Self::Regressor => "regressor",
             Self::BaseRegressor => "base_regressor",
+            Self::BaseParameters => "base_parameters",
         }
     }
 
@@ -153,6 +156,8 @@ pub struct Output {
     pub entries: Vec<ExprId>,
     /// One line that says what the entries are: frame, rows, columns, unit.
     pub doc: String,
+    /// What each entry is, where that takes a line of its own.
+    pub details: Vec<String>,
 }
 
 /// A derived function.

@@ -76,9 +76,9 @@ pub fn derive(
     let mut functions: Vec<Function> = Vec::new();
     for &name in wanted {
         let made = match name {
-            FunctionName::Regressor | FunctionName::BaseRegressor => {
-                regressor::functions::derive(&mut dag, &robot, name)
-            }
+            FunctionName::Regressor
+            | FunctionName::BaseRegressor
+            | FunctionName::BaseParameters => regressor::functions::derive(&mut dag, &robot, name),
             _ => portfolio.derive(&mut dag, name),
         };
         let entries: Vec<_> = made.iter().flat_map(Function::entries).collect();

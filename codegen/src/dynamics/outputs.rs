@@ -196,5 +196,5 @@ fn solver(route: Route) -> Solver {
 }
 
 fn output(name: &'static str, shape: &[usize], entries: Vec<ExprId>, doc: &str) -> Output {
-    Output { name, shape: shape.to_vec(), entries, doc: doc.to_owned() }
+    Output { name, shape: shape.to_vec(), entries, doc: doc.to_owned(), details: Vec::new() }
 }

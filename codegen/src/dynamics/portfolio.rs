@@ -52,7 +52,9 @@ impl<'a> Portfolio<'a> {
                 Vec::new()
             }
             // Of the stage after this one.
-            FunctionName::Regressor | FunctionName::BaseRegressor => Vec::new(),
+            FunctionName::Regressor
+            | FunctionName::BaseRegressor
+            | FunctionName::BaseParameters => Vec::new(),
             LinkJacobian => robot
                 .links
                 .iter()
@@ -184,6 +186,7 @@ fn with_entries(outputs: &[Output], entries: &[ExprId]) -> Vec<Output> {
 pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec<Argument> {
     use FunctionName as F;
     let names: &[&'static str] = match name {
+        F::BaseParameters => &[],
         F::InverseDynamics | F::InverseDynamicsDerivatives | F::Regressor | F::BaseRegressor => {
             &["q", "qd", "qdd"]
         }

@@ -45,6 +45,9 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         FunctionName::PotentialEnergy => "Potential energy.",
         FunctionName::Regressor => "Regressor R0: torques per unit of each unknown parameter.",
         FunctionName::BaseRegressor => "Regressor R: torques per unit of each base parameter.",
+        FunctionName::BaseParameters => {
+            "Base parameters: what `base_regressor` is multiplied with, for torques."
+        }
     }
 }
 
@@ -137,7 +140,8 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         | FunctionName::ContactJacobian
         | FunctionName::CenterOfMassJacobian => (false, true),
         FunctionName::Regressor | FunctionName::BaseRegressor => (true, false),
-        FunctionName::LinkTransforms
+        FunctionName::BaseParameters
+        | FunctionName::LinkTransforms
         | FunctionName::ContactPositions
         | FunctionName::ContactBias
         | FunctionName::CenterOfMass

@@ -101,6 +101,7 @@ fn routine(function: &Function, code: Code) -> Routine {
             name: output.name,
             shape: output.shape.clone(),
             doc: output.doc.clone(),
+            details: output.details.clone(),
         })
         .collect();
     let (name, link, form) = (function.name, function.link.clone(), function.form);

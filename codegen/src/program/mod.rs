@@ -209,6 +209,8 @@ pub struct OutputShape {
     pub shape: Vec<usize>,
     /// One line that says what the entries are.
     pub doc: String,
+    /// What each entry is, where that takes a line of its own.
+    pub details: Vec<String>,
 }
 
 impl OutputShape {

@@ -193,7 +193,7 @@ pub fn reduce(mut regressor: Regressor, keep: &[String]) -> Result<BaseParameter
     let order = order(&regressor, keep)?;
     let mut dag = regressor.dag.clone();
     let relations = relations(&regressor, &mut dag);
-    let (_, reduced) = eliminate(&mut dag, &relations, &order)?;
+    let reduced = eliminate(&mut dag, &relations, &order)?;
     regressor.dag = dag;
     let ranking = rank(&regressor, &order)?;
     if ranking.dependent.len() != reduced.len() {

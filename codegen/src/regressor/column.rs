@@ -9,7 +9,8 @@ use crate::dynamics::spring_torque;
 use crate::expr::{Dag, ExprId, SymbolClass, UnaryFunction, text};
 use crate::kinematics::{Frames, Mechanism};
 use crate::model::{
-    About, Base, Body, BodyEntry, Dimension, Drive, JointEntry, LinkId, Robot, Role, TorqueSide,
+    About, Base, Body, BodyEntry, Dimension, Drive, JointEntry, LinkId, Robot, Role, Terms,
+    TorqueSide,
 };
 use crate::spatial::PseudoInertia;
 use std::collections::{BTreeMap, BTreeSet};
@@ -119,7 +120,7 @@ pub struct Regressor {
     /// The links whose joints the rows belong to.
     pub joints: Vec<String>,
     pub(super) mechanism: Mechanism,
-    pub(super) terms: crate::model::Terms,
+    pub(super) terms: Terms,
     /// `known` as a combination of features.
     pub(super) known_features: Vec<(Feature, ExprId)>,
 }
@@ -162,11 +163,7 @@ impl Regressor {
         }
         let Builder { mut dag, mut columns, known: known_features, mechanism, .. } = builder;
         let n = mechanism.degrees_of_freedom();
-        let terms = MotionTerms {
-            rates: robot.terms.coriolis,
-            accelerations: robot.terms.inertia,
-            gravity: robot.terms.gravity,
-        };
+        let terms = motion_terms(robot.terms);
         let mut torques = Torques { robot, mechanism: &mechanism, terms, of_matter: None };
         let known = torques.of(&mut dag, &known_features);
         let springs = robot.joints().map(|(link, _)| spring_torque(&mut dag, robot, link).0);
@@ -202,6 +199,11 @@ impl Regressor {
         Ok(Self { model, dag, columns, known, joints, mechanism, terms, known_features })
     }
 
+    /// The terms of the motion.
+    pub(super) fn motion_terms(&self) -> MotionTerms {
+        motion_terms(self.terms)
+    }
+
     /// The entries of R0, row by row.
     pub fn entries(&self) -> Vec<ExprId> {
         (0..self.joints.len())
@@ -213,6 +215,10 @@ impl Regressor {
     pub fn find(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
+}
+
+fn motion_terms(terms: Terms) -> MotionTerms {
+    MotionTerms { rates: terms.coriolis, accelerations: terms.inertia, gravity: terms.gravity }
 }
 
 /// Joint torques of combinations of features.

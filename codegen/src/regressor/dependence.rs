@@ -36,14 +36,15 @@ const K33: usize = 6;
 
 /// Every relation, over columns and features.
 pub(super) fn relations(regressor: &Regressor, dag: &mut Dag) -> Vec<Relation> {
+    let finder = Finder::new(regressor, dag);
+    finder.all()
+}
+
+/// Every relation over features, and every column as the combination of features that it is.
+pub(super) fn feature_relations(regressor: &Regressor, dag: &mut Dag) -> Vec<Relation> {
     let mut finder = Finder::new(regressor, dag);
-    finder.definitions();
-    for body in 0..regressor.mechanism.bodies.len() {
-        finder.transfers(body);
-        finder.unfelt(body);
-        finder.rotor(body);
-    }
-    finder.relations
+    finder.hosts.fill(None);
+    finder.all()
 }
 
 struct Finder<'a> {
@@ -76,6 +77,16 @@ impl<'a> Finder<'a> {
         let terms = regressor.terms;
         let relations = Vec::new();
         Self { regressor, mechanism, terms, dag, hosts, turnings, screws, relations }
+    }
+
+    fn all(mut self) -> Vec<Relation> {
+        self.definitions();
+        for body in 0..self.mechanism.bodies.len() {
+            self.transfers(body);
+            self.unfelt(body);
+            self.rotor(body);
+        }
+        self.relations
     }
 
     /// Each column that is no parameter of a host, as the combination of features that it is.

@@ -7,23 +7,49 @@
 use super::dependence::{Place, Relation};
 use crate::expr::{Dag, ExprId, Node, UnaryFunction};
 use crate::fundamental::{CanonicalError, Field, Fraction, Polynomial, canonical_generic};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A dependent column: itself, with coefficient 1, and columns that stay; the sum vanishes.
 pub(super) type Reduced = BTreeMap<usize, Fraction>;
 
-/// The known field, and for each dependent column, by its index, its relation. `order` lists the
-/// columns, those to keep first.
+/// A combination of places that vanishes.
+pub(super) type Row = BTreeMap<Place, Fraction>;
+
+/// For each dependent column, by its index, its relation. `order` lists the columns, those to keep
+/// first.
 pub(super) fn eliminate(
     dag: &mut Dag,
     relations: &[Relation],
     order: &[usize],
-) -> Result<(Field, BTreeMap<usize, Reduced>), CanonicalError> {
+) -> Result<BTreeMap<usize, Reduced>, CanonicalError> {
+    let (field, mut rows) = rows(dag, relations)?;
+    // Features are no columns: they go first.
+    let is_feature = |place: &Place| matches!(place, Place::Feature(_));
+    let features = places(&rows).into_iter().filter(is_feature).collect::<Vec<_>>();
+    forget(&field, &mut rows, &features)?;
+    let order: Vec<Place> = order.iter().rev().map(|&column| Place::Column(column)).collect();
+    let done = gauss_jordan(&field, rows, &order)?;
+    let column_of = |place: Place| match place {
+        Place::Column(column) => Some(column),
+        Place::Feature(_) => None,
+    };
+    let reduced = done.into_iter().filter_map(|(place, row)| {
+        let row = row.into_iter().filter_map(|(place, value)| Some((column_of(place)?, value)));
+        Some((column_of(place)?, row.collect()))
+    });
+    Ok(reduced.collect())
+}
+
+/// The relations over the field of what they are made of.
+pub(super) fn rows(
+    dag: &mut Dag,
+    relations: &[Relation],
+) -> Result<(Field, Vec<Row>), CanonicalError> {
     let exprs: Vec<_> = relations.iter().flat_map(|relation| relation.values().copied()).collect();
     let polynomials = canonical_generic(dag, &exprs)?;
     let field = field_of(dag, &polynomials);
     let mut polynomials = polynomials.into_iter();
-    let mut rows: Vec<Row> = relations
+    let rows = relations
         .iter()
         .map(|relation| {
             let values = polynomials.by_ref().take(relation.len()).map(Fraction::polynomial);
@@ -31,43 +57,47 @@ pub(super) fn eliminate(
             row.filter(|(_, value)| !value.is_zero()).collect()
         })
         .collect();
-    // Features are no columns: they go first.
-    let mut features: Vec<Place> = rows
-        .iter()
-        .flat_map(|row| row.keys().copied())
-        .filter(|place| matches!(place, Place::Feature(_)))
-        .collect();
-    features.sort_unstable();
-    features.dedup();
-    for feature in features {
-        if let Some(pivot) = take_pivot(&field, &mut rows, feature)? {
-            for row in &mut rows {
-                subtract(&field, row, &pivot, feature)?;
-            }
-        }
-    }
-    let mut done: Vec<(usize, Row)> = Vec::new();
-    for &column in order.iter().rev() {
-        let place = Place::Column(column);
-        if let Some(pivot) = take_pivot(&field, &mut rows, place)? {
-            for row in rows.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
-                subtract(&field, row, &pivot, place)?;
-            }
-            done.push((column, pivot));
-        }
-    }
-    let column_of = |place: Place| match place {
-        Place::Column(column) => Some(column),
-        Place::Feature(_) => None,
-    };
-    let reduced = done.into_iter().map(|(column, row)| {
-        let row = row.into_iter().filter_map(|(place, value)| Some((column_of(place)?, value)));
-        (column, row.collect())
-    });
-    Ok((field, reduced.collect()))
+    Ok((field, rows))
 }
 
-type Row = BTreeMap<Place, Fraction>;
+/// All places of rows, in order.
+pub(super) fn places(rows: &[Row]) -> BTreeSet<Place> {
+    rows.iter().flat_map(|row| row.keys().copied()).collect()
+}
+
+/// Takes places out of rows, and the rows away that this takes.
+pub(super) fn forget(
+    field: &Field,
+    rows: &mut Vec<Row>,
+    places: &[Place],
+) -> Result<(), CanonicalError> {
+    for &place in places {
+        if let Some(pivot) = take_pivot(field, rows, place)? {
+            for row in rows.iter_mut() {
+                subtract(field, row, &pivot, place)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The row of each place that has a pivot, places being taken in `order`; no other row has it.
+pub(super) fn gauss_jordan(
+    field: &Field,
+    mut rows: Vec<Row>,
+    order: &[Place],
+) -> Result<BTreeMap<Place, Row>, CanonicalError> {
+    let mut done: Vec<(Place, Row)> = Vec::new();
+    for &place in order {
+        if let Some(pivot) = take_pivot(field, &mut rows, place)? {
+            for row in rows.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
+                subtract(field, row, &pivot, place)?;
+            }
+            done.push((place, pivot));
+        }
+    }
+    Ok(done.into_iter().collect())
+}
 
 /// Takes the simplest row with an entry at `place`, scaled so that the entry is 1.
 fn take_pivot(

@@ -2,7 +2,7 @@
 //! the parameters that it stands before.
 
 use super::column::Regressor;
-use crate::expr::{ExprId, Node, text};
+use crate::expr::{Dag, ExprId, Node, text};
 use crate::fundamental::{Polynomial, canonical_generic};
 use num_traits::{One, Signed};
 
@@ -34,6 +34,24 @@ pub(super) fn parts(regressor: &mut Regressor, members: &[(usize, ExprId)]) -> V
         parts.push((size, Part { is_negative, factor, is_sum, members: vec![(column, false)] }));
     }
     parts.into_iter().map(|(_, part)| part).collect()
+}
+
+/// The sum of parts, with an expression for each column.
+pub(super) fn sum_of(dag: &mut Dag, parts: &[Part], columns: &[ExprId]) -> ExprId {
+    let mut total = dag.zero();
+    for part in parts {
+        let mut sum = dag.zero();
+        for &(column, is_negative) in &part.members {
+            let own = columns[column];
+            sum = if is_negative { dag.sub(sum, own) } else { dag.add(sum, own) };
+        }
+        let product = match part.factor {
+            Some((factor, _)) => dag.mul(factor, sum),
+            None => sum,
+        };
+        total = if part.is_negative { dag.sub(total, product) } else { dag.add(total, product) };
+    }
+    total
 }
 
 /// A factor without its sign.

@@ -1,19 +1,22 @@
 //! The regressor zeta = R0 theta0, and the base parameters: the least that the motion depends on.
 //!
 //! - `inertial`, `matter`: a body's ten numbers, and the torques per unit of each
-//! - `pull`, `link_frames`: the twists of the joints, carried outwards to bodies and to links
+//! - `pull`: the twists of the joints, carried outwards; `follow`: to axes and links, by any route
+//! - `axis_frames`, `link_frames`: the torques per unit of matter there
 //! - `axle`: what matter on a joint's axis spares of that
 //! - [`Regressor`]: the columns of a model: ten a link, or every monomial of its unknowns
 //! - `dependence`: the exact relations among columns, for any tree, without elimination
 //! - [`Ranking`]: rank and pivots modulo 2^61 - 1 at random points
 //! - `eliminate`: Gauss-Jordan over the rational functions of the known parameters
 //! - [`BaseParameters`]: which combinations of parameters the torques depend on, as [`Part`]s
+//! - [`joint_basis`]: the same on the joint axes, as the emitted regressor has them
 //! - [`Certificate`]: a proof of all that, and its verification by other means
 //! - [`functions`]: the regressor functions for emission
 //! - [`equations`]: given equations, not of a model (`denavit-equations/1`)
 //! - [`decompose_robot`]: f and B of a model's regressor
 //! - [`Theta`]: theta from B_E, the thesis's way
 
+mod axis_frames;
 mod axle;
 pub mod base;
 pub mod certificate;
@@ -22,9 +25,11 @@ mod decompose;
 mod dependence;
 mod eliminate;
 pub mod equations;
+mod follow;
 mod formula;
 pub mod functions;
 mod inertial;
+mod joint_basis;
 mod link_frames;
 mod matter;
 mod monomial;
@@ -39,6 +44,7 @@ pub use certificate::{Certificate, Verdict};
 pub use column::{Column, Regressor, RegressorError, RegressorOptions, Unknowns};
 pub use decompose::{DecomposeError, RobotDecomposition, decompose_robot};
 pub use formula::{Part, signed};
+pub use joint_basis::{JointParameter, joint_basis};
 pub use pull::{
     Equation, MatterRegressor, MotionTerms, TorsoMotion, fixed_base_regressor, torso_regressor,
 };

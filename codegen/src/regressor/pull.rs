@@ -112,7 +112,11 @@ impl State {
         }
     }
 
-    fn turned<'a>(&self, dag: &mut Dag, turns: impl Iterator<Item = &'a Turn> + Clone) -> Self {
+    pub(super) fn turned<'a>(
+        &self,
+        dag: &mut Dag,
+        turns: impl Iterator<Item = &'a Turn> + Clone,
+    ) -> Self {
         let mut turn =
             |vector: Vector| turns.clone().fold(vector, |vector, turn| turn.to_child(dag, vector));
         let FrameMotion { angular, angular_rate, linear } = self.motion;

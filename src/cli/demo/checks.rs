@@ -151,7 +151,7 @@ fn arguments(robot: &Robot) -> Vec<Argument> {
 }
 
 fn output(name: &'static str, entries: Vec<ExprId>) -> Output {
-    Output { name, shape: vec![entries.len()], entries, doc: String::new() }
+    Output { name, shape: vec![entries.len()], entries, doc: String::new(), details: Vec::new() }
 }
 
 /// The checks as a table.

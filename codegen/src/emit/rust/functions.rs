@@ -154,6 +154,11 @@ fn doc(context: &Context<'_>, routine: &Routine) -> String {
     if let [output] = &routine.outputs[..] {
         lines.push(format!("Result: {}.", output_doc(output)));
         lines.push(String::new());
+        if !output.details.is_empty() {
+            let details = output.details.iter();
+            lines.extend(details.map(|detail| format!("- {}", documentation(detail))));
+            lines.push(String::new());
+        }
     }
     lines.push(format!("One call: {counts}."));
     commented(&lines)

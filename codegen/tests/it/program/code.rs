@@ -19,6 +19,7 @@ fn function(arguments: &[ExprId], entries: &[ExprId]) -> Function {
             shape: vec![entries.len()],
             entries: entries.to_vec(),
             doc: String::new(),
+            details: Vec::new(),
         }],
         form: Form::Explicit,
     }

@@ -85,7 +85,13 @@ fn every_operation() -> (Dag, Function) {
     let (sum, quotient) = (dag.add(a, b), dag.div(a, b));
     entries.push(dag.neg(sum));
     entries.push(quotient);
-    let output = Output { name: "values", shape: vec![entries.len()], entries, doc: String::new() };
+    let output = Output {
+        name: "values",
+        shape: vec![entries.len()],
+        entries,
+        doc: String::new(),
+        details: Vec::new(),
+    };
     let function = Function {
         name: FunctionName::Bias,
         link: None,

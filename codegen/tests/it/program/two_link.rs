@@ -43,6 +43,7 @@ pub(crate) fn functions() -> (Dag, Vec<Function>) {
         shape: shape.to_vec(),
         entries,
         doc: doc.to_owned(),
+        details: Vec::new(),
     };
     let inverse_dynamics = Function {
         name: FunctionName::InverseDynamics,

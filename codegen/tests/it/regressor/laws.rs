@@ -7,7 +7,6 @@ use denavit_codegen::expr::{Dag, ExprId, Residues, evaluate};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{Robot, Terms};
 use denavit_codegen::number::Residue;
-use denavit_codegen::regressor::functions::modelled;
 use denavit_codegen::regressor::{
     Certificate, Regressor, RegressorOptions, Unknowns, Verdict, base_parameters,
 };
@@ -51,31 +50,6 @@ fn the_regressor_times_its_parameters_is_the_torque() {
                 let total: Vec<_> = sum.iter().zip(&known).map(|(&a, &b)| a + b).collect();
                 assert_eq!(total, torques(&robot, seed), "{name} {unknowns:?}");
             }
-        }
-    }
-}
-
-/// The emitted base regressor, its columns against the list of `denavit base --with modelled`.
-#[test]
-fn the_base_regressor_times_the_base_parameters_is_the_torque() {
-    for name in shipped() {
-        let with_drives = load(&name);
-        for robot in [rigid(with_drives.clone()), with_drives] {
-            let found = base(&robot, modelled(&robot));
-            let derivation =
-                derive(&robot, Flavour::Tunable, &[FunctionName::BaseRegressor]).unwrap();
-            let function = &derivation.functions[0];
-            let n = robot.degrees_of_freedom();
-            assert_eq!(function.outputs[0].shape, [n, found.rank()], "{name}");
-            let entries = values(&derivation.dag, &function.outputs[0].entries, 5);
-            let theta: Vec<_> = found.parameters.iter().map(|p| p.value).collect();
-            let theta = values(&found.regressor.dag, &theta, 5);
-            let mut sum = product(&entries, &theta);
-            if let Some(known) = function.outputs.get(1) {
-                let known = values(&derivation.dag, &known.entries, 5);
-                sum = sum.iter().zip(known).map(|(&a, b)| a + b).collect();
-            }
-            assert_eq!(sum, torques(&robot, 5), "{name}");
         }
     }
 }

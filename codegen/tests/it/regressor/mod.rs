@@ -3,6 +3,7 @@
 mod closed_forms;
 mod counts;
 mod files;
+mod joint_basis;
 mod laws;
 mod oracle;
 

@@ -1,7 +1,7 @@
 //! The emitted base regressor and base parameters, on the joint axes: against the torques, and
 //! against the columns of R0 that the list keeps, which are derived in link frames.
 
-use super::{INERTIAL, base, rigid, tree};
+use super::{INERTIAL, Row, base, rigid, tree};
 use crate::robots::{fixture, load, shipped};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::expr::{Dag, ExprId, Residues, evaluate, text};
@@ -134,7 +134,7 @@ fn the_change_of_basis_is_exact_on_every_robot() {
 fn special_geometry_has_a_basis_too() {
     let all = RegressorOptions { friction: true, rotor: true, offset: true, ..INERTIAL };
     let (turn, slide) = ("revolute", "prismatic");
-    let lists: [&[(&str, &str, &str, &str, Option<usize>)]; 5] = [
+    let lists: [&[Row<'_>]; 5] = [
         &[
             (turn, "a", "0", "0", None),
             (turn, "b", "0", "0", Some(0)),

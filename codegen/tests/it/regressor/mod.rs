@@ -31,8 +31,11 @@ fn base(robot: &Robot, options: RegressorOptions) -> BaseParameters {
     base_parameters(robot, options, &[]).unwrap_or_else(|error| panic!("{}: {error}", robot.name))
 }
 
-/// A robot of rows (type, a, alpha, d, parent), standard convention, with full inertias.
-fn tree(name: &str, gravity: [&str; 3], rows: &[(&str, &str, &str, &str, Option<usize>)]) -> Robot {
+/// Type, a, alpha, d, parent.
+type Row<'a> = (&'a str, &'a str, &'a str, &'a str, Option<usize>);
+
+/// A robot of such rows, standard convention, with full inertias.
+fn tree(name: &str, gravity: [&str; 3], rows: &[Row<'_>]) -> Robot {
     let mut constants = serde_json::Map::new();
     let mut links = Vec::new();
     for (index, (kind, a, alpha, d, parent)) in rows.iter().enumerate() {

@@ -11,9 +11,13 @@ use super::files::{Input, on_stdout, read_input, write_whole};
 use super::options::{Term, terms};
 use clap::{Args, ValueEnum};
 use denavit::emit::latex::base_document;
+use denavit::expr::ExprId;
 use denavit::model::{Robot, bake_geometry};
 use denavit::regressor::functions::modelled;
-use denavit::regressor::{BaseParameters, Certificate, Part, RegressorOptions, base_parameters};
+use denavit::regressor::{
+    BaseParameter, BaseParameters, Certificate, JointParameter, Part, RegressorOptions,
+    base_parameters, joint_basis,
+};
 use denavit::report::{Values, short};
 use serde::Serialize;
 use std::io::Write;
@@ -31,6 +35,7 @@ Examples:
   denavit base puma560 --with friction,rotor --json
   denavit base double_pendulum_drives --markdown -
   denavit base tulip --numeric
+  denavit base puma560 --with modelled --basis joints
   denavit base tulip --latex tulip.tex --markdown tulip.md
   denavit base tulip_leg --terms inertia,gravity --certificate leg.certificate.json")]
 pub(crate) struct Arguments {
@@ -40,6 +45,9 @@ pub(crate) struct Arguments {
     /// Joint parameters to add to those of the bodies, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     with: Vec<With>,
+    /// Which parameters to list: as many, and of the same information
+    #[arg(long, value_enum, default_value_t)]
+    basis: ListedBasis,
     /// The terms of the equations, instead of those of the model, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     terms: Option<Vec<Term>>,
@@ -77,6 +85,17 @@ pub(crate) enum With {
     Modelled,
 }
 
+/// Bases of the space that the columns of R0 span.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ListedBasis {
+    /// Columns of R0 that are kept, each with its own parameter and those that go with it
+    #[default]
+    Kept,
+    /// What each body keeps, in the frame on its joint's axis, when its carrier has all that it
+    /// feels alike: the columns of the emitted base regressor
+    Joints,
+}
+
 /// What was checked, and modulo which prime.
 #[derive(Serialize)]
 struct CertificateJson {
@@ -88,16 +107,66 @@ struct CertificateJson {
 pub(crate) struct Found<'a> {
     robot: &'a Robot,
     base: &'a BaseParameters,
-    /// The values of the base parameters; none where the model gives none.
+    /// Those on the joint axes, if they are asked for.
+    joints: Option<&'a [JointParameter]>,
+    /// The values of what is listed; none where the model gives none.
     values: Vec<Option<f64>>,
     verified: bool,
 }
 
+/// A base parameter as it is listed.
+struct Listed<'a> {
+    name: &'a str,
+    unit: &'a str,
+    members: &'a [(usize, ExprId)],
+    parts: &'a [Part],
+    /// What it is of the base parameters of kept columns, where it is none of them: their places
+    /// with factors, and the sum.
+    of_kept: Option<(&'a [(usize, ExprId)], &'a [Part])>,
+}
+
 impl<'a> Found<'a> {
-    pub(crate) fn new(robot: &'a Robot, base: &'a BaseParameters, verified: bool) -> Self {
+    pub(crate) fn new(
+        robot: &'a Robot,
+        base: &'a BaseParameters,
+        joints: Option<&'a [JointParameter]>,
+        verified: bool,
+    ) -> Self {
+        let listed: Vec<ExprId> = match joints {
+            Some(joints) => joints.iter().map(|parameter| parameter.value).collect(),
+            None => base.parameters.iter().map(|parameter| parameter.value).collect(),
+        };
         let mut values = Values::in_graph(&base.regressor.dag, robot);
-        let values = base.parameters.iter().map(|parameter| values.number(parameter.value));
-        Self { robot, base, values: values.collect(), verified }
+        let values = listed.into_iter().map(|value| values.number(value));
+        Self { robot, base, joints, values: values.collect(), verified }
+    }
+
+    /// What is listed, in order.
+    fn listed(&self) -> Vec<Listed<'a>> {
+        let base = self.base;
+        let of_kept_column = |parameter: &'a BaseParameter| Listed {
+            name: base.name(parameter.column),
+            unit: &base.regressor.columns[parameter.column].unit,
+            members: &parameter.members,
+            parts: &parameter.parts,
+            of_kept: None,
+        };
+        let on_axis = |parameter: &'a JointParameter| Listed {
+            name: &parameter.name,
+            unit: &parameter.unit,
+            members: &parameter.members,
+            parts: &parameter.parts,
+            of_kept: Some((&parameter.of_kept, &parameter.parts_of_kept)),
+        };
+        match self.joints {
+            Some(joints) => joints.iter().map(on_axis).collect(),
+            None => base.parameters.iter().map(of_kept_column).collect(),
+        }
+    }
+
+    /// What is said of the list in its title.
+    fn place(&self) -> &'static str {
+        if self.joints.is_some() { ", on the joint axes" } else { "" }
     }
 
     /// The values as a person writes them; none at all if the model gives only zeros.
@@ -113,10 +182,17 @@ impl<'a> Found<'a> {
         columns.into_iter().map(|column| self.base.name(column)).collect()
     }
 
+    /// What is listed in the base parameters of kept columns; none of these.
+    fn in_kept(&self) -> Vec<(&'a str, &'a [Part])> {
+        let listed = self.listed().into_iter();
+        listed.filter_map(|one| one.of_kept.map(|(_, parts)| (one.name, parts))).collect()
+    }
+
     /// The columns that are sums of others, with their relations.
-    fn sums(&self) -> impl Iterator<Item = (&str, &[Part])> {
-        let sums = self.base.dependent.iter().filter(|one| !one.relation.is_empty());
-        sums.map(|one| (self.base.name(one.column), &one.parts[..]))
+    fn sums(&self) -> impl Iterator<Item = (&'a str, &'a [Part])> {
+        let base = self.base;
+        let sums = base.dependent.iter().filter(|one| !one.relation.is_empty());
+        sums.map(|one| (base.name(one.column), &one.parts[..]))
     }
 }
 
@@ -137,8 +213,13 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         *robot = bake_geometry(&robot).map_err(Failure::Bake)?;
     }
     let options = regressor_options(&robot, &arguments.with);
-    let base = base_parameters(&robot, options, &arguments.keep)
+    let mut base = base_parameters(&robot, options, &arguments.keep)
         .map_err(|error| Failure::Base(Box::new(error)))?;
+    let joints = match arguments.basis {
+        ListedBasis::Kept => None,
+        ListedBasis::Joints => Some(joint_basis(&mut base, &robot)),
+    };
+    let joints = joints.transpose().map_err(|error| Failure::Base(Box::new(error)))?;
     let certificate = Certificate::new(&robot, options, &base, arguments.numeric);
     let verified = certificate.verify(&robot).is_verified();
     if let Some(path) = &arguments.certificate {
@@ -146,7 +227,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         bytes.push(b'\n');
         write_whole(path, &bytes)?;
     }
-    let found = Found::new(&robot, &base, verified);
+    let found = Found::new(&robot, &base, joints.as_deref(), verified);
     if let Some(path) = &arguments.latex {
         write_whole(path, latex(&found).as_bytes())?;
     }
@@ -163,7 +244,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
 
 /// The base parameters as a LaTeX document.
 pub(crate) fn latex(found: &Found<'_>) -> String {
-    base_document(found.robot, found.base, &found.shown_values())
+    base_document(found.robot, found.base, found.joints, &found.shown_values())
         .expect("our template has a place for each value")
 }
 

@@ -202,7 +202,7 @@ fn base(robot: &Robot, directory: &Path, files: &mut Vec<Written>) -> Result<Bas
     let milliseconds = 1e3 * started.elapsed().as_secs_f64();
     let certificate = Certificate::new(robot, options, &base, false);
     let verified = certificate.verify(robot).is_verified();
-    let document = latex(&Found::new(robot, &base, verified));
+    let document = latex(&Found::new(robot, &base, None, verified));
     let what = "base parameters as LaTeX".to_owned();
     files.push(write(directory, &format!("{name}_base_parameters.tex"), &document, what)?);
     let mut text = serde_json::to_string_pretty(&certificate)?;

@@ -156,9 +156,10 @@ impl fmt::Display for Failure {
             Self::Bake(error) => write!(f, "{error}")?,
             Self::Equations(error) => write!(f, "{error}")?,
             Self::Decompose(error) => write!(f, "{error}")?,
-            Self::NotOfEquations(name) => {
-                write!(f, "{name}: equations have no --with, --terms, --numeric or --certificate")?
-            }
+            Self::NotOfEquations(name) => write!(
+                f,
+                "{name}: equations have no --with, --terms, --basis, --numeric or --certificate"
+            )?,
             Self::TooLongToSet { name, formulas } => {
                 write!(f, "{name}: {formulas} formulas are too many for a document")?;
             }

@@ -1,7 +1,9 @@
 //! Exact ranks against singular values: another arithmetic, another algorithm.
 
 use crate::trees::random_tree;
-use denavit::expr::{Floats, evaluate};
+use denavit::derive::{Flavour, derive};
+use denavit::expr::{Dag, ExprId, Floats, evaluate};
+use denavit::function::FunctionName;
 use denavit::model;
 use denavit::regressor::{BaseParameters, RegressorOptions, base_parameters};
 use nalgebra::DMatrix;
@@ -20,17 +22,32 @@ fn value(name: &str, point: u64) -> f64 {
 /// R0 at random points, one below the other; constants keep their values.
 fn stacked(base: &BaseParameters) -> DMatrix<f64> {
     let regressor = &base.regressor;
-    let (n, columns) = (regressor.joints.len(), regressor.columns.len());
-    let entries = regressor.entries();
+    at_points(&regressor.dag, &regressor.entries(), regressor.columns.len())
+}
+
+/// A matrix of so many columns at random points, one below the other.
+fn at_points(dag: &Dag, entries: &[ExprId], columns: usize) -> DMatrix<f64> {
+    let n = entries.len() / columns;
     let mut rows = Vec::new();
     for point in 1..=(3 * columns / n + 5) as u64 {
         let of = |name: &str| {
             let moves = name.starts_with('q');
             Some(value(name, if moves { point } else { 0 }) * if moves { 3.0 } else { 1.0 })
         };
-        rows.extend(evaluate(&regressor.dag, &entries, &mut Floats::new(of)).unwrap());
+        rows.extend(evaluate(dag, entries, &mut Floats::new(of)).unwrap());
     }
     DMatrix::from_row_slice(rows.len() / columns, columns, &rows)
+}
+
+/// Singular values over the largest, of the columns that are not 0, each of length 1.
+fn relative_singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
+    let columns: Vec<_> = (0..matrix.ncols())
+        .map(|column| matrix.column(column).into_owned())
+        .filter(|column| column.norm() > 1e-12)
+        .map(|column| column.normalize())
+        .collect();
+    let singular = DMatrix::from_columns(&columns).singular_values();
+    singular.iter().map(|value| value / singular.max()).collect()
 }
 
 #[test]
@@ -42,15 +59,7 @@ fn ranks_are_those_of_singular_values() {
         let friction = seed % 2 == 0;
         let options = RegressorOptions { friction, rotor: friction, ..RegressorOptions::default() };
         let base = base_parameters(&robot, options, &[]).unwrap();
-        let matrix = stacked(&base);
-        let columns: Vec<_> = (0..matrix.ncols())
-            .map(|column| matrix.column(column).into_owned())
-            .filter(|column| column.norm() > 1e-12)
-            .map(|column| column.normalize())
-            .collect();
-        let singular = DMatrix::from_columns(&columns).singular_values();
-        let relative = singular.iter().map(|value| value / singular.max());
-        let relative: Vec<f64> = relative.collect();
+        let relative = relative_singular_values(&stacked(&base));
         if relative.iter().any(|value| (1e-12..1e-6).contains(value)) {
             continue;
         }
@@ -59,6 +68,23 @@ fn ranks_are_those_of_singular_values() {
         assert_eq!(base.rank(), rank, "seed {seed}");
     }
     assert!(separated >= 16, "{separated} of 24 trees are well separated");
+}
+
+/// The emitted columns, on the joint axes: none is 0, and none a sum of others.
+#[test]
+fn columns_on_the_axes_are_independent() {
+    for seed in 0..12 {
+        let joints = 2 + seed as usize % 6;
+        let robot = model::read("random", &random_tree(joints, 300 + seed)).unwrap();
+        let derivation = derive(&robot, Flavour::Tunable, &[FunctionName::BaseRegressor]).unwrap();
+        let output = &derivation.functions[0].outputs[0];
+        let matrix = at_points(&derivation.dag, &output.entries, output.shape[1]);
+        let relative = relative_singular_values(&matrix);
+        assert_eq!(relative.len(), output.shape[1], "seed {seed}");
+        // Where the points tell them badly apart, exact ranks do.
+        let least = relative.iter().copied().fold(1.0, f64::min);
+        assert!(least > 1e-9, "seed {seed}: {least}");
+    }
 }
 
 #[test]

@@ -20,6 +20,9 @@ pub(super) struct Route {
     pub(super) grouped: bool,
     /// From the frame on one axis to that on the next, not by way of the frame of the link.
     pub(super) by_axes: bool,
+    /// What lies between two joints along the axis of the second comes last: a point of the axis
+    /// moves with either body.
+    pub(super) split: bool,
 }
 
 /// What is known of a body.
@@ -57,15 +60,23 @@ pub(super) fn follow(
             }
             None => (origin, body.turns.clone()),
         };
-        let seat = match body.parent {
-            Some(parent) if route.by_axes => {
-                stops[parent].on_axis.moved_then_turned(dag, origin, body.turns.iter())
-            }
+        let (seat, along) = match body.parent {
             Some(parent) => {
-                let before = &stops[parent].in_link;
-                before.moved_then_turned(dag, seat_offset, seat_turns.iter())
+                let before = &stops[parent];
+                let (state, offset, turns) = match route.by_axes {
+                    true => (&before.on_axis, origin, &body.turns),
+                    false => (&before.in_link, seat_offset, &seat_turns),
+                };
+                let (across, along) = match route.split && body.is_revolute {
+                    true => split(dag, offset, turns),
+                    false => (offset, dag.zero()),
+                };
+                (state.moved_then_turned(dag, across, turns.iter()), along)
             }
-            None => State::fixed(dag, mechanism.gravity, terms).turned(dag, body.turns.iter()),
+            None => {
+                let ground = State::fixed(dag, mechanism.gravity, terms);
+                (ground.turned(dag, body.turns.iter()), dag.zero())
+            }
         };
         let carrier = body.parent.filter(|&p| continues(mechanism, p, body));
         let group = match carrier.filter(|_| route.grouped) {
@@ -78,6 +89,8 @@ pub(super) fn follow(
         if group.chain.len() > 1 {
             group.take_angular(dag, &mut on_axis, terms);
         }
+        let along = [dag.zero(), dag.zero(), along];
+        on_axis.shift(dag, along);
         groups.push(group);
         let host = &mechanism.placements[hosts[j]];
         let in_link = placed(dag, &on_axis, host.offset, &host.turns);
@@ -117,6 +130,16 @@ pub(super) fn relative(
     }
     all.extend(turns);
     (between, all)
+}
+
+/// An offset, given before turns, as what is across the z axis after them and what is along it.
+fn split(dag: &mut Dag, offset: Vector, turns: &[Turn]) -> (Vector, ExprId) {
+    let turned = turns.iter().fold(offset, |vector, turn| turn.to_child(dag, vector));
+    let along = shown(dag, turned[2]);
+    let back = [dag.zero(), dag.zero(), along];
+    let back = turns.iter().rev().fold(back, |vector, turn| turn.to_parent(dag, vector));
+    let across = subtract(dag, offset, back);
+    (across.map(|component| shown(dag, component)), along)
 }
 
 /// A known length in its shortest form: what is turned there and back is what it was.

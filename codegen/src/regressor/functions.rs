@@ -109,12 +109,13 @@ fn regressor(robot: &mut Robot) -> Option<Made> {
     let entries = regressor.entries();
     let mut cheapest = Cheapest::new(&mut regressor.dag, entries, n);
     // Each is tried together with those before that paid.
-    let choices: [fn(&mut Shortcuts); 5] = [
+    let choices: [fn(&mut Shortcuts); 6] = [
         |shortcuts| shortcuts.second = true,
         |shortcuts| shortcuts.first = true,
         |shortcuts| shortcuts.mass = true,
         |shortcuts| shortcuts.route.grouped = true,
         |shortcuts| shortcuts.route.by_axes = true,
+        |shortcuts| shortcuts.route.split = true,
     ];
     let mut best = Shortcuts::default();
     for choose in choices {
@@ -144,8 +145,9 @@ fn base_regressor(robot: &Robot) -> Option<Made> {
     let mut regressor = base.regressor;
     let n = regressor.joints.len();
     let mut cheapest: Option<Cheapest> = None;
-    for (grouped, by_axes) in [(false, false), (false, true), (true, false), (true, true)] {
-        let route = Route { grouped, by_axes };
+    for choice in 0..8 {
+        let has = |bit: u32| choice & bit != 0;
+        let route = Route { grouped: has(4), by_axes: has(2), split: has(1) };
         let entries = axis_entries(&mut regressor, robot, &parameters, route);
         let dag = &mut regressor.dag;
         match &mut cheapest {

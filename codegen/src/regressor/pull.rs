@@ -100,7 +100,7 @@ impl State {
         turned
     }
 
-    fn shift(&mut self, dag: &mut Dag, offset: Vector) {
+    pub(super) fn shift(&mut self, dag: &mut Dag, offset: Vector) {
         if offset == zero(dag) {
             return;
         }

@@ -1,7 +1,7 @@
 //! The base parameters of given equations.
 
 use super::markdown::escaped;
-use super::{Answer, Arguments, CertificateJson, Failure};
+use super::{Answer, Arguments, CertificateJson, Failure, ListedBasis};
 use crate::cli::elimination::{Elimination, columns};
 use crate::cli::files::write_whole;
 use crate::cli::json::write_json;
@@ -33,6 +33,7 @@ pub(super) fn run(
     let is_of_models = !arguments.with.is_empty()
         || arguments.terms.is_some()
         || arguments.numeric
+        || arguments.basis == ListedBasis::Joints
         || arguments.certificate.is_some();
     if is_of_models {
         return Err(Failure::NotOfEquations(equations.name.clone()));

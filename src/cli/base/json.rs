@@ -4,6 +4,7 @@ use super::{CertificateJson, Found};
 use crate::cli::failure::Failure;
 use crate::cli::json::{Ordered, write_json};
 use denavit::emit::latex::{base_notation, base_sum};
+use denavit::expr::ExprId;
 use denavit::number::Residue;
 use serde::Serialize;
 use std::io::Write;
@@ -11,6 +12,7 @@ use std::io::Write;
 #[derive(Serialize)]
 struct BaseJson<'a> {
     model: &'a str,
+    basis: &'static str,
     columns: Vec<&'a str>,
     rank: usize,
     zero: Vec<&'a str>,
@@ -34,6 +36,9 @@ struct ParameterJson<'a> {
     latex: String,
     unit: &'a str,
     members: Ordered<String>,
+    /// The factors of base parameters of kept columns, by these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of_kept: Option<Ordered<String>>,
     alone: bool,
     value: Option<f64>,
 }
@@ -41,17 +46,23 @@ struct ParameterJson<'a> {
 pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failure> {
     let base = found.base;
     let notation = base_notation(found.robot, base);
-    let parameters = base.parameters.iter().zip(&found.values).map(|(parameter, &value)| {
-        let members = parameter.members.iter();
-        let members =
-            members.map(|&(column, factor)| (base.name(column).to_owned(), base.text(factor)));
+    let listed = found.listed();
+    let parameters = listed.iter().zip(&found.values).map(|(parameter, &value)| {
+        let factors = |members: &[(usize, ExprId)], column: &dyn Fn(usize) -> usize| {
+            let factor = |&(member, factor): &(usize, ExprId)| {
+                (base.name(column(member)).to_owned(), base.text(factor))
+            };
+            Ordered(members.iter().map(factor).collect())
+        };
+        let kept = |place: usize| base.parameters[place].column;
         ParameterJson {
-            name: base.name(parameter.column),
-            expression: base.sum_text(&parameter.parts),
-            latex: base_sum(base, &parameter.parts, &notation),
-            unit: &base.regressor.columns[parameter.column].unit,
-            members: Ordered(members.collect()),
-            alone: parameter.is_alone(),
+            name: parameter.name,
+            expression: base.sum_text(parameter.parts),
+            latex: base_sum(base, parameter.parts, &notation),
+            unit: parameter.unit,
+            members: factors(parameter.members, &|column| column),
+            of_kept: parameter.of_kept.map(|(places, _)| factors(places, &kept)),
+            alone: parameter.members.len() == 1,
             value,
         }
     });
@@ -60,6 +71,7 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
         dependent.map(|(name, sum)| DependentJson { name, relation: base.sum_text(sum) });
     let json = BaseJson {
         model: &found.robot.name,
+        basis: if found.joints.is_some() { "joints" } else { "kept" },
         columns: base.regressor.columns.iter().map(|column| column.name.as_str()).collect(),
         rank: base.rank(),
         zero: found.names(base.zero()),

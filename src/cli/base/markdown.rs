@@ -8,21 +8,22 @@ pub(super) fn document(found: &Found<'_>) -> String {
     let base = found.base;
     let columns = base.regressor.columns.len();
     let mut text = format!(
-        "# Base parameters of {}\n\n{} base parameters of {columns} columns. Names `m`, `mx`, \
+        "# Base parameters of {}\n\n{} base parameters of {columns} columns{}. Names `m`, `mx`, \
          `my`, `mz`, `Ixx` to `Iyz` are about the origin of the link frame.\n\n",
         escaped(&found.robot.name),
-        base.rank()
+        base.rank(),
+        found.place()
     );
+    let head = if found.joints.is_some() { "name" } else { "kept" };
     let values = found.shown_values();
-    text.push_str(match values.is_empty() {
-        true => "| | kept | unit | base parameter |\n|---:|---|---|---|\n",
-        false => "| | kept | unit | value | base parameter |\n|---:|---|---|---:|---|\n",
+    text.push_str(&match values.is_empty() {
+        true => format!("| | {head} | unit | base parameter |\n|---:|---|---|---|\n"),
+        false => format!("| | {head} | unit | value | base parameter |\n|---:|---|---|---:|---|\n"),
     });
-    for (row, parameter) in base.parameters.iter().enumerate() {
-        let name = base.name(parameter.column);
-        let unit = &base.regressor.columns[parameter.column].unit;
+    for (row, parameter) in found.listed().iter().enumerate() {
+        let (name, unit) = (parameter.name, parameter.unit);
         let value = values.get(row).map_or(String::new(), |value| format!(" {value} |"));
-        let formula = base.sum_text(&parameter.parts);
+        let formula = base.sum_text(parameter.parts);
         text.push_str(&format!("| {} | `{name}` | {unit} |{value} `{formula}` |\n", row + 1));
     }
     for (title, names) in [
@@ -33,9 +34,13 @@ pub(super) fn document(found: &Found<'_>) -> String {
             text.push_str(&format!("\n## {title}\n\n`{}`\n", names.join("`, `")));
         }
     }
-    let sums: Vec<_> = found.sums().collect();
+    let on_axes = found.in_kept();
+    let (title, sums) = match on_axes.is_empty() {
+        true => ("Columns that are sums of kept columns", found.sums().collect()),
+        false => ("In the base parameters of kept columns", on_axes),
+    };
     if !sums.is_empty() {
-        text.push_str("\n## Columns that are sums of kept columns\n\n");
+        text.push_str(&format!("\n## {title}\n\n"));
         for (name, sum) in sums {
             text.push_str(&format!("- `{name} = {}`\n", base.sum_text(sum)));
         }

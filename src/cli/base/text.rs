@@ -9,7 +9,8 @@ use std::io::Write;
 pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failure> {
     let base = found.base;
     let columns = base.regressor.columns.len();
-    writeln!(out, "{}: {} base parameters of {columns} columns\n", found.robot.name, base.rank())?;
+    let (name, rank, place) = (&found.robot.name, base.rank(), found.place());
+    writeln!(out, "{name}: {rank} base parameters of {columns} columns{place}\n")?;
     writeln!(out, "{}", table(found))?;
     for (title, names) in [
         ("identifiable alone", found.names(base.alone())),
@@ -19,9 +20,13 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
             writeln!(out, "{}\n", paragraph(&format!("{title}: "), "  ", &names.join(", ")))?;
         }
     }
-    let sums: Vec<_> = found.sums().collect();
+    let on_axes: Vec<_> = found.in_kept();
+    let (title, sums) = match on_axes.is_empty() {
+        true => ("columns that are sums of kept columns", found.sums().collect()),
+        false => ("in the base parameters of kept columns (without --basis)", on_axes),
+    };
     if !sums.is_empty() {
-        writeln!(out, "columns that are sums of kept columns:")?;
+        writeln!(out, "{title}:")?;
         for (name, sum) in sums {
             writeln!(out, "  {name} = {}", base.sum_text(sum))?;
         }
@@ -32,20 +37,20 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
 }
 
 fn table(found: &Found<'_>) -> Table {
-    let base = found.base;
+    let head = if found.joints.is_some() { "name" } else { "kept" };
     let mut table = Table::new(&[
-        ("kept", Align::Left),
+        (head, Align::Left),
         ("unit", Align::Left),
         ("value", Align::Right),
         ("base parameter", Align::Left),
     ]);
     let values = found.shown_values();
-    for (row, parameter) in base.parameters.iter().enumerate() {
+    for (row, parameter) in found.listed().iter().enumerate() {
         table.push(vec![
-            base.name(parameter.column).to_owned(),
-            base.regressor.columns[parameter.column].unit.clone(),
+            parameter.name.to_owned(),
+            parameter.unit.to_owned(),
             values.get(row).cloned().unwrap_or_default(),
-            base.sum_text(&parameter.parts),
+            found.base.sum_text(parameter.parts),
         ]);
     }
     table.without_empty_columns()

@@ -137,6 +137,7 @@ impl Equations {
                 shape: part.shape.clone(),
                 entries: part.entries.clone(),
                 doc: part.doc.clone(),
+                details: Vec::new(),
             };
             let (arguments, outputs, form) = (Vec::new(), vec![output], Form::Plain);
             Some(Function { name, link: None, arguments, outputs, form })

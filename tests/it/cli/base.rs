@@ -97,6 +97,72 @@ fn base_writes_documents() {
     assert_eq!(answer(&["base", "tulip", "--with", "modelled", "--markdown", "-"]), markdown);
 }
 
+/// phi = T pi in numbers, and the moments of PUMA's arm are those of a body.
+#[test]
+fn base_lists_parameters_on_the_joint_axes() {
+    let listed = json(&["base", "puma560", "--json"]);
+    let found = json(&["base", "puma560", "--basis", "joints", "--json"]);
+    assert_eq!((&listed["basis"], &found["basis"]), (&"kept".into(), &"joints".into()));
+    assert_eq!((&found["rank"], &found["columns"]), (&listed["rank"], &listed["columns"]));
+    let file = std::fs::read_to_string("models/puma560.json").expect("the model");
+    let constants: Value = serde_json::from_str(&file).expect("JSON");
+    let constant = |name: &str| constants["constants"][name]["value"].as_f64().expect("a value");
+    // Factors of this robot are products of numbers, lengths and their squares.
+    let factor = |text: &str| -> f64 {
+        let (sign, text) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
+        text.split('*').fold(sign, |product, factor| {
+            let (base, power) = factor.split_once('^').unwrap_or((factor, "1"));
+            let (over, under) = base.split_once('/').unwrap_or((base, "1"));
+            let number = |text: &str| text.parse().unwrap_or_else(|_| constant(text));
+            product * (number(over) / number(under)).powi(power.parse().expect("a power"))
+        })
+    };
+    let list = |of: &Value| of["parameters"].as_array().expect("parameters").clone();
+    let value = |one: &Value| one["value"].as_f64().expect("a value");
+    let kept = list(&listed);
+    let mut moments = 0;
+    for parameter in list(&found) {
+        let row = parameter["of_kept"].as_object().expect("a row");
+        let terms: Vec<f64> = row
+            .iter()
+            .map(|(name, coefficient)| {
+                let own = kept.iter().find(|one| one["name"] == **name).expect(name);
+                factor(text(coefficient)) * value(own)
+            })
+            .collect();
+        let size = terms.iter().map(|term| term.abs()).fold(1.0, f64::max);
+        let (sum, own) = (terms.iter().sum::<f64>(), value(&parameter));
+        assert!((sum - own).abs() <= 1e-12 * size, "{}: {sum}, not {own}", parameter["name"]);
+        let name = text(&parameter["name"]);
+        if name.starts_with("Kxx_") || name.starts_with("Kyy_") || name.starts_with("Jzz_") {
+            moments += 1;
+            assert!((0.0..5.0).contains(&own), "{name}: {own}");
+        }
+    }
+    assert_eq!(moments, 11);
+}
+
+#[test]
+fn the_change_of_basis_is_written_in_documents() {
+    let directory = Directory::new("joints");
+    let files = ["--latex", "joints.tex", "--markdown", "joints.md"];
+    let run =
+        run_in(&directory.path, &[&["base", "scara", "--basis", "joints"][..], &files].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let read = |name: &str| std::fs::read_to_string(directory.path.join(name)).expect(name);
+    let (latex, markdown) = (read("joints.tex"), read("joints.md"));
+    let found = json(&["base", "scara", "--basis", "joints", "--json"]);
+    for parameter in found["parameters"].as_array().expect("parameters") {
+        assert!(latex.contains(text(&parameter["latex"])), "{parameter}");
+        assert!(markdown.contains(text(&parameter["expression"])), "{parameter}");
+        assert!(markdown.contains(&format!("- `{} = ", text(&parameter["name"]))), "{parameter}");
+    }
+    assert!(latex.contains("J_{zz,1}"));
+    let equations =
+        run_in(&directory.path, &["base", "double_pendulum_drives", "--basis", "joints"]);
+    assert_eq!(equations.code, Some(2), "{}", equations.stderr);
+}
+
 #[test]
 fn certificates_are_verified_and_tampered_ones_refused() {
     let directory = Directory::new("verify");

@@ -1,9 +1,10 @@
 //! Emitted text as it stands in the repository (the compiler's tests keep it fresh): compiled and
 //! run; and what must hold of fresh text beside.
 
-use super::flat::project;
+use super::flat::{Flat, Interpreted, bits, project, random_sample};
 use denavit_codegen::build_script::{Request, generate, source};
 use denavit_codegen::derive::Flavour;
+use denavit_codegen::function::FunctionName;
 use denavit_codegen::model;
 use std::fs;
 use std::process::Command;
@@ -58,6 +59,47 @@ fn the_planar_arm_needs_the_textbooks_torque() {
     let jacobian = m::link_jacobian(&p, m::Link::Link2, &[q1, q2]);
     let across = -l1 * q1.sin() - 0.4 * (q1 + q2).sin();
     assert!(jacobian.concat().iter().any(|entry| (entry - across).abs() < 1e-15), "{jacobian:?}");
+}
+
+/// Y theta = tau in emitted code, and every number that of both interpreters, bit for bit.
+#[test]
+fn the_base_regressor_of_the_planar_arm_times_its_base_parameters_is_the_torque() {
+    use FunctionName as F;
+    use planar_2r as m;
+    let wanted = [
+        F::InverseDynamics,
+        F::MassMatrix,
+        F::DynamicsTerms,
+        F::ForwardDynamics,
+        F::LinkJacobian,
+        F::KineticEnergy,
+        F::BaseRegressor,
+        F::BaseParameters,
+    ];
+    let interpreted = Interpreted::new("planar_2r", Flavour::Tunable, &wanted);
+    let p = m::Parameters::<f64>::default();
+    let theta = m::base_parameters(&p);
+    for seed in 0..20 {
+        let sample = random_sample(seed, m::DOF);
+        let arguments: Vec<&[f64]> = sample.iter().map(|vector| &vector[..]).collect();
+        let [q, qd, qdd]: [[f64; m::DOF]; 3] =
+            [0, 1, 2].map(|row| std::array::from_fn(|entry| sample[row][entry]));
+        let regressor = m::base_regressor(&p, &q, &qd, &qdd);
+        let tau = m::inverse_dynamics(&p, &q, &qd, &qdd);
+        for (row, tau) in regressor.iter().zip(tau) {
+            let sum: f64 = row.iter().zip(theta).map(|(entry, value)| entry * value).sum();
+            assert!((sum - tau).abs() < 1e-12, "{sum}, not {tau}");
+        }
+        for (name, found, arguments) in [
+            (F::BaseRegressor, regressor.flat(), &arguments[..]),
+            (F::BaseParameters, theta.flat(), &[]),
+        ] {
+            let routine = interpreted.routine(name, None);
+            assert_eq!(bits(&found), bits(&interpreted.one(routine, arguments)), "{name}");
+            let lanes = interpreted.many(routine, &[sample.clone()]);
+            assert_eq!(bits(&lanes[0]), bits(&found), "{name} in a batch");
+        }
+    }
 }
 
 /// A SCARA arm carries the weight of quill and wrist (1.8 kg) on its third joint alone.

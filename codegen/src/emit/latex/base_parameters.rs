@@ -5,9 +5,9 @@ use super::nomenclature;
 use super::notation::{Notation, base_and_words, escape, with_subscript, word};
 use crate::emit::layout::{TemplateError, fill};
 use crate::expr::ExprId;
-use crate::model::Robot;
+use crate::model::{LinkId, Robot};
 use crate::number::Residue;
-use crate::regressor::{BaseParameters, Part, signed};
+use crate::regressor::{BaseParameters, Dependent, JointParameter, Part, signed};
 
 const TEMPLATE: &str = include_str!("../../../templates/latex/base_parameters.tex.in");
 
@@ -19,6 +19,22 @@ const PARAMETERS: &str = "Link $j$ has the mass $m_j$ [kg], the first moment $(m
     friction $f_{v,j}$, $f_{c,j}$, the rotor inertia $I_{a,j}$ and the offset torque \
     $\\mathrm{off}_j$, where they are asked for.\n";
 
+/// What the parameters on the axes are.
+const ON_AXES: &str = "On the axis of joint $j$, in the frame with that axis as $z$ that turns with \
+    the joint, body $j$ keeps the first moments $s_{x,j}$, $s_{y,j}$ [kg\\,m] and the second \
+    moments $K_{xx,j} = \\int x^2\\,dm$, $K_{xy,j} = \\int x y\\,dm$ and so on [kg\\,m$^2$]; where it \
+    turns about one axis only, $J_{zz,j} = K_{xx,j} + K_{yy,j}$. What its carrier feels alike is \
+    the carrier's; $M_j$, $s_{z,j}$, $K_{zz,j}$ are where none does.\n";
+
+/// The section of relations among columns.
+const DEPENDENT: &str = "\n\\section{Columns that depend on others}\nEach parameter stands for its \
+    column of $R_0$.\n";
+
+/// The section of the change of basis.
+const OF_KEPT: &str = "\n\\section{In the base parameters of kept columns}\nOn the right each \
+    parameter stands for the base parameter of its column, as they are where columns of $R_0$ are \
+    kept.\n";
+
 /// How the formulas of base parameters are written: `m_{x,2}` is the first moment of the link of
 /// joint 2 along x.
 pub fn base_notation(robot: &Robot, base: &BaseParameters) -> Notation {
@@ -26,11 +42,7 @@ pub fn base_notation(robot: &Robot, base: &BaseParameters) -> Notation {
     let mut notation = Notation::of_robot(dag, robot);
     for (index, column) in base.regressor.columns.iter().enumerate() {
         let Some((link, prefix)) = column.owner else { continue };
-        let number = robot.joints().position(|(other, _)| other == link);
-        let owner = match number {
-            Some(row) => (row + 1).to_string(),
-            None => word(&robot.links[link].name),
-        };
+        let owner = owner(robot, link);
         let (letter, words) = base_and_words(prefix);
         let subscript = if words.is_empty() { owner } else { format!("{words},{owner}") };
         notation.set(dag, base.symbol(index), with_subscript(&letter, &subscript));
@@ -61,11 +73,12 @@ pub fn base_sum(base: &BaseParameters, parts: &[Part], notation: &Notation) -> S
     signed(terms)
 }
 
-/// The base parameters of `robot` as a document. `values` are those of the base parameters, in
-/// their order, as text; empty if the model has none.
+/// The base parameters of `robot` as a document, those on the joint axes if they are given.
+/// `values` are those of the base parameters, in their order, as text; empty if the model has none.
 pub fn base_document(
     robot: &Robot,
     base: &BaseParameters,
+    joints: Option<&[JointParameter]>,
     values: &[String],
 ) -> Result<String, TemplateError> {
     let notation = base_notation(robot, base);
@@ -86,24 +99,23 @@ pub fn base_document(
             ));
         }
     }
-    let mut dependent = base.dependent.iter().filter(|one| !one.relation.is_empty()).peekable();
-    if dependent.peek().is_some() {
-        sections.push_str(
-            "\n\\section{Columns that depend on others}\nEach parameter stands for its column of \
-             $R_0$.\n\\begin{longtable}{r@{${}={}$}F{130mm}}\n",
-        );
-        for one in dependent {
-            let left = formula(base.symbol(one.column));
-            let right = base_sum(base, &one.parts, &notation);
-            sections.push_str(&format!("${left}$ & ${right}$ \\\\\n"));
+    let rows: Vec<Row> = match joints {
+        Some(joints) => {
+            joints.iter().map(|one| Row::on_axis(robot, base, one, &notation)).collect()
         }
-        sections.push_str("\\end{longtable}\n");
-    }
+        None => (0..base.rank()).map(|row| Row::kept(base, row, &notation)).collect(),
+    };
+    sections.push_str(&equations(base, joints, &rows, &notation));
+    let on_axes = if joints.is_some() { ON_AXES } else { "" };
     let table = nomenclature::known_symbols(robot, &base.regressor.dag, &notation);
     let (rank, columns) = (base.rank(), base.regressor.columns.len());
+    let of_base = match joints {
+        Some(_) => format!("R \\text{{ with {rank} columns on the joint axes}}"),
+        None => format!("R \\text{{ with the {rank} columns kept}}"),
+    };
     let law = format!(
         "\\[ \\tau = R_0\\,\\theta_0 = R\\,\\pi, \\qquad R_0 \\text{{ with {columns} columns, }} \
-         R \\text{{ with the {rank} columns kept}} \\]\n\
+         {of_base} \\]\n\
          Exact for every value of the symbols but those that make a denominator 0. The rank is \
          that of $R_0$ modulo ${}$ at random points; the relations are identities.",
         Residue::MODULUS
@@ -119,29 +131,106 @@ pub fn base_document(
                 "description",
                 &nomenclature::description(&robot.description, &robot.source, &robot.assumptions),
             ),
-            ("nomenclature", &format!("{table}{PARAMETERS}")),
+            ("nomenclature", &format!("{table}{PARAMETERS}{on_axes}")),
             ("law", &law),
-            ("parameters", &parameters(base, &notation, values)),
+            ("parameters", &parameters(&rows, joints.is_some(), values)),
             ("sections", &sections),
         ],
     )
 }
 
-/// The table of base parameters.
-fn parameters(base: &BaseParameters, notation: &Notation, values: &[String]) -> String {
-    let (columns, width, heads) = match values.is_empty() {
-        true => ("rlF{", 112, "$k$ & kept & $\\pi_k$ & unit"),
-        false => ("rlF{", 90, "$k$ & kept & $\\pi_k$ & unit & value"),
+/// The relations among columns; of parameters on the axes, the change of basis.
+fn equations(
+    base: &BaseParameters,
+    joints: Option<&[JointParameter]>,
+    rows: &[Row],
+    notation: &Notation,
+) -> String {
+    let (heading, equations): (&str, Vec<(String, String)>) = match joints {
+        None => {
+            let sums = base.dependent.iter().filter(|one| !one.relation.is_empty());
+            let sum = |one: &Dependent| {
+                let symbol = base.symbol(one.column);
+                let left = write_expression(&base.regressor.dag, symbol, notation);
+                (left, base_sum(base, &one.parts, notation))
+            };
+            (DEPENDENT, sums.map(sum).collect())
+        }
+        Some(joints) => {
+            let sum = |(row, one): (&Row, &JointParameter)| {
+                (row.symbol.clone(), base_sum(base, &one.parts_of_kept, notation))
+            };
+            (OF_KEPT, rows.iter().zip(joints).map(sum).collect())
+        }
     };
-    let last = if values.is_empty() { "l" } else { "lr" };
-    let mut text = format!("\\begin{{longtable}}{{{columns}{width}mm}}{last}}}\n{heads} \\\\\n");
+    if equations.is_empty() {
+        return String::new();
+    }
+    let mut section = heading.to_owned();
+    section.push_str("\\begin{longtable}{r@{${}={}$}F{130mm}}\n");
+    for (left, right) in equations {
+        section.push_str(&format!("${left}$ & ${right}$ \\\\\n"));
+    }
+    section.push_str("\\end{longtable}\n");
+    section
+}
+
+/// A line of the table.
+struct Row {
+    symbol: String,
+    sum: String,
+    unit: String,
+}
+
+impl Row {
+    fn kept(base: &BaseParameters, row: usize, notation: &Notation) -> Self {
+        let parameter = &base.parameters[row];
+        let symbol = base.symbol(parameter.column);
+        Self {
+            symbol: write_expression(&base.regressor.dag, symbol, notation),
+            sum: base_sum(base, &parameter.parts, notation),
+            unit: base.regressor.columns[parameter.column].unit.clone(),
+        }
+    }
+
+    fn on_axis(
+        robot: &Robot,
+        base: &BaseParameters,
+        parameter: &JointParameter,
+        notation: &Notation,
+    ) -> Self {
+        let (letter, words) = base_and_words(parameter.prefix);
+        let owner = owner(robot, parameter.link);
+        let subscript = if words.is_empty() { owner } else { format!("{words},{owner}") };
+        Self {
+            symbol: with_subscript(&letter, &subscript),
+            sum: base_sum(base, &parameter.parts, notation),
+            unit: parameter.unit.clone(),
+        }
+    }
+}
+
+/// The number of a link's joint; its name, if it has none.
+fn owner(robot: &Robot, link: LinkId) -> String {
+    match robot.joints().position(|(other, _)| other == link) {
+        Some(row) => (row + 1).to_string(),
+        None => word(&robot.links[link].name),
+    }
+}
+
+/// The table of base parameters.
+fn parameters(rows: &[Row], is_on_axes: bool, values: &[String]) -> String {
+    let head = if is_on_axes { "name" } else { "kept" };
+    let (width, last, value) = match values.is_empty() {
+        true => (112, "l", ""),
+        false => (90, "lr", " & value"),
+    };
+    let heads = format!("$k$ & {head} & $\\pi_k$ & unit{value}");
+    let mut text = format!("\\begin{{longtable}}{{rlF{{{width}mm}}{last}}}\n{heads} \\\\\n");
     text.push_str("\\hline\n\\endhead\n");
-    for (row, parameter) in base.parameters.iter().enumerate() {
-        let kept = write_expression(&base.regressor.dag, base.symbol(parameter.column), notation);
-        let sum = base_sum(base, &parameter.parts, notation);
-        let unit = &base.regressor.columns[parameter.column].unit;
+    for (row, Row { symbol, sum, unit }) in rows.iter().enumerate() {
         let unit = escape(unit).replace(' ', "\\,");
-        text.push_str(&format!("{} & ${kept}$ & ${sum}$ & {unit}", row + 1));
+        text.push_str(&format!("{} & ${symbol}$ & ${sum}$ & {unit}", row + 1));
         if let Some(value) = values.get(row) {
             let value = value.split_once('e').map_or_else(
                 || value.clone(),

@@ -19,6 +19,8 @@ fn requests() -> [(&'static str, &'static str, Request); 3] {
         F::ForwardDynamics,
         F::LinkJacobian,
         F::KineticEnergy,
+        F::BaseRegressor,
+        F::BaseParameters,
     ];
     let scara = vec![F::InverseDynamics, F::MassMatrix, F::GravityVector, F::LinkTransforms];
     let awkward = vec![F::InverseDynamics, F::LinkJacobian, F::PotentialEnergy];

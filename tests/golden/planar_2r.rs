@@ -233,9 +233,10 @@ impl<S: Scalar> Parameters<S> {
         let r18 = k1 * r4 + r7;
         let t15 = model.m_link1 + model.m_link2;
         let r19 = t3 + model.l1 * t15;
-        let r20 = t4 + t9 + model.Izz_link1 + (model.l1 * model.l1 * t15 + t3 * r15);
-        let t16 = model.l2 * model.l2 * model.m_link2 + model.l2 * k2 * t1;
-        let r21 = t11 + t14 + model.Izz_link2 + t16;
+        let t16 = t4 + t9 + model.Izz_link1 + model.l1 * model.l1 * t15;
+        let r20 = t16 + t3 * r15;
+        let t17 = t11 + t14 + model.Izz_link2 + model.l2 * model.l2 * model.m_link2;
+        let r21 = t17 + model.l2 * k2 * t1;
         Self {
             l1: model.l1,
             l2: model.l2,
@@ -556,17 +557,16 @@ pub fn base_regressor<S: Scalar>(
 
 /// Base parameters: what `base_regressor` is multiplied with, for torques.
 ///
-///
 /// Result: One for each column of `base_regressor`, in the names of `denavit base --basis
 /// joints`. Of link L, m_L, mx_L .. mz_L and Ixx_L .. Iyz_L are mass, mass times centre of mass
 /// and inertia about the origin of the link frame.
 ///
-/// - `sx_link1` \[kg m\]: `l1*(m_link1 + m_link2) + mx_link1`
+/// - `sx_link1` \[kg m\]: `mx_link1 + l1*(m_link1 + m_link2)`
 /// - `sy_link1` \[kg m\]: `my_link1`
-/// - `Jzz_link1` \[kg m^2\]: `l1^2*(m_link1 + m_link2) + 2*l1*mx_link1 + Izz_link1`
-/// - `sx_link2` \[kg m\]: `l2*m_link2 + mx_link2`
+/// - `Jzz_link1` \[kg m^2\]: `Izz_link1 + l1^2*(m_link1 + m_link2) + 2*l1*mx_link1`
+/// - `sx_link2` \[kg m\]: `mx_link2 + l2*m_link2`
 /// - `sy_link2` \[kg m\]: `my_link2`
-/// - `Jzz_link2` \[kg m^2\]: `l2^2*m_link2 + 2*l2*mx_link2 + Izz_link2`
+/// - `Jzz_link2` \[kg m^2\]: `Izz_link2 + l2^2*m_link2 + 2*l2*mx_link2`
 ///
 /// One call: no operation.
 #[must_use]

@@ -92,7 +92,9 @@ pub fn joint_basis(
             .iter()
             .enumerate()
             .filter_map(|(column, row)| Some((column, row.get(&Place::Feature(feature))?.clone())));
-        let shares: Vec<(usize, Fraction)> = shares.collect();
+        let mut shares: Vec<(usize, Fraction)> = shares.collect();
+        // The body's own first, then what comes from further out by lengths.
+        shares.sort_by_key(|(_, share)| share.as_number().is_none());
         let own = base.regressor.columns.iter().position(|column| is_own(column, feature));
         let (joint, prefix, unit) = match (feature, own) {
             (Feature::Matter { body, entry }, _) => {

@@ -150,7 +150,9 @@ fn doc(context: &Context<'_>, routine: &Routine) -> String {
     }
     let shapes = routine.arguments.iter();
     lines.extend(shapes.map(|shape| format!("- `{}`: {}", shape.name, argument(shape))));
-    lines.push(String::new());
+    if !routine.arguments.is_empty() {
+        lines.push(String::new());
+    }
     if let [output] = &routine.outputs[..] {
         lines.push(format!("Result: {}.", output_doc(output)));
         lines.push(String::new());

@@ -49,7 +49,6 @@ fn regressors_are_at_or_below_the_best_known() {
             "planar_2r" => known * 4 / 3,
             _ => known,
         };
-        println!("{name}: {ours}, best known {known}");
         assert!(ours <= known, "{name}: {ours}, best known {known}");
     }
 }
@@ -79,7 +78,6 @@ fn regressors_in_frames_on_the_axes_are_at_or_below_the_best_known() {
         }
         let robot = model::read(name, &serde_json::to_vec(&file).unwrap()).unwrap();
         let (_, ours, _) = count(&robot, Regressor);
-        println!("{name} modified: {ours}, best known {known}");
         assert!(ours <= known, "{name}: {ours}, best known {known}");
     }
 }
@@ -90,7 +88,6 @@ fn base_regressors_are_at_or_below_the_best_known() {
         let (columns, ours, sincos) = count(&robot(name), BaseRegressor);
         assert_eq!(columns, rank, "{name}");
         assert!(sincos <= angles, "{name}: {sincos}");
-        println!("base {name}: {ours}, best known {known}");
         assert!(ours <= known, "{name}: {ours}, best known {known}");
     }
 }

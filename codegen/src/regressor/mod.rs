@@ -9,7 +9,7 @@
 //! - [`Ranking`]: rank and pivots modulo 2^61 - 1 at random points
 //! - `eliminate`: Gauss-Jordan over the rational functions of the known parameters
 //! - [`BaseParameters`]: which combinations of parameters the torques depend on, as [`Part`]s
-//! - [`joint_basis`]: the same on the joint axes, as the emitted regressor has them
+//! - [`joint_basis()`]: the same on the joint axes, as the emitted regressor has them
 //! - [`Certificate`]: a proof of all that, and its verification by other means
 //! - [`functions`]: the regressor functions for emission
 //! - [`equations`]: given equations, not of a model (`denavit-equations/1`)

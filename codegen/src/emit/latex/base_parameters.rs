@@ -20,8 +20,8 @@ const PARAMETERS: &str = "Link $j$ has the mass $m_j$ [kg], the first moment $(m
     $\\mathrm{off}_j$, where they are asked for.\n";
 
 /// What the parameters on the axes are.
-const ON_AXES: &str = "On the axis of joint $j$, in the frame with that axis as $z$ that turns with \
-    the joint, body $j$ keeps the first moments $s_{x,j}$, $s_{y,j}$ [kg\\,m] and the second \
+const ON_AXES: &str = "On the axis of joint $j$, in the frame with that axis as $z$ that turns \
+    with the joint, body $j$ keeps the first moments $s_{x,j}$, $s_{y,j}$ [kg\\,m] and the second \
     moments $K_{xx,j} = \\int x^2\\,dm$, $K_{xy,j} = \\int x y\\,dm$ and so on [kg\\,m$^2$]; where \
     it turns about one axis only, $J_{zz,j} = K_{xx,j} + K_{yy,j}$. What its carrier feels alike \
     is the carrier's; $M_j$, $s_{z,j}$, $K_{zz,j}$ are where none does.\n";

@@ -75,6 +75,7 @@ impl ConstrainedBodies {
             shape: vec![entries.len()],
             entries,
             doc: String::new(),
+            details: Vec::new(),
         };
         let (constraints, joints) = (equations.constraints.len(), efforts.len());
         let entries = [

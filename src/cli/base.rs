@@ -120,9 +120,15 @@ struct Listed<'a> {
     unit: &'a str,
     members: &'a [(usize, ExprId)],
     parts: &'a [Part],
-    /// What it is of the base parameters of kept columns, where it is none of them: their places
-    /// with factors, and the sum.
-    of_kept: Option<(&'a [(usize, ExprId)], &'a [Part])>,
+    /// What it is of the base parameters of kept columns, where it is none of them.
+    of_kept: Option<OfKept<'a>>,
+}
+
+/// A sum of base parameters of kept columns.
+struct OfKept<'a> {
+    /// Their places, with factors.
+    members: &'a [(usize, ExprId)],
+    parts: &'a [Part],
 }
 
 impl<'a> Found<'a> {
@@ -156,7 +162,7 @@ impl<'a> Found<'a> {
             unit: &parameter.unit,
             members: &parameter.members,
             parts: &parameter.parts,
-            of_kept: Some((&parameter.of_kept, &parameter.parts_of_kept)),
+            of_kept: Some(OfKept { members: &parameter.of_kept, parts: &parameter.parts_of_kept }),
         };
         match self.joints {
             Some(joints) => joints.iter().map(on_axis).collect(),
@@ -185,7 +191,7 @@ impl<'a> Found<'a> {
     /// What is listed in the base parameters of kept columns; none of these.
     fn in_kept(&self) -> Vec<(&'a str, &'a [Part])> {
         let listed = self.listed().into_iter();
-        listed.filter_map(|one| one.of_kept.map(|(_, parts)| (one.name, parts))).collect()
+        listed.filter_map(|one| one.of_kept.map(|sum| (one.name, sum.parts))).collect()
     }
 
     /// The columns that are sums of others, with their relations.

@@ -61,7 +61,7 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
             latex: base_sum(base, parameter.parts, &notation),
             unit: parameter.unit,
             members: factors(parameter.members, &|column| column),
-            of_kept: parameter.of_kept.map(|(places, _)| factors(places, &kept)),
+            of_kept: parameter.of_kept.as_ref().map(|sum| factors(sum.members, &kept)),
             alone: parameter.members.len() == 1,
             value,
         }

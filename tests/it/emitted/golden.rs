@@ -96,7 +96,7 @@ fn the_base_regressor_of_the_planar_arm_times_its_base_parameters_is_the_torque(
         ] {
             let routine = interpreted.routine(name, None);
             assert_eq!(bits(&found), bits(&interpreted.one(routine, arguments)), "{name}");
-            let lanes = interpreted.many(routine, &[sample.clone()]);
+            let lanes = interpreted.many(routine, std::slice::from_ref(&sample));
             assert_eq!(bits(&lanes[0]), bits(&found), "{name} in a batch");
         }
     }

@@ -58,6 +58,8 @@ pub(crate) enum Failure {
     Scenario(ScenarioError),
     /// A scenario cannot begin; holds its name and why.
     Start(String, StartError),
+    /// A step was given for the scheme that chooses its own.
+    StepOfEventScheme,
     /// The answer cannot be written to standard output.
     Stdout(io::Error),
 }
@@ -132,6 +134,7 @@ impl Failure {
             Self::Certificate { .. } => {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
+            Self::StepOfEventScheme => "add --scheme time-stepping".to_owned(),
             Self::Start(_, StartError::Penetration(..)) => {
                 "raise the robot, or give `on_ground` in `initial`".to_owned()
             }
@@ -199,6 +202,9 @@ impl fmt::Display for Failure {
                 write!(f, "{file}: is no certificate: {error}")?;
             }
             Self::Scenario(error) => write!(f, "{error}")?,
+            Self::StepOfEventScheme => {
+                write!(f, "--step: the event-driven scheme chooses its steps itself")?;
+            }
             Self::Start(scenario, error) => write!(f, "{scenario}: {error}")?,
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;

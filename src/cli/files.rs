@@ -12,6 +12,9 @@ use std::sync::Mutex;
 /// More is not read: the limit of [`model::read`], which refuses what has more.
 const MAX_MODEL_BYTES: u64 = 16 << 20;
 
+/// Nor is more of what another file refers to: a log of an hour has less.
+const MAX_LOG_BYTES: u64 = 256 << 20;
+
 /// The files that this run has read: no output may take the place of one.
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -106,14 +109,20 @@ fn no_model(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Failure {
     Failure::NoModel { name: name.to_owned(), nearest, is_path }
 }
 
-/// A model that another file refers to: a shipped one, or a path from that file's directory. The
-/// error is a sentence.
+/// A model or a log that another file refers to: a shipped model, or a path from that file's
+/// directory. The error is a sentence.
 pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
     if let Some(shipped) = shipped::find(model).or_else(|| shipped::find_body(model)) {
         return Ok(shipped.text.as_bytes().to_vec());
     }
     let directory = file.parent().unwrap_or(Path::new(""));
-    fs::read(directory.join(model)).map_err(|error| {
+    let mut bytes = Vec::new();
+    let read = open(&directory.join(model))
+        .and_then(|file| file.take(MAX_LOG_BYTES + 1).read_to_end(&mut bytes));
+    if bytes.len() as u64 > MAX_LOG_BYTES {
+        return Err(format!("it has more than the {MAX_LOG_BYTES} bytes that are read"));
+    }
+    read.map(|_| bytes).map_err(|error| {
         let shipped = shipped::MODELS.iter().chain(shipped::BODIES).map(|model| model.name);
         match denavit::expr::text::nearest(model, shipped) {
             Some(nearest) => format!("{error} (`{nearest}` is a shipped model)"),

@@ -80,6 +80,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         None => {}
     }
     if let Some(step_s) = arguments.step {
+        if scenario.scheme == RunScheme::Event {
+            return Err(Failure::StepOfEventScheme);
+        }
         scenario.set_step_s(step_s);
     }
     let started = Instant::now();

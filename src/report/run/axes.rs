@@ -126,7 +126,7 @@ impl Axes {
 
     fn piece(&self, svg: &mut Svg, points: &[Vec2], style: &str) {
         if points.len() > 1 {
-            svg.line(&thinned(points), style);
+            svg.line(&simplified(&thinned(points)), style);
         }
     }
 
@@ -162,6 +162,30 @@ fn thinned(points: &[Vec2]) -> Vec<Vec2> {
     kept
 }
 
+/// Half the width of a hair [px].
+const HAIR: f64 = 0.1;
+
+/// The points without those that lie on the line between others (Ramer 1972, Douglas, Peucker
+/// 1973).
+fn simplified(points: &[Vec2]) -> Vec<Vec2> {
+    let mut keeps = vec![false; points.len()];
+    let mut pending = vec![(0, points.len().saturating_sub(1))];
+    while let Some((start, end)) = pending.pop() {
+        (keeps[start], keeps[end]) = (true, true);
+        let ([ax, ay], [bx, by]) = (points[start], points[end]);
+        let (along, size) = ([bx - ax, by - ay], (bx - ax).hypot(by - ay).max(1e-9));
+        let off = |k: &usize| {
+            let arm = [points[*k][0] - ax, points[*k][1] - ay];
+            (arm[0] * along[1] - arm[1] * along[0]).abs() / size
+        };
+        let farthest = (start + 1..end).max_by(|a, b| off(a).total_cmp(&off(b)));
+        if let Some(farthest) = farthest.filter(|k| off(k) > HAIR) {
+            pending.extend([(start, farthest), (farthest, end)]);
+        }
+    }
+    points.iter().zip(keeps).filter(|(_, keep)| *keep).map(|(point, _)| *point).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +199,13 @@ mod tests {
         assert_eq!(marks, ["\u{2212}0.5", "0.0", "0.5", "1.0"]);
         let resting = Scale::around([2.0, 2.0 + 1e-12].into_iter(), 4.0);
         assert!(resting.low < 1.5 && resting.high > 2.5);
+    }
+
+    #[test]
+    fn straight_lines_are_their_corners() {
+        let points: Vec<Vec2> = (0..100).map(|k| [k as f64, (k as f64 - 40.0).abs()]).collect();
+        assert_eq!(simplified(&points), [[0.0, 40.0], [40.0, 0.0], [99.0, 59.0]]);
+        assert_eq!(simplified(&points[..2]).len(), 2);
     }
 
     #[test]

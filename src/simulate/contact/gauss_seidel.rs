@@ -51,6 +51,31 @@ pub fn solve(problem: &ContactProblem<'_>, limits: SweepLimits, force: &mut [f64
     SweepReport { sweeps: limits.sweeps, change, converged: false }
 }
 
+/// The same with steps of half the length: sweeps that circle, between friction and normal forces
+/// of redundant contacts that slip, come to rest. Cones are convex, so that what is between two
+/// forces within them is within them too. `memory` is overwritten.
+pub fn solve_damped(
+    problem: &ContactProblem<'_>,
+    limits: SweepLimits,
+    force: &mut [f64],
+    memory: &mut Vec<f64>,
+) -> SweepReport {
+    let one = SweepLimits { sweeps: 1, ..limits };
+    let mut last = SweepReport { sweeps: 0, change: f64::INFINITY, converged: false };
+    for sweep in 1..=limits.sweeps {
+        memory.clear();
+        memory.extend_from_slice(force);
+        last = SweepReport { sweeps: sweep, ..solve(problem, one, force) };
+        if last.converged {
+            break;
+        }
+        for (entry, old) in force.iter_mut().zip(memory.iter()) {
+            *entry = 0.5 * (*entry + old);
+        }
+    }
+    last
+}
+
 /// Gives one contact its force; returns the largest change times the row's diagonal.
 fn update(problem: &ContactProblem<'_>, contact: usize, force: &mut [f64]) -> f64 {
     let (size, tangents) = (problem.space.rows(), problem.space.tangents());

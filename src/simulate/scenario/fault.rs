@@ -112,35 +112,59 @@ impl fmt::Display for Cause {
 impl Cause {
     /// What to do about it.
     pub fn hint(&self) -> Option<String> {
-        match self {
-            Self::UnknownKey(_, Some(nearest), _) => Some(format!("`{nearest}` is meant, perhaps")),
-            Self::UnknownKey(_, None, known) => Some(format!("keys are {}", known.join(", "))),
-            Self::UnknownWord(_, known) => Some(format!("words are {}", known.join(", "))),
-            Self::TooManyRows(_) => Some("write a row less often: `log_period_s`".to_owned()),
-            Self::Log(_) => {
-                Some("a log is a table with a column `t` (docs/scenario.md)".to_owned())
+        Some(match self {
+            Self::UnknownKey(_, Some(near), _) => format!("`{near}` is meant, perhaps"),
+            Self::UnknownJoint(_, Some(near)) | Self::UnknownColumn(_, Some(near)) => {
+                format!("`{near}` is meant, perhaps")
             }
-            Self::UnknownColumn(_, Some(near)) => Some(format!("`{near}` is meant, perhaps")),
-            Self::EmptyCell(..) => Some("fill the gap, or cut the log before it".to_owned()),
-            Self::Gait(GaitError::Posture { .. }) => {
-                Some("a shorter or lower step, or a more bent knee, may be within reach".to_owned())
-            }
-            Self::Gait(GaitError::Missing(_)) => Some("this gait is TUlip's".to_owned()),
-            Self::Gait(_) => Some("`phases_s` are four times that increase".to_owned()),
-            Self::Start(StartError::Penetration(..)) => {
-                Some("raise the robot, or give `on_ground` in `initial`".to_owned())
-            }
-            Self::Singular(_) => {
-                Some("give the link a mass and inertia, or start in another position".to_owned())
-            }
+            Self::UnknownKey(_, None, known) => format!("keys are {}", known.join(", ")),
+            Self::UnknownWord(_, known) => format!("words are {}", known.join(", ")),
+            Self::MissingKey(key) => format!("add `\"{key}\": ..`"),
+            Self::WrongFormat(_) => format!("a scenario has `\"format\": \"{}\"`", super::FORMAT),
+            Self::WrongLength(expected, _) => format!("give {expected} numbers: [..]"),
+            other => return other.fixed_hint().map(str::to_owned),
+        })
+    }
+
+    fn fixed_hint(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::WrongKind(_) => "docs/scenario.md says what stands here",
+            Self::DuplicateKey(_) => "keep one of them",
+            Self::UnknownJoint(..) => "`denavit inspect MODEL` lists the joints",
+            Self::UnknownColumn(..) => "columns are named in the first line of the log",
+            Self::Undrivable(_) => "control the joints between links",
+            Self::NotPositive => "give a number above 0",
+            Self::Negative => "give 0 or more",
+            Self::AboveOne => "give 0 to 1",
+            Self::TooManyRows(_) => "write a row less often: `log_period_s`",
+            Self::Log(_) => "a log is a table with a column `t` that increases (docs/scenario.md)",
+            Self::EmptyCell(..) => "fill the gap, or cut the log before it",
+            Self::Gait(error) => match error {
+                GaitError::Posture { .. } => {
+                    "a shorter or lower step, or a more bent knee, may be within reach"
+                }
+                GaitError::Missing(_) => "this gait is TUlip's",
+                GaitError::Times | GaitError::Spline(_) => {
+                    "`phases_s` are four times that increase"
+                }
+            },
+            Self::Start(_) => "raise the robot, or give `on_ground` in `initial`",
+            Self::Singular(_) => "give the link a mass and inertia, or start in another position",
             Self::TorqueNotFinite(_) => {
-                Some("gains times errors, or a reference, exceed what a number holds".to_owned())
+                "gains times errors, or a reference, exceed what a number holds"
             }
-            Self::UnknownJoint(_, Some(nearest)) => Some(format!("`{nearest}` is meant, perhaps")),
-            Self::Undrivable(_) => Some("control the joints between links".to_owned()),
-            Self::NoPlacing => Some("give the position itself, without `on_ground`".to_owned()),
-            _ => None,
-        }
+            Self::File(..) => "paths are taken from the scenario's directory",
+            Self::Reference(error) => match error {
+                TrajectoryError::TooFew { .. } => "add values",
+                TrajectoryError::LengthMismatch { .. } => "give a value for every time",
+                TrajectoryError::NotIncreasing(_) => "list times in order, each once",
+                TrajectoryError::NotFinite => "a number is too large",
+                TrajectoryError::NotPositive => "give a number above 0",
+            },
+            Self::NoPlacing => "give the position itself, without `on_ground`",
+            // what the readers of these say has its hint
+            _ => return None,
+        })
     }
 }
 
@@ -162,8 +186,10 @@ pub struct Fault {
 pub struct ScenarioError {
     /// The name of the file, as it was given.
     pub file: String,
-    /// The faults, at least one.
+    /// The faults, at least one, at most [`MAX_FAULTS`](denavit_codegen::model::MAX_FAULTS).
     pub faults: Vec<Fault>,
+    /// How many more there are.
+    pub omitted: usize,
 }
 
 impl fmt::Display for ScenarioError {
@@ -179,7 +205,11 @@ impl fmt::Display for ScenarioError {
                 write!(f, "\n  hint: {hint}")?;
             }
         }
-        Ok(())
+        match self.omitted {
+            0 => Ok(()),
+            1 => write!(f, "\nand 1 more fault"),
+            more => write!(f, "\nand {more} more faults"),
+        }
     }
 }
 

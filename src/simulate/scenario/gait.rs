@@ -30,12 +30,12 @@ pub(super) fn gait(
     let kinds = fields.get("gait")?.fields(&["weight_shift_step"], report)?;
     let node = kinds.require("weight_shift_step", report)?;
     let given = node.fields(KEYS, report)?;
-    let before = report.faults.len();
+    let before = report.count();
     let step = step(&given, report);
     let stiffness = given.not_negative("kp", 3000.0, report);
     let damping = given.not_negative("kd", 60.0, report);
     let actuates_rolls = given.flag("actuates_rolls", report);
-    if report.faults.len() > before {
+    if report.count() > before {
         return None;
     }
     let planned = plan(plant, &step);

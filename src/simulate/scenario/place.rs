@@ -1,5 +1,7 @@
 //! Where values stand in a JSON text that is known to be well formed.
 
+use std::collections::BTreeSet;
+
 /// The byte offset of every value by its pointer, in the order of the text, and the pointers of
 /// keys that their object already has.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +83,7 @@ impl Walk<'_> {
 
     fn members(&mut self, pointer: &mut String, end: u8) {
         self.at += 1;
-        let mut seen: Vec<String> = Vec::new();
+        let (mut seen, mut count) = (BTreeSet::new(), 0);
         loop {
             self.skip_space();
             match self.peek() {
@@ -97,13 +99,13 @@ impl Walk<'_> {
                 _ => {}
             }
             let length = pointer.len();
-            let key = if end == b'}' { self.text() } else { seen.len().to_string() };
+            let key = if end == b'}' { self.text() } else { count.to_string() };
+            count += 1;
             pointer.push('/');
             pointer.push_str(&escaped(&key));
-            if seen.contains(&key) {
-                self.places.duplicates.push((pointer.clone(), key.clone()));
+            if end == b'}' && !seen.insert(key.clone()) {
+                self.places.duplicates.push((pointer.clone(), key));
             }
-            seen.push(key);
             if end == b'}' {
                 self.skip_space();
                 self.at += 1;

@@ -49,19 +49,20 @@ const KEYS: &[&str] = &[
 
 /// Reads a scenario file from its bytes. `file` is its name, for messages alone.
 pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, ScenarioError> {
-    let error = |faults| ScenarioError { file: file.to_owned(), faults };
+    let error = |faults, omitted| ScenarioError { file: file.to_owned(), faults, omitted };
     let text = String::from_utf8_lossy(source);
     let root: Value = match serde_json::from_str(&text) {
         Ok(root) => root,
         Err(failure) => {
             let said = failure.to_string();
             let said = said.split(" at line ").next().unwrap_or_default().to_owned();
-            return Err(error(vec![Fault {
+            let fault = Fault {
                 pointer: String::new(),
                 line: failure.line(),
                 column: failure.column().max(1),
                 cause: Cause::Syntax(said),
-            }]));
+            };
+            return Err(error(vec![fault], 0));
         }
     };
     let mut report = Report::default();
@@ -83,7 +84,8 @@ pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, Sc
                 })
                 .collect();
             faults.sort_by_key(|(start, _)| *start);
-            Err(error(faults.into_iter().map(|(_, fault)| fault).collect()))
+            let faults = faults.into_iter().map(|(_, fault)| fault).collect();
+            Err(error(faults, report.omitted))
         }
     }
 }

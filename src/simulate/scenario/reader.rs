@@ -3,17 +3,29 @@
 use super::fault::Cause;
 use super::place::escaped;
 use denavit_codegen::expr::text::nearest;
+use denavit_codegen::model::MAX_FAULTS;
 use serde_json::{Map, Value};
 
 /// The faults found so far, by pointer.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     pub(super) faults: Vec<(String, Cause)>,
+    /// How many more were found than are kept.
+    pub(super) omitted: usize,
 }
 
 impl Report {
+    /// How many faults there are.
+    pub(super) fn count(&self) -> usize {
+        self.faults.len() + self.omitted
+    }
+
     pub(super) fn push(&mut self, pointer: &str, cause: Cause) {
-        self.faults.push((pointer.to_owned(), cause));
+        // garbage has millions
+        match self.faults.len() < MAX_FAULTS {
+            true => self.faults.push((pointer.to_owned(), cause)),
+            false => self.omitted += 1,
+        }
     }
 }
 
@@ -166,11 +178,11 @@ impl<'v> Fields<'v> {
         report: &mut Report,
     ) -> [f64; N] {
         let Some(node) = self.get(key) else { return absent };
-        let before = report.faults.len();
+        let before = report.count();
         let found = <[f64; N]>::try_from(node.numbers(report));
         found.unwrap_or_else(|found| {
             // a list with a wrong entry has been reported already
-            if report.faults.len() == before {
+            if report.count() == before {
                 report.push(&node.pointer, Cause::WrongLength(N, found.len()));
             }
             absent

@@ -48,7 +48,7 @@ pub(super) fn read(node: &Node<'_>, logs: &mut Logs<'_>, report: &mut Report) ->
     if let Some(constant) = node.value.as_f64() {
         return Some(Reference::Constant(constant));
     }
-    let before = report.faults.len();
+    let before = report.count();
     let fields = node.fields(KINDS, report)?;
     let mut kinds = fields.all().filter(|(key, _)| KINDS.contains(key));
     let Some((kind, inner)) = kinds.next() else {
@@ -59,7 +59,7 @@ pub(super) fn read(node: &Node<'_>, logs: &mut Logs<'_>, report: &mut Report) ->
         report.push(&other.pointer, Cause::WrongKind("one kind of reference, not two"));
     }
     let made = make(kind, &inner, logs, report)?;
-    if report.faults.len() > before {
+    if report.count() > before {
         return None;
     }
     made.map_err(|error| report.push(&inner.pointer, Cause::Reference(error))).ok()

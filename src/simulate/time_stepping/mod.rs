@@ -99,7 +99,8 @@ pub enum Scheme {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepSolver {
     /// The guess that all contacts stick; where that does not hold, sweeps over friction cones from
-    /// the impulses of the step before; pivots with 16 facets where the sweeps do not converge.
+    /// the impulses of the step before; damped sweeps where these circle, and pivots with 16 facets
+    /// where those do too.
     Sweeps(SweepLimits),
     /// Lemke's method with a pyramid of this many facets in space; exact in a plane.
     Pivots {

@@ -272,9 +272,14 @@ impl TimeStepper {
         if report.converged {
             return Ok((report.sweeps, false));
         }
-        let mut spent = report.sweeps;
-        // redundant contacts that slip sweep slowly; where friction locks them, rounding decides
-        // whether pivots end, and a little give, which moves them by as little, lets them
+        let damped =
+            gauss_seidel::solve_damped(&problem, limits, &mut self.force, &mut self.softened);
+        let mut spent = report.sweeps + damped.sweeps;
+        if damped.converged {
+            return Ok((spent, false));
+        }
+        // where friction locks redundant contacts, rounding decides whether pivots end, and a little
+        // give, which moves them by as little, lets them
         for give in GIVE {
             self.softened.clear();
             self.softened.extend_from_slice(problem.delassus);

@@ -69,10 +69,7 @@ fn impossible_references_are_refused() {
         (r#"{"fourier": {"frequency_rad_s": -1, "sines": [], "cosines": []}}"#, "be positive"),
     ] {
         let text = reference(text);
-        let directory = Directory::new("bad-reference");
-        let run = simulate(&directory, &text, &[]);
-        assert_eq!(run.code, Some(2), "{text}");
-        assert!(run.stderr.contains("bad.json:2:") && run.stderr.contains(said), "{}", run.stderr);
+        refused(&text, &["bad.json:2:", "/control/joints/link1/reference/", said]);
     }
 }
 
@@ -173,4 +170,30 @@ fn the_schemes_write_the_same_log() {
         value["audit"].as_object().expect("audits").keys().cloned().collect::<Vec<_>>()
     };
     assert_eq!(keys(&event), keys(&steps));
+}
+
+#[test]
+fn a_step_is_not_passed_over() {
+    let directory = Directory::new("step");
+    let run = run_in(&directory.path, &["simulate", "bouncing_ball", "--step", "0.01"]);
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("--step: ") && run.stderr.contains("hint: "), "{}", run.stderr);
+    let arguments = ["simulate", "cradle", "--scheme", "time-stepping", "--step", "0.01", "--json"];
+    let run = run_in(&directory.path, &arguments);
+    let found: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+    // the log has rows every 0.01 s: as many steps
+    assert_eq!(found["steps"], 100, "{found}");
+}
+
+#[test]
+fn a_log_that_is_followed_is_not_replaced() {
+    let directory = Directory::new("log-kept");
+    let log = "t,q\n0,0\n1,1\n";
+    fs::write(directory.path.join("run.csv"), log).expect("a file");
+    let text = arm(r#" "control": {"joints": {"link1": {"reference": {"log": {"file": "run.csv",
+   "column": "q"}}}}}"#);
+    let run = simulate(&directory, &text, &["-o", "run.csv"]);
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("would be replaced"), "{}", run.stderr);
+    assert_eq!(fs::read_to_string(directory.path.join("run.csv")).expect("a file"), log);
 }

@@ -4,6 +4,7 @@ mod closed_forms;
 mod control;
 mod drift;
 mod scenarios;
+mod schema;
 mod smooth;
 mod trajectory;
 mod walkers;

@@ -132,3 +132,16 @@ fn broken_json_and_unknown_models_are_placed() {
         "{said}"
     );
 }
+
+/// Garbage is answered at once, and not at length.
+#[test]
+fn a_million_faults_are_counted_not_listed() {
+    let words = vec!["\"a\""; 300_000].join(",");
+    let text = format!(
+        "{{\"format\": \"denavit-scenario/1\", \"model\": \"planar_2r\", \"duration_s\": 1,
+ \"control\": {{\"joints\": {{\"link1\": {{\"reference\": {{\"polynomial\": [{words}]}}}}}}}}}}"
+    );
+    let error = faults(&text);
+    assert_eq!((error.faults.len(), error.omitted), (100, 300_000 - 100));
+    assert!(error.to_string().ends_with("and 299900 more faults"));
+}

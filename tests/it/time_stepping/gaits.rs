@@ -77,7 +77,7 @@ fn both_gaits_walk_by_steps() {
     for (name, least, distance_m) in
         [("planar_biped_zmp_gait", 30, 2.9), ("planar_biped_limit_cycle_gait", 39, 12.0)]
     {
-        for step_s in [1e-3, 5e-4] {
+        for step_s in [2e-3, 1e-3] {
             let mut scenario = open(name, RunScheme::TimeStepping);
             scenario.set_step_s(step_s);
             let start = scenario.initial.q[1];

@@ -2,7 +2,7 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{load_beside, read_file, write_whole};
+use super::files::{load_beside, on_stdout, read_file, write_whole};
 use super::json::write_json;
 use clap::{Args, ValueEnum};
 use denavit::report::{RunPicture, run_picture};
@@ -73,6 +73,8 @@ fn step(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
+    let is_answered = on_stdout(&outputs, arguments.json)?;
     let mut scenario = open(&arguments.scenario)?;
     match arguments.scheme {
         Some(SchemeName::Event) => scenario.scheme = RunScheme::Event,
@@ -96,8 +98,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         let drawn = draw(&mut scenario, &run, arguments.window);
         write_whole(path, drawn.as_bytes())?;
     }
-    let is_out = |path: &Option<PathBuf>| path.as_ref().is_some_and(|p| p.as_os_str() == "-");
-    match (is_out(&arguments.output) || is_out(&arguments.svg), arguments.json) {
+    match (is_answered, arguments.json) {
         (true, _) => {}
         (_, true) => write_json(out, &summary(&scenario, &run, &broken))?,
         (_, false) => print(out, &scenario, &run, &broken, took)?,

@@ -10,7 +10,6 @@
 use super::breakdown::Breakdown;
 use super::integrate::{Method, Rates, Stepper};
 use crate::plants::{Plant, PlantError};
-
 use denavit_codegen::dynamics::methods::newton_euler::dae;
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};

@@ -117,6 +117,11 @@ impl StepRecorder {
         };
     }
 
+    /// Whether steps were made since the last row.
+    pub(super) fn has_steps(&self) -> bool {
+        self.interval.steps > 0
+    }
+
     /// Takes a step into account.
     pub(super) fn note_step(
         &mut self,

@@ -196,7 +196,8 @@ impl Runner<'_> {
     }
 
     fn finish(mut self, stop: Stop) -> Run {
-        if stop != Stop::End {
+        // a run that stops between two rows ends with one more
+        if self.recorder.has_steps() {
             self.write_row();
         }
         let n = self.control.joints.len();

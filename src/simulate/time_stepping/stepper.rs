@@ -278,8 +278,8 @@ impl TimeStepper {
         if damped.converged {
             return Ok((spent, false));
         }
-        // where friction locks redundant contacts, rounding decides whether pivots end, and a little
-        // give, which moves them by as little, lets them
+        // where friction locks redundant contacts, rounding decides whether pivots end, and a
+        // little give, which moves them by as little, lets them
         for give in GIVE {
             self.softened.clear();
             self.softened.extend_from_slice(problem.delassus);

@@ -25,8 +25,7 @@ const POSITION: usize = 12;
 /// Velocities of a link.
 const VELOCITY: usize = 6;
 
-/// Free links with the constraints of their joints, by interpreting
-/// [`dae`](denavit_codegen::dynamics::methods::newton_euler::dae). No drive acts.
+/// Free links with the constraints of their joints, by interpreting [`dae()`]. No drive acts.
 pub struct ConstrainedBodies {
     equations: Evaluator<f64>,
     links: usize,

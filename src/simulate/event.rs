@@ -8,7 +8,7 @@
 use super::breakdown::Breakdown;
 use super::contact::{ContactProblem, Mode};
 use super::integrate::Stepper;
-use super::motion::Motion;
+use super::motion::{Motion, slip_left};
 use crate::plants::point_positions;
 
 /// What is watched during smooth motion.
@@ -45,6 +45,8 @@ pub(super) struct Fired {
 
 /// Samples inside a step, its end included.
 const SAMPLES: usize = 8;
+/// The shortest look ahead \[s\].
+const AHEAD_S: f64 = 1e-6;
 /// Crossings are located to this \[s\].
 const RESOLUTION_S: f64 = 1e-13;
 
@@ -54,6 +56,9 @@ pub(super) struct Watch {
     /// Height at which each open contact counts as on the ground: below 0 by the error it had when
     /// it opened, until it has risen.
     pub(super) level: Vec<f64>,
+    /// How much less than no force to spare is no event \[N\]: none, unless the laws of contact saw
+    /// nothing to change where the forces were short by a part of that.
+    pub(super) slack: f64,
     transforms: Vec<f64>,
     points: Vec<f64>,
     y: Vec<f64>,
@@ -63,6 +68,7 @@ impl Watch {
     pub(super) fn new(contacts: usize, links: usize, fall_points: usize, len: usize) -> Self {
         Self {
             level: vec![0.0; contacts],
+            slack: 0.0,
             transforms: vec![0.0; 12 * links],
             points: vec![0.0; 3 * fall_points],
             y: vec![0.0; len],
@@ -255,7 +261,7 @@ impl Watch {
             }
             Watched::Guard(guard) => motion.plant.guard(guard, parts.q, parts.qd),
             Watched::SlipSpeed(index) => slip_speed(motion, index, y),
-            Watched::Margin => margin(motion, t_s, y)?,
+            Watched::Margin => margin(motion, t_s, y)? + self.slack,
         })
     }
 }
@@ -265,11 +271,18 @@ fn slip_speed(motion: &mut Motion<'_>, index: usize, y: &[f64]) -> f64 {
     motion.project(y, &[closed.contact]);
     let Mode::Slip(direction) = closed.mode else { return 0.0 };
     let tangents = motion.ground.rows() - 1;
-    motion.work.velocity[..tangents].iter().zip(direction).map(|(v, d)| v * d).sum()
+    slip_left(&motion.work.velocity[..tangents], direction)
 }
 
 /// Least force to spare, and what counts as none: adhesion of that size is rounding \[N\].
 fn margin(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<f64, Breakdown> {
+    let (spare, largest) = spare_force(motion, t_s, y)?;
+    let tolerance = motion.holding.tolerance;
+    Ok(spare.min(1e9) + 4.0 * (tolerance.force + tolerance.relative * largest))
+}
+
+/// Least force to spare, and the largest of all \[N\].
+fn spare_force(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<(f64, f64), Breakdown> {
     motion.constrained_motion(t_s, y)?;
     let work = &motion.work;
     let problem = ContactProblem {
@@ -281,6 +294,28 @@ fn margin(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<f64, Breakdown
     };
     let largest = work.force.iter().fold(0.0_f64, |sum, force| sum.max(force.abs()));
     let spare = motion.solver.margin(&problem, &work.modes).map_err(Breakdown::Contact)?;
-    let tolerance = motion.holding.tolerance;
-    Ok(spare.min(1e9) + 4.0 * (tolerance.force + tolerance.relative * largest))
+    Ok((spare, largest))
+}
+
+/// A time just after the forces have reached a limit, with the state that the modes before would
+/// lead to: as near as the limit is broken there by much more than rounding. Returns that time, and
+/// the force to spare there.
+pub(super) fn look_ahead(
+    motion: &mut Motion<'_>,
+    stepper: &mut Stepper,
+    t_s: f64,
+    y: &mut [f64],
+) -> Result<(f64, f64), Breakdown> {
+    // the step was good up to its end; not much is known beyond
+    let last = stepper.time().max(t_s + 64.0 * AHEAD_S);
+    let mut ahead = AHEAD_S;
+    loop {
+        let t = (t_s + ahead).min(last);
+        stepper.restep(motion, t, y)?;
+        let (spare, largest) = spare_force(motion, t, y)?;
+        if t >= last || spare < -1e-4 * largest {
+            return Ok((t, spare));
+        }
+        ahead *= 4.0;
+    }
 }

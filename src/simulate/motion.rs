@@ -20,8 +20,17 @@ pub(super) struct Closed {
     pub(super) contact: usize,
     /// Sticks or slips; never open.
     pub(super) mode: Mode,
+    /// Its law of friction: that of the contact, or what stands in for it.
+    pub(super) law: Friction,
     /// Where it stands along the tangents, if it sticks \[m\].
     pub(super) anchor: [f64; 2],
+}
+
+impl Closed {
+    /// The same contact in the same mode, whatever its direction.
+    pub(super) fn does_as(&self, other: &Self) -> bool {
+        self.contact == other.contact && (self.mode == Mode::Stick) == (other.mode == Mode::Stick)
+    }
 }
 
 /// How contacts are held together.
@@ -30,6 +39,32 @@ pub(super) struct Holding {
     /// Errors of position and velocity of a closed contact decay at this rate (Baumgarte) [1/s].
     pub(super) drift_rate: f64,
     pub(super) tolerance: Tolerance,
+}
+
+/// The direction of slower slipping in space remembers that in which it began [m/s].
+pub(super) const DIRECTED_SPEED: f64 = 1e-4;
+
+/// How far slipping is from its end [m/s]: the speed along its direction, and in space half the
+/// speed that it remembers more. A point about which its foot turns has no direction of its own: it
+/// creeps at less than that until its forces balance, where it would begin and end to slip without
+/// end.
+pub(super) fn slip_left(velocity: &[f64], direction: [f64; 2]) -> f64 {
+    let along: f64 = velocity.iter().zip(direction).map(|(v, d)| v * d).sum();
+    along + if velocity.len() == 2 { 0.5 * DIRECTED_SPEED } else { 0.0 }
+}
+
+/// The direction of slipping at a velocity, after `last`: that of v + v_s d.
+///
+/// In a plane it is d, and changes by events alone. In space v / |v| has no value where slipping
+/// begins and ends, and turns infinitely fast beside that; this one is d where slipping begins,
+/// passes a stop along d without a change, and forgets d by v_s / |v|.
+pub(super) fn slip_direction(velocity: &[f64], last: [f64; 2]) -> [f64; 2] {
+    if velocity.len() < 2 || last == [0.0; 2] {
+        return last;
+    }
+    let [x, y] = [0, 1].map(|axis| velocity[axis] + DIRECTED_SPEED * last[axis]);
+    let size = x.hypot(y);
+    if size > 0.0 { [x / size, y / size] } else { last }
 }
 
 /// The smooth motion of a plant under control, with the contacts as they are.
@@ -193,17 +228,44 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Accelerations with contact forces: `work.acceleration`, `work.force`.
-    pub(super) fn constrained_motion(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
+    /// Poses the problem of the closed contacts: `work.free`, `work.contacts`, `work.modes`.
+    pub(super) fn pose(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
         self.free_motion(t_s, y)?;
-        self.work.force.clear();
-        if self.closed.is_empty() {
-            return Ok(());
-        }
         let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
         self.project(y, &listed);
         self.free_response(y, &listed);
         self.hold();
+        Ok(())
+    }
+
+    /// Accelerations with contact forces: `work.acceleration`, `work.force`.
+    pub(super) fn constrained_motion(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
+        self.respond(t_s, y, |solver, problem, modes, force| {
+            solver.forces(problem, modes, force).map(|_| ())
+        })
+    }
+
+    /// As `constrained_motion`, with any of the forces that move the plant alike.
+    fn moved(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
+        self.respond(t_s, y, ContactSolver::moving_forces)
+    }
+
+    fn respond(
+        &mut self,
+        t_s: f64,
+        y: &[f64],
+        solve: impl FnOnce(
+            &mut ContactSolver,
+            &ContactProblem<'_>,
+            &[Mode],
+            &mut [f64],
+        ) -> Result<(), ContactFailure>,
+    ) -> Result<(), Breakdown> {
+        self.work.force.clear();
+        if self.closed.is_empty() {
+            return self.free_motion(t_s, y);
+        }
+        self.pose(t_s, y)?;
         let Work { free, force, contacts, modes, acceleration, scratch, .. } = &mut self.work;
         force.resize(free.len(), 0.0);
         let problem = ContactProblem {
@@ -213,7 +275,7 @@ impl<'a> Motion<'a> {
             free,
             tolerance: self.holding.tolerance,
         };
-        self.solver.forces(&problem, modes, force).map_err(|failure| match failure {
+        solve(&mut self.solver, &problem, modes, force).map_err(|failure| match failure {
             ContactFailure::NotFinite => Breakdown::NotFinite,
             failure => Breakdown::Contact(failure),
         })?;
@@ -234,7 +296,7 @@ impl<'a> Motion<'a> {
             let block = index * rows..(index + 1) * rows;
             let (speed, free) = (&velocity[block.clone()], &mut free[block]);
             free[tangents] += rate * (2.0 * speed[tangents] + rate * self.ground.gap(position));
-            let mut contact = Contact::resting(self.friction[closed.contact]);
+            let mut contact = Contact::resting(closed.law);
             let mut mode = closed.mode;
             match &mut mode {
                 Mode::Stick => {
@@ -246,17 +308,34 @@ impl<'a> Motion<'a> {
                     }
                 }
                 Mode::Slip(direction) => {
-                    let size = speed[..tangents].iter().map(|v| v * v).sum::<f64>().sqrt();
-                    // in a plane the direction changes by an event alone
-                    if tangents == 2 && size > 1e-9 && *direction != [0.0; 2] {
-                        *direction = [speed[0] / size, speed[1] / size];
-                    }
+                    *direction = slip_direction(&speed[..tangents], *direction);
                     contact.slipping = Some(*direction);
                 }
                 Mode::Open => {}
             }
             contacts.push(contact);
             modes.push(mode);
+        }
+    }
+
+    /// Lets the directions of what slips in space follow its motion, at a state of the smooth
+    /// motion.
+    pub(super) fn follow_slips(&mut self, y: &[f64]) {
+        let rows = self.ground.rows();
+        if rows < 3 || self.closed.iter().all(|closed| closed.mode == Mode::Stick) {
+            return;
+        }
+        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        self.project(y, &listed);
+        for (index, closed) in self.closed.iter_mut().enumerate() {
+            let speed = &self.work.velocity[index * rows..index * rows + 2];
+            let size = speed[0].hypot(speed[1]);
+            match &mut closed.mode {
+                Mode::Slip(direction) if *direction != [0.0; 2] && size > 50.0 * DIRECTED_SPEED => {
+                    *direction = [speed[0] / size, speed[1] / size];
+                }
+                _ => {}
+            }
         }
     }
 
@@ -282,7 +361,7 @@ impl<'a> Motion<'a> {
 
 impl Rates for Motion<'_> {
     fn rates(&mut self, t_s: f64, y: &[f64], dy: &mut [f64]) -> Result<(), Breakdown> {
-        self.constrained_motion(t_s, y)?;
+        self.moved(t_s, y)?;
         let (n, m) = (self.layout.joints, self.layout.motors);
         let parts = self.layout.parts(y);
         dy[..n].copy_from_slice(parts.qd);

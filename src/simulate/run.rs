@@ -5,7 +5,7 @@ use super::breakdown::{Breakdown, Stop};
 use super::contact::{Friction, Tolerance};
 use super::control::Control;
 use super::drive::{DriveModelling, Drives};
-use super::event::{Fired, Watch, Watched};
+use super::event::{Fired, Watch, Watched, look_ahead};
 use super::integrate::{Method, Statistics, Stepper};
 use super::log::Log;
 use super::measure::{Instrument, Measurement};
@@ -211,7 +211,7 @@ impl Runner<'_> {
         if touching.is_empty() {
             return Ok(());
         }
-        self.happen(EventKind::Start, self.start_s, &touching, false).map_err(StartError::Breakdown)
+        self.happen(EventKind::Start, self.start_s, &touching).map_err(StartError::Breakdown)
     }
 
     fn go(&mut self) -> Result<Stop, Breakdown> {
@@ -250,6 +250,7 @@ impl Runner<'_> {
             }
             self.write_rows(self.stepper.time(), false)?;
             self.y.copy_from_slice(self.stepper.state());
+            self.motion.follow_slips(&self.y);
             if self.stepper.time() - self.audited_s > AUDIT_S {
                 self.audited_s = self.stepper.time();
                 self.recorder.note(&mut self.motion, self.audited_s, &self.y, false)?;
@@ -267,12 +268,12 @@ impl Runner<'_> {
             }
             Watched::Gap(contact) => {
                 let touching = self.touching(contact);
-                self.happen(EventKind::Touch(contact), t_s, &touching, false)?;
+                self.happen(EventKind::Touch(contact), t_s, &touching)?;
             }
-            Watched::Margin => self.happen(EventKind::Limit, t_s, &[], true)?,
+            Watched::Margin => self.happen(EventKind::Limit, t_s, &[])?,
             Watched::SlipSpeed(index) => {
                 let contact = self.motion.closed[index].contact;
-                self.happen(EventKind::SlipEnds(contact), t_s, &[], false)?;
+                self.happen(EventKind::SlipEnds(contact), t_s, &[])?;
             }
             Watched::Guard(guard) => self.jump(guard, t_s),
         }
@@ -313,13 +314,7 @@ impl Runner<'_> {
         touching
     }
 
-    fn happen(
-        &mut self,
-        kind: EventKind,
-        t_s: f64,
-        touching: &[usize],
-        released: bool,
-    ) -> Result<(), Breakdown> {
+    fn happen(&mut self, kind: EventKind, t_s: f64, touching: &[usize]) -> Result<(), Breakdown> {
         if let (EventKind::Touch(contact), []) = (&kind, touching) {
             // passes through, by rule: it counts again once it has risen
             self.watch.level[*contact] = f64::NEG_INFINITY;
@@ -329,14 +324,20 @@ impl Runner<'_> {
         let before = self.y[n..2 * n].to_vec();
         let energy = self.motion.energy(&self.y);
         let was: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
-        let settled = self.settler.settle(
-            &mut self.motion,
-            &self.simulation.touching,
-            touching,
-            released,
-            t_s,
-            &mut self.y,
-        )?;
+        let (motion, law) = (&mut self.motion, &self.simulation.touching);
+        let settled = if kind == EventKind::Limit {
+            let mut ahead = self.y.clone();
+            let (ahead_s, spare) = look_ahead(motion, &mut self.stepper, t_s, &mut ahead)?;
+            let before = motion.closed.clone();
+            let settled = self.settler.switch(motion, law, (ahead_s, &ahead), &mut self.y)?;
+            let same = before.len() == motion.closed.len()
+                && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
+            self.watch.slack = if same { 2.0 * (self.watch.slack - spare.min(0.0)) } else { 0.0 };
+            settled
+        } else {
+            self.watch.slack = 0.0;
+            self.settler.settle(motion, law, touching, t_s, &mut self.y)?
+        };
         let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
         self.motion.place(&self.y);
         for &contact in was.iter().chain(touching) {

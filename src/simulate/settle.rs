@@ -6,7 +6,7 @@ use super::contact::solver::Search;
 use super::contact::{
     Contact, ContactFailure, ContactProblem, ContactSolution, Friction, Mode, Tolerance,
 };
-use super::motion::{Closed, Motion};
+use super::motion::{Closed, Motion, slip_direction, slip_left};
 
 /// Laws of impacts and of touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,9 @@ const IMPACT_SPEED: f64 = 1e-9;
 /// Tangential speeds above this are slipping [m/s].
 const SLIP_SPEED: f64 = 1e-8;
 
+/// How often a decision is taken again for points that others of their foot hold.
+const HELD_ROUNDS: usize = 3;
+
 /// What an event did to the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Settled {
@@ -55,17 +58,18 @@ pub(super) struct Settled {
 pub(super) struct Settler {
     impact: ImpactSolver,
     solution: ContactSolution,
+    /// The contacts of the last decision, with the laws that it took.
+    contacts: Vec<Contact>,
 }
 
 impl Settler {
-    /// Impact, if any, and the modes after it, of the closed contacts and those in `touching`.
-    /// `released` is a contact that has to open. Changes the rates in `y`.
+    /// Impact, if any, and the modes after it, of the closed contacts and those in `new`. Changes
+    /// the rates in `y`.
     pub(super) fn settle(
         &mut self,
         motion: &mut Motion<'_>,
         touching: &Touching,
         new: &[usize],
-        released: bool,
         t_s: f64,
         y: &mut [f64],
     ) -> Result<Settled, Breakdown> {
@@ -75,7 +79,6 @@ impl Settler {
         candidates.dedup();
         let mut settled = Settled::default();
         if candidates.is_empty() {
-            motion.closed.clear();
             return Ok(settled);
         }
         motion.free_motion(t_s, y)?;
@@ -86,8 +89,37 @@ impl Settler {
         if hits {
             self.collide(motion, touching, &candidates, y, &mut settled)?;
         }
-        let stilled = self.hold(motion, touching, candidates, released, t_s, y)?;
-        settled.impulses.extend(stilled);
+        self.rest(motion, touching, candidates, t_s, y, &mut settled)?;
+        Ok(settled)
+    }
+
+    /// The modes after the forces of the closed contacts have reached a limit.
+    ///
+    /// At that instant the modes before and those after it obey all laws alike, and what tells them
+    /// apart is rounding. `ahead` is a time just after it, with the state that the modes before
+    /// would lead to: there they break a law, and what the laws ask for instead is what happens.
+    pub(super) fn switch(
+        &mut self,
+        motion: &mut Motion<'_>,
+        touching: &Touching,
+        ahead: (f64, &[f64]),
+        y: &mut [f64],
+    ) -> Result<Settled, Breakdown> {
+        let mut settled = Settled::default();
+        let candidates: Vec<usize> = motion.closed.iter().map(|c| c.contact).collect();
+        let before = motion.closed.clone();
+        motion.pose(ahead.0, ahead.1)?;
+        self.contacts.clone_from(&motion.work.contacts);
+        for _ in 0..HELD_ROUNDS {
+            self.decide(motion, touching, &mut settled)?;
+            motion.project(y, &candidates);
+            settled.impulses.extend(self.adopt(motion, &candidates, y));
+            if !self.release_held(motion, &candidates, y) {
+                break;
+            }
+            motion.closed.clone_from(&before);
+            motion.pose(ahead.0, ahead.1)?;
+        }
         Ok(settled)
     }
 
@@ -128,22 +160,22 @@ impl Settler {
             restitution,
             delassus: motion.delassus.matrix(),
             before: &motion.work.velocity,
-            tolerance: Tolerance { force: 1e-12, response: 1e-12, relative: 1e-11 },
+            tolerance: Tolerance { force: 1e-11, response: 1e-11, relative: 1e-10 },
         };
         self.impact.solve(&impact, Search::First, &mut self.solution).map(|_| ())
     }
 
-    /// Decides, on accelerations, which contacts carry force; returns the impulses that take out
-    /// the rest of the rates that these contacts forbid.
-    fn hold(
+    /// Decides, on accelerations, which of the contacts that do not part carry force, and takes out
+    /// the rest of the rates that these forbid.
+    fn rest(
         &mut self,
         motion: &mut Motion<'_>,
         touching: &Touching,
         mut candidates: Vec<usize>,
-        released: bool,
         t_s: f64,
         y: &mut [f64],
-    ) -> Result<Vec<(usize, Vec<f64>)>, Breakdown> {
+        settled: &mut Settled,
+    ) -> Result<(), Breakdown> {
         let rows = motion.ground.rows();
         motion.project(y, &candidates);
         let parting: Vec<bool> = (0..candidates.len())
@@ -154,104 +186,156 @@ impl Settler {
             index += 1;
             !parting[index - 1]
         });
-        let before = std::mem::take(&mut motion.closed);
         if candidates.is_empty() {
-            return Ok(Vec::new());
+            motion.closed.clear();
+            return Ok(());
         }
         motion.free_motion(t_s, y)?;
         motion.project(y, &candidates);
-        motion.free_response(y, &candidates);
-        let mut contacts = describe(motion, &candidates);
-        self.decide(motion, &contacts)?;
-        let unchanged = before.len()
-            == self.solution.modes.iter().filter(|m| m.is_closed()).count()
-            && before.iter().all(|closed| {
-                let index = candidates.iter().position(|contact| *contact == closed.contact);
-                index.is_some_and(|index| same(self.solution.modes[index], closed.mode))
-            });
-        if released && unchanged {
-            // the limit is reached, and rounding hides it: the least loaded contact opens
-            let load = |index: &usize| self.solution.force[index * rows + rows - 1];
-            let least = (0..candidates.len()).min_by(|a, b| load(a).total_cmp(&load(b)));
-            if let Some(least) = least {
-                contacts[least].released = true;
-                self.decide(motion, &contacts)?;
+        self.describe(motion, touching, &candidates, settled.fell_back);
+        for _ in 0..HELD_ROUNDS {
+            motion.free_response(y, &candidates);
+            self.decide(motion, touching, settled)?;
+            let stilled = self.adopt(motion, &candidates, y);
+            settled.impulses.extend(stilled);
+            if !self.release_held(motion, &candidates, y) {
+                break;
             }
+            motion.free_motion(t_s, y)?;
+            motion.project(y, &candidates);
         }
-        Ok(self.adopt(motion, &candidates, &before, y))
+        Ok(())
     }
 
-    fn decide(&mut self, motion: &mut Motion<'_>, contacts: &[Contact]) -> Result<(), Breakdown> {
-        let problem = ContactProblem {
-            space: motion.ground.space,
-            contacts,
-            delassus: motion.delassus.matrix(),
-            free: &motion.work.free,
-            tolerance: motion.holding.tolerance,
-        };
-        let decided = motion.solver.decide(&problem, Search::First, &mut self.solution);
-        let slipping = contacts.iter().any(|contact| contact.slipping.is_some());
-        decided.map_err(|failure| match failure {
+    /// What slid, until other points of its foot were decided to stick, is at rest with them: lets
+    /// it be decided as such. Says if there was any.
+    fn release_held(&mut self, motion: &mut Motion<'_>, candidates: &[usize], y: &[f64]) -> bool {
+        let rows = motion.ground.rows();
+        if rows < 3 || !self.solution.modes.contains(&Mode::Stick) {
+            return false;
+        }
+        motion.project(y, candidates);
+        let mut any = false;
+        for (index, contact) in self.contacts.iter_mut().enumerate() {
+            let sliding = &motion.work.velocity[index * rows..index * rows + 2];
+            let held = sliding[0].hypot(sliding[1]) <= SLIP_SPEED;
+            if held && self.solution.modes[index].is_closed() && contact.slipping.is_some() {
+                contact.slipping = None;
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// The contacts of a problem on accelerations: those that slide have their direction.
+    fn describe(
+        &mut self,
+        motion: &Motion<'_>,
+        touching: &Touching,
+        candidates: &[usize],
+        fell_back: bool,
+    ) {
+        let (rows, work) = (motion.ground.rows(), &motion.work);
+        self.contacts.clear();
+        for (index, contact) in candidates.iter().enumerate() {
+            let before = motion.closed.iter().find(|closed| closed.contact == *contact);
+            let sliding = &work.velocity[index * rows..index * rows + rows - 1];
+            let speed = sliding.iter().map(|v| v * v).sum::<f64>().sqrt();
+            // what slid until now and is about to turn round has come to rest
+            let slides = match before.map(|before| before.mode) {
+                Some(Mode::Slip(direction)) if speed < touching.rest_speed => {
+                    speed > SLIP_SPEED && slip_left(sliding, direction) > SLIP_SPEED
+                }
+                _ => speed > SLIP_SPEED,
+            };
+            let mut law = motion.friction[*contact];
+            if let (true, Friction::NoSlip) = (slides, law) {
+                // the law under which it began to slide holds until it rests
+                let taken = before.map(|before| before.law).filter(|law| *law != Friction::NoSlip);
+                let fallback = touching.fallback_friction.filter(|_| fell_back);
+                law = taken.or(fallback.map(Friction::Coulomb)).unwrap_or(law);
+            }
+            let mut described = Contact::resting(law);
+            if slides && matches!(law, Friction::Coulomb(mu) if mu > 0.0) {
+                let direction = [sliding[0] / speed, sliding.get(1).map_or(0.0, |v| v / speed)];
+                described.slipping = Some(match before.map(|before| before.mode) {
+                    Some(Mode::Slip(last)) if rows == 3 => slip_direction(sliding, last),
+                    _ => direction,
+                });
+            }
+            self.contacts.push(described);
+        }
+    }
+
+    /// Decides the modes of `contacts`; where no slip has no answer, by the fallback law.
+    fn decide(
+        &mut self,
+        motion: &mut Motion<'_>,
+        touching: &Touching,
+        settled: &mut Settled,
+    ) -> Result<(), Breakdown> {
+        let mut outcome = self.attempt(motion);
+        let fallback = touching.fallback_friction.map(Friction::Coulomb);
+        let holds_fast = |contact: &Contact| contact.friction == Friction::NoSlip;
+        if let (Err(ContactFailure::NoSolution), Some(law)) = (outcome, fallback)
+            && self.contacts.iter().any(holds_fast)
+        {
+            for contact in self.contacts.iter_mut().filter(|contact| holds_fast(contact)) {
+                contact.friction = law;
+            }
+            settled.fell_back = true;
+            outcome = self.attempt(motion);
+        }
+        let slipping = self.contacts.iter().any(|contact| contact.slipping.is_some());
+        outcome.map_err(|failure| match failure {
             ContactFailure::NoSolution if slipping => Breakdown::Painleve,
             ContactFailure::NotFinite => Breakdown::NotFinite,
             failure => Breakdown::Contact(failure),
         })
     }
 
-    /// Takes the decided modes over, with the anchors of those that go on sticking, and takes out
-    /// what is left of the rates that they forbid.
+    fn attempt(&mut self, motion: &mut Motion<'_>) -> Result<(), ContactFailure> {
+        let problem = ContactProblem {
+            space: motion.ground.space,
+            contacts: &self.contacts,
+            delassus: motion.delassus.matrix(),
+            free: &motion.work.free,
+            tolerance: motion.holding.tolerance,
+        };
+        motion.solver.decide(&problem, Search::First, &mut self.solution)
+    }
+
+    /// Takes the decided modes over, and takes out what is left of the rates that they forbid.
+    ///
+    /// Contacts that stick do so where they are now: places from different events would contradict
+    /// each other by what they have drifted, for points of one rigid foot.
     fn adopt(
         &mut self,
         motion: &mut Motion<'_>,
         candidates: &[usize],
-        before: &[Closed],
         y: &mut [f64],
     ) -> Vec<(usize, Vec<f64>)> {
         let rows = motion.ground.rows();
         let mut held = Vec::new();
+        motion.closed.clear();
         for (index, (&contact, &mode)) in candidates.iter().zip(&self.solution.modes).enumerate() {
             if !mode.is_closed() {
                 continue;
             }
             held.push(index * rows + rows - 1);
+            // slipping that begins in space does so from rest
+            let rests = rows == 3 && self.contacts[index].slipping.is_none();
+            if mode == Mode::Stick || (rests && mode != Mode::Slip([0.0; 2])) {
+                held.extend(index * rows..index * rows + rows - 1);
+            }
             let mut along = Vec::with_capacity(rows);
             motion.ground.append(&motion.work.positions[3 * contact..3 * contact + 3], &mut along);
-            let mut anchor = [along[0], if rows == 3 { along[1] } else { 0.0 }];
-            let old = before.iter().find(|closed| closed.contact == contact);
-            if mode == Mode::Stick {
-                held.extend(index * rows..index * rows + rows - 1);
-                if let Some(old) = old.filter(|old| old.mode == Mode::Stick) {
-                    anchor = old.anchor;
-                }
-            }
-            motion.closed.push(Closed { contact, mode, anchor });
+            let anchor = [along[0], if rows == 3 { along[1] } else { 0.0 }];
+            let law = self.contacts[index].friction;
+            motion.closed.push(Closed { contact, mode, law, anchor });
         }
         let impulses = motion.still(&held, y).unwrap_or_default();
         let blocks = impulses.chunks_exact(rows).map(<[f64]>::to_vec);
         candidates.iter().copied().zip(blocks).collect()
     }
-}
-
-fn same(a: Mode, b: Mode) -> bool {
-    match (a, b) {
-        (Mode::Slip(a), Mode::Slip(b)) => a[0] * b[0] + a[1] * b[1] > 0.0 || a == b,
-        (a, b) => a == b,
-    }
-}
-
-/// The contacts of a problem on accelerations: those that slide have their direction.
-fn describe(motion: &Motion<'_>, candidates: &[usize]) -> Vec<Contact> {
-    let (rows, work) = (motion.ground.rows(), &motion.work);
-    let one = |(index, contact): (usize, &usize)| {
-        let mut described = Contact::resting(motion.friction[*contact]);
-        let sliding = &work.velocity[index * rows..index * rows + rows - 1];
-        let speed = sliding.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let rubs = matches!(described.friction, Friction::Coulomb(mu) if mu > 0.0);
-        if rubs && speed > SLIP_SPEED {
-            described.slipping =
-                Some([sliding[0] / speed, sliding.get(1).map_or(0.0, |v| v / speed)]);
-        }
-        described
-    };
-    candidates.iter().enumerate().map(one).collect()
 }

@@ -16,7 +16,8 @@
 //! 2. [`modes`] solves for given modes (linear; redundant contacts get the least forces that the
 //!    laws allow) and says how far these are from violating a law: the function whose sign change
 //!    is the event "a contact opens" or "a contact begins to slip";
-//! 3. [`solver`] decides the modes: it enumerates them, and finds directions of slipping in space;
+//! 3. [`solver`] decides the modes: it enumerates them, and finds directions of slipping in space
+//!    by [`newton`];
 //! 4. [`impact`] is the problem of the velocities after an impact.
 //!
 //! [`lemke`] and [`minimum_norm`] are the linear algebra below; [`hold`], [`gauss_seidel`] and
@@ -27,9 +28,11 @@ pub mod delassus;
 pub mod gauss_seidel;
 pub mod hold;
 pub mod impact;
+mod interior;
 pub mod lemke;
 pub mod minimum_norm;
 pub mod modes;
+pub mod newton;
 pub mod pyramid;
 pub mod solver;
 
@@ -238,6 +241,16 @@ impl ContactProblem<'_> {
                 }
             }
         })
+    }
+}
+
+/// What a contact does that is closed and at rest, or slips as it does already.
+fn closed_mode(contact: &Contact) -> Mode {
+    match contact.slipping {
+        _ if contact.released => Mode::Open,
+        Some(direction) => Mode::Slip(direction),
+        None if contact.friction == Friction::Coulomb(0.0) => Mode::Slip([0.0; 2]),
+        None => Mode::Stick,
     }
 }
 

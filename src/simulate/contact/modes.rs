@@ -2,18 +2,27 @@
 //!
 //! Unknown are all components of a contact that sticks and the normal force of one that slips; the
 //! conditions are w = 0 in the rows of the first and w_n = 0 for the second. Redundant contacts
-//! leave forces undetermined: among those that obey the inequalities f_n >= 0 and |f_t| <= mu f_n
-//! the least ones are taken, min |f|^2, a complementarity problem in as many unknowns as there are
-//! inequalities. A flat foot is so judged by whether *some* distribution of forces exists, never by
-//! the signs of an arbitrary one. Friction cones in space enter as tangent planes, added where the
-//! last distribution leaves the cone.
+//! leave forces undetermined: of those that obey the inequalities f_n >= 0 and |f_t| <= mu f_n
+//! those are taken that equally compliant points have in the limit of no compliance. Where all
+//! stick these are the least, min |f|^2; where some slip, the distribution of normal forces then
+//! does not depend on the directions. It is a complementarity problem in as many unknowns as there
+//! are inequalities. A flat foot is so judged by whether *some* distribution of forces exists,
+//! never by the signs of an arbitrary one. Friction cones in space enter as tangent planes, added
+//! where the last distribution leaves the cone.
 
+mod moving;
+
+use super::cholesky::dot;
+use super::interior::{self, Limit};
 use super::lemke::{LcpOutcome, Lemke};
 use super::minimum_norm::MinimumNorm;
 use super::{ContactFailure, ContactProblem, Friction, Mode, length};
 
 /// Pivots below this, relative to the largest, are redundancies of contacts.
 const RANK: f64 = 1e-10;
+/// Smaller entries of a unit null vector are no direction: points of a foot that is flat up to a
+/// drift would pull at each other with 10^12 N to lift one of them.
+const DIRECTION: f64 = 1e-5;
 /// Rounds of tangent planes: each at least halves the angle by which a cone is left.
 const ROUNDS: usize = 40;
 
@@ -25,6 +34,12 @@ pub struct ModeSolver {
     right: Vec<f64>,
     values: Vec<f64>,
     system: MinimumNorm,
+    /// The transpose, and the products of its null vectors with those of the system: needed where
+    /// friction makes the matrix unsymmetric.
+    transpose: MinimumNorm,
+    products: MinimumNorm,
+    /// Row-major: where along the null vectors a unit force of each plane leads.
+    push: Vec<f64>,
     planes: Vec<Plane>,
     /// The planes' values at the forces of least norm.
     slack: Vec<f64>,
@@ -79,6 +94,16 @@ impl ModeSolver {
         let redundancy = self.system.nullity();
         if redundancy > 0 {
             self.with_planes(problem, modes, Self::least_admissible);
+            if let Some(limits) = self.cones(problem, modes)
+                && least_slack(&limits, &self.values) < 0.0
+            {
+                // planes that did not get there: forces far inside the cones are as good
+                self.values.copy_from_slice(&self.least);
+                let (_, along) = self.cone_margin(&limits, false);
+                for (direction, along) in along.into_iter().enumerate() {
+                    self.move_along(direction, along);
+                }
+            }
         }
         self.expand(force);
         Ok(redundancy)
@@ -96,12 +121,46 @@ impl ModeSolver {
         modes: &[Mode],
     ) -> Result<f64, ContactFailure> {
         self.solve(problem, modes)?;
+        if let Some(limits) = self.cones(problem, modes) {
+            return Ok(self.cone_margin(&limits, true).0);
+        }
         let mut margin = f64::INFINITY;
         self.with_planes(problem, modes, |solver| {
             margin = solver.largest_slack();
             margin.is_finite().then_some(margin)
         });
         Ok(margin)
+    }
+
+    /// What each closed contact must keep, if a cone in space is among it.
+    fn cones(&self, problem: &ContactProblem<'_>, modes: &[Mode]) -> Option<Vec<Limit>> {
+        let (mut at, mut any, mut limits) = (0, false, Vec::new());
+        for (mode, contact) in modes.iter().zip(problem.contacts) {
+            let tangents = match mode {
+                Mode::Open => continue,
+                Mode::Stick => problem.space.tangents(),
+                Mode::Slip(_) => 0,
+            };
+            at += tangents;
+            let mu = contact.coefficient().filter(|_| tangents == 2);
+            any |= mu.is_some();
+            limits.push(Limit { at, mu });
+            at += 1;
+        }
+        any.then_some(limits)
+    }
+
+    /// The largest margin and where along the null vectors it is, of the values of least norm.
+    /// `roughly`: that it is positive may be all.
+    fn cone_margin(&self, limits: &[Limit], roughly: bool) -> (f64, Vec<f64>) {
+        let free = self.system.nullity();
+        let slack = least_slack(limits, &self.values);
+        if free == 0 || (roughly && slack > 0.0) {
+            return (slack, vec![0.0; free]);
+        }
+        let largest = self.values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+        let enough = if roughly { 1e-4 * largest } else { f64::INFINITY };
+        interior::largest_margin(&self.values, &self.system, limits, enough)
     }
 
     /// The forces of least norm, whatever their signs.
@@ -111,7 +170,64 @@ impl ModeSolver {
         modes: &[Mode],
     ) -> Result<(), ContactFailure> {
         self.list_unknowns(problem, modes);
-        let (rows, size) = (problem.rows(), self.unknowns.len());
+        self.write_system(problem);
+        let size = self.unknowns.len();
+        self.system.factor(&self.matrix, size, RANK);
+        self.values.clear();
+        self.values.resize(size, 0.0);
+        let missed = self.system.solve(&self.right, &mut self.values);
+        if self.is_unsymmetric() {
+            self.share_by_compliance();
+        }
+        // Constraints that are met only up to a drift contradict each other a little.
+        let allowed = 1e3 * problem.response_zero();
+        if missed > allowed { Err(ContactFailure::Inconsistent) } else { Ok(()) }
+    }
+
+    /// Redundant, and with friction that follows normal forces.
+    fn is_unsymmetric(&self) -> bool {
+        self.system.nullity() > 0 && self.unknowns.iter().any(|unknown| unknown.tangents > 0)
+    }
+
+    /// Moves the values along the null vectors N to where L^T x = 0, L the null vectors of the
+    /// transpose: L^T (A x + b + eps x) = eps L^T x.
+    fn share_by_compliance(&mut self) {
+        let (size, free) = (self.unknowns.len(), self.system.nullity());
+        self.lcp.clear();
+        for row in 0..size {
+            self.lcp.extend((0..size).map(|column| self.matrix[column * size + row]));
+        }
+        self.transpose.factor(&self.lcp, size, RANK);
+        if self.transpose.nullity() != free {
+            // at the edge of the rank: the least forces are as good
+            self.transpose.clone_from(&self.system);
+        }
+        self.lcp.clear();
+        for i in 0..free {
+            let left = self.transpose.null_vector(i);
+            self.lcp.extend((0..free).map(|j| dot(left, self.system.null_vector(j))));
+        }
+        self.products.factor(&self.lcp, free, RANK);
+        let values = std::mem::take(&mut self.values);
+        let along = self.along(&values);
+        self.values = values;
+        for (direction, along) in along.into_iter().enumerate() {
+            self.move_along(direction, -along);
+        }
+    }
+
+    /// (L^T N)^-1 L^T x.
+    fn along(&mut self, x: &[f64]) -> Vec<f64> {
+        let free = self.system.nullity();
+        let right: Vec<f64> = (0..free).map(|i| dot(self.transpose.null_vector(i), x)).collect();
+        let mut along = vec![0.0; free];
+        self.products.solve(&right, &mut along);
+        along
+    }
+
+    /// The conditions w = 0 of the unknowns' rows.
+    fn write_system(&mut self, problem: &ContactProblem<'_>) {
+        let rows = problem.rows();
         self.matrix.clear();
         self.right.clear();
         for condition in &self.unknowns {
@@ -119,13 +235,6 @@ impl ModeSolver {
             self.matrix.extend(self.unknowns.iter().map(|unknown| unknown.column(line)));
             self.right.push(-problem.free[condition.row]);
         }
-        self.system.factor(&self.matrix, size, RANK);
-        self.values.clear();
-        self.values.resize(size, 0.0);
-        let missed = self.system.solve(&self.right, &mut self.values);
-        // Constraints that are met only up to a drift contradict each other a little.
-        let allowed = 1e3 * problem.response_zero();
-        if missed > allowed { Err(ContactFailure::Inconsistent) } else { Ok(()) }
     }
 
     fn list_unknowns(&mut self, problem: &ContactProblem<'_>, modes: &[Mode]) {
@@ -234,19 +343,31 @@ impl ModeSolver {
             self.slack.push(plane.value(&self.least));
             for direction in 0..self.system.nullity() {
                 let slope = plane.value(self.system.null_vector(direction));
-                // Rounding of a unit vector is no direction.
-                self.slope.push(if slope.abs() > 1e-12 { slope } else { 0.0 });
+                self.slope.push(if slope.abs() > DIRECTION { slope } else { 0.0 });
             }
+        }
+        self.push.clear();
+        if !self.is_unsymmetric() {
+            self.push.extend_from_slice(&self.slope);
+            return;
+        }
+        let mut row = vec![0.0; self.unknowns.len()];
+        for index in 0..self.planes.len() {
+            row.fill(0.0);
+            self.planes[index].write(&mut row);
+            let along = self.along(&row);
+            self.push.extend(along);
         }
     }
 
-    /// min |x|^2 subject to the planes: x = x0 + N z, z = A^T y, 0 <= y _|_ A A^T y + c >= 0.
+    /// min |x|^2 subject to the planes: x = x0 + N z, z = P^T y, 0 <= y _|_ A P^T y + c >= 0, with
+    /// P = A where all stick.
     fn least_admissible(&mut self) -> Option<f64> {
         let (count, free) = (self.slack.len(), self.system.nullity());
         self.lcp.clear();
         for i in 0..count {
             for j in 0..count {
-                let (a, b) = (&self.slope[i * free..(i + 1) * free], &self.slope[j * free..]);
+                let (a, b) = (&self.slope[i * free..(i + 1) * free], &self.push[j * free..]);
                 self.lcp.push(a.iter().zip(b).map(|(a, b)| a * b).sum());
             }
         }
@@ -255,7 +376,7 @@ impl ModeSolver {
         self.values.copy_from_slice(&self.least);
         for direction in 0..if solved { free } else { 0 } {
             let multipliers = self.lemke.solution();
-            let along = (0..count).map(|i| multipliers[i] * self.slope[i * free + direction]).sum();
+            let along = (0..count).map(|i| multipliers[i] * self.push[i * free + direction]).sum();
             self.move_along(direction, along);
         }
         solved.then_some(0.0)
@@ -313,6 +434,16 @@ impl ModeSolver {
     }
 }
 
+/// The least of f_n and of mu f_n - |f_t|.
+fn least_slack(limits: &[Limit], x: &[f64]) -> f64 {
+    let slack = |limit: &Limit| {
+        let normal = x[limit.at];
+        let cone = limit.mu.map(|mu| mu * normal - length(&x[limit.at - 2..limit.at]));
+        cone.map_or(normal, |cone| cone.min(normal))
+    };
+    limits.iter().map(slack).fold(f64::INFINITY, f64::min)
+}
+
 impl Unknown {
     /// What the unknown does to the row of G given as `line`.
     fn column(&self, line: &[f64]) -> f64 {
@@ -323,6 +454,14 @@ impl Unknown {
 }
 
 impl Plane {
+    /// The plane's coefficients of all unknowns.
+    fn write(&self, row: &mut [f64]) {
+        row[self.at] = self.normal;
+        for axis in 0..self.tangents {
+            row[self.at - self.tangents + axis] = self.friction[axis];
+        }
+    }
+
     fn value(&self, x: &[f64]) -> f64 {
         let first = self.at - self.tangents;
         (0..self.tangents)

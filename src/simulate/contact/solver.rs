@@ -2,22 +2,31 @@
 //!
 //! All combinations of modes are tried, those with the fewest open contacts first: exactly, so that
 //! "no solution" (Painleve's inconsistency, or a no-slip law that nothing satisfies) and "several
-//! solutions" are answers and not failures of an iteration. In space a contact that may begin to
-//! slip has a direction to be found: a pyramid of friction gives a first guess, the linear solution
-//! for given directions the next, until the directions stand still.
+//! solutions" are answers and not failures of an iteration.
+//!
+//! In space a contact that may begin to slip has a direction to be found. There Newton's method on
+//! the cones ([`newton`]) gives forces, of which modes are read: those that all hold are tried
+//! first, then the method starts from their forces, from those of a pyramid, and from sweeps over
+//! the contacts. What still breaks a law in these modes is changed until nothing does: pushed out
+//! of its cone, a contact slips against its force; pulled, it opens; sunk, it closes; and the
+//! direction of what slips follows its motion.
 
 use super::gauss_seidel::{self, SweepLimits};
 use super::lemke::LcpOutcome;
 use super::modes::ModeSolver;
 use super::pyramid::Pyramid;
 use super::{
-    Contact, ContactFailure, ContactProblem, ContactSolution, Friction, Mode, Space, length,
+    Contact, ContactFailure, ContactProblem, ContactSolution, Friction, Mode, Space, closed_mode,
+    length, newton,
 };
 
 /// How many combinations of modes are tried at most.
 const COMBINATIONS: usize = 1 << 16;
 /// Facets of the pyramid that gives the first directions of slipping.
 const FACETS: usize = 16;
+
+/// How often modes are changed at most, from one guess.
+const ROUNDS: usize = 120;
 
 /// How far the modes are searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +64,16 @@ impl ContactSolver {
         self.modes.forces(problem, modes, force)
     }
 
+    /// Forces of given modes, for the motion alone; see [`ModeSolver::moving_forces`].
+    pub fn moving_forces(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        modes: &[Mode],
+        force: &mut [f64],
+    ) -> Result<(), ContactFailure> {
+        self.modes.moving_forces(problem, modes, force)
+    }
+
     /// How far given modes are from violating a law; see [`ModeSolver::margin`].
     pub fn margin(
         &mut self,
@@ -72,21 +91,26 @@ impl ContactSolver {
         solution: &mut ContactSolution,
     ) -> Result<(), ContactFailure> {
         problem.checked()?;
-        let combinations = self.list_options(problem);
-        let enumerable = combinations.is_some_and(|count| count <= COMBINATIONS);
-        let found = enumerable && self.enumerate(problem, search, solution)?;
-        if found {
-            return Ok(());
-        }
         let begins_to_slip = |contact: &Contact| {
             !contact.has_slip_law() && !contact.released && contact.friction != Friction::NoSlip
         };
         let coulomb = problem.contacts.iter().all(|contact| contact.friction != Friction::NoSlip);
+        let combinations = self.list_options(problem);
+        let enumerable = combinations.is_some_and(|count| count <= COMBINATIONS);
         let open_question = problem.space == Space::Spatial || !enumerable;
-        if open_question && coulomb && problem.contacts.iter().any(begins_to_slip) {
-            return self.find_directions(problem, solution);
+        let iterates = open_question && coulomb && problem.contacts.iter().any(begins_to_slip);
+        if iterates && search == Search::First && self.iterate(problem) {
+            solution.clone_from(&self.trial);
+            return Ok(());
         }
-        if enumerable {
+        if enumerable && self.enumerate(problem, search, solution)? {
+            return Ok(());
+        }
+        if iterates && search == Search::All && self.iterate(problem) {
+            solution.clone_from(&self.trial);
+            return Ok(());
+        }
+        if enumerable || iterates {
             Err(ContactFailure::NoSolution)
         } else {
             Err(ContactFailure::TooManyModes { contacts: problem.contacts.len() })
@@ -132,7 +156,7 @@ impl ContactSolver {
             loop {
                 let is_open = |(options, chosen): (&Vec<Mode>, &usize)| chosen + 1 == options.len();
                 let opened = self.options.iter().zip(&self.choice).filter(|pair| is_open(*pair));
-                if opened.count() == open && self.try_choice(problem) {
+                if opened.count() == open && self.try_choice(problem) == Some(true) {
                     if !found {
                         found = true;
                         solution.clone_from(&self.trial);
@@ -163,28 +187,24 @@ impl ContactSolver {
         false
     }
 
-    fn try_choice(&mut self, problem: &ContactProblem<'_>) -> bool {
+    fn try_choice(&mut self, problem: &ContactProblem<'_>) -> Option<bool> {
         let chosen = self.options.iter().zip(&self.choice).map(|(options, &index)| options[index]);
         self.trial.modes.clear();
         self.trial.modes.extend(chosen);
         self.try_modes(problem)
     }
 
-    /// Solves for the modes of the trial; says if the result obeys the laws.
-    fn try_modes(&mut self, problem: &ContactProblem<'_>) -> bool {
+    /// Solves for the modes of the trial; says if the result obeys the laws. None: no forces
+    /// whatever keep these modes.
+    fn try_modes(&mut self, problem: &ContactProblem<'_>) -> Option<bool> {
         let trial = &mut self.trial;
         for vector in [&mut trial.force, &mut trial.response] {
             vector.clear();
             vector.resize(problem.rows(), 0.0);
         }
-        match self.modes.forces(problem, &trial.modes, &mut trial.force) {
-            Ok(redundancy) => {
-                trial.redundancy = redundancy;
-                problem.respond(&trial.force, &mut trial.response);
-                problem.is_admissible(&trial.modes, &trial.force, &trial.response)
-            }
-            Err(_) => false,
-        }
+        trial.redundancy = self.modes.forces(problem, &trial.modes, &mut trial.force).ok()?;
+        problem.respond(&trial.force, &mut trial.response);
+        Some(problem.is_admissible(&trial.modes, &trial.force, &trial.response))
     }
 
     fn moves_otherwise(&self, problem: &ContactProblem<'_>, solution: &ContactSolution) -> bool {
@@ -192,90 +212,123 @@ impl ContactSolver {
         solution.response.iter().zip(&self.trial.response).any(different)
     }
 
-    /// Slipping in space: directions by iteration, from a pyramid, or from sweeps over the cones.
-    fn find_directions(
-        &mut self,
-        problem: &ContactProblem<'_>,
-        solution: &mut ContactSolution,
-    ) -> Result<(), ContactFailure> {
-        self.trial.force.clear();
-        self.trial.force.resize(problem.rows(), 0.0);
-        let report = self.pyramid.solve(problem, FACETS, &mut self.trial.force);
-        let guessed = report.outcome == LcpOutcome::Solved && self.follow_directions(problem);
-        if !guessed {
-            let slipping = problem.contacts.iter().any(|contact| contact.slipping.is_some());
-            if slipping {
-                return Err(ContactFailure::NoSolution);
-            }
-            self.trial.force.clear();
-            self.trial.force.resize(problem.rows(), 0.0);
-            let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
-            let report = gauss_seidel::solve(problem, limits, &mut self.trial.force);
-            self.read_modes(problem);
-            let trial = &self.trial;
-            if !report.converged
-                || !problem.is_admissible(&trial.modes, &trial.force, &trial.response)
-            {
-                return Err(ContactFailure::NoSolution);
-            }
-        }
-        solution.clone_from(&self.trial);
-        Ok(())
-    }
-
-    /// Reads modes off the forces of the trial and their responses.
-    fn read_modes(&mut self, problem: &ContactProblem<'_>) {
-        self.trial.response.resize(problem.rows(), 0.0);
-        problem.respond(&self.trial.force, &mut self.trial.response);
+    /// Solves for forces and reads their modes, from one start after the other, and changes the
+    /// modes until they obey all laws; the trial has what was found.
+    fn iterate(&mut self, problem: &ContactProblem<'_>) -> bool {
         self.trial.modes.clear();
-        let largest = self.trial.force.iter().fold(0.0_f64, |sum, f| sum.max(f.abs()));
-        for (index, contact) in problem.contacts.iter().enumerate() {
-            let tangential = &self.trial.response[problem.block(index)][..problem.space.tangents()];
-            let speed = length(tangential);
-            let normal = self.trial.force[problem.normal(index)];
-            self.trial.modes.push(if normal <= problem.force_zero(largest) {
-                Mode::Open
-            } else if contact.has_slip_law() {
-                Mode::Slip(contact.slipping.unwrap_or([0.0; 2]))
-            } else if speed <= 1e-6 * (problem.response_scale() + problem.tolerance.response) {
-                Mode::Stick
-            } else {
-                Mode::Slip(unit(tangential, speed))
-            });
+        self.trial.modes.extend(problem.contacts.iter().map(closed_mode));
+        if self.try_modes(problem) == Some(true) {
+            return true;
         }
+        if self.refine(problem) {
+            return true;
+        }
+        self.trial.force.fill(0.0);
+        let report = self.pyramid.solve(problem, FACETS, &mut self.trial.force);
+        if report.outcome == LcpOutcome::Solved && self.refine(problem) {
+            return true;
+        }
+        if problem.contacts.iter().any(|contact| contact.slipping.is_some()) {
+            return false;
+        }
+        self.trial.force.fill(0.0);
+        let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
+        gauss_seidel::solve(problem, limits, &mut self.trial.force);
+        self.refine(problem)
     }
 
-    /// Lets the directions follow the responses until they stand still; says if they do.
-    fn follow_directions(&mut self, problem: &ContactProblem<'_>) -> bool {
-        self.read_modes(problem);
-        for _ in 0..100 {
-            let admissible = self.try_modes(problem);
-            let mut turned = 0.0_f64;
-            for (index, contact) in problem.contacts.iter().enumerate() {
-                let tangential =
-                    &self.trial.response[problem.block(index)][..problem.space.tangents()];
-                let speed = length(tangential);
-                if let Mode::Slip(direction) = &mut self.trial.modes[index]
-                    && !contact.has_slip_law()
-                    && speed > 0.0
-                {
-                    let new = unit(tangential, speed);
-                    turned = turned.max((new[0] - direction[0]).hypot(new[1] - direction[1]));
-                    // Friction overshoots: what slips to one side is braked to the other. The mean
-                    // of both directions damps that.
-                    let mean = [0, 1].map(|axis| 0.5 * (new[axis] + direction[axis]));
-                    let size = length(&mean);
-                    *direction = if size > 0.5 { unit(&mean, size) } else { new };
+    /// From the forces of the trial to lawful modes.
+    fn refine(&mut self, problem: &ContactProblem<'_>) -> bool {
+        let solved = newton::solve(problem, &mut self.trial.force);
+        self.trial.redundancy = 0;
+        problem.respond(&self.trial.force, &mut self.trial.response);
+        newton::modes(problem, &self.trial.force, &self.trial.response, &mut self.trial.modes);
+        solved || self.change_until_lawful(problem)
+    }
+
+    /// Solves for the modes of the trial and changes those that break a law, all at once, until
+    /// none does and directions of slipping come no nearer; says if that was reached.
+    fn change_until_lawful(&mut self, problem: &ContactProblem<'_>) -> bool {
+        let mut best: Option<(f64, ContactSolution)> = None;
+        for round in 0..ROUNDS {
+            let Some(admissible) = self.try_modes(problem) else { return false };
+            let lawful = admissible.then(|| self.trial.clone());
+            let turns = admissible || round >= ROUNDS / 2;
+            let (changed, turned) = self.change(problem, turns);
+            match (lawful, best.take()) {
+                // steep friction may turn directions away from each other again
+                (_, Some((before, kept))) if changed || !admissible || turned >= before => {
+                    self.trial = kept;
+                    return true;
                 }
-            }
-            if turned <= 1e-14 {
-                return admissible;
-            }
-            if admissible && turned <= 1e-12 {
-                return true;
+                (Some(kept), _) if !changed && turned <= 1e-13 => {
+                    self.trial = kept;
+                    return true;
+                }
+                (Some(kept), _) if !changed => best = Some((turned, kept)),
+                _ if !changed && turned == 0.0 => return false,
+                _ => {}
             }
         }
         false
+    }
+
+    /// Changes the modes that break a law, and turns directions of slipping; says if a mode was
+    /// changed, and how far a direction was turned.
+    ///
+    /// `turns` if slipping only turns: what slips against its direction else holds. First contacts
+    /// open and close; only among those that stay, friction is looked at: what pulls
+    /// shifts the friction of all others.
+    fn change(&mut self, problem: &ContactProblem<'_>, turns: bool) -> (bool, f64) {
+        let tangents = problem.space.tangents();
+        let largest = self.trial.force.iter().fold(0.0_f64, |sum, f| sum.max(f.abs()));
+        let (no_force, no_response) = (problem.force_zero(largest), problem.response_zero());
+        let mut changed = false;
+        for (index, contact) in problem.contacts.iter().enumerate() {
+            let (normal, mode) = (problem.normal(index), &mut self.trial.modes[index]);
+            let new = match *mode {
+                Mode::Open if !contact.released && self.trial.response[normal] < -no_response => {
+                    closed_mode(contact)
+                }
+                Mode::Stick | Mode::Slip(_) if self.trial.force[normal] < -no_force => Mode::Open,
+                _ => continue,
+            };
+            (*mode, changed) = (new, true);
+        }
+        if changed {
+            return (true, 0.0);
+        }
+        let mut turned = 0.0_f64;
+        for (index, contact) in problem.contacts.iter().enumerate() {
+            let block = problem.block(index);
+            let (f, w) = (&self.trial.force[block.clone()], &self.trial.response[block]);
+            let (pushed, speed) = (length(&f[..tangents]), length(&w[..tangents]));
+            let mode = &mut self.trial.modes[index];
+            match (*mode, contact.friction) {
+                (Mode::Stick, Friction::Coulomb(mu)) if pushed > mu * f[tangents] + no_force => {
+                    let against = unit(&f[..tangents], pushed);
+                    (*mode, changed) = (Mode::Slip(against.map(|entry| -entry)), true);
+                }
+                (Mode::Slip(direction), _) if !contact.has_slip_law() => {
+                    let along: f64 = w[..tangents].iter().zip(direction).map(|(w, d)| w * d).sum();
+                    // Friction that stops the motion or turns it round was too much: it holds.
+                    if along < no_response && !turns {
+                        (*mode, changed) = (Mode::Stick, true);
+                    } else if speed > 0.0 {
+                        let towards = unit(&w[..tangents], speed);
+                        let [x, y] = [0, 1].map(|axis| towards[axis] - direction[axis]);
+                        turned = turned.max(x.hypot(y));
+                        // Friction overshoots: what slips to one side is braked to the other. The
+                        // mean of both directions damps that.
+                        let mean = [0, 1].map(|axis| 0.5 * (towards[axis] + direction[axis]));
+                        let size = length(&mean);
+                        *mode = Mode::Slip(if size > 0.5 { unit(&mean, size) } else { towards });
+                    }
+                }
+                _ => {}
+            }
+        }
+        (changed, turned)
     }
 }
 

@@ -45,6 +45,9 @@ impl Default for Accuracy {
     }
 }
 
+/// Where steps as short as this have no answer, there is none \[s\].
+const SHORTEST_FAILURE_S: f64 = 1e-10;
+
 /// The method of integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
@@ -183,9 +186,18 @@ impl Stepper {
             if trial <= 1e-14 * self.t0.abs().max(1e-2) {
                 return Ok(false);
             }
-            let (error, order) = match self.method {
-                Method::Sdirk(_) => (self.implicit_step(system, trial, accuracy)?, 4.0),
-                _ => (Some(self.dormand_prince(system, trial, accuracy)?), 5.0),
+            let (tried, order) = match self.method {
+                Method::Sdirk(_) => (self.implicit_step(system, trial, accuracy), 4.0),
+                _ => (self.dormand_prince(system, trial, accuracy).map(Some), 5.0),
+            };
+            let error = match tried {
+                Ok(error) => error,
+                // a step too long may lead to where the equations have no answer
+                Err(_) if trial > SHORTEST_FAILURE_S => {
+                    self.implicit.forget();
+                    None
+                }
+                Err(breakdown) => return Err(breakdown),
             };
             // an error that is not finite, or no convergence: a much shorter step
             let factor = match error {

@@ -1,3 +1,4 @@
 //! Gaits: their postures meet their conditions, and the robot walks them.
 
+mod event_driven_step;
 mod weight_shift_step;

@@ -6,13 +6,13 @@ use denavit::simulate::Stop;
 use denavit::simulate::scenario::{self, Scenario};
 use denavit::walk::weight_shift_step::{Gait, GaitError, WeightShiftStep, plan};
 
-fn robot(roll_stiffness: f64) -> Box<dyn Plant> {
+pub(super) fn robot(roll_stiffness: f64) -> Box<dyn Plant> {
     let set =
         |side: &str| Override { parameter: format!("ks_{side}_ankle_x"), value: roll_stiffness };
     tulip(&[set("right"), set("left")]).expect("parameters of the generated plant")
 }
 
-fn gait() -> Gait {
+pub(super) fn gait() -> Gait {
     plan(robot(300.0).as_mut(), &WeightShiftStep::default()).expect("the step is within reach")
 }
 

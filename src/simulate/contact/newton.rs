@@ -1,0 +1,238 @@
+//! Coulomb friction with the true cone, all contacts at once: semismooth Newton.
+//!
+//! Alart and Curnier's form of the laws, with w = G f + b and any r > 0,
+//!
+//! > f_n = max(0, f_n - r w_n),  f_t = projection of f_t - r w_t onto the disk of radius mu f_n,
+//!
+//! is an equation without inequalities, smooth but for the edges of its cases, and Newton's method
+//! converges in some ten steps where sweeps over single contacts take thousands. Redundant contacts
+//! are told apart by a little compliance: all points give way alike, by so little that nothing but
+//! the distribution of their forces depends on it.
+
+use super::{ContactProblem, Mode, closed_mode, length};
+use nalgebra::{DMatrix, DVector};
+
+/// Compliance of all points, relative to the mean of G's diagonal: more where less leaves the
+/// method between cases.
+const COMPLIANCE: [f64; 4] = [1e-9, 1e-7, 1e-5, 1e-3];
+/// Solutions, each with the compliance of the one before taken back.
+const CORRECTIONS: usize = 30;
+/// Steps at most.
+const STEPS: usize = 80;
+/// Halvings of a step that does not get nearer.
+const HALVINGS: usize = 12;
+/// By how much the laws are missed at most, relative to the largest force; and how little is enough
+/// to stop at once.
+const RESIDUAL: [f64; 2] = [1e-11, 1e-14];
+
+/// What one contact is, and the row scales r of its normal and of its tangents.
+#[derive(Clone, Copy, Debug)]
+struct Scales {
+    normal: f64,
+    tangent: f64,
+}
+
+/// Improves `force` (the start) until it obeys the laws; says if it does. No contact is `NoSlip`.
+pub fn solve(problem: &ContactProblem<'_>, force: &mut [f64]) -> bool {
+    COMPLIANCE.iter().any(|compliance| solve_compliant(problem, *compliance, force))
+}
+
+/// Points that give way alike; what that changes of the motion is taken back afterwards.
+fn solve_compliant(problem: &ContactProblem<'_>, relative: f64, force: &mut [f64]) -> bool {
+    let n = problem.rows();
+    let trace: f64 = (0..n).map(|i| problem.delassus[i * n + i]).sum();
+    let compliance = relative * trace / n.max(1) as f64;
+    let mut g = DMatrix::from_row_slice(n, n, problem.delassus);
+    for i in 0..n {
+        g[(i, i)] += compliance;
+    }
+    let scales: Vec<Scales> = (0..problem.contacts.len())
+        .map(|contact| {
+            let (block, normal) = (problem.block(contact), problem.normal(contact));
+            let stiffest = (block.start..normal).fold(0.0_f64, |most, row| most.max(g[(row, row)]));
+            Scales { normal: 1.0 / g[(normal, normal)], tangent: 1.0 / stiffest }
+        })
+        .collect();
+    let free = DVector::from_column_slice(problem.free);
+    let mut f = DVector::from_column_slice(force);
+    let mut given_way = DVector::zeros(n);
+    for _ in 0..CORRECTIONS {
+        if !iterate(problem, &scales, &g, &(&free - &given_way), &mut f) {
+            return false;
+        }
+        let before = std::mem::replace(&mut given_way, compliance * &f);
+        // the distribution of forces stays as the compliance made it
+        if (&given_way - before).amax() <= 1e-2 * problem.response_zero() {
+            force.copy_from_slice(f.as_slice());
+            return true;
+        }
+    }
+    false
+}
+
+/// Newton's method on w = g f + b.
+fn iterate(
+    problem: &ContactProblem<'_>,
+    scales: &[Scales],
+    g: &DMatrix<f64>,
+    b: &DVector<f64>,
+    f: &mut DVector<f64>,
+) -> bool {
+    let mut w = g * &*f + b;
+    let mut missed = laws(problem, scales, f, &w);
+    let mut last = f64::INFINITY;
+    for _ in 0..STEPS {
+        let size = missed.norm();
+        if !size.is_finite() {
+            return false;
+        }
+        let scale = f.amax() + 1e-9;
+        // one more step, once it is near: convergence is quadratic there
+        if size <= RESIDUAL[1] * scale || (size <= RESIDUAL[0] * scale && size >= 0.1 * last) {
+            return true;
+        }
+        last = size;
+        let slope = slopes(problem, scales, g, f, &w);
+        let Some(step) = slope.lu().solve(&missed) else { return false };
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            let trial = &*f - share * &step;
+            w = g * &trial + b;
+            missed = laws(problem, scales, &trial, &w);
+            if missed.norm() <= (1.0 - 0.1 * share) * size {
+                *f = trial;
+                break;
+            }
+            share *= 0.5;
+        }
+        // a short step leads across the edge of a case where no step gets nearer
+        if share < 1.0 / f64::from(1 << (HALVINGS - 1)) {
+            *f -= 0.5 * &step;
+            w = g * &*f + b;
+            missed = laws(problem, scales, f, &w);
+        }
+    }
+    false
+}
+
+/// The modes that forces which obey the laws belong to; closed is what does not leave the ground,
+/// with or without a force.
+pub fn modes(problem: &ContactProblem<'_>, force: &[f64], response: &[f64], modes: &mut Vec<Mode>) {
+    modes.clear();
+    let zero = 10.0 * problem.response_zero();
+    for (index, contact) in problem.contacts.iter().enumerate() {
+        let (block, tangents) = (problem.block(index), problem.space.tangents());
+        let (f, w) = (&force[block.clone()], &response[block]);
+        let speed = length(&w[..tangents]);
+        // saturated, but held by the other points of its foot
+        let grips = speed <= zero
+            || contact
+                .coefficient()
+                .is_none_or(|mu| length(&f[..tangents]) < mu * f[tangents] * (1.0 - 1e-9));
+        modes.push(if contact.released || (f[tangents] <= 0.0 && w[tangents] > zero) {
+            Mode::Open
+        } else if contact.has_slip_law() || grips {
+            closed_mode(contact)
+        } else {
+            Mode::Slip(std::array::from_fn(|axis| match tangents > axis {
+                true => w[axis] / speed,
+                false => 0.0,
+            }))
+        });
+    }
+}
+
+/// By how much forces miss the laws \[N\].
+fn laws(
+    problem: &ContactProblem<'_>,
+    scales: &[Scales],
+    f: &DVector<f64>,
+    w: &DVector<f64>,
+) -> DVector<f64> {
+    let mut missed = f.clone();
+    let tangents = problem.space.tangents();
+    for (index, contact) in problem.contacts.iter().enumerate() {
+        let (first, n) = (problem.block(index).start, problem.normal(index));
+        let Scales { normal, tangent } = scales[index];
+        let pressed = f[n] - normal * w[n];
+        if contact.released || pressed <= 0.0 {
+            // the whole force is missed by
+            continue;
+        }
+        missed[n] = normal * w[n];
+        let mu = contact.coefficient().unwrap_or(0.0);
+        if contact.has_slip_law() {
+            let direction = contact.slipping.unwrap_or([0.0; 2]);
+            for axis in 0..tangents {
+                missed[first + axis] = f[first + axis] + mu * direction[axis] * f[n];
+            }
+            continue;
+        }
+        let pulled = [0, 1].map(|axis| match axis < tangents {
+            true => f[first + axis] - tangent * w[first + axis],
+            false => 0.0,
+        });
+        let size = length(&pulled);
+        for axis in 0..tangents {
+            missed[first + axis] = match size <= mu * pressed {
+                true => tangent * w[first + axis],
+                false => f[first + axis] - mu * pressed * pulled[axis] / size,
+            };
+        }
+    }
+    missed
+}
+
+/// The derivative of `laws`.
+fn slopes(
+    problem: &ContactProblem<'_>,
+    scales: &[Scales],
+    g: &DMatrix<f64>,
+    f: &DVector<f64>,
+    w: &DVector<f64>,
+) -> DMatrix<f64> {
+    let n_rows = f.len();
+    let mut slope = DMatrix::identity(n_rows, n_rows);
+    let tangents = problem.space.tangents();
+    for (index, contact) in problem.contacts.iter().enumerate() {
+        let (first, n) = (problem.block(index).start, problem.normal(index));
+        let Scales { normal, tangent } = scales[index];
+        let pressed = f[n] - normal * w[n];
+        if contact.released || pressed <= 0.0 {
+            continue;
+        }
+        slope.set_row(n, &(normal * g.row(n)));
+        let mu = contact.coefficient().unwrap_or(0.0);
+        if contact.has_slip_law() {
+            let direction = contact.slipping.unwrap_or([0.0; 2]);
+            for axis in 0..tangents {
+                slope[(first + axis, n)] += mu * direction[axis];
+            }
+            continue;
+        }
+        let pulled = [0, 1].map(|axis| match axis < tangents {
+            true => f[first + axis] - tangent * w[first + axis],
+            false => 0.0,
+        });
+        let size = length(&pulled);
+        for axis in 0..tangents {
+            let row = first + axis;
+            if size <= mu * pressed {
+                slope.set_row(row, &(tangent * g.row(row)));
+                continue;
+            }
+            // f_t - mu p a / |a|, with a = f_t - r_t w_t and p = f_n - r_n w_n
+            let along = pulled[axis] / size;
+            for column in 0..n_rows {
+                let unit = |other: usize| f64::from(u8::from(other == column));
+                slope[(row, column)] -= mu * along * (unit(n) - normal * g[(n, column)]);
+                for other in 0..tangents {
+                    let across = f64::from(u8::from(axis == other)) - along * pulled[other] / size;
+                    let turned = unit(first + other) - tangent * g[(first + other, column)];
+                    slope[(row, column)] -= mu * pressed / size * across * turned;
+                }
+            }
+        }
+    }
+    slope
+}

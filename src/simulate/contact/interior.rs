@@ -2,8 +2,8 @@
 //!
 //! Redundant contacts leave f = f0 + N z. Sought is the largest t with f_n >= t and
 //! mu f_n - |f_t| >= t for every contact: a barrier keeps (z, t) inside, and lets it come the
-//! nearer to the edge the steeper t is weighted (Boyd and Vandenberghe 2004, chapter 11). Tangent planes
-//! instead of the cones would be an endless number of nearly parallel ones.
+//! nearer to the edge the steeper t is weighted (Boyd and Vandenberghe 2004, chapter 11). Tangent
+//! planes instead of the cones would be an endless number of nearly parallel ones.
 
 use super::minimum_norm::MinimumNorm;
 use nalgebra::{Cholesky, DMatrix, DVector};

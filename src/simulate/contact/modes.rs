@@ -95,7 +95,7 @@ impl ModeSolver {
         if redundancy > 0 {
             self.with_planes(problem, modes, Self::least_admissible);
             if let Some(limits) = self.cones(problem, modes)
-                && least_slack(&limits, &self.values) < 0.0
+                && least_slack(&limits, &self.values) < -problem.force_zero(0.0)
             {
                 // planes that did not get there: forces far inside the cones are as good
                 self.values.copy_from_slice(&self.least);

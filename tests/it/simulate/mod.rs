@@ -3,6 +3,7 @@
 mod closed_forms;
 mod control;
 mod drift;
+mod kneed_walker;
 mod scenarios;
 mod schema;
 mod smooth;

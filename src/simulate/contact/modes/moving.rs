@@ -14,8 +14,7 @@ impl ModeSolver {
     /// As `forces`, for the motion alone: the forces of redundant contacts that all stick may be
     /// any, since they move nothing.
     ///
-    /// A small compliance makes the system regular, refinement takes out what it gives way. Where
-    /// forces that slip are shared out, and come out negative, `forces` decides.
+    /// A small compliance makes the system regular, refinement takes out what it gives way.
     pub fn moving_forces(
         &mut self,
         problem: &ContactProblem<'_>,
@@ -50,13 +49,29 @@ impl ModeSolver {
                 break;
             }
         }
-        let pulls = |(unknown, value): (&Unknown, &f64)| unknown.tangents > 0 && *value < 0.0;
+        let rows = problem.space.rows();
+        let pulls =
+            |(unknown, value): (&Unknown, &f64)| unknown.row % rows == rows - 1 && *value < 0.0;
         let slips = self.unknowns.iter().any(|unknown| unknown.tangents > 0);
         let shared = slips && self.unknowns.iter().zip(&self.values).any(pulls);
         if shared || missed.is_nan() || missed > problem.response_zero() {
-            return self.forces(problem, modes, force).map(|_| ());
+            self.solve(problem, modes)?;
+            if slips && self.system.nullity() > 0 {
+                self.push_only(problem, modes);
+            }
         }
         self.expand(force);
         Ok(())
+    }
+
+    /// Shares the forces so that none pulls. Cones of what sticks are not looked at: they say when
+    /// the motion ends, not what it is.
+    fn push_only(&mut self, problem: &ContactProblem<'_>, modes: &[Mode]) {
+        self.least.clear();
+        self.least.extend_from_slice(&self.values);
+        self.list_planes(problem, modes);
+        self.planes.retain(|plane| plane.tangents == 0);
+        self.measure_planes();
+        self.least_admissible();
     }
 }

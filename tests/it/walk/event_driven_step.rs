@@ -21,7 +21,7 @@ fn make_step(roll_stiffness: f64, actuated: bool) -> Run {
     let simulation = Simulation {
         end_s: END_S,
         method: Method::Sdirk(accuracy),
-        friction: Friction::Coulomb(0.6),
+        friction: Friction::Coulomb(0.8),
         ..Simulation::default()
     };
     let start = State::resting(gait.postures[0].clone());

@@ -198,37 +198,9 @@ impl Expansion<'_> {
     }
 
     fn product(&self, a: &Polynomial, b: &Polynomial) -> Result<Polynomial, CanonicalError> {
-        self.without_squared_sines(a.times(b, self.limit)?)
-    }
-
-    /// s^2 = 1 - c^2, until no sine has an exponent but 1.
-    fn without_squared_sines(&self, mut rest: Polynomial) -> Result<Polynomial, CanonicalError> {
-        loop {
-            let mut reduced = Polynomial::zero();
-            let mut is_done = true;
-            for (monomial, coefficient) in rest.terms() {
-                let squared = monomial.powers().iter().find_map(|&(atom, exponent)| {
-                    let cosine = *self.cosine_of.get(&atom)?;
-                    (exponent > 1).then_some((atom, cosine, exponent))
-                });
-                let Some((sine, cosine, exponent)) = squared else {
-                    reduced.add_term(monomial.clone(), coefficient.clone());
-                    continue;
-                };
-                is_done = false;
-                let times = |base: &Monomial, atom: ExprId, exponent: i32| {
-                    let power = Monomial::atom(atom).power(exponent);
-                    power.and_then(|power| base.times(&power)).ok_or(TooManyTerms)
-                };
-                let base = times(&monomial.without(sine), sine, exponent - 2)?;
-                reduced.add_term(times(&base, cosine, 2)?, -coefficient.clone());
-                reduced.add_term(base, coefficient.clone());
-            }
-            rest = self.bounded(reduced)?;
-            if is_done {
-                return Ok(rest);
-            }
-        }
+        let product = a.times(b, self.limit)?;
+        let cosine_of = |atom: ExprId| self.cosine_of.get(&atom).copied();
+        Ok(product.without_squared_sines(&cosine_of, self.limit)?)
     }
 
     fn inverse(&self, polynomial: &Polynomial) -> Result<Polynomial, CanonicalError> {

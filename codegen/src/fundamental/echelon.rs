@@ -186,33 +186,10 @@ fn gauss_jordan(
             }
         }
         for row in rows.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
-            subtract(field, row, &pivot, place)?;
+            field.subtract_row(row, &pivot, place)?;
         }
         done.push((place, pivot));
     }
-}
-
-/// Takes `place` out of a row with a row that has 1 there.
-fn subtract(
-    field: &Field,
-    row: &mut ExactRow,
-    pivot: &ExactRow,
-    place: usize,
-) -> Result<(), TooManyTerms> {
-    let Some(factor) = row.get(&place).map(Fraction::negated) else { return Ok(()) };
-    for (&other, value) in pivot {
-        let change = field.multiply(&factor, value)?;
-        let sum = match row.get(&other) {
-            Some(before) => field.add(before, &change)?,
-            None => change,
-        };
-        if sum.is_zero() {
-            row.remove(&other);
-        } else {
-            row.insert(other, sum);
-        }
-    }
-    Ok(())
 }
 
 fn is_combination(
@@ -221,7 +198,7 @@ fn is_combination(
     reduced: &[(usize, ExactRow)],
 ) -> Result<bool, TooManyTerms> {
     for (place, pivot) in reduced {
-        subtract(field, &mut row, pivot, *place)?;
+        field.subtract_row(&mut row, pivot, *place)?;
     }
     Ok(row.is_empty())
 }

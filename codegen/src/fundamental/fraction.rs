@@ -152,33 +152,31 @@ impl Field {
 
     /// The product of two polynomials, with s^2 = 1 - c^2.
     fn product(&self, a: &Polynomial, b: &Polynomial) -> Result<Polynomial, TooManyTerms> {
-        let mut rest = a.times(b, MAX_PRODUCT)?;
-        loop {
-            let mut reduced = Polynomial::zero();
-            let mut is_done = true;
-            for (monomial, coefficient) in rest.terms() {
-                let squared = monomial.powers().iter().find_map(|&(atom, exponent)| {
-                    let cosine = *self.cosine_of.get(&atom)?;
-                    (exponent > 1).then_some((atom, cosine, exponent))
-                });
-                let Some((sine, cosine, exponent)) = squared else {
-                    reduced.add_term(monomial.clone(), coefficient.clone());
-                    continue;
-                };
-                is_done = false;
-                let times = |base: &Monomial, atom: ExprId, exponent: i32| {
-                    let power = Monomial::atom(atom).power(exponent);
-                    power.and_then(|power| base.times(&power)).ok_or(TooManyTerms)
-                };
-                let base = times(&monomial.without(sine), sine, exponent - 2)?;
-                reduced.add_term(times(&base, cosine, 2)?, -coefficient.clone());
-                reduced.add_term(base, coefficient.clone());
-            }
-            rest = reduced;
-            if is_done {
-                return Ok(rest);
+        let cosine_of = |atom: ExprId| self.cosine_of.get(&atom).copied();
+        a.times(b, MAX_PRODUCT)?.without_squared_sines(&cosine_of, usize::MAX)
+    }
+
+    /// Takes `place` out of a sparse row with a row that has 1 there.
+    pub fn subtract_row<K: Ord + Copy>(
+        &self,
+        row: &mut BTreeMap<K, Fraction>,
+        pivot: &BTreeMap<K, Fraction>,
+        place: K,
+    ) -> Result<(), TooManyTerms> {
+        let Some(factor) = row.get(&place).map(Fraction::negated) else { return Ok(()) };
+        for (&other, value) in pivot {
+            let change = self.multiply(&factor, value)?;
+            let sum = match row.get(&other) {
+                Some(before) => self.add(before, &change)?,
+                None => change,
+            };
+            if sum.is_zero() {
+                row.remove(&other);
+            } else {
+                row.insert(other, sum);
             }
         }
+        Ok(())
     }
 
     /// The canonical form of a quotient whose denominator has no sines.

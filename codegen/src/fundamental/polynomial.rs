@@ -175,6 +175,44 @@ impl Polynomial {
         Self::zero().plus(self, factor)
     }
 
+    /// The same with s^2 = 1 - c^2, until no sine has an exponent but 1. `cosine_of` gives the
+    /// cosine of each atom that is a sine; more terms than `limit` are an error.
+    pub fn without_squared_sines(
+        mut self,
+        cosine_of: &dyn Fn(ExprId) -> Option<ExprId>,
+        limit: usize,
+    ) -> Result<Self, TooManyTerms> {
+        loop {
+            let mut reduced = Self::zero();
+            let mut is_done = true;
+            for (monomial, coefficient) in self.terms() {
+                let squared = monomial.powers().iter().find_map(|&(atom, exponent)| {
+                    let cosine = cosine_of(atom)?;
+                    (exponent > 1).then_some((atom, cosine, exponent))
+                });
+                let Some((sine, cosine, exponent)) = squared else {
+                    reduced.add_term(monomial.clone(), coefficient.clone());
+                    continue;
+                };
+                is_done = false;
+                let times = |base: &Monomial, atom: ExprId, exponent: i32| {
+                    let power = Monomial::atom(atom).power(exponent);
+                    power.and_then(|power| base.times(&power)).ok_or(TooManyTerms)
+                };
+                let base = times(&monomial.without(sine), sine, exponent - 2)?;
+                reduced.add_term(times(&base, cosine, 2)?, -coefficient.clone());
+                reduced.add_term(base, coefficient.clone());
+            }
+            if reduced.len() > limit {
+                return Err(TooManyTerms);
+            }
+            self = reduced;
+            if is_done {
+                return Ok(self);
+            }
+        }
+    }
+
     /// The product, if it has at most `limit` terms on the way, and at most 16 times as many pairs
     /// of terms need be looked at.
     pub fn times(&self, other: &Self, limit: usize) -> Result<Self, TooManyTerms> {

@@ -74,7 +74,7 @@ pub(super) fn forget(
     for &place in places {
         if let Some(pivot) = take_pivot(field, rows, place)? {
             for row in rows.iter_mut() {
-                subtract(field, row, &pivot, place)?;
+                field.subtract_row(row, &pivot, place)?;
             }
         }
     }
@@ -91,7 +91,7 @@ pub(super) fn gauss_jordan(
     for &place in order {
         if let Some(pivot) = take_pivot(field, &mut rows, place)? {
             for row in rows.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
-                subtract(field, row, &pivot, place)?;
+                field.subtract_row(row, &pivot, place)?;
             }
             done.push((place, pivot));
         }
@@ -123,24 +123,6 @@ fn take_pivot(
         }
     }
     Ok(Some(row))
-}
-
-/// Takes `place` out of a row with a pivot row.
-fn subtract(field: &Field, row: &mut Row, pivot: &Row, place: Place) -> Result<(), CanonicalError> {
-    let Some(factor) = row.get(&place).map(Fraction::negated) else { return Ok(()) };
-    for (&other, value) in pivot {
-        let change = field.multiply(&factor, value)?;
-        let sum = match row.get(&other) {
-            Some(before) => field.add(before, &change)?,
-            None => change,
-        };
-        if sum.is_zero() {
-            row.remove(&other);
-        } else {
-            row.insert(other, sum);
-        }
-    }
-    Ok(())
 }
 
 /// The field of what the polynomials are made of: which atoms are sines.

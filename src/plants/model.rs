@@ -1,7 +1,6 @@
 //! What a simulation knows of a robot besides its functions: names, drives, points, ground.
 
 use denavit_codegen::arena::Handle;
-
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::{BakeError, Base, Contact, Drive, JointKind, Link, Robot, bake};

@@ -12,7 +12,7 @@ use super::column::{Regressor, RegressorError, RegressorOptions, Unknowns};
 use super::rank::{PARAMETERS, rows_at};
 use super::settle::{settle, without_denominators};
 use crate::arena::Handle;
-use crate::expr::{ClassSet, Dag, ExprId, SymbolId, angle_atoms, is_pi, text};
+use crate::expr::{ClassSet, Dag, ExprId, Node, SymbolId, angle_atoms, is_pi, text};
 use crate::fundamental::{Basis, Expansion, Matrix, decompose};
 use crate::model::{BakeError, Robot, Terms, bake_geometry};
 use crate::number::Residue;
@@ -57,7 +57,7 @@ pub struct Certificate {
     pub prime: u64,
     /// The seed of the known parameters' values modulo the prime.
     pub parameters: u64,
-    /// Known angles that are numbers, beyond quarter turns. Cosine and sine of each are taken for
+    /// Known angles that are numbers, beyond quarter turns, or functions of parameters. Cosine and sine of each are taken for
     /// variables: rank and relations are those of almost every such angle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub generic_angles: Vec<String>,
@@ -99,7 +99,8 @@ pub enum Verdict {
         /// The number of base parameters.
         rank: usize,
         /// Whether the relations were also multiplied out in every torque, which is done for
-        /// robots of up to six joints, without angles that are numbers, that take little memory.
+        /// robots of up to six joints that take little memory, without angles that are numbers
+        /// or sines in a denominator.
         multiplied_out: bool,
     },
     /// It is no certificate of this format.
@@ -165,7 +166,7 @@ fn generic_angles(regressor: &Regressor) -> Vec<String> {
     let is_generic = |angle: &ExprId| {
         angle_atoms(dag, *angle).iter().any(|(atom, multiple)| match is_pi(dag, atom) {
             true => !(multiple + multiple).is_integer(),
-            false => atom.is_empty(),
+            false => atom.iter().all(|&(expr, _)| !matches!(dag.node(expr), Node::Symbol(_))),
         })
     };
     angles.into_iter().filter(is_generic).map(|angle| text::print(dag, angle).to_string()).collect()
@@ -283,7 +284,7 @@ impl Certificate {
     fn verify_relations(&self, regressor: &Regressor) -> Verdict {
         let mut dag = regressor.dag.clone();
         let joints = regressor.joints.len();
-        let is_small = joints <= MULTIPLIED_OUT_JOINTS && self.generic_angles.is_empty();
+        let mut is_small = joints <= MULTIPLIED_OUT_JOINTS && self.generic_angles.is_empty();
         let mut torques = vec![Vec::new(); joints];
         for relation in &self.relations {
             let refuted = || Verdict::Relation(relation.column.clone());
@@ -291,6 +292,7 @@ impl Certificate {
             if !settle(regressor, &mut dag, &amounts) {
                 return refuted();
             }
+            is_small &= amounts.iter().all(|&(_, amount)| !divides_by_waves(&dag, amount));
             if is_small {
                 let Some(sums) = sums(regressor, &mut dag, &amounts) else { return refuted() };
                 torques.iter_mut().zip(sums).for_each(|(row, sum)| row.push(sum));
@@ -393,6 +395,18 @@ fn sums(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, ExprId)]) -> Op
         }
     }
     Some(sums)
+}
+
+/// Whether there is a sine or cosine in a denominator, which [`vanishing`] cannot cancel.
+fn divides_by_waves(dag: &Dag, expr: ExprId) -> bool {
+    let has_wave = |divisor: ExprId| {
+        let mut nodes = dag.topological(&[divisor]).into_iter();
+        nodes.any(|node| matches!(dag.node(node), Node::Unary(..)))
+    };
+    dag.topological(&[expr]).into_iter().any(|node| match dag.node(node) {
+        Node::Div(_, divisor) => has_wave(divisor),
+        _ => false,
+    })
 }
 
 /// Which columns of a matrix vanish when it is written out as trigonometric polynomials, which are

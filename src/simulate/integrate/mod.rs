@@ -301,7 +301,7 @@ impl Stepper {
             vector.iter().zip(&self.y0).map(weighted).sum::<f64>().sqrt()
         });
         let step = if size < 1e-5 || rate < 1e-5 { 1e-6 } else { 0.01 * size / rate };
-        step.clamp(1e-9, accuracy.max_step_s)
+        step.max(1e-9).min(accuracy.max_step_s)
     }
 
     /// Root mean square of the error over what is allowed.

@@ -118,6 +118,14 @@ fn relations_are_multiplied_out_up_to_six_joints() {
     }
 }
 
+/// A twist that is a symbol, behind a length: sines in the denominators of the relations.
+#[test]
+fn skew_arms_are_certified() {
+    let rows = [("revolute", "a0", "pi/2", "0", None), ("revolute", "a1", "al", "0", Some(0))];
+    let robot = tree("skew", ["0", "0", "-g"], &rows);
+    assert_eq!(certified(&robot, INERTIAL, &[]).pivots.len(), 8);
+}
+
 #[test]
 fn certificates_hold_on_every_robot() {
     let all = RegressorOptions { friction: true, rotor: true, offset: true, ..INERTIAL };

@@ -57,8 +57,9 @@ pub struct Certificate {
     pub prime: u64,
     /// The seed of the known parameters' values modulo the prime.
     pub parameters: u64,
-    /// Known angles that are numbers, beyond quarter turns, or functions of parameters. Cosine and sine of each are taken for
-    /// variables: rank and relations are those of almost every such angle.
+    /// Known angles that are numbers, beyond quarter turns, or functions of parameters. Cosine and
+    /// sine of each are taken for variables: rank and relations are those of almost every such
+    /// angle.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub generic_angles: Vec<String>,
     /// The names of all columns, in order.

@@ -1,4 +1,4 @@
-//! `denavit demo`: the whole way on two robots, and a check of what came out by running it.
+//! `denavit demo`: the whole way on two robots, with checks of what came out, and simulated runs.
 
 mod checks;
 mod compiled;

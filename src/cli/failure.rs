@@ -119,13 +119,7 @@ impl Failure {
             Self::Lower(..) | Self::Emit(..) => {
                 "check the exponents of the numbers in the model".to_owned()
             }
-            Self::NoFunction { asked, .. } if asked.iter().all(|name| name.contains("contact")) => {
-                "contacts are declared under \"contacts\"".to_owned()
-            }
-            Self::NoFunction { .. } => {
-                "its mass matrix has no inverse: a joint moves no mass, or none of its own"
-                    .to_owned()
-            }
+            Self::NoFunction { asked, .. } => why_no_function(asked).to_owned(),
             Self::NotOfEquations(_) => "write the terms into the equations".to_owned(),
             Self::TooLongToSet { .. } => {
                 "leave out terms (--terms inertia,gravity), or take --json".to_owned()
@@ -148,6 +142,17 @@ impl Failure {
             | Self::Bake(_)
             | Self::Stdout(_) => return None,
         })
+    }
+}
+
+/// Why a model has none of these functions.
+fn why_no_function(asked: &[String]) -> &'static str {
+    if asked.iter().all(|name| name.contains("contact")) {
+        "contacts are declared under \"contacts\""
+    } else if asked.iter().all(|name| name.starts_with("base_")) {
+        "`denavit base` says why its base parameters are not found"
+    } else {
+        "its mass matrix has no inverse: a joint moves no mass, or none of its own"
     }
 }
 

@@ -12,17 +12,7 @@ pub struct Cradle {
 impl Cradle {
     /// A cradle of so many balls.
     pub fn new(balls: usize) -> Self {
-        let joint = |ball: usize| JointModel {
-            name: format!("ball{}", ball + 1),
-            slides: true,
-            drivable: true,
-            position_limits: None,
-            torque_limits: None,
-            viscous: 0.0,
-            coulomb: 0.0,
-            offset: 0.0,
-            drive: None,
-        };
+        let joint = |ball: usize| JointModel::ideal(&format!("ball{}", ball + 1), true);
         let point = |pair: usize| PointModel {
             name: format!("balls{}_{}", pair + 1, pair + 2),
             link: pair,

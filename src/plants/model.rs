@@ -59,6 +59,23 @@ pub struct JointModel {
     pub drive: Option<DriveModel>,
 }
 
+impl JointModel {
+    /// A joint without limits, friction and drive, which something may drive all the same.
+    pub fn ideal(name: &str, slides: bool) -> Self {
+        Self {
+            name: name.to_owned(),
+            slides,
+            drivable: true,
+            position_limits: None,
+            torque_limits: None,
+            viscous: 0.0,
+            coulomb: 0.0,
+            offset: 0.0,
+            drive: None,
+        }
+    }
+}
+
 /// Motor and gear, all entries on the motor's side of the gear (thesis 3.14-3.24).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveModel {
@@ -201,11 +218,6 @@ impl PlantModel {
     /// The joint of that name.
     pub fn find_joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
-    }
-
-    /// The contact point of that name.
-    pub fn find_contact(&self, name: &str) -> Option<usize> {
-        self.contacts.iter().position(|contact| contact.name == name)
     }
 }
 

@@ -223,7 +223,7 @@ impl Dag {
         let id = match self.symbol_memo.get(name) {
             Some(&id) => id,
             None => {
-                let symbol = Symbol { name: name.to_owned(), class, latex: None };
+                let symbol = Symbol { name: name.to_owned(), class };
                 let id = self.symbols.push(symbol);
                 self.symbol_memo.insert(name.to_owned(), id);
                 id
@@ -232,13 +232,6 @@ impl Dag {
         let known = self.symbols[id].class;
         assert!(known == class, "symbol {name} is {known:?}, asked for as {class:?}");
         self.intern(Node::Symbol(id))
-    }
-
-    /// States how a person writes the symbol `expr`.
-    pub fn set_latex(&mut self, expr: ExprId, latex: &str) {
-        if let Node::Symbol(id) = self.nodes[expr] {
-            self.symbols[id].latex = Some(latex.to_owned());
-        }
     }
 
     /// The symbol called `name`, if there is one.

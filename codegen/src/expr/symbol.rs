@@ -65,6 +65,4 @@ pub struct Symbol {
     pub name: String,
     /// What the symbol stands for.
     pub class: SymbolClass,
-    /// How a person writes it, if not after the rules for its name.
-    pub latex: Option<String>,
 }

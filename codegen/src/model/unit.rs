@@ -29,8 +29,6 @@ impl Dimension {
     pub const TORQUE: Self = Self([2, 1, -2, 0, 0, 0, 0]);
     /// 1/s.
     pub const RATE: Self = Self([0, 0, -1, 0, 0, 0, 0]);
-    /// Second.
-    pub const TIME: Self = Self([0, 0, 1, 0, 0, 0, 0]);
 
     /// The dimension of a product; none if an exponent leaves the range that physics uses.
     pub fn times(self, other: Self) -> Option<Self> {

@@ -142,6 +142,51 @@ pub fn modes(problem: &ContactProblem<'_>, force: &[f64], response: &[f64], mode
     }
 }
 
+/// The case of the laws that a contact is in, at forces f and responses w.
+enum Case {
+    /// Nothing presses: the force is 0.
+    Open,
+    /// The direction of its friction is given.
+    Slips([f64; 2]),
+    /// f_t - r w_t lies within the disk.
+    Sticks,
+    /// f_t - r w_t has this unit vector and this length, and mu f_n - mu r w_n is the radius.
+    Leaves { along: [f64; 2], length: f64, radius: f64 },
+}
+
+impl Case {
+    fn of(
+        problem: &ContactProblem<'_>,
+        (index, scales): (usize, Scales),
+        f: &DVector<f64>,
+        w: &DVector<f64>,
+    ) -> Self {
+        let (first, n) = (problem.block(index).start, problem.normal(index));
+        let contact = &problem.contacts[index];
+        let pressed = f[n] - scales.normal * w[n];
+        if contact.released || pressed <= 0.0 {
+            return Self::Open;
+        }
+        if contact.has_slip_law() {
+            return Self::Slips(contact.slipping.unwrap_or([0.0; 2]));
+        }
+        let pulled = [0, 1].map(|axis| match axis < problem.space.tangents() {
+            true => f[first + axis] - scales.tangent * w[first + axis],
+            false => 0.0,
+        });
+        let (length, radius) = (length(&pulled), friction(problem, index) * pressed);
+        match length <= radius {
+            true => Self::Sticks,
+            false => Self::Leaves { along: pulled.map(|entry| entry / length), length, radius },
+        }
+    }
+}
+
+/// The coefficient of a contact; none is `NoSlip`.
+fn friction(problem: &ContactProblem<'_>, index: usize) -> f64 {
+    problem.contacts[index].coefficient().unwrap_or(0.0)
+}
+
 /// By how much forces miss the laws \[N\].
 fn laws(
     problem: &ContactProblem<'_>,
@@ -149,35 +194,22 @@ fn laws(
     f: &DVector<f64>,
     w: &DVector<f64>,
 ) -> DVector<f64> {
+    // an open contact misses by its whole force
     let mut missed = f.clone();
-    let tangents = problem.space.tangents();
-    for (index, contact) in problem.contacts.iter().enumerate() {
+    for (index, &own) in scales.iter().enumerate() {
         let (first, n) = (problem.block(index).start, problem.normal(index));
-        let Scales { normal, tangent } = scales[index];
-        let pressed = f[n] - normal * w[n];
-        if contact.released || pressed <= 0.0 {
-            // the whole force is missed by
-            continue;
+        let case = Case::of(problem, (index, own), f, w);
+        if !matches!(case, Case::Open) {
+            missed[n] = own.normal * w[n];
         }
-        missed[n] = normal * w[n];
-        let mu = contact.coefficient().unwrap_or(0.0);
-        if contact.has_slip_law() {
-            let direction = contact.slipping.unwrap_or([0.0; 2]);
-            for axis in 0..tangents {
-                missed[first + axis] = f[first + axis] + mu * direction[axis] * f[n];
+        for axis in 0..problem.space.tangents() {
+            let row = first + axis;
+            match case {
+                Case::Open => {}
+                Case::Slips(way) => missed[row] += friction(problem, index) * way[axis] * f[n],
+                Case::Sticks => missed[row] = own.tangent * w[row],
+                Case::Leaves { along, radius, .. } => missed[row] -= radius * along[axis],
             }
-            continue;
-        }
-        let pulled = [0, 1].map(|axis| match axis < tangents {
-            true => f[first + axis] - tangent * w[first + axis],
-            false => 0.0,
-        });
-        let size = length(&pulled);
-        for axis in 0..tangents {
-            missed[first + axis] = match size <= mu * pressed {
-                true => tangent * w[first + axis],
-                false => f[first + axis] - mu * pressed * pulled[axis] / size,
-            };
         }
     }
     missed
@@ -191,45 +223,36 @@ fn slopes(
     f: &DVector<f64>,
     w: &DVector<f64>,
 ) -> DMatrix<f64> {
-    let n_rows = f.len();
-    let mut slope = DMatrix::identity(n_rows, n_rows);
+    let rows = f.len();
+    let mut slope = DMatrix::identity(rows, rows);
     let tangents = problem.space.tangents();
-    for (index, contact) in problem.contacts.iter().enumerate() {
+    for (index, &own) in scales.iter().enumerate() {
         let (first, n) = (problem.block(index).start, problem.normal(index));
-        let Scales { normal, tangent } = scales[index];
-        let pressed = f[n] - normal * w[n];
-        if contact.released || pressed <= 0.0 {
-            continue;
+        let mu = friction(problem, index);
+        let case = Case::of(problem, (index, own), f, w);
+        if !matches!(case, Case::Open) {
+            slope.set_row(n, &(own.normal * g.row(n)));
         }
-        slope.set_row(n, &(normal * g.row(n)));
-        let mu = contact.coefficient().unwrap_or(0.0);
-        if contact.has_slip_law() {
-            let direction = contact.slipping.unwrap_or([0.0; 2]);
-            for axis in 0..tangents {
-                slope[(first + axis, n)] += mu * direction[axis];
-            }
-            continue;
-        }
-        let pulled = [0, 1].map(|axis| match axis < tangents {
-            true => f[first + axis] - tangent * w[first + axis],
-            false => 0.0,
-        });
-        let size = length(&pulled);
         for axis in 0..tangents {
             let row = first + axis;
-            if size <= mu * pressed {
-                slope.set_row(row, &(tangent * g.row(row)));
-                continue;
-            }
-            // f_t - mu p a / |a|, with a = f_t - r_t w_t and p = f_n - r_n w_n
-            let along = pulled[axis] / size;
-            for column in 0..n_rows {
-                let unit = |other: usize| f64::from(u8::from(other == column));
-                slope[(row, column)] -= mu * along * (unit(n) - normal * g[(n, column)]);
-                for other in 0..tangents {
-                    let across = f64::from(u8::from(axis == other)) - along * pulled[other] / size;
-                    let turned = unit(first + other) - tangent * g[(first + other, column)];
-                    slope[(row, column)] -= mu * pressed / size * across * turned;
+            match case {
+                Case::Open => {}
+                Case::Slips(way) => slope[(row, n)] += mu * way[axis],
+                Case::Sticks => slope.set_row(row, &(own.tangent * g.row(row))),
+                // f_t - mu p a / |a|, with a = f_t - r_t w_t and p = f_n - r_n w_n
+                Case::Leaves { along, length, radius } => {
+                    for column in 0..rows {
+                        let unit = |other: usize| f64::from(u8::from(other == column));
+                        let pressed = unit(n) - own.normal * g[(n, column)];
+                        slope[(row, column)] -= mu * along[axis] * pressed;
+                        for other in 0..tangents {
+                            let across =
+                                f64::from(u8::from(axis == other)) - along[axis] * along[other];
+                            let turned =
+                                unit(first + other) - own.tangent * g[(first + other, column)];
+                            slope[(row, column)] -= radius / length * across * turned;
+                        }
+                    }
                 }
             }
         }

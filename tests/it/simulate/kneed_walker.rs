@@ -156,17 +156,7 @@ impl Plant for KneedWalker {
 }
 
 fn walker() -> KneedWalker {
-    let joint = |name: &str| JointModel {
-        name: name.to_owned(),
-        slides: false,
-        drivable: true,
-        position_limits: None,
-        torque_limits: None,
-        viscous: 0.0,
-        coulomb: 0.0,
-        offset: 0.0,
-        drive: None,
-    };
+    let joint = |name: &str| JointModel::ideal(name, false);
     let model = PlantModel {
         name: "kneed_walker".to_owned(),
         hash: 0,

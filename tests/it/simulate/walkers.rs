@@ -34,17 +34,7 @@ struct SimplestWalker {
 
 impl SimplestWalker {
     fn new(slope: f64) -> Self {
-        let joint = |name: &str| JointModel {
-            name: name.to_owned(),
-            slides: false,
-            drivable: true,
-            position_limits: None,
-            torque_limits: None,
-            viscous: 0.0,
-            coulomb: 0.0,
-            offset: 0.0,
-            drive: None,
-        };
+        let joint = |name: &str| JointModel::ideal(name, false);
         let model = PlantModel {
             name: "simplest_walker".to_owned(),
             hash: 0,

@@ -52,9 +52,7 @@ impl Notation {
     pub fn of_names(dag: &Dag) -> Self {
         let mut notation = Self::default();
         for (id, symbol) in dag.symbols().iter() {
-            let rule = || latex_of_name(&symbol.name, symbol.class);
-            let latex = symbol.latex.clone().unwrap_or_else(rule);
-            notation.symbols.insert(id, latex);
+            notation.symbols.insert(id, latex_of_name(&symbol.name, symbol.class));
             let digits = symbol.name.trim_start_matches(|c: char| !c.is_ascii_digit());
             if symbol.class == SymbolClass::Configuration
                 && let Ok(number) = digits.parse()
@@ -139,11 +137,9 @@ impl Notation {
         }
     }
 
-    /// Writes a symbol so, unless the model's file says how it is written.
+    /// Writes a symbol so.
     pub(super) fn set(&mut self, dag: &Dag, expr: ExprId, latex: String) {
-        if let Node::Symbol(id) = dag.node(expr)
-            && dag.symbols()[id].latex.is_none()
-        {
+        if let Node::Symbol(id) = dag.node(expr) {
             self.symbols.insert(id, latex);
         }
     }

@@ -6,6 +6,7 @@
 //! - [`InterpretedPlant`]: any model file, derived and interpreted
 //! - [`Cradle`]: balls that collide with each other
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
+//! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
 //! Matrices are row-major slices, the shape in which emitted code returns them. All units are SI,
 //! all vectors and positions are those of the world frame.
@@ -14,6 +15,8 @@ mod cradle;
 mod generated;
 mod interpreted;
 mod model;
+pub mod regression;
+mod regression_model;
 
 pub use cradle::Cradle;
 pub use generated::{plant_of, puma560, tulip};

@@ -3,6 +3,7 @@
 mod cli;
 mod contact;
 mod emitted;
+mod identify;
 mod simulate;
 mod singular_values;
 mod tidy;

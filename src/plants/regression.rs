@@ -1,0 +1,522 @@
+//! Torques that are linear in what is unknown, as numbers: tau - known = Y phi.
+//!
+//! phi are the base parameters on the joint axes, whose columns are cheapest and best conditioned;
+//! what is reported are those of kept columns, pi, with phi = T pi exactly (docs/base-parameters.md).
+//! Rows are torques on the joint side along the joint axes, in the order of the joints; of a
+//! floating base the generalized forces of its virtual joints come first.
+
+use super::regression_model::{described_joints, with_joint_parameters};
+use denavit_codegen::derive::{Flavour, derive};
+use denavit_codegen::emit::latex::{base_notation, base_sum};
+use denavit_codegen::expr::{Dag, ExprId, substitute};
+use denavit_codegen::function::{Form, Function, FunctionName, Output};
+use denavit_codegen::model::{Robot, Role, TorqueSide, bake_geometry};
+use denavit_codegen::program::{
+    BatchEvaluator, Evaluator, Program, constant_values, lower, parameter_defaults, prelude_values,
+};
+use denavit_codegen::regressor::functions::modelled;
+use denavit_codegen::regressor::{
+    BaseParameters, JointParameter, RegressorOptions, base_parameters, joint_basis,
+};
+use nalgebra::DMatrix;
+use rustc_hash::FxHashMap;
+
+pub use super::regression_model::{MotionError, RegressionError, RegressionJoint};
+
+/// A base parameter as it is reported: a kept column's, or one on a joint axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegressionParameter {
+    /// The name of its column, or of the moment on the axis.
+    pub name: String,
+    /// The sum that it is, in the names of the standard parameters.
+    pub expression: String,
+    /// The same as LaTeX.
+    pub latex: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// The standard parameters that it is the sum of, by their place, with factors.
+    pub members: Vec<(usize, f64)>,
+    /// The value that the model gives; none where the model gives none.
+    pub value: Option<f64>,
+    /// Whether it is one standard parameter by itself.
+    pub is_alone: bool,
+}
+
+/// A column of R0: what the torques are linear in before columns are grouped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StandardParameter {
+    /// `mx_LINK`, `fv_LINK`, or a product of the model's unknowns.
+    pub name: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// The value that the model gives.
+    pub value: Option<f64>,
+    /// The link whose body or joint has it, and the prefix of its name; none for products.
+    pub owner: Option<(String, &'static str)>,
+}
+
+/// A number of the model file that identification may change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelParameter {
+    /// The symbol's name, `cx_LINK`.
+    pub name: String,
+    /// What it belongs to; none for a joint parameter that the model does not have yet, whose
+    /// name says what it is.
+    pub role: Option<Role>,
+    /// The link that it belongs to.
+    pub link: Option<String>,
+    /// The value that the model gives, 0 where it gives none.
+    pub value: f64,
+    /// Its standard deviation, if the model states one.
+    pub std: Option<f64>,
+}
+
+/// The base parameters of a robot with the programs that compute their columns.
+#[derive(Clone, Debug)]
+pub struct RegressionModel {
+    /// The model's name.
+    pub model: String,
+    /// The joints, in the order of q and of the rows.
+    pub joints: Vec<RegressionJoint>,
+    /// The base parameters of kept columns, pi, as they are reported.
+    pub listed: Vec<RegressionParameter>,
+    /// The base parameters on the joint axes, phi, in which one computes.
+    pub axes: Vec<RegressionParameter>,
+    /// theta0, the columns before they are grouped.
+    pub standard: Vec<StandardParameter>,
+    /// The numbers of the model file that theta0 is made of.
+    pub parameters: Vec<ModelParameter>,
+    /// phi = T pi, row by row, square.
+    to_axes: DMatrix<f64>,
+    /// pi = T^-1 phi.
+    to_listed: DMatrix<f64>,
+    /// For each joint the places of phi that its row depends on, in order.
+    pattern: Vec<Vec<usize>>,
+    /// Rows of `known`: one for each joint that has something known.
+    known: Vec<usize>,
+    program: Program,
+    prelude: Vec<f64>,
+    theta0: Program,
+}
+
+impl RegressionModel {
+    /// The regression model of `robot` with the joint parameters of `options`; columns of `keep`
+    /// are kept before others in what is listed.
+    ///
+    /// Rank and formulas are exact for the constants as symbols. Where their values make more
+    /// columns depend on others (a length that is 0), those of the values are taken.
+    pub fn new(
+        robot: &Robot,
+        options: RegressorOptions,
+        keep: &[String],
+    ) -> Result<Self, RegressionError> {
+        let side = robot.torque_side;
+        let robot = with_joint_parameters(robot, options);
+        let base = reduced(&robot, keep)?;
+        if let Ok(numeric) = bake_geometry(&robot)
+            && let Ok(special) = reduced(&numeric, keep)
+            && special.rank() < base.rank()
+        {
+            return Self::of(&numeric, special, side);
+        }
+        Self::of(&robot, base, side)
+    }
+
+    fn of(
+        robot: &Robot,
+        mut base: BaseParameters,
+        side: TorqueSide,
+    ) -> Result<Self, RegressionError> {
+        let axes = joint_basis(&mut base, robot).map_err(RegressionError::base)?;
+        let mut numbers = Numbers::new(&base.regressor.dag, robot);
+        let derivation = derive(robot, Flavour::Tunable, &[FunctionName::BaseRegressor])
+            .map_err(RegressionError::Bake)?;
+        let none = || RegressionError::NothingUnknown(robot.name.clone());
+        let function = derivation.functions.first().ok_or_else(none)?;
+        let (sparse, pattern, known) =
+            without_zeros(&derivation.dag, function, axes.len(), robot.degrees_of_freedom());
+        let program = lower(&derivation.dag, &[sparse]).map_err(RegressionError::Lower)?;
+        let given = parameter_defaults(&program, robot);
+        let missing: Vec<String> = program
+            .parameters
+            .iter()
+            .zip(&given)
+            .filter(|(_, value)| value.is_none())
+            .map(|(name, _)| name.clone())
+            .collect();
+        if !missing.is_empty() {
+            let (model, parameters) = (robot.name.clone(), missing);
+            return Err(RegressionError::NoValue { model, parameters });
+        }
+        let given: Vec<f64> = given.into_iter().flatten().collect();
+        let prelude = prelude_values(&program, &given).expect("one value for each parameter");
+        let to_axes = change_of_basis(&mut numbers, &axes, base.rank());
+        let to_listed = to_axes.clone().try_inverse().filter(|m| m.iter().all(|x| x.is_finite()));
+        let to_listed = to_listed.ok_or_else(|| RegressionError::Singular(robot.name.clone()))?;
+        let theta0 = theta0_program(&base, robot)?;
+        Ok(Self {
+            model: robot.name.clone(),
+            joints: described_joints(robot, side),
+            listed: listed(&mut numbers, robot, &base)?,
+            axes: on_axes(&mut numbers, robot, &base, &axes)?,
+            standard: standard(&mut numbers, robot, &base),
+            parameters: parameters(robot, &base, &theta0),
+            to_axes,
+            to_listed,
+            pattern,
+            known,
+            program,
+            prelude,
+            theta0,
+        })
+    }
+
+    /// Number of base parameters.
+    pub fn rank(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// For each joint the places of phi that its row may depend on; the others are exactly 0.
+    pub fn pattern(&self) -> &[Vec<usize>] {
+        &self.pattern
+    }
+
+    /// T of phi = T pi.
+    pub fn to_axes(&self) -> &DMatrix<f64> {
+        &self.to_axes
+    }
+
+    /// T^-1 of pi = T^-1 phi.
+    pub fn to_listed(&self) -> &DMatrix<f64> {
+        &self.to_listed
+    }
+
+    /// phi of the model's own values; none if the model lacks one.
+    pub fn model_axes(&self) -> Option<Vec<f64>> {
+        self.axes.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// What computes rows, ready to be called: one for each thread.
+    pub fn evaluator(&self) -> RegressionEvaluator {
+        let routine = &self.program.routines[0];
+        let widths = self.pattern.iter().map(Vec::len).collect();
+        RegressionEvaluator {
+            batch: BatchEvaluator::new(routine, &self.prelude),
+            widths,
+            known: self.known.clone(),
+        }
+    }
+
+    /// theta0 of values of [`RegressionModel::parameters`].
+    ///
+    /// # Panics
+    /// If there is not one value for each of them.
+    pub fn standard_values(&self, parameters: &[f64]) -> Vec<f64> {
+        assert_eq!(parameters.len(), self.parameters.len(), "one value for each parameter");
+        let of_name: FxHashMap<&str, f64> = self
+            .parameters
+            .iter()
+            .map(|p| p.name.as_str())
+            .zip(parameters.iter().copied())
+            .collect();
+        let given: Vec<f64> = self.theta0.parameters.iter().map(|n| of_name[n.as_str()]).collect();
+        let prelude = prelude_values(&self.theta0, &given).expect("one value for each parameter");
+        let mut evaluator = Evaluator::<f64>::new(&self.theta0.routines[0], &prelude);
+        let mut values = vec![0.0; self.standard.len()];
+        evaluator.evaluate(&[], &mut values).expect("one entry for each column");
+        values
+    }
+
+    /// phi of theta0.
+    pub fn axes_of_standard(&self, standard: &[f64]) -> Vec<f64> {
+        let sum = |parameter: &RegressionParameter| {
+            parameter.members.iter().map(|&(at, factor)| factor * standard[at]).sum()
+        };
+        self.axes.iter().map(sum).collect()
+    }
+}
+
+/// Computes rows of tau - known = Y phi for many samples at once.
+#[derive(Clone, Debug)]
+pub struct RegressionEvaluator {
+    batch: BatchEvaluator<f64>,
+    widths: Vec<usize>,
+    known: Vec<usize>,
+}
+
+/// The entries of Y that can differ from 0, and what is known, for a block of samples.
+#[derive(Clone, Debug, Default)]
+pub struct RegressionRows {
+    samples: usize,
+    /// Where the columns of each joint begin; one more for the end.
+    first: Vec<usize>,
+    known: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl RegressionRows {
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The entries of one joint's rows in the `place`-th column of its
+    /// [pattern](RegressionModel::pattern), one for each sample.
+    pub fn column(&self, joint: usize, place: usize) -> &[f64] {
+        let at = (self.first[joint] + place) * self.samples;
+        &self.values[at..at + self.samples]
+    }
+
+    /// What the torque of a joint has besides unknowns [N m, N], one for each sample; none where
+    /// that is nothing.
+    pub fn known(&self, joint: usize) -> Option<&[f64]> {
+        let place = self.known.iter().position(|&known| known == joint)?;
+        let at = (self.first[self.first.len() - 1] + place) * self.samples;
+        Some(&self.values[at..at + self.samples])
+    }
+
+    /// The number of columns of a joint.
+    pub fn width(&self, joint: usize) -> usize {
+        self.first[joint + 1] - self.first[joint]
+    }
+
+    /// Y phi + known of a joint, one for each sample; `phi` are the values of its pattern's columns.
+    pub fn torque(&self, joint: usize, phi: &[f64], torque: &mut [f64]) {
+        match self.known(joint) {
+            Some(known) => torque.copy_from_slice(known),
+            None => torque.fill(0.0),
+        }
+        for (place, &factor) in phi.iter().enumerate() {
+            for (sum, entry) in torque.iter_mut().zip(self.column(joint, place)) {
+                *sum += factor * entry;
+            }
+        }
+    }
+}
+
+impl RegressionEvaluator {
+    /// The rows of samples. `motion` are 3 n columns, q of every joint, then qd, then qdd [rad, m;
+    /// per s; per s^2], all of one length. `rows` is used again from call to call.
+    pub fn evaluate(
+        &mut self,
+        motion: &[&[f64]],
+        rows: &mut RegressionRows,
+    ) -> Result<(), MotionError> {
+        let expected = 3 * self.widths.len();
+        let samples = motion.first().map_or(0, |column| column.len());
+        let is_even = motion.iter().all(|column| column.len() == samples);
+        if motion.len() != expected || !is_even {
+            return Err(MotionError { expected, found: motion.len() });
+        }
+        rows.first.clear();
+        let mut total = 0;
+        rows.first.push(0);
+        for width in &self.widths {
+            total += width;
+            rows.first.push(total);
+        }
+        rows.known.clone_from(&self.known);
+        rows.samples = samples;
+        rows.values.resize((total + self.known.len()) * samples, 0.0);
+        if samples == 0 {
+            return Ok(());
+        }
+        let mut columns: Vec<&mut [f64]> = rows.values.chunks_exact_mut(samples).collect();
+        self.batch.evaluate(motion, &mut columns).expect("the shapes were compared before");
+        Ok(())
+    }
+}
+
+/// The base parameters with the joint parameters that the robot has.
+fn reduced(robot: &Robot, keep: &[String]) -> Result<BaseParameters, RegressionError> {
+    base_parameters(robot, modelled(robot), keep).map_err(RegressionError::base)
+}
+
+/// The base regressor without the entries that are exactly 0, what is known after them.
+fn without_zeros(
+    dag: &Dag,
+    function: &Function,
+    rank: usize,
+    joints: usize,
+) -> (Function, Vec<Vec<usize>>, Vec<usize>) {
+    let zero = dag.zero();
+    let entries = &function.outputs[0].entries;
+    let mut pattern = Vec::new();
+    let mut kept: Vec<ExprId> = Vec::new();
+    for joint in 0..joints {
+        let row = &entries[joint * rank..(joint + 1) * rank];
+        let places: Vec<usize> = (0..rank).filter(|&place| row[place] != zero).collect();
+        kept.extend(places.iter().map(|&place| row[place]));
+        pattern.push(places);
+    }
+    let all_known = function.outputs.get(1).map_or(&[][..], |output| &output.entries);
+    let known: Vec<usize> = (0..all_known.len()).filter(|&j| all_known[j] != zero).collect();
+    kept.extend(known.iter().map(|&joint| all_known[joint]));
+    let output = Output {
+        name: FunctionName::BaseRegressor.as_str(),
+        shape: vec![kept.len()],
+        entries: kept,
+        doc: String::new(),
+        details: Vec::new(),
+    };
+    let sparse = Function {
+        name: FunctionName::BaseRegressor,
+        link: None,
+        arguments: function.arguments.clone(),
+        outputs: vec![output],
+        form: Form::Plain,
+    };
+    (sparse, pattern, known)
+}
+
+/// Expressions as numbers, with the model's values for its parameters.
+struct Numbers {
+    dag: Dag,
+    defaults: FxHashMap<ExprId, ExprId>,
+}
+
+impl Numbers {
+    fn new(dag: &Dag, robot: &Robot) -> Self {
+        let parameters = robot.parameters.values();
+        let defaults = parameters.filter_map(|p| Some((p.symbol, p.default?))).collect();
+        Self { dag: dag.clone(), defaults }
+    }
+
+    fn number(&mut self, expr: ExprId) -> Option<f64> {
+        let known = substitute(&mut self.dag, &[expr], &self.defaults)[0];
+        let is_number = self.dag.classes(known).is_empty();
+        let value = is_number.then(|| constant_values(&self.dag, &[known])[0]);
+        value.filter(|value| value.is_finite())
+    }
+
+    /// Factors of constants. Those have values, since the regressor was evaluated with them.
+    fn factors(&mut self, members: &[(usize, ExprId)]) -> Vec<(usize, f64)> {
+        members.iter().map(|&(at, factor)| (at, self.number(factor).unwrap_or(f64::NAN))).collect()
+    }
+}
+
+fn change_of_basis(numbers: &mut Numbers, axes: &[JointParameter], rank: usize) -> DMatrix<f64> {
+    let mut to_axes = DMatrix::zeros(axes.len(), rank);
+    for (row, parameter) in axes.iter().enumerate() {
+        for (column, factor) in numbers.factors(&parameter.of_kept) {
+            to_axes[(row, column)] = factor;
+        }
+    }
+    to_axes
+}
+
+/// Factors that must be numbers.
+fn finite(robot: &Robot, members: Vec<(usize, f64)>) -> Result<Vec<(usize, f64)>, RegressionError> {
+    match members.iter().all(|(_, factor)| factor.is_finite()) {
+        true => Ok(members),
+        false => Err(RegressionError::Singular(robot.name.clone())),
+    }
+}
+
+fn listed(
+    numbers: &mut Numbers,
+    robot: &Robot,
+    base: &BaseParameters,
+) -> Result<Vec<RegressionParameter>, RegressionError> {
+    let notation = base_notation(robot, base);
+    let one = |parameter: &denavit_codegen::regressor::BaseParameter| {
+        let column = &base.regressor.columns[parameter.column];
+        Ok(RegressionParameter {
+            name: column.name.clone(),
+            expression: base.sum_text(&parameter.parts),
+            latex: base_sum(base, &parameter.parts, &notation),
+            unit: column.unit.clone(),
+            members: finite(robot, numbers.factors(&parameter.members))?,
+            value: numbers.number(parameter.value),
+            is_alone: parameter.is_alone(),
+        })
+    };
+    base.parameters.iter().map(one).collect()
+}
+
+fn on_axes(
+    numbers: &mut Numbers,
+    robot: &Robot,
+    base: &BaseParameters,
+    axes: &[JointParameter],
+) -> Result<Vec<RegressionParameter>, RegressionError> {
+    let notation = base_notation(robot, base);
+    let one = |parameter: &JointParameter| {
+        Ok(RegressionParameter {
+            name: parameter.name.clone(),
+            expression: base.sum_text(&parameter.parts),
+            latex: base_sum(base, &parameter.parts, &notation),
+            unit: parameter.unit.clone(),
+            members: finite(robot, numbers.factors(&parameter.members))?,
+            value: numbers.number(parameter.value),
+            is_alone: parameter.members.len() == 1,
+        })
+    };
+    axes.iter().map(one).collect()
+}
+
+fn standard(numbers: &mut Numbers, robot: &Robot, base: &BaseParameters) -> Vec<StandardParameter> {
+    let columns = base.regressor.columns.iter();
+    let one = |column: &denavit_codegen::regressor::Column| StandardParameter {
+        name: column.name.clone(),
+        unit: column.unit.clone(),
+        value: numbers.number(column.value),
+        owner: column.owner.map(|(link, prefix)| (robot.links[link].name.clone(), prefix)),
+    };
+    columns.map(one).collect()
+}
+
+/// theta0 as a function of the numbers of the file, constants folded in.
+fn theta0_program(base: &BaseParameters, robot: &Robot) -> Result<Program, RegressionError> {
+    let mut dag = base.regressor.dag.clone();
+    let known = robot.parameters.values().filter(|parameter| parameter.known);
+    let known: FxHashMap<ExprId, ExprId> =
+        known.filter_map(|p| Some((p.symbol, p.default?))).collect();
+    let values: Vec<ExprId> = base.regressor.columns.iter().map(|column| column.value).collect();
+    let entries = substitute(&mut dag, &values, &known);
+    let name = FunctionName::BaseParameters;
+    let shape = vec![entries.len()];
+    let (doc, details) = (String::new(), Vec::new());
+    let output = Output { name: name.as_str(), shape, entries, doc, details };
+    let (arguments, outputs) = (Vec::new(), vec![output]);
+    let function = Function { name, link: None, arguments, outputs, form: Form::Plain };
+    lower(&dag, &[function]).map_err(RegressionError::Lower)
+}
+
+/// The numbers that theta0 depends on, in the order of the model.
+fn parameters(robot: &Robot, base: &BaseParameters, theta0: &Program) -> Vec<ModelParameter> {
+    let mut numbers = Numbers::new(&base.regressor.dag, robot);
+    let mut found = Vec::new();
+    for (_, parameter) in robot.parameters.iter() {
+        if !theta0.parameters.contains(&parameter.name) {
+            continue;
+        }
+        let link = match parameter.role {
+            Role::Body(link, _) | Role::Joint(link, _) => Some(robot.links[link].name.clone()),
+            Role::Constant | Role::Unknown => None,
+        };
+        found.push(ModelParameter {
+            name: parameter.name.clone(),
+            role: Some(parameter.role),
+            link,
+            value: parameter.default.and_then(|value| numbers.number(value)).unwrap_or(0.0),
+            std: parameter.std.and_then(|std| numbers.number(std)),
+        });
+    }
+    for name in &theta0.parameters {
+        if found.iter().all(|known| known.name != *name) {
+            let links = robot.joints().map(|(link, _)| robot.links[link].name.as_str());
+            let link =
+                links.filter(|link| name.ends_with(&format!("_{link}"))).max_by_key(|l| l.len());
+            let link = link.map(str::to_owned);
+            found.push(ModelParameter {
+                name: name.clone(),
+                role: None,
+                link,
+                value: 0.0,
+                std: None,
+            });
+        }
+    }
+    found
+}

@@ -1,0 +1,183 @@
+//! What a regression knows of the joints, and the joint parameters that are to be found.
+
+use denavit_codegen::arena::Handle;
+use denavit_codegen::expr::{ExprId, SymbolClass};
+use denavit_codegen::model::{
+    BakeError, Base, Drive, JointKind, Link, Robot, TorqueSide, bake_geometry,
+};
+use denavit_codegen::program::{LowerError, constant_values};
+use denavit_codegen::regressor::{BaseError, RegressorOptions};
+use std::fmt;
+
+/// A joint of a regression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegressionJoint {
+    /// The name of joint and link.
+    pub name: String,
+    /// Whether it slides (m, N) or turns (rad, N m).
+    pub slides: bool,
+    /// Whether it is a virtual joint of a floating base: its row is a component of the wrench on
+    /// the base.
+    pub is_base: bool,
+    /// Lowest and highest position.
+    pub position_limits: Option<[f64; 2]>,
+    /// Largest speed either way.
+    pub velocity_limit: Option<f64>,
+    /// Largest acceleration either way.
+    pub acceleration_limit: Option<f64>,
+    /// Lowest and highest torque of the drive, joint side.
+    pub torque_limits: Option<[f64; 2]>,
+    /// What a torque of a log is multiplied with to be one along the joint axis: the gear ratio
+    /// where the model's `torque_side` is the motor's and the drive is stiff, else 1.
+    pub torque_factor: f64,
+}
+
+/// Why a robot has no regression model.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RegressionError {
+    /// No base parameters are found.
+    Base(Box<BaseError>),
+    /// Parameters without a value.
+    Bake(BakeError),
+    /// A number that no computer arithmetic holds.
+    Lower(LowerError),
+    /// Everything that the torques depend on is known; holds the model's name.
+    NothingUnknown(String),
+    /// Known parameters that need a value.
+    NoValue {
+        /// The model.
+        model: String,
+        /// The parameters' names.
+        parameters: Vec<String>,
+    },
+    /// The values of constants make columns that are independent for almost all values depend on
+    /// each other, or a factor infinite; holds the model's name.
+    Singular(String),
+}
+
+impl RegressionError {
+    pub(super) fn base(error: BaseError) -> Self {
+        Self::Base(Box::new(error))
+    }
+}
+
+impl fmt::Display for RegressionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Base(error) => write!(f, "{error}"),
+            Self::Bake(error) => write!(f, "{error}"),
+            Self::Lower(error) => write!(f, "{error}"),
+            Self::NothingUnknown(model) => write!(
+                f,
+                "{model}: the torques depend on nothing unknown\n  hint: give links a `body`, or \
+                 add joint parameters with --with"
+            ),
+            Self::NoValue { model, parameters } => write!(
+                f,
+                "{model}: these known parameters need a value: {}\n  hint: give each one in the \
+                 model file",
+                parameters.join(", ")
+            ),
+            Self::Singular(model) => write!(
+                f,
+                "{model}: with the values of its constants the base parameters have no finite \
+                 change of basis\n  hint: write constants that are 0 as numbers in the table"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for RegressionError {}
+
+/// Motion that does not have one column of equal length for q, qd and qdd of every joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MotionError {
+    /// Columns that are expected.
+    pub expected: usize,
+    /// Columns that were given.
+    pub found: usize,
+}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(f, "{found} columns of motion, perhaps of unequal length, in place of {expected}")
+    }
+}
+
+impl std::error::Error for MotionError {}
+
+/// The robot with exactly the joint parameters that `options` ask for: what is asked for of every
+/// joint gets a symbol where the model has none, what is not asked for is gone.
+pub(super) fn with_joint_parameters(robot: &Robot, options: RegressorOptions) -> Robot {
+    let mut robot = robot.clone();
+    let generated = match robot.base {
+        Base::Fixed => 0,
+        Base::Floating => 6,
+        Base::PlanarFloating => 3,
+    };
+    let all = !options.only_modelled;
+    // The joint side throughout: `torque_factor` brings measurements there.
+    robot.torque_side = TorqueSide::Joint;
+    robot.terms.friction = options.friction && (robot.terms.friction || all);
+    robot.terms.rotor = options.rotor && (robot.terms.rotor || all);
+    let links: Vec<_> = robot.joints().map(|(link, _)| link).collect();
+    for id in links {
+        let (name, is_generated) = (robot.links[id].name.clone(), id.index() < generated);
+        let damping = robot.links[id].joint.damping;
+        let has_drive = robot.links[id].drive.is_some();
+        let mut drive: Drive = robot.links[id].drive.unwrap_or_default();
+        let stiff = drive.series_elastic.is_none();
+        let dag = &mut robot.dag;
+        let mut settle = |entry: &mut Option<ExprId>, wanted: bool, given: bool, prefix: &str| {
+            if !wanted {
+                *entry = None;
+            } else if entry.is_none() && !given && all && !is_generated {
+                *entry = Some(dag.symbol(&format!("{prefix}_{name}"), SymbolClass::Drive));
+            }
+        };
+        if stiff {
+            settle(&mut drive.viscous, options.friction, damping.is_some(), "fv");
+            settle(&mut drive.coulomb, options.friction, false, "fc");
+            settle(&mut drive.rotor_inertia, options.rotor, false, "Ia");
+        }
+        settle(&mut drive.offset, options.offset, false, "off");
+        let link = &mut robot.links[id];
+        if !options.friction {
+            link.joint.damping = None;
+        }
+        if has_drive || drive != Drive::default() {
+            link.drive = Some(drive);
+        }
+    }
+    robot
+}
+
+/// The joints with the values of their limits; a limit without a value is left out.
+pub(super) fn described_joints(robot: &Robot, side: TorqueSide) -> Vec<RegressionJoint> {
+    // Limits are symbol-free; gear ratios may be constants.
+    let baked = bake_geometry(robot).unwrap_or_else(|_| robot.clone());
+    let value = |expr: ExprId| -> Option<f64> {
+        let is_number = baked.dag.classes(expr).is_empty();
+        is_number.then(|| constant_values(&baked.dag, &[expr])[0])
+    };
+    let range = |range: [ExprId; 2]| Some([value(range[0])?, value(range[1])?]);
+    let one = |link: &Link| {
+        let stiff = link.drive.filter(|drive| drive.series_elastic.is_none());
+        let gear = stiff.and_then(|drive| drive.gear_ratio).and_then(|ratio| {
+            let parameter = robot.parameters.values().find(|p| p.symbol == ratio);
+            value(parameter.and_then(|p| p.default).unwrap_or(ratio))
+        });
+        RegressionJoint {
+            name: link.name.clone(),
+            slides: link.joint.kind == JointKind::Prismatic,
+            is_base: link.name.starts_with("base_") && robot.base != Base::Fixed,
+            position_limits: link.limits.position.and_then(range),
+            velocity_limit: link.limits.velocity.and_then(value),
+            acceleration_limit: link.limits.acceleration.and_then(value),
+            torque_limits: link.limits.torque.and_then(range),
+            torque_factor: gear.filter(|_| side == TorqueSide::Motor).unwrap_or(1.0),
+        }
+    };
+    robot.joints().map(|(link, _)| one(&robot.links[link])).collect()
+}

@@ -1,0 +1,115 @@
+//! The regression model: ranks that are known, and torques of another formulation.
+
+use super::{INERTIAL, random_motion, robot, torques};
+use denavit::plants::regression::{RegressionError, RegressionModel};
+use denavit::plants::{InterpretedPlant, Plant};
+use denavit::regressor::RegressorOptions;
+use denavit::regressor::functions::modelled;
+
+/// D qdd + bias + Coulomb friction of the simulator's plant, which knows no regressor.
+fn plant_torques(name: &str, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut plant = InterpretedPlant::new(&robot(name), &[]).expect("it has every value");
+    let n = motion.len() / 3;
+    let samples = motion[0].len();
+    let mut torques = vec![vec![0.0; samples]; n];
+    let (mut mass, mut bias) = (vec![0.0; n * n], vec![0.0; n]);
+    for k in 0..samples {
+        let at = |first: usize| -> Vec<f64> { (0..n).map(|j| motion[first + j][k]).collect() };
+        let (q, qd, qdd) = (at(0), at(n), at(2 * n));
+        plant.mass_matrix(&q, &mut mass);
+        plant.bias(&q, &qd, &mut bias);
+        for j in 0..n {
+            let inertial: f64 = (0..n).map(|i| mass[j * n + i] * qdd[i]).sum();
+            let coulomb = plant.model().joints[j].coulomb * qd[j].signum();
+            torques[j][k] = inertial + bias[j] + coulomb;
+        }
+    }
+    torques
+}
+
+#[test]
+fn rows_times_the_models_values_are_the_torques_of_the_plant() {
+    for name in ["planar_2r", "double_pendulum", "puma560", "tulip_leg6", "stanford", "tulip"] {
+        let robot = robot(name);
+        let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect(name);
+        let motion = random_motion(model.joints.len(), 37, 5);
+        let phi = model.model_axes().expect("all values are given");
+        let ours = torques(&model, &motion, &phi);
+        let theirs = plant_torques(name, &motion);
+        for (joint, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
+            let size = theirs.iter().fold(1.0_f64, |size, tau| size.max(tau.abs()));
+            for (a, b) in ours.iter().zip(theirs) {
+                assert!((a - b).abs() < 1e-11 * size, "{name} {joint}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// math.md 6 and peers.md 5b: numbers of base parameters.
+#[test]
+fn ranks_are_those_that_are_known() {
+    let friction = RegressorOptions { friction: true, ..INERTIAL };
+    for (name, options, expected) in [
+        ("puma560", INERTIAL, 36),
+        ("puma560", friction, 48),
+        ("tulip_leg6", INERTIAL, 36),
+        ("tulip_leg", INERTIAL, 14),
+        ("tulip", INERTIAL, 94),
+        ("scara", INERTIAL, 8),
+    ] {
+        let model = RegressionModel::new(&robot(name), options, &[]).expect(name);
+        assert_eq!(model.rank(), expected, "{name}");
+        assert_eq!(model.listed.len(), expected, "{name}");
+    }
+}
+
+#[test]
+fn the_thesis_products_are_columns_of_the_leg() {
+    let model = RegressionModel::new(&robot("tulip_leg"), INERTIAL, &[]).expect("a model");
+    assert_eq!(model.standard.len(), 17);
+    // theta0 of the file's own numbers, by hand
+    let at = |name: &str| model.standard.iter().position(|one| one.name == name);
+    let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+    let standard = model.standard_values(&values);
+    let product = at("c4x*m4").or(at("m4*c4x")).expect("the first moment of the thigh");
+    assert!((standard[product] - 2.141 * 0.193).abs() < 1e-15);
+    let phi = model.axes_of_standard(&standard);
+    for (ours, given) in phi.iter().zip(model.model_axes().expect("all values are given")) {
+        assert!((ours - given).abs() < 1e-12);
+    }
+}
+
+/// pi of kept columns and phi on the axes are one another's exact images.
+#[test]
+fn the_change_of_basis_takes_values_to_values() {
+    for name in ["puma560", "tulip", "tulip_leg"] {
+        let robot = robot(name);
+        let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect(name);
+        let pi: Vec<f64> = model.listed.iter().map(|one| one.value.expect("given")).collect();
+        let phi = model.to_axes() * nalgebra::DVector::from_vec(pi.clone());
+        let back = model.to_listed() * &phi;
+        for (place, axis) in model.axes.iter().enumerate() {
+            let given = axis.value.expect("given");
+            assert!((phi[place] - given).abs() < 1e-9 * given.abs().max(1.0), "{}", axis.name);
+            assert!((back[place] - pi[place]).abs() < 1e-6 * pi[place].abs().max(1.0));
+        }
+    }
+}
+
+#[test]
+fn a_joint_parameter_that_is_not_asked_for_has_no_column() {
+    let robot = robot("puma560");
+    let all = RegressorOptions { friction: true, rotor: true, offset: true, ..INERTIAL };
+    let names = |options| -> Vec<String> {
+        let model = RegressionModel::new(&robot, options, &[]).expect("a model");
+        model.listed.into_iter().map(|one| one.name).collect()
+    };
+    assert!(names(all).contains(&"off_elbow".to_owned()));
+    assert!(names(INERTIAL).iter().all(|name| !name.starts_with('f') && !name.starts_with("Ia")));
+}
+
+#[test]
+fn columns_to_keep_are_checked() {
+    let wrong = RegressionModel::new(&robot("scara"), INERTIAL, &["mass".to_owned()]);
+    assert!(matches!(wrong, Err(RegressionError::Base(_))));
+}

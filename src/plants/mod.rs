@@ -17,6 +17,7 @@ mod interpreted;
 mod model;
 pub mod regression;
 mod regression_model;
+mod regression_rows;
 
 pub use cradle::Cradle;
 pub use generated::{plant_of, puma560, tulip};

@@ -1,7 +1,8 @@
 //! Torques that are linear in what is unknown, as numbers: tau - known = Y phi.
 //!
 //! phi are the base parameters on the joint axes, whose columns are cheapest and best conditioned;
-//! what is reported are those of kept columns, pi, with phi = T pi exactly (docs/base-parameters.md).
+//! what is reported are those of kept columns, pi, with phi = T pi exactly
+//! (docs/base-parameters.md).
 //! Rows are torques on the joint side along the joint axes, in the order of the joints; of a
 //! floating base the generalized forces of its virtual joints come first.
 
@@ -22,6 +23,7 @@ use nalgebra::DMatrix;
 use rustc_hash::FxHashMap;
 
 pub use super::regression_model::{MotionError, RegressionError, RegressionJoint};
+pub use super::regression_rows::{RegressionEvaluator, RegressionRows};
 
 /// A base parameter as it is reported: a kept column's, or one on a joint axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,11 +202,7 @@ impl RegressionModel {
     pub fn evaluator(&self) -> RegressionEvaluator {
         let routine = &self.program.routines[0];
         let widths = self.pattern.iter().map(Vec::len).collect();
-        RegressionEvaluator {
-            batch: BatchEvaluator::new(routine, &self.prelude),
-            widths,
-            known: self.known.clone(),
-        }
+        RegressionEvaluator::new(BatchEvaluator::new(routine, &self.prelude), widths, &self.known)
     }
 
     /// theta0 of values of [`RegressionModel::parameters`].
@@ -233,97 +231,6 @@ impl RegressionModel {
             parameter.members.iter().map(|&(at, factor)| factor * standard[at]).sum()
         };
         self.axes.iter().map(sum).collect()
-    }
-}
-
-/// Computes rows of tau - known = Y phi for many samples at once.
-#[derive(Clone, Debug)]
-pub struct RegressionEvaluator {
-    batch: BatchEvaluator<f64>,
-    widths: Vec<usize>,
-    known: Vec<usize>,
-}
-
-/// The entries of Y that can differ from 0, and what is known, for a block of samples.
-#[derive(Clone, Debug, Default)]
-pub struct RegressionRows {
-    samples: usize,
-    /// Where the columns of each joint begin; one more for the end.
-    first: Vec<usize>,
-    known: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl RegressionRows {
-    /// Number of samples.
-    pub fn samples(&self) -> usize {
-        self.samples
-    }
-
-    /// The entries of one joint's rows in the `place`-th column of its
-    /// [pattern](RegressionModel::pattern), one for each sample.
-    pub fn column(&self, joint: usize, place: usize) -> &[f64] {
-        let at = (self.first[joint] + place) * self.samples;
-        &self.values[at..at + self.samples]
-    }
-
-    /// What the torque of a joint has besides unknowns [N m, N], one for each sample; none where
-    /// that is nothing.
-    pub fn known(&self, joint: usize) -> Option<&[f64]> {
-        let place = self.known.iter().position(|&known| known == joint)?;
-        let at = (self.first[self.first.len() - 1] + place) * self.samples;
-        Some(&self.values[at..at + self.samples])
-    }
-
-    /// The number of columns of a joint.
-    pub fn width(&self, joint: usize) -> usize {
-        self.first[joint + 1] - self.first[joint]
-    }
-
-    /// Y phi + known of a joint, one for each sample; `phi` are the values of its pattern's columns.
-    pub fn torque(&self, joint: usize, phi: &[f64], torque: &mut [f64]) {
-        match self.known(joint) {
-            Some(known) => torque.copy_from_slice(known),
-            None => torque.fill(0.0),
-        }
-        for (place, &factor) in phi.iter().enumerate() {
-            for (sum, entry) in torque.iter_mut().zip(self.column(joint, place)) {
-                *sum += factor * entry;
-            }
-        }
-    }
-}
-
-impl RegressionEvaluator {
-    /// The rows of samples. `motion` are 3 n columns, q of every joint, then qd, then qdd [rad, m;
-    /// per s; per s^2], all of one length. `rows` is used again from call to call.
-    pub fn evaluate(
-        &mut self,
-        motion: &[&[f64]],
-        rows: &mut RegressionRows,
-    ) -> Result<(), MotionError> {
-        let expected = 3 * self.widths.len();
-        let samples = motion.first().map_or(0, |column| column.len());
-        let is_even = motion.iter().all(|column| column.len() == samples);
-        if motion.len() != expected || !is_even {
-            return Err(MotionError { expected, found: motion.len() });
-        }
-        rows.first.clear();
-        let mut total = 0;
-        rows.first.push(0);
-        for width in &self.widths {
-            total += width;
-            rows.first.push(total);
-        }
-        rows.known.clone_from(&self.known);
-        rows.samples = samples;
-        rows.values.resize((total + self.known.len()) * samples, 0.0);
-        if samples == 0 {
-            return Ok(());
-        }
-        let mut columns: Vec<&mut [f64]> = rows.values.chunks_exact_mut(samples).collect();
-        self.batch.evaluate(motion, &mut columns).expect("the shapes were compared before");
-        Ok(())
     }
 }
 

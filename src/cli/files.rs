@@ -75,9 +75,12 @@ fn read_path(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Result<Vec
     }
 }
 
-/// The bytes of a file.
+/// The bytes of a file, or of standard input.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
     let name = path.display().to_string();
+    if name == "-" {
+        return read_all("standard input", &mut io::stdin().lock());
+    }
     let mut file = open(path).map_err(|error| Failure::Read { file: name.clone(), error })?;
     read_all(&name, &mut file)
 }

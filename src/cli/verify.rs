@@ -20,7 +20,7 @@ Examples:
   denavit verify leg.certificate.json tulip_leg
   denavit verify leg.certificate.json tulip_leg --json")]
 pub(crate) struct Arguments {
-    /// Path of a certificate that `denavit base --certificate` wrote
+    /// Path of a certificate that `denavit base --certificate` wrote, or - for standard input
     #[arg(value_name = "CERTIFICATE")]
     certificate: PathBuf,
     /// Path of a model file, name of a shipped model, or - for standard input

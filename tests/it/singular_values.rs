@@ -6,6 +6,7 @@ use denavit::expr::{Dag, ExprId, Floats, evaluate};
 use denavit::function::FunctionName;
 use denavit::model;
 use denavit::regressor::{BaseParameters, RegressorOptions, base_parameters};
+use denavit::shipped;
 use nalgebra::DMatrix;
 
 /// A number between -1 and 1 that a name and a point have.
@@ -68,6 +69,27 @@ fn ranks_are_those_of_singular_values() {
         assert_eq!(base.rank(), rank, "seed {seed}");
     }
     assert!(separated >= 16, "{separated} of 24 trees are well separated");
+}
+
+/// Of every robot with less than all terms.
+#[test]
+fn ranks_of_some_terms_are_those_of_singular_values() {
+    for name in ["planar_3r", "scara", "stanford", "puma560", "iiwa", "tulip_leg6", "tulip"] {
+        for (inertia, coriolis, gravity) in
+            [(true, false, false), (true, true, false), (false, false, true)]
+        {
+            let shipped = shipped::find(name).expect("it is shipped");
+            let mut robot = model::read(name, shipped.text.as_bytes()).unwrap();
+            (robot.terms.inertia, robot.terms.coriolis) = (inertia, coriolis);
+            robot.terms.gravity = gravity;
+            let base = base_parameters(&robot, RegressorOptions::default(), &[]).unwrap();
+            let relative = relative_singular_values(&stacked(&base));
+            let doubtful = relative.iter().any(|value| (1e-12..1e-7).contains(value));
+            assert!(!doubtful, "{name}: the points tell too little");
+            let rank = relative.iter().filter(|&&value| value >= 1e-7).count();
+            assert_eq!(base.rank(), rank, "{name}, {inertia} {coriolis} {gravity}");
+        }
+    }
 }
 
 /// The emitted columns, on the joint axes: none is 0, and none a sum of others.

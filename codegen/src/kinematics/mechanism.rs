@@ -1,7 +1,7 @@
 //! The rigid bodies that move. Links on fixed rows are part of the body that carries them.
 
 use crate::arena::SecondaryMap;
-use crate::expr::{Dag, ExprId};
+use crate::expr::{Dag, ExprId, angle_atoms};
 use crate::model::{About, Convention, JointKind, JointVariables, Link, LinkId, Robot};
 use crate::spatial::{Axis, PseudoInertia, Turn, Vector, add, zero};
 
@@ -160,6 +160,7 @@ impl Placement {
             }
             _ => angle,
         };
+        let angle = if angle_atoms(dag, angle).is_empty() { dag.zero() } else { angle };
         let turn = Turn::new(dag, axis, angle);
         if !turn.is_identity(dag) {
             self.turns.push(turn);

@@ -1,13 +1,17 @@
 //! Base parameters: the combinations of parameters that the torques depend on, theta = B_Eu theta0
 //! (thesis 3.5).
 
+use super::coincidence::coincidences;
 use super::column::{Regressor, RegressorError, RegressorOptions};
-use super::dependence::relations;
+use super::dependence::{Relation, relations};
 use super::eliminate::{Reduced, eliminate};
 use super::formula::{Part, parts, sum_text};
 use super::rank::{PARAMETERS, Ranking, rank};
 use super::theta::column_symbol;
-use crate::expr::{Dag, EvaluateError, ExprId, Residues, evaluate, text};
+use super::turning::table_angles;
+use crate::expr::{
+    Dag, EvaluateError, ExprId, Node, Residues, UnaryFunction, angle_atoms, evaluate, is_pi, text,
+};
 use crate::fundamental::{CanonicalError, Fraction};
 use crate::model::Robot;
 use crate::number::{Rational, Residue, integer};
@@ -31,13 +35,21 @@ pub enum BaseError {
         /// What was asked for.
         name: String,
     },
+    /// An angle of the table has another form for other values of constants.
+    Piecewise {
+        /// The model.
+        model: String,
+        /// The angle.
+        angle: String,
+    },
     /// The relations of the table are not those at random points: an angle of the table is a number
     /// whose sine obeys more than cos^2 + sin^2 = 1, and that matters here.
     Special {
         /// The model.
         model: String,
     },
-    /// There are more dependencies than the table explains; holds how many of each.
+    /// There are more dependencies than the table explains, and too many functions to write the
+    /// columns out; holds how many of each.
     Unexplained {
         /// The model.
         model: String,
@@ -59,6 +71,11 @@ impl fmt::Display for BaseError {
                 "{model}: there is no parameter {name} to keep\n  hint: `denavit base {model}` \
                  lists them"
             ),
+            Self::Piecewise { model, angle } => write!(
+                f,
+                "{model}: the angle {angle} has cases with base parameters of their own\n  hint: \
+                 declare the angle as a constant, or write the case that holds"
+            ),
             Self::Special { model } => write!(
                 f,
                 "{model}: an angle of the table is a special number for these relations\n  hint: \
@@ -67,7 +84,8 @@ impl fmt::Display for BaseError {
             Self::Unexplained { model, needed, proved } => write!(
                 f,
                 "{model}: {needed} columns depend on others, of which {proved} are proved to; the \
-                 rest is a coincidence of this geometry or of these terms"
+                 rest is a coincidence of this geometry or of these terms, and too large to be \
+                 written out"
             ),
         }
     }
@@ -135,6 +153,8 @@ pub struct BaseParameters {
     pub dependent: Vec<Dependent>,
     /// Rank, pivots and their rows modulo p.
     pub ranking: Ranking,
+    /// Relations that the table alone does not tell.
+    pub(super) coincidences: Vec<Relation>,
     symbols: Vec<ExprId>,
 }
 
@@ -191,11 +211,24 @@ pub fn base_parameters(
 /// The base parameters of a regressor.
 pub fn reduce(mut regressor: Regressor, keep: &[String]) -> Result<BaseParameters, BaseError> {
     let order = order(&regressor, keep)?;
+    let mut angles = table_angles(&regressor.mechanism).into_iter();
+    if let Some(angle) = angles.find(|&angle| may_be_square(&regressor.dag, angle)) {
+        let angle = text::print(&regressor.dag, angle).to_string();
+        return Err(BaseError::Piecewise { model: regressor.model, angle });
+    }
     let mut dag = regressor.dag.clone();
-    let relations = relations(&regressor, &mut dag);
-    let reduced = eliminate(&mut dag, &relations, &order)?;
-    regressor.dag = dag;
+    let mut relations = relations(&regressor, &mut dag);
+    let mut reduced = eliminate(&mut dag, &relations, &order)?;
     let ranking = rank(&regressor, &order)?;
+    let mut others = Vec::new();
+    if ranking.dependent.len() > reduced.len() {
+        let left: Vec<usize> =
+            order.iter().copied().filter(|column| !reduced.contains_key(column)).collect();
+        others = coincidences(&regressor, &mut dag, &left).unwrap_or_default();
+        relations.extend(others.iter().cloned());
+        reduced = eliminate(&mut dag, &relations, &order)?;
+    }
+    regressor.dag = dag;
     if ranking.dependent.len() != reduced.len() {
         return Err(BaseError::Unexplained {
             model: regressor.model.clone(),
@@ -212,7 +245,21 @@ pub fn reduce(mut regressor: Regressor, keep: &[String]) -> Result<BaseParameter
         .collect();
     let Regressor { dag, columns, .. } = &mut regressor;
     let symbols = columns.iter().map(|column| column_symbol(dag, column)).collect();
-    Ok(BaseParameters { regressor, order, parameters, dependent, ranking, symbols })
+    let coincidences = others;
+    Ok(BaseParameters { regressor, order, parameters, dependent, ranking, coincidences, symbols })
+}
+
+/// Whether an angle has cases of which one is a quarter turn: another geometry than the rest.
+fn may_be_square(dag: &Dag, angle: ExprId) -> bool {
+    let is_square = |case: ExprId| {
+        let mut atoms = angle_atoms(dag, case).into_iter();
+        atoms.all(|(atom, multiple)| is_pi(dag, &atom) && (&multiple + &multiple).is_integer())
+    };
+    dag.topological(&[angle]).into_iter().any(|node| match dag.node(node) {
+        Node::Select { then, otherwise, .. } => is_square(then) || is_square(otherwise),
+        Node::Unary(UnaryFunction::Sign, _) => true,
+        _ => false,
+    })
 }
 
 /// `keep` names columns, or by their prefix (`mx`) those of all links.
@@ -349,7 +396,7 @@ fn combination(
         }
         // A minus sign belongs before the product.
         let (factor, is_negative) = match dag.node(factor) {
-            crate::expr::Node::Neg(inner) => (inner, true),
+            Node::Neg(inner) => (inner, true),
             _ => match dag.as_constant(factor).cloned() {
                 Some(value) if value.is_negative() => (dag.constant(value * integer(-1)), true),
                 _ => (factor, false),

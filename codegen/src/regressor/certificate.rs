@@ -5,15 +5,16 @@
 //! - rank <= r: each other column's relation vanishes, exactly. The relation is read as matter, one
 //!   amount a body, and settled: from the tips to the base each body hands on what its carrier
 //!   feels alike, and what is left must be what the body does not feel. No elimination is done.
-//!   Of robots of up to six joints the relations are multiplied out too, and are 0 in every torque.
+//!   Of robots of up to six joints the relations are multiplied out too, and are 0 in every torque;
+//!   so is, of any robot, a relation that does not settle: one of special terms or lengths.
 
 use super::base::BaseParameters;
+use super::coincidence::written_out;
 use super::column::{Regressor, RegressorError, RegressorOptions, Unknowns};
 use super::rank::{PARAMETERS, rows_at};
 use super::settle::{settle, without_denominators};
-use crate::arena::Handle;
-use crate::expr::{ClassSet, Dag, ExprId, Node, SymbolId, angle_atoms, is_pi, text};
-use crate::fundamental::{Basis, Expansion, Matrix, decompose};
+use super::turning::table_angles;
+use crate::expr::{ClassSet, Dag, ExprId, Node, angle_atoms, is_pi, text};
 use crate::model::{BakeError, Robot, Terms, bake_geometry};
 use crate::number::Residue;
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,9 @@ const MULTIPLIED_OUT_JOINTS: usize = 6;
 
 /// Memory for it: three times what PUMA 560 takes.
 const MULTIPLIED_OUT_BYTES: usize = 48 << 20;
+
+/// Memory for relations that have no other proof.
+const COINCIDENCE_BYTES: usize = 320 << 20;
 
 /// A certificate, as it stands in its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -106,6 +110,8 @@ pub enum Verdict {
     },
     /// It is no certificate of this format.
     Format(String),
+    /// A word of `terms` or `with` is not known, or not in its place.
+    Words,
     /// It belongs to another model, or to another content of the model.
     OtherModel(String),
     /// The model has other columns.
@@ -132,6 +138,7 @@ impl fmt::Display for Verdict {
                 write!(f, "verified: {rank} base parameters (each relation {by})")
             }
             Self::Format(tag) => write!(f, "`{tag}` is not {FORMAT} with its prime"),
+            Self::Words => write!(f, "`terms` or `with` has a word that is unknown or misplaced"),
             Self::OtherModel(name) => {
                 write!(f, "the certificate is of `{name}` with another content")
             }
@@ -158,19 +165,14 @@ impl Verdict {
 /// The constant parts of angles of the table that are numbers, beyond quarter turns, as text.
 fn generic_angles(regressor: &Regressor) -> Vec<String> {
     let dag = &regressor.dag;
-    let mechanism = &regressor.mechanism;
-    let bodies = mechanism.bodies.iter();
-    let turns = bodies.flat_map(|body| body.turns.iter().map(|turn| turn.angle));
-    let placements = mechanism.placements.values();
-    let of_links = placements.flat_map(|place| place.turns.iter().map(|turn| turn.angle));
-    let angles: BTreeSet<ExprId> = turns.chain(of_links).collect();
     let is_generic = |angle: &ExprId| {
         angle_atoms(dag, *angle).iter().any(|(atom, multiple)| match is_pi(dag, atom) {
             true => !(multiple + multiple).is_integer(),
             false => atom.iter().all(|&(expr, _)| !matches!(dag.node(expr), Node::Symbol(_))),
         })
     };
-    angles.into_iter().filter(is_generic).map(|angle| text::print(dag, angle).to_string()).collect()
+    let angles = table_angles(&regressor.mechanism).into_iter();
+    angles.filter(is_generic).map(|angle| text::print(dag, angle).to_string()).collect()
 }
 
 fn hash_text(robot: &Robot) -> String {
@@ -183,6 +185,19 @@ fn term_names(terms: Terms) -> Vec<String> {
     list.iter().filter(|(has, _)| *has).map(|(_, name)| (*name).to_owned()).collect()
 }
 
+/// What [`Certificate::with`] has.
+fn added_words(options: RegressorOptions, numeric: bool) -> Vec<String> {
+    let words = [
+        (options.friction, "friction"),
+        (options.rotor, "rotor"),
+        (options.offset, "offset"),
+        (options.only_modelled, "only_modelled"),
+        (options.unknowns == Unknowns::Products, "products"),
+        (numeric, NUMERIC),
+    ];
+    words.iter().filter(|(on, _)| *on).map(|(_, word)| (*word).to_owned()).collect()
+}
+
 impl Certificate {
     /// The certificate of base parameters found with `options` for `robot`, in whose geometry
     /// numbers took the place of symbols if it is `numeric` ([`bake_geometry`]).
@@ -192,14 +207,6 @@ impl Certificate {
         base: &BaseParameters,
         numeric: bool,
     ) -> Self {
-        let with = [
-            (options.friction, "friction"),
-            (options.rotor, "rotor"),
-            (options.offset, "offset"),
-            (options.only_modelled, "only_modelled"),
-            (options.unknowns == Unknowns::Products, "products"),
-            (numeric, NUMERIC),
-        ];
         let name = |column: usize| base.name(column).to_owned();
         let pivots = base
             .ranking
@@ -220,7 +227,7 @@ impl Certificate {
             model: robot.name.clone(),
             model_hash: hash_text(robot),
             terms: term_names(robot.terms),
-            with: with.iter().filter(|(on, _)| *on).map(|(_, name)| (*name).to_owned()).collect(),
+            with: added_words(options, numeric),
             prime: Residue::MODULUS,
             parameters: PARAMETERS,
             generic_angles: generic_angles(&base.regressor),
@@ -251,7 +258,8 @@ impl Certificate {
                 Unknowns::Parameters
             },
         };
-        let mut robot = match has(&self.with, NUMERIC) {
+        let is_numeric = has(&self.with, NUMERIC);
+        let mut robot = match is_numeric {
             false => robot.clone(),
             true => match bake_geometry(robot) {
                 Ok(robot) => robot,
@@ -261,6 +269,9 @@ impl Certificate {
         robot.terms.inertia = has(&self.terms, "inertia");
         robot.terms.coriolis = has(&self.terms, "coriolis");
         robot.terms.gravity = has(&self.terms, "gravity");
+        if self.terms != term_names(robot.terms) || self.with != added_words(options, is_numeric) {
+            return Verdict::Words;
+        }
         let regressor = match Regressor::new(&robot, options, robot.torque_side) {
             Ok(regressor) => regressor,
             Err(error) => return Verdict::Regressor(error),
@@ -286,23 +297,33 @@ impl Certificate {
         let mut dag = regressor.dag.clone();
         let joints = regressor.joints.len();
         let mut is_small = joints <= MULTIPLIED_OUT_JOINTS && self.generic_angles.is_empty();
-        let mut torques = vec![Vec::new(); joints];
+        let mut settled = WrittenOut::new(joints);
+        let mut unsettled = WrittenOut::new(joints);
         for relation in &self.relations {
             let refuted = || Verdict::Relation(relation.column.clone());
             let Some(amounts) = amounts(regressor, &mut dag, relation) else { return refuted() };
-            if !settle(regressor, &mut dag, &amounts) {
-                return refuted();
-            }
-            is_small &= amounts.iter().all(|&(_, amount)| !divides_by_waves(&dag, amount));
-            if is_small {
-                let Some(sums) = sums(regressor, &mut dag, &amounts) else { return refuted() };
-                torques.iter_mut().zip(sums).for_each(|(row, sum)| row.push(sum));
-            }
+            let divides = amounts.iter().any(|&(_, amount)| divides_by_waves(&dag, amount));
+            let list = match settle(regressor, &mut dag, &amounts) {
+                true if !is_small => continue,
+                true => &mut settled,
+                // a relation of no tree, but perhaps of these terms, or of this geometry
+                false if divides => return refuted(),
+                false => &mut unsettled,
+            };
+            is_small &= !divides;
+            let Some(sums) = sums(regressor, &mut dag, &amounts) else { return refuted() };
+            list.push(relation, sums);
         }
-        let vanish = if is_small { vanishing(&mut dag, &torques) } else { None };
-        match vanish.as_ref().map(|columns| columns.iter().position(|vanishes| !vanishes)) {
-            Some(Some(refuted)) => Verdict::Relation(self.relations[refuted].column.clone()),
-            _ => Verdict::Verified { rank: self.pivots.len(), multiplied_out: vanish.is_some() },
+        match unsettled.first_not_zero(&mut dag, COINCIDENCE_BYTES) {
+            Some(None) => {}
+            Some(Some(refuted)) => return Verdict::Relation(refuted.to_owned()),
+            None => return Verdict::Relation(unsettled.names[0].clone()),
+        }
+        let first =
+            if is_small { settled.first_not_zero(&mut dag, MULTIPLIED_OUT_BYTES) } else { None };
+        match first {
+            Some(Some(refuted)) => Verdict::Relation(refuted.to_owned()),
+            found => Verdict::Verified { rank: self.pivots.len(), multiplied_out: found.is_some() },
         }
     }
 
@@ -342,6 +363,33 @@ impl Certificate {
             }
         }
         self.parameters == PARAMETERS && determinant(matrix) != Residue::ZERO
+    }
+}
+
+/// Relations to multiply out: the sums that are to vanish, torque by torque.
+struct WrittenOut {
+    names: Vec<String>,
+    torques: Vec<Vec<ExprId>>,
+}
+
+impl WrittenOut {
+    fn new(joints: usize) -> Self {
+        Self { names: Vec::new(), torques: vec![Vec::new(); joints] }
+    }
+
+    fn push(&mut self, relation: &NullVector, sums: Vec<ExprId>) {
+        self.names.push(relation.column.clone());
+        self.torques.iter_mut().zip(sums).for_each(|(row, sum)| row.push(sum));
+    }
+
+    /// The first relation that is not 0 in every torque. None if they cannot be multiplied out.
+    fn first_not_zero(&self, dag: &mut Dag, memory_bytes: usize) -> Option<Option<&str>> {
+        if self.names.is_empty() {
+            return Some(None);
+        }
+        let found = written_out(dag, &self.torques, memory_bytes)?;
+        let mut columns = found.columns.iter().zip(&self.names);
+        Some(columns.find(|(column, _)| !column.is_empty()).map(|(_, name)| name.as_str()))
     }
 }
 
@@ -408,16 +456,4 @@ fn divides_by_waves(dag: &Dag, expr: ExprId) -> bool {
         Node::Div(_, divisor) => has_wave(divisor),
         _ => false,
     })
-}
-
-/// Which columns of a matrix vanish when it is written out as trigonometric polynomials, which are
-/// canonical. None if it cannot be written out.
-fn vanishing(dag: &mut Dag, rows: &[Vec<ExprId>]) -> Option<Vec<bool>> {
-    let known: Vec<bool> =
-        dag.symbols().values().map(|symbol| !ClassSet::of(symbol.class).is_run_time()).collect();
-    let is_known = |id: SymbolId| known[id.index()];
-    let matrix = Matrix { rows, is_known: &is_known, chains: &[] };
-    let expansion = &mut Expansion { memory_bytes: MULTIPLIED_OUT_BYTES, progress: &mut |_| {} };
-    let found = decompose(dag, &matrix, &[Basis::Fourier], expansion).ok()?;
-    Some(found[0].columns.iter().map(Vec::is_empty).collect())
 }

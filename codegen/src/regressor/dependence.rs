@@ -8,6 +8,7 @@
 
 use super::column::{Feature, JointFunction, Regressor};
 use super::inertial::{ENTRIES, entries, from_entries, parameters_of, unit_entry};
+use super::still::{Point, still_without_weight, unfelt};
 use super::turning::{
     Turning, from_axis, gravity_at_seat, is_alone, is_along_z, like_rotor, screws, seat_is_still,
     to_child, turnings, unturned,
@@ -56,6 +57,8 @@ struct Finder<'a> {
     hosts: Vec<Option<(usize, Placement)>>,
     turnings: Vec<Turning>,
     screws: Vec<bool>,
+    /// Points that are fixed in space, of bodies without weight.
+    still: Vec<Option<Point>>,
     relations: Vec<Relation>,
 }
 
@@ -75,8 +78,9 @@ impl<'a> Finder<'a> {
         let turnings = turnings(dag, mechanism);
         let screws = screws(dag, mechanism, &turnings);
         let terms = regressor.terms;
+        let still = still_without_weight(dag, mechanism, terms);
         let relations = Vec::new();
-        Self { regressor, mechanism, terms, dag, hosts, turnings, screws, relations }
+        Self { regressor, mechanism, terms, dag, hosts, turnings, screws, still, relations }
     }
 
     fn all(mut self) -> Vec<Relation> {
@@ -230,7 +234,8 @@ impl<'a> Finder<'a> {
             let mut difference = unit(4);
             difference[5] = self.dag.integer(-1);
             lists.push(difference);
-            if self.screws[body] {
+            // Where the line stays in place, and at rest anywhere, only weight could be felt.
+            if self.screws[body] || !self.is_moving() {
                 let weight = gravity_at_seat(self.dag, self.mechanism, body);
                 if !self.terms.gravity || is_along_z(self.dag, weight) {
                     lists.extend([FIRST[0], FIRST[1]].map(unit));
@@ -243,10 +248,18 @@ impl<'a> Finder<'a> {
                 Turning::About(_) => from_axis(self.dag, self.mechanism, body, about_axis),
                 _ => about_axis,
             };
-            let mut relation = Relation::new();
-            self.add_matter(&mut relation, body, &matter);
-            self.push(relation);
+            self.vanish(body, &matter);
         }
+        for matter in self.still[body].map(|point| unfelt(self.dag, point)).unwrap_or_default() {
+            self.vanish(body, &matter);
+        }
+    }
+
+    /// The relation that matter of a body is not felt.
+    fn vanish(&mut self, body: usize, matter: &PseudoInertia) {
+        let mut relation = Relation::new();
+        self.add_matter(&mut relation, body, matter);
+        self.push(relation);
     }
 
     /// A rotor whose joint is alone with its motion is felt like matter.

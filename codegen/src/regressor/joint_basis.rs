@@ -76,7 +76,7 @@ pub fn joint_basis(
     robot: &Robot,
 ) -> Result<Vec<JointParameter>, BaseError> {
     let mut dag = std::mem::take(&mut base.regressor.dag);
-    let found = independent(&base.regressor, &mut dag);
+    let found = independent(base, &mut dag);
     let turnings = turnings(&mut dag, &base.regressor.mechanism);
     base.regressor.dag = dag;
     let Found { field, columns, basis } = found?;
@@ -133,8 +133,10 @@ struct Found {
     basis: Vec<(Feature, Row)>,
 }
 
-fn independent(regressor: &Regressor, dag: &mut Dag) -> Result<Found, CanonicalError> {
-    let relations = feature_relations(regressor, dag);
+fn independent(base: &BaseParameters, dag: &mut Dag) -> Result<Found, CanonicalError> {
+    let regressor = &base.regressor;
+    let mut relations = feature_relations(regressor, dag);
+    relations.extend(base.coincidences.iter().cloned());
     let (field, mut rows) = rows(dag, &relations)?;
     let used: BTreeSet<Feature> = regressor
         .columns

@@ -6,6 +6,7 @@
 //! - `axle`: what matter on a joint's axis spares of that
 //! - [`Regressor`]: the columns of a model: ten a link, or every monomial of its unknowns
 //! - `dependence`: the exact relations among columns, for any tree, without elimination
+//! - `still`: points that never move; `coincidence`: relations of special geometries and terms
 //! - [`Ranking`]: rank and pivots modulo 2^61 - 1 at random points
 //! - `eliminate`: Gauss-Jordan over the rational functions of the known parameters
 //! - [`BaseParameters`]: which combinations of parameters the torques depend on, as [`Part`]s
@@ -20,6 +21,7 @@ mod axis_frames;
 mod axle;
 pub mod base;
 pub mod certificate;
+mod coincidence;
 mod column;
 mod decompose;
 mod dependence;
@@ -36,6 +38,7 @@ mod monomial;
 mod pull;
 mod rank;
 mod settle;
+mod still;
 mod theta;
 mod turning;
 

@@ -3,6 +3,7 @@
 
 use super::column::{Feature, JointFunction, Regressor};
 use super::inertial::{ENTRIES, entries, from_entries};
+use super::still::{Point, felt, still_without_weight};
 use super::turning::{
     Turning, gravity_at_seat, is_alone, is_along_z, like_rotor, screws, seat_is_still, to_child,
     turnings,
@@ -19,11 +20,13 @@ pub(super) fn settle(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, Ex
     let bodies = regressor.mechanism.bodies.len();
     let turnings = turnings(dag, &regressor.mechanism);
     let screws = screws(dag, &regressor.mechanism, &turnings);
+    let still = still_without_weight(dag, &regressor.mechanism, regressor.terms);
     let mut settling = Settling {
         matter: vec![PseudoInertia::zero(dag); bodies],
         functions: BTreeMap::new(),
         turnings,
         screws,
+        still,
         left: Vec::new(),
         regressor,
         dag,
@@ -94,6 +97,7 @@ struct Settling<'a> {
     functions: BTreeMap<(usize, JointFunction), ExprId>,
     turnings: Vec<Turning>,
     screws: Vec<bool>,
+    still: Vec<Option<Point>>,
     /// What must be 0.
     left: Vec<ExprId>,
 }
@@ -187,7 +191,10 @@ impl Settling<'_> {
         let terms = self.regressor.terms;
         let is_moving = terms.inertia || terms.coriolis;
         let [mass, x, y, z, k11, k22, k33, k12, k13, k23] = kept;
-        self.left.push(mass);
+        match (self.still[body], self.turnings[body]) {
+            (Some(_), Turning::Freely) => {}
+            _ => self.left.push(mass),
+        }
         match self.turnings[body] {
             Turning::Never => {}
             Turning::About(axis) => {
@@ -197,19 +204,26 @@ impl Settling<'_> {
                     self.left.push(sum);
                 }
                 let weight = gravity_at_seat(self.dag, &self.regressor.mechanism, body);
-                let is_still =
-                    self.screws[body] && (!terms.gravity || is_along_z(self.dag, weight));
+                let on_line = self.screws[body] || !is_moving;
+                let is_still = on_line && (!terms.gravity || is_along_z(self.dag, weight));
                 if !is_still {
                     let across = cross(self.dag, axis, [x, y, z]);
                     self.left.extend(across);
                 }
             }
-            Turning::Freely => {
-                self.left.extend([x, y, z]);
-                if is_moving {
-                    self.left.extend([k11, k22, k33, k12, k13, k23]);
+            Turning::Freely => match self.still[body] {
+                Some(_) if !is_moving => {}
+                Some(point) => {
+                    let about = felt(self.dag, point, &from_entries(kept));
+                    self.left.extend(about);
                 }
-            }
+                None => {
+                    self.left.extend([x, y, z]);
+                    if is_moving {
+                        self.left.extend([k11, k22, k33, k12, k13, k23]);
+                    }
+                }
+            },
         }
     }
 }

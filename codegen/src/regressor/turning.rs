@@ -4,6 +4,7 @@ use crate::expr::{Dag, ExprId};
 use crate::kinematics::Mechanism;
 use crate::number::ratio;
 use crate::spatial::{PseudoInertia, Turn, Vector};
+use std::collections::BTreeSet;
 
 /// What the angular velocity of a body can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +35,13 @@ pub(super) fn turnings(dag: &mut Dag, mechanism: &Mechanism) -> Vec<Turning> {
         });
     }
     result
+}
+
+/// The constant parts of all angles of the table.
+pub(super) fn table_angles(mechanism: &Mechanism) -> BTreeSet<ExprId> {
+    let turns = mechanism.bodies.iter().flat_map(|body| &body.turns);
+    let of_links = mechanism.placements.values().flat_map(|place| &place.turns);
+    turns.chain(of_links).map(|turn| turn.angle).collect()
 }
 
 /// Whether a vector lies along z.

@@ -187,6 +187,14 @@ fn tampered_certificates_and_other_models_are_refused() {
     zero.pivots.push(denavit_codegen::regressor::certificate::Pivot { column, point: 1, joint: 0 });
     assert_eq!(zero.verify(&robot), Verdict::RankTooLow);
     assert!(matches!(good.verify(&load("rx90")), Verdict::OtherModel(_)));
+    for word in ["rotors", "friction"] {
+        let mut words = good.clone();
+        words.with.extend([word.to_owned(), word.to_owned()]);
+        assert!(!words.verify(&robot).is_verified(), "{word}");
+    }
+    let mut terms = good.clone();
+    terms.terms.push("gravity".to_owned());
+    assert_eq!(terms.verify(&robot), Verdict::Words);
     let mut prime = good;
     prime.prime = 97;
     assert!(matches!(prime.verify(&robot), Verdict::Format(_)));

@@ -3,7 +3,7 @@
 use super::{INERTIAL, base, rigid, tree};
 use crate::robots::{fixture, load};
 use denavit_codegen::model::{Base, Robot};
-use denavit_codegen::regressor::RegressorOptions;
+use denavit_codegen::regressor::{BaseError, Certificate, RegressorOptions, base_parameters};
 
 /// Ranks: inertial, + friction, + rotor, + offset.
 fn ranks(robot: &Robot) -> [usize; 4] {
@@ -72,6 +72,65 @@ fn twists_may_be_functions_of_parameters() {
         ];
         let upright = tree("skew", ["0", "0", "-g"], &rows);
         assert_eq!(base(&upright, INERTIAL).rank(), 7 * 3 - 6, "{twist}");
+    }
+}
+
+#[test]
+fn twists_with_a_square_case_are_refused() {
+    for twist in ["select(a0 < d, 0, 0.4)", "select(a0 < d, 0.3, pi/2)", "sign(d)*pi/2"] {
+        let rows = [("revolute", "a0", twist, "d", None), ("revolute", "a0", "0", "d", Some(0))];
+        let robot = tree("cases", ["0", "0", "-g"], &rows);
+        let error = base_parameters(&robot, INERTIAL, &[]).unwrap_err();
+        assert!(matches!(error, BaseError::Piecewise { .. }), "{twist}: {error}");
+    }
+}
+
+/// Three axes through one point: without weight only the six second moments about it are felt, of
+/// which each carrier takes the one along the axis: 1 + 5 + 5. With weight, upright, two first
+/// moments of each carried body come to them.
+#[test]
+fn a_body_about_a_fixed_point_feels_no_mass_there() {
+    // the second frame is away from the point, on an axis through it
+    let rows = [
+        ("revolute", "0", "al0", "0", None),
+        ("fixed", "0", "0", "d", Some(0)),
+        ("revolute", "0", "0", "0", Some(1)),
+        ("fixed", "0", "al1", "-d", Some(2)),
+        ("revolute", "0", "0", "0", Some(3)),
+    ];
+    for (gravity, rank) in [(["0", "0", "0"], 11), (["0", "0", "-g"], 15)] {
+        let robot = tree("spherical", gravity, &rows);
+        assert_eq!(certified(&robot), rank);
+    }
+    let mut away = rows;
+    away[3].3 = "d";
+    assert_eq!(
+        certified(&tree("away", ["0", "0", "0"], &away)),
+        13,
+        "the third does not meet them"
+    );
+}
+
+/// The rank, with a certificate that verifies.
+fn certified(robot: &Robot) -> usize {
+    let base = base(robot, INERTIAL);
+    let verdict = Certificate::new(robot, INERTIAL, &base, false).verify(robot);
+    assert!(verdict.is_verified(), "{}: {verdict}", robot.name);
+    base.rank()
+}
+
+/// Terms that no robot moves by have relations that no rule about trees tells.
+#[test]
+fn terms_may_be_any() {
+    for name in ["planar_2r", "scara", "stanford", "puma560", "tulip_leg5"] {
+        for (inertia, coriolis, gravity) in
+            [(true, false, false), (true, true, false), (false, true, true), (false, false, true)]
+        {
+            let mut robot = rigid(load(name));
+            (robot.terms.inertia, robot.terms.coriolis) = (inertia, coriolis);
+            robot.terms.gravity = gravity;
+            certified(&robot);
+        }
     }
 }
 

@@ -4,10 +4,12 @@
 //! - [`Values`]: the numbers behind a model's expressions
 //! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
 //! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
+//! - [`html`]: reports as one page that needs nothing from elsewhere
 //!
 //! Nothing here prints; text is handed to whoever does.
 
 mod camera;
+pub mod html;
 mod label;
 mod outline;
 mod paragraph;

@@ -4,6 +4,7 @@ mod cli;
 mod contact;
 mod emitted;
 mod identify;
+mod report;
 mod simulate;
 mod singular_values;
 mod tidy;

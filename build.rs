@@ -1,8 +1,26 @@
 //! The project is its own first client: these robots become modules of Rust, tulip_leg6 for the
-//! benches alone. All others are read at run time.
+//! benches alone, planar_biped with what a simulation needs. All others are read at run time.
+
+use denavit_codegen::build_script::{Request, emit, emit_with};
+use denavit_codegen::function::FunctionName;
+
+const OF_A_PLANT: [FunctionName; 10] = [
+    FunctionName::MassMatrix,
+    FunctionName::Bias,
+    FunctionName::LinkTransforms,
+    FunctionName::ContactPositions,
+    FunctionName::ContactJacobian,
+    FunctionName::ContactBias,
+    FunctionName::KineticEnergy,
+    FunctionName::PotentialEnergy,
+    FunctionName::CenterOfMass,
+    FunctionName::Momentum,
+];
 
 fn main() {
     for model in ["puma560", "tulip", "tulip_leg6"] {
-        denavit_codegen::build_script::emit(format!("models/{model}.json"));
+        emit(format!("models/{model}.json"));
     }
+    let request = Request { functions: OF_A_PLANT.to_vec(), ..Request::default() };
+    emit_with("models/planar_biped.json", &request);
 }

@@ -10,3 +10,9 @@ pub mod tulip {
 pub mod puma560 {
     include!(concat!(env!("OUT_DIR"), "/puma560_dynamics.rs"));
 }
+
+/// Dynamics of a biped of seven links in a plane: what a simulation needs of it. Made of
+/// `models/planar_biped.json`.
+pub mod planar_biped {
+    include!(concat!(env!("OUT_DIR"), "/planar_biped_dynamics.rs"));
+}

@@ -2,7 +2,8 @@
 //!
 //! - everything of [`denavit_codegen`], the symbolic compiler
 //! - [`shipped`]: robots whose model files are part of the library
-//! - [`tulip`], [`puma560`]: what the compiler made of two of them when this library was built
+//! - [`tulip`], [`puma560`], [`planar_biped`]: what the compiler made of three of them when this
+//!   library was built
 //! - [`simulate`]: robots in motion, on the ground
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`trajectory`]: references for their joints
@@ -18,7 +19,7 @@ pub mod trajectory;
 pub mod walk;
 
 pub use denavit_codegen::*;
-pub use generated::{puma560, tulip};
+pub use generated::{planar_biped, puma560, tulip};
 
 /// The examples of the README, as tests.
 #[cfg(doctest)]

@@ -5,7 +5,6 @@ use denavit::model::{BakeError, ModelError};
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
-use denavit::simulate::StartError;
 use denavit::simulate::scenario::ScenarioError;
 use std::fmt;
 use std::io;
@@ -56,8 +55,13 @@ pub(crate) enum Failure {
     TooLongToSet { name: String, formulas: usize },
     /// A scenario file is wrong.
     Scenario(ScenarioError),
-    /// A scenario cannot begin; holds its name and why.
-    Start(String, StartError),
+    /// Neither a file nor a shipped scenario has this name; holds it and the one that was meant,
+    /// perhaps.
+    NoScenario { name: String, nearest: Option<&'static str> },
+    /// Two outputs would be one file.
+    SameOutput(String),
+    /// A window that the run does not have; holds the run's beginning and end \[s\].
+    Window([f64; 2]),
     /// A step was given for the scheme that chooses its own.
     StepOfEventScheme,
     /// The answer cannot be written to standard output.
@@ -129,12 +133,17 @@ impl Failure {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
             Self::StepOfEventScheme => "add --scheme time-stepping".to_owned(),
-            Self::Start(_, StartError::Penetration(..)) => {
-                "raise the robot, or give `on_ground` in `initial`".to_owned()
+            Self::NoScenario { nearest: Some(nearest), .. } => {
+                format!("`{nearest}` is a shipped scenario")
             }
+            Self::NoScenario { .. } => {
+                let names: Vec<_> = denavit::shipped::SCENARIOS.iter().map(|s| s.name).collect();
+                format!("give the path of a scenario file, or one of {}", names.join(", "))
+            }
+            Self::SameOutput(_) => "give each a file of its own".to_owned(),
+            Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
             | Self::Scenario(_)
-            | Self::Start(..)
             | Self::Base(_)
             | Self::Decompose(..)
             | Self::Equations(_)
@@ -210,7 +219,13 @@ impl fmt::Display for Failure {
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }
-            Self::Start(scenario, error) => write!(f, "{scenario}: {error}")?,
+            Self::NoScenario { name, .. } => {
+                write!(f, "{name}: there is no such file, and no shipped scenario of that name")?;
+            }
+            Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
+            Self::Window([from, to]) => {
+                write!(f, "--window: the run is from {from} to {to} s")?;
+            }
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;
             }
@@ -225,7 +240,7 @@ impl fmt::Display for Failure {
 impl std::error::Error for Failure {}
 
 /// What the system says, without its error number.
-fn reason(error: &io::Error) -> String {
+pub(super) fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     let end = text.find(" (os error").unwrap_or(text.len());
     let mut text = text[..end].to_owned();

@@ -1,6 +1,6 @@
 //! Files in and out: models by path or by name, outputs that are whole or not there.
 
-use super::failure::Failure;
+use super::failure::{Failure, reason};
 use denavit::model::equations::{self, Equations};
 use denavit::model::{self, Robot};
 use denavit::shipped::{self, ShippedModel};
@@ -128,8 +128,8 @@ pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
     read.map(|_| bytes).map_err(|error| {
         let shipped = shipped::MODELS.iter().chain(shipped::BODIES).map(|model| model.name);
         match denavit::expr::text::nearest(model, shipped) {
-            Some(nearest) => format!("{error} (`{nearest}` is a shipped model)"),
-            None => error.to_string(),
+            Some(nearest) => format!("{} (`{nearest}` is a shipped model)", reason(&error)),
+            None => reason(&error),
         }
     })
 }
@@ -143,16 +143,54 @@ pub(crate) fn on_stdout(outputs: &[Option<&PathBuf>], json: bool) -> Result<bool
     }
 }
 
+/// Finds before a long run what would keep its outputs from being written: each has a place of its
+/// own, where files can be made, and is no input.
+pub(crate) fn check_outputs(outputs: &[Option<&PathBuf>]) -> Result<(), Failure> {
+    let mut seen = Vec::new();
+    for path in outputs.iter().copied().flatten().filter(|path| path.as_os_str() != "-") {
+        refuse_input(path)?;
+        probe(path)
+            .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })?;
+        let directory = path.parent().and_then(|parent| directory(parent).canonicalize().ok());
+        let place = path.canonicalize().ok().or_else(|| Some(directory?.join(path.file_name()?)));
+        if seen.contains(&place) {
+            return Err(Failure::SameOutput(path.display().to_string()));
+        }
+        seen.push(place);
+    }
+    Ok(())
+}
+
+/// The directory of a path's parent, which is empty for a bare name.
+fn directory(parent: &Path) -> &Path {
+    if parent.as_os_str().is_empty() { Path::new(".") } else { parent }
+}
+
+/// Makes the file that would take the path's name, and removes it.
+fn probe(path: &Path) -> io::Result<()> {
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if let Some(temporary) = beside(&target)? {
+        write_new(&temporary, b"")?;
+        fs::remove_file(&temporary)?;
+    }
+    Ok(())
+}
+
+fn refuse_input(path: &Path) -> Result<(), Failure> {
+    let is_input = |target| READ.lock().is_ok_and(|read| read.contains(&target));
+    if path.is_file() && path.canonicalize().is_ok_and(is_input) {
+        return Err(Failure::Overwrites(path.display().to_string()));
+    }
+    Ok(())
+}
+
 /// Writes a file whole: into a new file beside it, which then takes its name. What was there stays
 /// until then. `-` is standard output.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if path.as_os_str() == "-" {
         return Ok(io::stdout().lock().write_all(bytes)?);
     }
-    let is_input = |target| READ.lock().is_ok_and(|read| read.contains(&target));
-    if path.is_file() && path.canonicalize().is_ok_and(is_input) {
-        return Err(Failure::Overwrites(path.display().to_string()));
-    }
+    refuse_input(path)?;
     replace(path, bytes)
         .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })
 }
@@ -160,20 +198,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // a link stays a link: its target is replaced
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    match target.metadata() {
-        Ok(metadata) if metadata.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        // devices and pipes are written to, not replaced
-        Ok(metadata) if !metadata.is_file() => return fs::write(&target, bytes),
-        Ok(metadata) if metadata.permissions().readonly() => {
-            return Err(io::ErrorKind::PermissionDenied.into());
-        }
-        _ => {}
-    }
-    let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}.tmp", std::process::id()));
-    let temporary = target.with_file_name(hidden);
+    let Some(temporary) = beside(&target)? else { return fs::write(&target, bytes) };
     let written = write_new(&temporary, bytes).and_then(|()| {
         if let Ok(metadata) = target.metadata() {
             fs::set_permissions(&temporary, metadata.permissions())?;
@@ -185,6 +210,24 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let _ = fs::remove_file(&temporary);
     }
     written
+}
+
+/// The name of the file that is written first; none for devices and pipes, which are written to and
+/// not replaced.
+fn beside(target: &Path) -> io::Result<Option<PathBuf>> {
+    match target.metadata() {
+        Ok(metadata) if metadata.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Ok(metadata) if !metadata.is_file() => return Ok(None),
+        Ok(metadata) if metadata.permissions().readonly() => {
+            return Err(io::ErrorKind::PermissionDenied.into());
+        }
+        _ => {}
+    }
+    let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.tmp", std::process::id()));
+    Ok(Some(target.with_file_name(hidden)))
 }
 
 fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {

@@ -2,15 +2,16 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{load_beside, on_stdout, read_file, write_whole};
+use super::files::{check_outputs, load_beside, on_stdout, read_file, write_whole};
 use super::json::write_json;
 use clap::{Args, ValueEnum};
+use denavit::expr::text::nearest;
 use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
 use denavit::simulate::scenario::{self, RunScheme, Scenario};
 use denavit::simulate::{Run, Stop};
 use serde_json::json as value;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -87,15 +88,22 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         }
         scenario.set_step_s(step_s);
     }
+    let whole = [scenario.initial.t_s, scenario.simulation.end_s];
+    if arguments.window.is_some_and(|[from, to]| from < whole[0] || to > whole[1]) {
+        return Err(Failure::Window(whole));
+    }
+    check_outputs(&outputs)?;
     let started = Instant::now();
-    let run = scenario.run().map_err(|error| Failure::Start(shown(&arguments.scenario), error))?;
+    let run = scenario.run().map_err(Failure::Scenario)?;
     let took = started.elapsed();
     let broken = scenario.broken(&run);
     if let Some(path) = &arguments.output {
         write_whole(path, run.log.to_csv().as_bytes())?;
     }
     if let Some(path) = &arguments.svg {
-        let drawn = draw(&mut scenario, &run, arguments.window);
+        // a run that ends before the window is drawn as it is
+        let window = arguments.window.filter(|[from, _]| *from < run.end.t_s);
+        let drawn = draw(&mut scenario, &run, window);
         write_whole(path, drawn.as_bytes())?;
     }
     match (is_answered, arguments.json) {
@@ -137,7 +145,14 @@ fn open(path: &Path) -> Result<Scenario, Failure> {
     let file = path.metadata().is_ok_and(|metadata| metadata.is_file());
     let bytes = match shipped::find_scenario(&name).filter(|_| !file) {
         Some(shipped) => shipped.text.as_bytes().to_vec(),
-        None => read_file(path)?,
+        None => read_file(path).map_err(|failure| match failure {
+            Failure::Read { error, .. } if error.kind() == ErrorKind::NotFound => {
+                let names = shipped::SCENARIOS.iter().map(|shipped| shipped.name);
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                Failure::NoScenario { nearest: nearest(&stem, names), name: name.clone() }
+            }
+            failure => failure,
+        })?,
     };
     let load = |model: &str| load_beside(path, model);
     scenario::read(&name, &bytes, &load).map_err(Failure::Scenario)
@@ -216,7 +231,8 @@ fn print(
         ("forces against momentum [N]", audit.force_n),
         ("zero moment point against momentum [m]", audit.zmp_m),
         ("friction beyond its cone [N]", audit.cone_n),
-        ("friction demand", audit.friction_demand),
+        ("friction demand of one link", audit.friction_demand),
+        ("friction demand of all contacts", audit.friction_total),
         ("largest torque [N m, N]", audit.torque),
     ];
     if audit.zmp_margin_m.is_finite() {

@@ -8,7 +8,9 @@ use denavit_codegen::model::{self, Robot};
 /// The plant of a robot: the generated module if it is the shipped model that the module was made
 /// of and no value differs that the module's plant cannot set, else interpreted.
 pub fn plant_of(robot: &Robot, overrides: &[Override]) -> Result<Box<dyn Plant>, PlantError> {
-    for (name, make) in [("tulip", tulip as Make), ("puma560", puma560 as Make)] {
+    let made: [(&str, Make); 3] =
+        [("tulip", tulip), ("puma560", puma560), ("planar_biped", planar_biped)];
+    for (name, make) in made {
         if robot.name == name
             && robot.hash == shipped_robot(name).hash
             && let Some(plant) = make(overrides)
@@ -36,7 +38,7 @@ fn without_coulomb(model: &PlantModel, qd: &[f64], bias: &mut [f64]) {
 }
 
 macro_rules! generated {
-    ($(#[$doc:meta])* $robot:ident, [$($settable:ident),*], {$($contacts:tt)*}) => {
+    ($(#[$doc:meta])* $robot:ident, [$($settable:ident),*], $contacts:ident) => {
         $(#[$doc])*
         pub fn $robot(overrides: &[Override]) -> Option<Box<dyn Plant>> {
             use crate::$robot as robot;
@@ -88,7 +90,7 @@ macro_rules! generated {
                     transforms.copy_from_slice(links.as_flattened().as_flattened());
                 }
 
-                $($contacts)*
+                $contacts!();
             }
 
             #[allow(unused_mut)] // a robot may have nothing to set
@@ -107,15 +109,8 @@ macro_rules! generated {
     };
 }
 
-generated! {
-    /// TUlip as generated code; none if an override is not stiffness, damping or rest angle of an
-    /// ankle roll.
-    tulip,
-    [
-        ks_right_ankle_x, ks_left_ankle_x, qs_right_ankle_x, qs_left_ankle_x, fv_right_ankle_x,
-        fv_left_ankle_x
-    ],
-    {
+macro_rules! contacts {
+    () => {
         fn contact_positions(&mut self, q: &[f64], positions: &mut [f64]) {
             let points = robot::contact_positions(&self.parameters, sized(q));
             positions.copy_from_slice(points.as_flattened());
@@ -130,18 +125,40 @@ generated! {
             let rows = robot::contact_bias(&self.parameters, sized(q), sized(qd));
             bias.copy_from_slice(&rows);
         }
-    }
+    };
+}
+
+macro_rules! no_contacts {
+    () => {
+        fn contact_positions(&mut self, _q: &[f64], _positions: &mut [f64]) {}
+
+        fn contact_jacobian(&mut self, _q: &[f64], _jacobian: &mut [f64]) {}
+
+        fn contact_bias(&mut self, _q: &[f64], _qd: &[f64], _bias: &mut [f64]) {}
+    };
+}
+
+generated! {
+    /// TUlip as generated code; none if an override is not stiffness, damping or rest angle of an
+    /// ankle roll.
+    tulip,
+    [
+        ks_right_ankle_x, ks_left_ankle_x, qs_right_ankle_x, qs_left_ankle_x, fv_right_ankle_x,
+        fv_left_ankle_x
+    ],
+    contacts
 }
 
 generated! {
     /// The PUMA 560 as generated code; none if there are overrides.
     puma560,
     [],
-    {
-        fn contact_positions(&mut self, _q: &[f64], _positions: &mut [f64]) {}
+    no_contacts
+}
 
-        fn contact_jacobian(&mut self, _q: &[f64], _jacobian: &mut [f64]) {}
-
-        fn contact_bias(&mut self, _q: &[f64], _qd: &[f64], _bias: &mut [f64]) {}
-    }
+generated! {
+    /// The planar biped as generated code; none if there are overrides.
+    planar_biped,
+    [],
+    contacts
 }

@@ -20,7 +20,7 @@ mod regression_model;
 mod regression_rows;
 
 pub use cradle::Cradle;
-pub use generated::{plant_of, puma560, tulip};
+pub use generated::{planar_biped, plant_of, puma560, tulip};
 pub use interpreted::InterpretedPlant;
 pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,

@@ -144,6 +144,15 @@ pub enum PlantError {
     UnknownParameter(String, Option<String>),
     /// A value that is not finite.
     NotFinite(String),
+    /// With the given values, something of a link would be negative.
+    Negative {
+        /// What, as "the mass".
+        what: &'static str,
+        /// The link.
+        link: String,
+        /// Its value.
+        value: f64,
+    },
     /// Parameters without a value.
     Bake(BakeError),
     /// A number that no computer arithmetic holds.
@@ -160,6 +169,9 @@ impl fmt::Display for PlantError {
                 write!(f, "the model has no parameter `{name}`")
             }
             Self::NotFinite(name) => write!(f, "the value of `{name}` is not a finite number"),
+            Self::Negative { what, link, value } => {
+                write!(f, "with these values {what} of `{link}` is {value}")
+            }
             Self::Bake(error) => write!(f, "{error}"),
             Self::Lower(error) => write!(f, "{error}"),
         }
@@ -181,7 +193,41 @@ pub(super) fn baked(robot: &Robot, overrides: &[Override]) -> Result<Robot, Plan
             .map_err(|_| PlantError::NotFinite(parameter.clone()))?;
         robot.parameters[id].default = Some(robot.dag.constant(exact));
     }
-    bake(&robot).map_err(PlantError::Bake)
+    let robot = bake(&robot).map_err(PlantError::Bake)?;
+    // the model's own values have been checked
+    if !overrides.is_empty() {
+        robot.links.values().try_for_each(|link| check_signs(&robot, link))?;
+    }
+    Ok(robot)
+}
+
+fn check_signs(robot: &Robot, link: &Link) -> Result<(), PlantError> {
+    let mut given: Vec<(&'static str, Option<ExprId>)> = vec![
+        ("the damping", link.joint.damping),
+        ("the spring's stiffness", link.joint.spring.map(|spring| spring.stiffness)),
+    ];
+    if let Some(body) = &link.body {
+        let [xx, yy, zz, ..] = body.inertia;
+        given.extend([("the mass", Some(body.mass)), ("Ixx", Some(xx))]);
+        given.extend([("Iyy", Some(yy)), ("Izz", Some(zz))]);
+    }
+    if let Some(drive) = &link.drive {
+        let (elastic, back) = (drive.series_elastic, drive.return_spring);
+        given.extend([
+            ("the rotor's inertia", drive.rotor_inertia),
+            ("the viscous friction", drive.viscous),
+            ("the Coulomb friction", drive.coulomb),
+            ("the drive's stiffness", elastic.map(|elastic| elastic.stiffness)),
+            ("the return spring's stiffness", back.map(|spring| spring.stiffness)),
+        ]);
+    }
+    for (what, entry) in given {
+        let value = entry.map_or(0.0, |entry| value(robot, entry));
+        if value < 0.0 {
+            return Err(PlantError::Negative { what, link: link.name.clone(), value });
+        }
+    }
+    Ok(())
 }
 
 impl PlantModel {

@@ -75,7 +75,7 @@ impl Watch {
         }
     }
 
-    /// Everything to be watched with the contacts as they are.
+    /// Everything to be watched with the contacts as they are, but for their forces.
     fn list(motion: &Motion<'_>) -> Vec<Watched> {
         let model = motion.plant.model();
         let mut list: Vec<Watched> = (0..model.contacts.len())
@@ -89,9 +89,6 @@ impl Watch {
             _ => None,
         };
         list.extend(motion.closed.iter().enumerate().filter_map(slips));
-        if !motion.closed.is_empty() {
-            list.push(Watched::Margin);
-        }
         list
     }
 
@@ -101,24 +98,18 @@ impl Watch {
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
     ) -> Result<Option<Fired>, Breakdown> {
+        let list = Self::list(motion);
+        let values = self.sample(motion, stepper, &list);
         let (t0, t1) = (stepper.start_time(), stepper.time());
         let mut first: Option<Fired> = None;
-        for watched in Self::list(motion) {
-            let samples = if watched == Watched::Margin { 1 } else { SAMPLES };
-            let mut last = (t0, self.value(motion, stepper, watched, t0)?);
-            for sample in 1..=samples {
-                let t = t0 + (t1 - t0) * sample as f64 / samples as f64;
-                let value = self.value(motion, stepper, watched, t)?;
+        for (index, &watched) in list.iter().enumerate() {
+            let mut last = (t0, values[index]);
+            for sample in 1..=SAMPLES {
+                let (t, value) = (sample_time(t0, t1, sample), values[sample * list.len() + index]);
                 if value < -watched.floor() {
-                    let armed = self.arm(motion, stepper, watched, last, t)?;
-                    let t_s = match armed {
-                        Some(positive) => {
-                            self.locate(motion, stepper, watched, positive, (t, value))?
-                        }
-                        None => t0,
-                    };
-                    if first.is_none_or(|found| t_s < found.t_s) {
-                        first = Some(Fired { watched, t_s });
+                    let fired = self.pin_down(motion, stepper, watched, last, (t, value))?;
+                    if first.is_none_or(|found| fired.t_s < found.t_s) {
+                        first = Some(fired);
                     }
                     break;
                 }
@@ -127,10 +118,52 @@ impl Watch {
                 }
             }
         }
+        if !motion.closed.is_empty() {
+            // forces last, and at the end of the step alone: they cost most
+            let value = self.value(motion, stepper, Watched::Margin, t1)?;
+            if value < 0.0 {
+                let before = (t0, self.value(motion, stepper, Watched::Margin, t0)?);
+                let (watched, end) = (Watched::Margin, (t1, value));
+                let fired = self.pin_down(motion, stepper, watched, before, end)?;
+                if first.is_none_or(|found| fired.t_s < found.t_s) {
+                    first = Some(fired);
+                }
+            }
+        }
         if first.is_none() {
             self.lower_levels(motion, stepper);
         }
         Ok(first)
+    }
+
+    /// Values of all that is listed at the start of the last step and at its samples.
+    fn sample(&mut self, motion: &mut Motion<'_>, stepper: &Stepper, list: &[Watched]) -> Vec<f64> {
+        let (t0, t1) = (stepper.start_time(), stepper.time());
+        let mut values = Vec::with_capacity((SAMPLES + 1) * list.len());
+        let mut y = std::mem::take(&mut self.y);
+        for sample in 0..=SAMPLES {
+            stepper.interpolate(sample_time(t0, t1, sample), &mut y);
+            self.look(motion, list, &y);
+            values.extend(list.iter().map(|watched| self.seen(motion, *watched, &y)));
+        }
+        self.y = y;
+        values
+    }
+
+    /// An event between a value that may be positive and one that is negative.
+    fn pin_down(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+        watched: Watched,
+        last: (f64, f64),
+        negative: (f64, f64),
+    ) -> Result<Fired, Breakdown> {
+        let t_s = match self.arm(motion, stepper, watched, last, negative.0)? {
+            Some(positive) => self.locate(motion, stepper, watched, positive, negative)?,
+            None => stepper.start_time(),
+        };
+        Ok(Fired { watched, t_s })
     }
 
     /// Contacts that have risen count from the ground again.
@@ -247,31 +280,50 @@ impl Watch {
         t_s: f64,
         y: &[f64],
     ) -> Result<f64, Breakdown> {
+        if watched == Watched::Margin {
+            return Ok(margin(motion, t_s, y)? + self.slack);
+        }
+        self.look(motion, &[watched], y);
+        Ok(self.seen(motion, watched, y))
+    }
+
+    /// Places the points that are listed, and lets contacts move.
+    fn look(&mut self, motion: &mut Motion<'_>, list: &[Watched], y: &[f64]) {
+        if list.iter().any(|watched| matches!(watched, Watched::SlipSpeed(_))) {
+            let closed: Vec<usize> = motion.closed.iter().map(|closed| closed.contact).collect();
+            motion.follow_points(y, &closed);
+        } else if list.iter().any(|watched| matches!(watched, Watched::Gap(_))) {
+            motion.place(y);
+        }
+        if list.iter().any(|watched| matches!(watched, Watched::FallPoint(_))) {
+            let parts = motion.layout.parts(y);
+            motion.plant.link_transforms(parts.q, &mut self.transforms);
+            let points = &motion.plant.model().fall_points;
+            point_positions(points, &self.transforms, &mut self.points);
+        }
+    }
+
+    /// A watched value, forces excepted, of the points as they are placed.
+    fn seen(&mut self, motion: &mut Motion<'_>, watched: Watched, y: &[f64]) -> f64 {
         let parts = motion.layout.parts(y);
-        Ok(match watched {
-            Watched::Gap(contact) => {
-                motion.place(y);
-                motion.gap(contact) - self.level[contact]
-            }
-            Watched::FallPoint(point) => {
-                motion.plant.link_transforms(parts.q, &mut self.transforms);
-                let points = &motion.plant.model().fall_points;
-                point_positions(points, &self.transforms, &mut self.points);
-                motion.ground.gap(&self.points[3 * point..3 * point + 3])
-            }
+        match watched {
+            Watched::Gap(contact) => motion.gap(contact) - self.level[contact],
+            Watched::FallPoint(point) => motion.ground.gap(&self.points[3 * point..3 * point + 3]),
             Watched::Guard(guard) => motion.plant.guard(guard, parts.q, parts.qd),
-            Watched::SlipSpeed(index) => slip_speed(motion, index, y),
-            Watched::Margin => margin(motion, t_s, y)? + self.slack,
-        })
+            Watched::SlipSpeed(index) => slip_speed(motion, index),
+            Watched::Margin => f64::INFINITY,
+        }
     }
 }
 
-fn slip_speed(motion: &mut Motion<'_>, index: usize, y: &[f64]) -> f64 {
-    let closed = motion.closed[index];
-    motion.project(y, &[closed.contact]);
-    let Mode::Slip(direction) = closed.mode else { return 0.0 };
-    let tangents = motion.ground.rows() - 1;
-    slip_left(&motion.work.velocity[..tangents], direction)
+fn sample_time(t0: f64, t1: f64, sample: usize) -> f64 {
+    if sample == SAMPLES { t1 } else { t0 + (t1 - t0) * sample as f64 / SAMPLES as f64 }
+}
+
+fn slip_speed(motion: &Motion<'_>, index: usize) -> f64 {
+    let Mode::Slip(direction) = motion.closed[index].mode else { return 0.0 };
+    let rows = motion.ground.rows();
+    slip_left(&motion.work.velocity[index * rows..(index + 1) * rows - 1], direction)
 }
 
 /// Least force to spare, and what counts as none: adhesion of that size is rounding \[N\].
@@ -283,7 +335,7 @@ fn margin(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<f64, Breakdown
 
 /// Least force to spare, and the largest of all \[N\].
 fn spare_force(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<(f64, f64), Breakdown> {
-    motion.constrained_motion(t_s, y)?;
+    motion.pose(t_s, y)?;
     let work = &motion.work;
     let problem = ContactProblem {
         space: motion.ground.space,
@@ -292,9 +344,7 @@ fn spare_force(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<(f64, f64
         free: &work.free,
         tolerance: motion.holding.tolerance,
     };
-    let largest = work.force.iter().fold(0.0_f64, |sum, force| sum.max(force.abs()));
-    let spare = motion.solver.margin(&problem, &work.modes).map_err(Breakdown::Contact)?;
-    Ok((spare, largest))
+    motion.solver.margin(&problem, &work.modes).map_err(Breakdown::Contact)
 }
 
 /// A time just after the forces have reached a limit, with the state that the modes before would

@@ -2,7 +2,9 @@
 //! and what each of them does stay as they are.
 
 use super::breakdown::Breakdown;
+use super::contact::cholesky::dot;
 use super::contact::delassus::Delassus;
+use super::contact::independent::IndependentRows;
 use super::contact::minimum_norm::MinimumNorm;
 use super::contact::solver::ContactSolver;
 use super::contact::{Contact, ContactFailure, ContactProblem, Friction, Mode, Tolerance};
@@ -86,6 +88,9 @@ pub(super) struct Motion<'a> {
     pub(super) solver: ContactSolver,
     pub(super) delassus: Delassus,
     memory: ControlMemory,
+    independent: IndependentRows,
+    /// The contacts of which those rows are.
+    chosen_for: Vec<usize>,
     pub(super) work: Work,
 }
 
@@ -102,6 +107,8 @@ pub(super) struct Work {
     pub(super) contact_bias: Vec<f64>,
     /// Rows of the contacts of the problem, along the ground's directions.
     pub(super) rows: Vec<f64>,
+    /// Of these the ones that are independent of each other.
+    few: Vec<f64>,
     /// Their velocities.
     pub(super) velocity: Vec<f64>,
     /// Their accelerations without contact forces.
@@ -152,6 +159,8 @@ impl<'a> Motion<'a> {
             solver: ContactSolver::new(),
             delassus: Delassus::new(),
             memory: ControlMemory::default(),
+            independent: IndependentRows::default(),
+            chosen_for: Vec::new(),
             work,
         }
     }
@@ -198,6 +207,12 @@ impl<'a> Motion<'a> {
 
     /// Rows, velocities and G of the listed contact points; positions of all points.
     pub(super) fn project(&mut self, y: &[f64], contacts: &[usize]) {
+        self.follow_points(y, contacts);
+        self.delassus.project(&self.work.rows);
+    }
+
+    /// Rows and velocities of the listed contact points; positions of all points.
+    pub(super) fn follow_points(&mut self, y: &[f64], contacts: &[usize]) {
         let (n, parts) = (self.layout.joints, self.layout.parts(y));
         let Work { positions, jacobian, rows, velocity, .. } = &mut self.work;
         self.plant.contact_positions(parts.q, positions);
@@ -210,7 +225,6 @@ impl<'a> Motion<'a> {
         velocity.clear();
         let speed = |row: &[f64]| row.iter().zip(parts.qd).map(|(w, v)| w * v).sum::<f64>();
         velocity.extend(rows.chunks_exact(n).map(speed));
-        self.delassus.project(rows);
     }
 
     /// Accelerations of the listed contact points without contact forces, after `free_motion` and
@@ -247,7 +261,58 @@ impl<'a> Motion<'a> {
 
     /// As `constrained_motion`, with any of the forces that move the plant alike.
     fn moved(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
-        self.respond(t_s, y, ContactSolver::moving_forces)
+        let all_stick = self.closed.iter().all(|closed| closed.mode == Mode::Stick);
+        if self.closed.is_empty() || !all_stick {
+            return self.respond(t_s, y, ContactSolver::moving_forces);
+        }
+        self.free_motion(t_s, y)?;
+        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        self.follow_points(y, &listed);
+        self.choose_rows(listed);
+        let n = self.layout.joints;
+        self.append_bias(y);
+        self.hold();
+        let Work { rows, free, few, force, acceleration, scratch, .. } = &mut self.work;
+        few.clear();
+        force.clear();
+        for &row in &self.independent.chosen {
+            let line = &rows[row * n..(row + 1) * n];
+            few.extend_from_slice(line);
+            force.push(free[row] + dot(line, acceleration));
+        }
+        self.delassus.project(few);
+        if !self.independent.cancel(self.delassus.matrix(), force) {
+            // far from where they were chosen
+            return self.respond(t_s, y, ContactSolver::moving_forces);
+        }
+        self.delassus.respond(force, acceleration, scratch);
+        Ok(())
+    }
+
+    /// Smooth motion begins, with the contacts as they are from now on.
+    pub(super) fn begin_smooth(&mut self) {
+        self.chosen_for.clear();
+    }
+
+    /// Rows that say all that the listed contacts' rows say, while these stay the same.
+    fn choose_rows(&mut self, listed: Vec<usize>) {
+        if self.chosen_for != listed {
+            self.delassus.project(&self.work.rows);
+            self.independent.choose(self.delassus.matrix(), self.delassus.rows());
+            self.chosen_for = listed;
+        }
+    }
+
+    /// What accelerations of the closed contact points have from rates alone, into `work.free`.
+    fn append_bias(&mut self, y: &[f64]) {
+        let parts = self.layout.parts(y);
+        let Work { contact_bias, free, .. } = &mut self.work;
+        self.plant.contact_bias(parts.q, parts.qd, contact_bias);
+        free.clear();
+        for closed in &self.closed {
+            let at = 3 * closed.contact;
+            self.ground.append(&contact_bias[at..at + 3], free);
+        }
     }
 
     fn respond(
@@ -326,7 +391,7 @@ impl<'a> Motion<'a> {
             return;
         }
         let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
-        self.project(y, &listed);
+        self.follow_points(y, &listed);
         for (index, closed) in self.closed.iter_mut().enumerate() {
             let speed = &self.work.velocity[index * rows..index * rows + 2];
             let size = speed[0].hypot(speed[1]);
@@ -362,12 +427,10 @@ impl<'a> Motion<'a> {
 impl Rates for Motion<'_> {
     fn rates(&mut self, t_s: f64, y: &[f64], dy: &mut [f64]) -> Result<(), Breakdown> {
         self.moved(t_s, y)?;
-        let (n, m) = (self.layout.joints, self.layout.motors);
-        let parts = self.layout.parts(y);
-        dy[..n].copy_from_slice(parts.qd);
-        dy[n..2 * n].copy_from_slice(&self.work.acceleration);
-        dy[2 * n..2 * n + m].copy_from_slice(parts.motor_rate);
-        dy[2 * n + m..2 * n + 2 * m].copy_from_slice(&self.work.drive.motor_acceleration);
+        let (positions, rates) = (self.layout.positions(), self.layout.joint_rates());
+        dy[..positions].copy_from_slice(&y[positions..2 * positions]);
+        dy[rates.clone()].copy_from_slice(&self.work.acceleration);
+        dy[rates.end..2 * positions].copy_from_slice(&self.work.drive.motor_acceleration);
         let rows = self.ground.rows();
         let mut rubbed = 0.0;
         for (index, closed) in self.closed.iter().enumerate() {
@@ -378,12 +441,16 @@ impl Rates for Motion<'_> {
             }
         }
         let [put_in, lost] = self.work.drive.power;
-        dy[2 * n + 2 * m] = put_in;
-        dy[2 * n + 2 * m + 1] = lost + rubbed;
+        dy[2 * positions] = put_in;
+        dy[2 * positions + 1] = lost + rubbed;
         match dy.iter().all(|entry| entry.is_finite()) {
             true => Ok(()),
             false => Err(Breakdown::NotFinite),
         }
+    }
+
+    fn positions(&self) -> usize {
+        self.layout.positions()
     }
 
     fn integrals(&self) -> usize {
@@ -394,8 +461,8 @@ impl Rates for Motion<'_> {
 impl Motion<'_> {
     /// Adds the rates that impulses of the projected rows make: v+ = v- + D^-1 W P.
     pub(super) fn apply_impulses(&mut self, impulse: &[f64], y: &mut [f64]) {
-        let n = self.layout.joints;
-        self.delassus.respond(impulse, &mut y[n..2 * n], &mut self.work.scratch);
+        let rates = self.layout.joint_rates();
+        self.delassus.respond(impulse, &mut y[rates], &mut self.work.scratch);
     }
 
     /// Takes the velocities of the listed rows of the projected contacts out of `y`: what is left

@@ -39,7 +39,8 @@ pub struct Simulation {
     pub log_period_s: f64,
     /// More events end the run.
     pub max_events: usize,
-    /// More evaluations of the equations of motion end the run.
+    /// More evaluations of the equations of motion end the run; of time stepping sweeps and pivots
+    /// of its contact problems count too.
     pub max_evaluations: usize,
 }
 
@@ -218,7 +219,7 @@ impl Runner<'_> {
         let mut t = self.start_s;
         loop {
             self.sample_control(t);
-            self.write_rows(t, true)?;
+            self.write_rows(t)?;
             if t >= self.simulation.end_s {
                 return Ok(Stop::End);
             }
@@ -234,26 +235,32 @@ impl Runner<'_> {
 
     /// Smooth motion up to `stop_s`, or to the next event, which is dealt with.
     fn smooth(&mut self, stop_s: f64) -> Result<Option<Stop>, Breakdown> {
+        self.motion.begin_smooth();
         while self.stepper.time() < stop_s {
-            if !self.stepper.advance(&mut self.motion, stop_s)? {
+            // a row is a state that was stepped to: dense output would be audited for it
+            let row_s = self.row_time();
+            let end_s = if row_s < stop_s - 1e-12 { row_s } else { stop_s };
+            if !self.stepper.advance(&mut self.motion, end_s)? {
                 return Err(Breakdown::StepTooSmall);
             }
             if self.stepper.statistics.evaluations > self.simulation.max_evaluations {
                 return Ok(Some(Stop::EvaluationLimit));
             }
             if let Some(fired) = self.watch.find(&mut self.motion, &mut self.stepper)? {
-                self.write_rows(fired.t_s, false)?;
                 self.stepper.restep(&mut self.motion, fired.t_s, &mut self.y)?;
                 let stop = self.respond(fired)?;
                 self.stepper.restart(fired.t_s, &self.y);
                 return Ok(stop);
             }
-            self.write_rows(self.stepper.time(), false)?;
             self.y.copy_from_slice(self.stepper.state());
             self.motion.follow_slips(&self.y);
             if self.stepper.time() - self.audited_s > AUDIT_S {
                 self.audited_s = self.stepper.time();
                 self.recorder.note(&mut self.motion, self.audited_s, &self.y, false)?;
+            }
+            // the row of an instant shows what comes after it
+            if self.stepper.time() < stop_s {
+                self.write_rows(self.stepper.time())?;
             }
         }
         Ok(None)
@@ -320,8 +327,8 @@ impl Runner<'_> {
             self.watch.level[*contact] = f64::NEG_INFINITY;
             return Ok(());
         }
-        let n = self.motion.layout.joints;
-        let before = self.y[n..2 * n].to_vec();
+        let (n, rates) = (self.motion.layout.joints, self.motion.layout.joint_rates());
+        let before = self.y[rates.clone()].to_vec();
         let energy = self.motion.energy(&self.y);
         let was: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
         let (motion, law) = (&mut self.motion, &self.simulation.touching);
@@ -353,7 +360,7 @@ impl Runner<'_> {
             .iter()
             .map(|(contact, p)| (*contact, self.motion.ground.in_world(p)))
             .collect();
-        let after = self.y[n..2 * n].to_vec();
+        let after = self.y[rates].to_vec();
         self.audit_momentum(&before, &after, &impulses);
         let fell_back = settled.fell_back;
         let q = self.y[..n].to_vec();
@@ -378,11 +385,11 @@ impl Runner<'_> {
     }
 
     fn jump(&mut self, guard: usize, t_s: f64) {
-        let n = self.motion.layout.joints;
+        let (n, rates) = (self.motion.layout.joints, self.motion.layout.joint_rates());
         let energy = self.motion.energy(&self.y);
-        let before = self.y[n..2 * n].to_vec();
-        let (q, rest) = self.y.split_at_mut(n);
-        self.motion.plant.jump(guard, q, &mut rest[..n]);
+        let before = self.y[rates.clone()].to_vec();
+        let (positions, rest) = self.y.split_at_mut(rates.start);
+        self.motion.plant.jump(guard, &mut positions[..n], &mut rest[..n]);
         let energy_j = self.motion.energy(&self.y) - energy;
         self.recorder.add_impact(energy_j);
         self.events.push(Event {
@@ -393,7 +400,7 @@ impl Runner<'_> {
             energy_j,
             q: self.y[..n].to_vec(),
             before,
-            after: self.y[n..2 * n].to_vec(),
+            after: self.y[rates].to_vec(),
             fell_back: false,
         });
     }
@@ -427,22 +434,19 @@ impl Runner<'_> {
         [sample, jump].into_iter().flatten().fold(self.simulation.end_s, f64::min)
     }
 
-    /// Rows of the log up to a time, of the last step; at a state between steps if `here`.
-    fn write_rows(&mut self, t_s: f64, here: bool) -> Result<(), Breakdown> {
-        loop {
-            let row_s = self.start_s + self.row as f64 * self.simulation.log_period_s;
-            // the row of an instant shows what comes after it
-            let due = if here { row_s <= t_s + 1e-12 } else { row_s < t_s - 1e-12 };
-            if !due || row_s > self.simulation.end_s + 1e-12 {
-                return Ok(());
-            }
-            let mut y = self.y.clone();
-            if !here {
-                self.stepper.interpolate(row_s, &mut y);
-            }
-            self.recorder.note(&mut self.motion, row_s.min(t_s), &y, true)?;
+    /// The time of the log's next row.
+    fn row_time(&self) -> f64 {
+        self.start_s + self.row as f64 * self.simulation.log_period_s
+    }
+
+    /// Rows of the log that are due.
+    fn write_rows(&mut self, t_s: f64) -> Result<(), Breakdown> {
+        while self.row_time() <= t_s.min(self.simulation.end_s) + 1e-12 {
+            let row_s = self.row_time().min(t_s);
+            self.recorder.note(&mut self.motion, row_s, &self.y, true)?;
             self.row += 1;
         }
+        Ok(())
     }
 
     fn finish(self, stop: Stop) -> Run {

@@ -1,5 +1,7 @@
 //! The state of a simulated robot.
 
+use std::ops::Range;
+
 /// Positions and rates of joints and motors at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
@@ -22,7 +24,7 @@ impl State {
     }
 }
 
-/// Where the parts of a state stand in the vector that is integrated: q, qd, motor angles, motor
+/// Where the parts of a state stand in the vector that is integrated: q, motor angles, qd, motor
 /// rates, then two integrals: work put in, and energy lost to friction \[J\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
@@ -38,17 +40,27 @@ impl Layout {
         2 * (self.joints + self.motors) + INTEGRALS
     }
 
+    /// Number of positions, of joints and motors.
+    pub(super) fn positions(self) -> usize {
+        self.joints + self.motors
+    }
+
+    /// Where the rates of the joints stand.
+    pub(super) fn joint_rates(self) -> Range<usize> {
+        self.positions()..self.positions() + self.joints
+    }
+
     pub(super) fn parts(self, y: &[f64]) -> Parts<'_> {
         let (q, rest) = y.split_at(self.joints);
-        let (qd, rest) = rest.split_at(self.joints);
         let (motor, rest) = rest.split_at(self.motors);
+        let (qd, rest) = rest.split_at(self.joints);
         let (motor_rate, integrals) = rest.split_at(self.motors);
         Parts { q, qd, motor, motor_rate, work_in: integrals[0], lost: integrals[1] }
     }
 
     pub(super) fn pack(self, state: &State) -> Vec<f64> {
         let mut y = Vec::with_capacity(self.len());
-        for part in [&state.q, &state.qd, &state.motor, &state.motor_rate] {
+        for part in [&state.q, &state.motor, &state.qd, &state.motor_rate] {
             y.extend_from_slice(part);
         }
         y.resize(self.len(), 0.0);

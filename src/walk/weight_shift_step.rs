@@ -62,6 +62,8 @@ pub enum GaitError {
     },
     /// Phases that do not follow each other, or an interval that is not positive.
     Times,
+    /// More postures than there may be; holds the most.
+    TooMany(usize),
     /// The splines refuse the postures.
     Spline(TrajectoryError),
 }
@@ -72,6 +74,7 @@ impl std::fmt::Display for GaitError {
             Self::Missing(name) => write!(f, "the robot has no joint or contact `{name}`"),
             Self::Posture { t_s, error } => write!(f, "at {t_s} s: {error}"),
             Self::Times => write!(f, "the phases must follow each other, by more than an interval"),
+            Self::TooMany(most) => write!(f, "the gait would have more than {most} postures"),
             Self::Spline(error) => write!(f, "{error}"),
         }
     }
@@ -97,6 +100,9 @@ impl Gait {
     }
 }
 
+/// A gait with more postures is planned for longer than anybody waits.
+const MAX_POSTURES: usize = 20_000;
+
 /// The postures of the step.
 pub fn plan(plant: &mut dyn Plant, step: &WeightShiftStep) -> Result<Gait, GaitError> {
     let [release, landing, shift, end] = step.phases_s;
@@ -105,9 +111,12 @@ pub fn plan(plant: &mut dyn Plant, step: &WeightShiftStep) -> Result<Gait, GaitE
     if !(ordered && step.interval_s > 0.0 && step.interval_s < release && end.is_finite()) {
         return Err(GaitError::Times);
     }
+    let count = (end / step.interval_s).round() as usize;
+    if count > MAX_POSTURES {
+        return Err(GaitError::TooMany(MAX_POSTURES));
+    }
     let body = Body::of(plant)?;
     let mut q = body.stance(plant, step)?;
-    let count = (end / step.interval_s).round() as usize;
     let mut gait = Gait { times_s: Vec::new(), postures: Vec::new() };
     for index in 0..=count {
         let t_s = index as f64 * step.interval_s;

@@ -8,9 +8,15 @@ use std::fmt;
 /// Most faults that one answer lists: garbage has millions.
 pub const MAX_FAULTS: usize = 100;
 
+/// What is wrong at a place: a sentence (`Display`), and what to do about it.
+pub trait Explained: fmt::Display {
+    /// The way out, where it is not plain from the sentence.
+    fn hint(&self) -> Option<String>;
+}
+
 /// One fault with its place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
+pub struct Fault<C = Cause> {
     /// JSON pointer of the value at fault, as `/links/3/parent`; empty for the whole file.
     pub pointer: String,
     /// Line of the value, from 1.
@@ -18,28 +24,31 @@ pub struct Fault {
     /// Column of the value in characters, from 1.
     pub column: usize,
     /// What is wrong.
-    pub cause: Cause,
+    pub cause: C,
 }
 
-impl Fault {
+impl<C: Explained> Fault<C> {
     /// What to do about it.
     pub fn hint(&self) -> Option<String> {
         self.cause.hint()
     }
 }
 
-/// Everything that is wrong with a model file, in the order of the file.
+/// Everything that is wrong with a file, in its order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ModelError {
+pub struct FileError<C> {
     /// The name of the file, as it was given.
     pub file: String,
     /// The faults, at least one, at most [`MAX_FAULTS`].
-    pub faults: Vec<Fault>,
+    pub faults: Vec<Fault<C>>,
     /// How many more there are.
     pub omitted: usize,
 }
 
-impl fmt::Display for ModelError {
+/// Everything that is wrong with a model file, or with a file of equations.
+pub type ModelError = FileError<Cause>;
+
+impl<C: Explained> fmt::Display for FileError<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, fault) in self.faults.iter().enumerate() {
             let separator = if index == 0 { "" } else { "\n" };
@@ -60,7 +69,7 @@ impl fmt::Display for ModelError {
     }
 }
 
-impl std::error::Error for ModelError {}
+impl<C: Explained + fmt::Debug> std::error::Error for FileError<C> {}
 
 /// What is wrong. `Display` gives the sentence, [`Cause::hint`] the way out; `message.rs` has both.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,38 +10,66 @@ use std::borrow::Cow;
 use std::fmt;
 
 /// Largest file that is read, in bytes.
-pub(super) const MAX_BYTES: usize = 16 << 20;
+pub const MAX_BYTES: usize = 16 << 20;
 /// Deepest nesting that is read; a model needs seven levels.
-pub(super) const MAX_DEPTH: usize = 32;
+pub const MAX_DEPTH: usize = 32;
 /// Most values that are read; a model of a hundred links has some five thousand.
-pub(super) const MAX_VALUES: usize = 200_000;
+pub const MAX_VALUES: usize = 200_000;
 
 /// A value with its place.
 #[derive(Clone, Debug)]
-pub(super) struct Json<'a> {
+pub struct Json<'a> {
     /// What it is.
-    pub(super) value: Value<'a>,
+    pub value: Value<'a>,
     /// Byte offset of its first character in the file.
-    pub(super) start: usize,
+    pub start: usize,
     /// Byte offset after its last character.
-    pub(super) end: usize,
+    pub end: usize,
 }
 
 /// What a value is. Strings are unescaped, numbers are their text.
 #[derive(Clone, Debug)]
-pub(super) enum Value<'a> {
+pub enum Value<'a> {
+    /// `null`.
     Null,
+    /// `true` or `false`.
     Bool(bool),
+    /// As it is written.
     Number(&'a str),
+    /// Unescaped.
     Text(Cow<'a, str>),
+    /// In file order.
     List(Vec<Json<'a>>),
     /// In file order; a repeated key is listed as often as it is written.
     Object(Vec<(Cow<'a, str>, Json<'a>)>),
 }
 
+impl<'a> Json<'a> {
+    /// Byte offset of the value that this path of keys leads to, or as far as it leads.
+    pub fn offset<'k>(&self, path: impl IntoIterator<Item = &'k str>) -> usize {
+        let mut value = self;
+        for part in path {
+            let Value::Object(entries) = &value.value else { break };
+            match entries.iter().find(|(key, _)| key == part) {
+                Some((_, entry)) => value = entry,
+                None => break,
+            }
+        }
+        value.start
+    }
+
+    /// The keys of an object's entries with the offsets of their values.
+    pub fn entries(&self) -> &[(Cow<'a, str>, Json<'a>)] {
+        match &self.value {
+            Value::Object(entries) => entries,
+            _ => &[],
+        }
+    }
+}
+
 impl Value<'_> {
     /// The kind of value, with its article, for messages.
-    pub(super) fn kind(&self) -> &'static str {
+    pub fn kind(&self) -> &'static str {
         match self {
             Self::Null => "null",
             Self::Bool(_) => "a truth value",
@@ -55,24 +83,32 @@ impl Value<'_> {
 
 /// Why a text is not read as JSON, with the byte offset where reading stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct JsonError {
-    pub(super) at: usize,
-    pub(super) cause: JsonCause,
+pub struct JsonError {
+    /// Byte offset.
+    pub at: usize,
+    /// Why.
+    pub cause: JsonCause,
 }
 
+/// Why a text is not read as JSON.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum JsonCause {
+pub enum JsonCause {
+    /// More than [`MAX_BYTES`]; holds the size in bytes.
     TooLarge(usize),
+    /// Not UTF-8.
     NotUtf8,
+    /// A byte order mark at its beginning.
     ByteOrderMark,
+    /// Nested deeper than [`MAX_DEPTH`].
     TooDeep,
+    /// More than [`MAX_VALUES`].
     TooManyValues,
     /// What serde_json says, without its position.
     Syntax(String),
 }
 
 /// Reads a whole file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Json<'_>, JsonError> {
+pub fn parse(bytes: &[u8]) -> Result<Json<'_>, JsonError> {
     if bytes.len() > MAX_BYTES {
         return Err(JsonError { at: 0, cause: JsonCause::TooLarge(bytes.len()) });
     }

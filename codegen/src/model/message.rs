@@ -1,6 +1,6 @@
 //! What is said about each fault: a sentence, and a hint where the way out is not plain from it.
 
-use super::fault::Cause;
+use super::fault::{Cause, Explained};
 use super::json::{MAX_BYTES, MAX_DEPTH, MAX_VALUES};
 use super::spelling::MAX_NAME_LENGTH;
 use super::unit::{Dimension, UnitError};
@@ -150,9 +150,10 @@ impl Cause {
             other => unreachable!("{other:?} has its sentence above"),
         }
     }
+}
 
-    /// What to do about it, where that is not plain from the sentence.
-    pub fn hint(&self) -> Option<String> {
+impl Explained for Cause {
+    fn hint(&self) -> Option<String> {
         let hint = match self {
             Self::UnknownKey { nearest: Some(nearest), .. } => format!("did you mean `{nearest}`?"),
             Self::UnknownKey { known, nearest: None, .. } => {
@@ -183,14 +184,16 @@ impl Cause {
         };
         Some(hint)
     }
+}
 
+impl Cause {
     fn fixed_hint(&self) -> Option<&'static str> {
         Some(match self {
-            Self::FileTooLarge(_) => "a model of a hundred links has some 50 kB: is this the file?",
+            Self::FileTooLarge(_) => "such files have some kilobytes: is this the file?",
             Self::NotUtf8 => "save the file as UTF-8",
             Self::ByteOrderMark => "save the file as UTF-8 without byte order mark",
-            Self::TooDeep => "a model needs seven levels",
-            Self::TooManyValues => "a model of a hundred links has some five thousand",
+            Self::TooDeep => "no such file needs more than ten levels",
+            Self::TooManyValues => "such files have some thousands: is this the file?",
             Self::Syntax(message) => return syntax_hint(message),
             Self::MissingKey("format") => {
                 "a model file begins with \"format\": \"denavit-model/1\""
@@ -296,7 +299,7 @@ fn syntax_hint(message: &str) -> Option<&'static str> {
         ("expected `,`", "a comma is missing before this"),
         ("EOF", "the file ends too early: a bracket or a quote is not closed"),
         ("control character", "a string ends on its line: is its closing quote missing?"),
-        ("trailing characters", "a model file is one object"),
+        ("trailing characters", "the file is one object"),
         ("invalid number", "a number is written as -12.5e-3"),
     ];
     hints.into_iter().find(|(start, _)| message.starts_with(start)).map(|(_, hint)| hint)

@@ -15,7 +15,7 @@ mod fault;
 mod file;
 mod hash;
 mod inertia;
-mod json;
+pub mod json;
 mod message;
 mod parameter;
 mod reader;
@@ -26,9 +26,11 @@ mod tree;
 mod unit;
 
 pub use bake::{BakeError, bake, bake_geometry};
-pub use fault::{Cause, Fault, MAX_FAULTS, ModelError};
+pub use fault::{Cause, Explained, Fault, FileError, MAX_FAULTS, ModelError};
 pub use inertia::Unphysical;
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};
+pub use reader::find_duplicate_keys;
+pub use report::Report;
 pub use robot::{
     About, AddedEffect, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace, Ground,
     Joint, JointKind, JointSpring, JointVariables, Limits, Link, LinkId, ReturnSpring, Robot,
@@ -38,7 +40,6 @@ pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};
 
 use json::{JsonCause, JsonError};
-use report::Report;
 
 /// The tag of a model file.
 pub const FORMAT: &str = "denavit-model/1";

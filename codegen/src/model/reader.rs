@@ -303,7 +303,7 @@ fn wrong_kind<T>(json: &Json, expected: &'static str, report: &mut Report) -> Op
 }
 
 /// Notes every key that an object has twice.
-pub(super) fn find_duplicate_keys(root: &Json, report: &mut Report) {
+pub fn find_duplicate_keys<C: From<Cause>>(root: &Json, report: &mut Report<C>) {
     let mut waiting = vec![root];
     while let Some(json) = waiting.pop() {
         match &json.value {
@@ -313,7 +313,7 @@ pub(super) fn find_duplicate_keys(root: &Json, report: &mut Report) {
                 for (key, value) in entries {
                     if !seen.insert(key) {
                         let key = key.clone().into_owned();
-                        report.push(value.start, Cause::DuplicateKey(key));
+                        report.push(value.start, Cause::DuplicateKey(key).into());
                     }
                     waiting.push(value);
                 }

@@ -1,6 +1,6 @@
 //! Collects faults while a file is read and checked, and turns byte offsets into places.
 
-use super::fault::{Cause, Fault, MAX_FAULTS, ModelError};
+use super::fault::{Cause, Fault, FileError, MAX_FAULTS};
 use super::json::{Json, Value};
 
 /// More faults than this are counted, not kept: the first [`MAX_FAULTS`] of the file are shown, and
@@ -8,15 +8,21 @@ use super::json::{Json, Value};
 const MAX_KEPT: usize = 10_000;
 
 /// The faults found so far.
-#[derive(Debug, Default)]
-pub(super) struct Report {
-    faults: Vec<(usize, Cause)>,
+#[derive(Debug)]
+pub struct Report<C = Cause> {
+    faults: Vec<(usize, C)>,
     omitted: usize,
 }
 
-impl Report {
+impl<C> Default for Report<C> {
+    fn default() -> Self {
+        Self { faults: Vec::new(), omitted: 0 }
+    }
+}
+
+impl<C> Report<C> {
     /// Notes a fault of the value that begins at byte `at`.
-    pub(super) fn push(&mut self, at: usize, cause: Cause) {
+    pub fn push(&mut self, at: usize, cause: C) {
         if self.faults.len() < MAX_KEPT {
             self.faults.push((at, cause));
         } else {
@@ -25,32 +31,27 @@ impl Report {
     }
 
     /// How many faults are kept.
-    pub(super) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.faults.len()
     }
 
     /// Forgets the faults noted after there were `count`.
-    pub(super) fn truncate(&mut self, count: usize) {
+    pub fn truncate(&mut self, count: usize) {
         self.faults.truncate(count);
     }
 
     /// Whether nothing was noted.
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.faults.is_empty()
     }
 
     /// Whether a search for a nearest name is still worth its time.
-    pub(super) fn wants_hints(&self) -> bool {
+    pub fn wants_hints(&self) -> bool {
         self.faults.len() < MAX_FAULTS
     }
 
     /// The answer: faults by place, each with pointer, line and column.
-    pub(super) fn into_error(
-        mut self,
-        file: &str,
-        source: &[u8],
-        root: Option<&Json>,
-    ) -> ModelError {
+    pub fn into_error(mut self, file: &str, source: &[u8], root: Option<&Json>) -> FileError<C> {
         // stable: faults of one value stay in the order in which they were found
         self.faults.sort_by_key(|&(at, _)| at);
         let omitted = self.omitted + self.faults.len().saturating_sub(MAX_FAULTS);
@@ -65,7 +66,7 @@ impl Report {
                 Fault { pointer, line: place.line, column: place.column, cause }
             })
             .collect();
-        ModelError { file: file.to_owned(), faults, omitted }
+        FileError { file: file.to_owned(), faults, omitted }
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) struct Simulated {
     energy_j: f64,
     penetration_m: f64,
     zmp_m: f64,
-    friction_demand: f64,
+    friction_total: f64,
     largest_torque: f64,
     /// Audits that missed more than is tolerated.
     broken: Vec<&'static str>,
@@ -56,7 +56,7 @@ impl Simulated {
         scenario.scheme = scheme;
         scenario.simulation.end_s = scenario.initial.t_s + duration_s;
         let started = Instant::now();
-        let run = scenario.run().map_err(|error| Failure::Start(name.to_owned(), error))?;
+        let run = scenario.run().map_err(Failure::Scenario)?;
         let seconds = started.elapsed().as_secs_f64();
         let broken = scenario.broken(&run).into_iter().map(|(law, _, _)| law).collect();
         let file = |ending: &str| format!("{name}_{}.{ending}", scheme.word());
@@ -74,7 +74,7 @@ impl Simulated {
             energy_j: audit.energy_j,
             penetration_m: audit.penetration_m,
             zmp_m: audit.zmp_m,
-            friction_demand: audit.friction_total,
+            friction_total: audit.friction_total,
             largest_torque: audit.torque,
             broken,
             files: vec![csv, svg],
@@ -112,14 +112,14 @@ pub(super) fn write_all(runs: &[Simulated], out: &mut dyn Write) -> Result<(), F
             format!("{:.0e}", run.energy_j),
             format!("{:.0e}", run.penetration_m),
             format!("{:.0e}", run.zmp_m),
-            format!("{:.2}", run.friction_demand),
+            format!("{:.2}", run.friction_total),
             format!("{:.0}", run.largest_torque),
         ]);
     }
     writeln!(
         out,
         "\nsimulations, audited: what energy, contacts and the zero moment point are off by, \
-         friction\nneeded, largest torque\n{table}"
+         friction\ndemand of all contacts, largest torque\n{table}"
     )?;
     for file in runs.iter().flat_map(|run| &run.files) {
         writeln!(out, "wrote {} ({} kB): {}", file.file, file.bytes.div_ceil(1000), file.what)?;

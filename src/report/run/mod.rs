@@ -200,7 +200,8 @@ fn joint_diagrams(
         lower.draw(svg, true);
         lower.name_y(svg, unit[1]);
         lower.curve(svg, times, torque, GREY);
-        legend.push(("motor", GREY));
+        let above = [corner[0] + width, lower.corner[1] - 2.0];
+        draw_legend(svg, above, &[("torque of the motor", GREY)]);
         bottom = lower.corner[1] + TORQUE;
     }
     draw_legend(svg, [corner[0] + width, corner[1] + 14.0], &legend);

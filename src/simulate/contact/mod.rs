@@ -28,6 +28,7 @@ pub mod delassus;
 pub mod gauss_seidel;
 pub mod hold;
 pub mod impact;
+pub(crate) mod independent;
 mod interior;
 pub mod lemke;
 pub mod minimum_norm;

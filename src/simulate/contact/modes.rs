@@ -114,22 +114,24 @@ impl ModeSolver {
     ///
     /// Continuous in time while the modes stay and the forces are determined; the first sign
     /// change from positive to negative is when a contact has to open or to slip. Infinite if no
-    /// contact is closed, or if contacts press against each other without bound.
+    /// contact is closed, or if contacts press against each other without bound. With it comes the
+    /// largest component of the least forces that keep the modes.
     pub fn margin(
         &mut self,
         problem: &ContactProblem<'_>,
         modes: &[Mode],
-    ) -> Result<f64, ContactFailure> {
+    ) -> Result<(f64, f64), ContactFailure> {
         self.solve(problem, modes)?;
+        let largest = self.values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         if let Some(limits) = self.cones(problem, modes) {
-            return Ok(self.cone_margin(&limits, true).0);
+            return Ok((self.cone_margin(&limits, true).0, largest));
         }
         let mut margin = f64::INFINITY;
         self.with_planes(problem, modes, |solver| {
             margin = solver.largest_slack();
             margin.is_finite().then_some(margin)
         });
-        Ok(margin)
+        Ok((margin, largest))
     }
 
     /// What each closed contact must keep, if a cone in space is among it.

@@ -79,7 +79,7 @@ impl ContactSolver {
         &mut self,
         problem: &ContactProblem<'_>,
         modes: &[Mode],
-    ) -> Result<f64, ContactFailure> {
+    ) -> Result<(f64, f64), ContactFailure> {
         self.modes.margin(problem, modes)
     }
 

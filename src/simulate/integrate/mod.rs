@@ -4,23 +4,28 @@
 //! knows nothing of either. Three methods stand behind it:
 //!
 //! - [`Method::DormandPrince`]: explicit, order 5(4), adaptive (Dormand, Prince 1980)
-//! - [`Method::Sdirk`]: L-stable diagonally implicit, order 4(3), adaptive (Hairer, Wanner, table
-//!   6.5), for stiff controllers
+//! - [`Method::Radau`]: implicit, L-stable, order 5(3), adaptive, for stiff controllers
 //! - [`Method::RungeKutta`]: the classical one of order 4, fixed steps
 //!
 //! Every step is capped: an error estimate of zero (free flight is a parabola) must not let a step
 //! jump over whole flights.
 
 mod explicit;
-mod implicit;
+mod newton;
+mod radau;
 
 use super::breakdown::Breakdown;
-use implicit::Implicit;
+use radau::Implicit;
 
 /// A system dy/dt = f(t, y).
 pub trait Rates {
     /// Writes dy/dt.
     fn rates(&mut self, t_s: f64, y: &[f64], dy: &mut [f64]) -> Result<(), Breakdown>;
+
+    /// How many entries at the beginning of y are positions: as many after them are their rates.
+    fn positions(&self) -> usize {
+        0
+    }
 
     /// How many entries at the end of y are integrals alone: no rate depends on them.
     fn integrals(&self) -> usize {
@@ -54,7 +59,7 @@ pub enum Method {
     /// Explicit, adaptive.
     DormandPrince(Accuracy),
     /// Implicit, adaptive.
-    Sdirk(Accuracy),
+    Radau(Accuracy),
     /// Explicit, fixed steps.
     RungeKutta {
         /// Step \[s\].
@@ -172,7 +177,7 @@ impl Stepper {
                 self.runge_kutta(system, step)?;
                 return self.accept(system, step, stop_s);
             }
-            Method::DormandPrince(accuracy) | Method::Sdirk(accuracy) => accuracy,
+            Method::DormandPrince(accuracy) | Method::Radau(accuracy) => accuracy,
         };
         let mut step = self.proposal.unwrap_or_else(|| self.first_step(accuracy));
         loop {
@@ -187,7 +192,7 @@ impl Stepper {
                 return Ok(false);
             }
             let (tried, order) = match self.method {
-                Method::Sdirk(_) => (self.implicit_step(system, trial, accuracy), 4.0),
+                Method::Radau(_) => (self.implicit_step(system, trial, accuracy), 4.0),
                 _ => (self.dormand_prince(system, trial, accuracy).map(Some), 5.0),
             };
             let error = match tried {
@@ -209,7 +214,7 @@ impl Stepper {
             if error.is_some_and(|error| error <= 1.0) {
                 // keep the step, and with it the factored matrix, for small gains
                 let keeps =
-                    matches!(self.method, Method::Sdirk(_)) && (0.95..1.3).contains(&factor);
+                    matches!(self.method, Method::Radau(_)) && (0.95..1.2).contains(&factor);
                 let grown = if keeps { trial } else { trial * factor };
                 // a step cut short by a stop says nothing against the longer one
                 self.proposal = Some(if trial < capped { grown.max(capped) } else { grown });
@@ -236,8 +241,10 @@ impl Stepper {
                 self.prepare_dense(step);
                 self.f1.copy_from_slice(&self.stages[6]);
             }
-            Method::Sdirk(_) => {}
-            Method::RungeKutta { .. } => {
+            Method::Radau(_) | Method::RungeKutta { .. } => {
+                if let Method::Radau(_) = self.method {
+                    self.implicit.accept(step);
+                }
                 system.rates(self.t1, &self.y1, &mut self.f1)?;
                 self.statistics.evaluations += 1;
             }
@@ -273,22 +280,21 @@ impl Stepper {
             return Ok(());
         }
         let kept = self.y1.clone();
-        match self.method {
+        let made = match self.method {
             Method::DormandPrince(accuracy) => {
-                self.dormand_prince(system, step, accuracy)?;
+                self.dormand_prince(system, step, accuracy).map(|_| true)
             }
-            Method::RungeKutta { .. } => self.runge_kutta(system, step)?,
-            Method::Sdirk(accuracy) => {
-                if self.implicit_step(system, step, accuracy)?.is_none() {
-                    // dense output is the best that is left
-                    self.y1.copy_from_slice(&kept);
-                    self.interpolate(t_s, y);
-                    return Ok(());
-                }
+            Method::RungeKutta { .. } => self.runge_kutta(system, step).map(|()| true),
+            Method::Radau(accuracy) => {
+                self.implicit_step(system, step, accuracy).map(|error| error.is_some())
             }
-        }
+        };
         y.copy_from_slice(&self.y1);
         self.y1.copy_from_slice(&kept);
+        if !made? {
+            // dense output is the best that is left
+            self.interpolate(t_s, y);
+        }
         Ok(())
     }
 

@@ -1,41 +1,35 @@
-//! What can be wrong with a scenario: where, why, and what to do about it.
+//! What can be wrong with a scenario: why, and what to do about it. Faults of form are those that
+//! model files have too.
 
+use super::ranges::{Range, short};
 use crate::plants::PlantError;
 use crate::simulate::log::LogError;
 use crate::simulate::start::StartError;
 use crate::trajectory::TrajectoryError;
 use crate::walk::weight_shift_step::GaitError;
+use denavit_codegen::model::{self, Explained, FileError};
 use std::fmt;
+
+/// Everything that is wrong with a scenario, in the order of the file.
+pub type ScenarioError = FileError<Cause>;
 
 /// What is wrong at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
-    /// Not JSON; holds what the reader says.
-    Syntax(String),
-    /// A value of the wrong kind: what it should be.
-    WrongKind(&'static str),
-    /// A key that means nothing here; holds it, the one that was meant, perhaps, and all of them.
-    UnknownKey(String, Option<&'static str>, &'static [&'static str]),
-    /// A key that is written twice in one object.
-    DuplicateKey(String),
-    /// A key that must be there.
-    MissingKey(&'static str),
-    /// A word that is none of those that may stand here; holds it and them.
-    UnknownWord(String, &'static [&'static str]),
-    /// The tag of another format; holds it.
-    WrongFormat(String),
+    /// A fault of form: of JSON, of keys, of kinds of values.
+    Form(model::Cause),
+    /// A number outside its range.
+    OutsideRange(f64, Range),
+    /// A number that must be even.
+    Odd,
+    /// Something that would do nothing: what is missing for it.
+    NoEffect(&'static str),
+    /// A model and a cradle.
+    TwoRobots,
     /// No joint has this name; holds it and the one that was meant, perhaps.
     UnknownJoint(String, Option<String>),
     /// A joint of the floating base, which nothing drives.
     Undrivable(String),
-    /// A list of the wrong length: expected, found.
-    WrongLength(usize, usize),
-    /// A number that must be positive.
-    NotPositive,
-    /// A number that must not be negative.
-    Negative,
-    /// A number that must not exceed 1.
-    AboveOne,
     /// More rows of the log than there may be; holds the most.
     TooManyRows(f64),
     /// A log is wrong.
@@ -64,26 +58,32 @@ pub enum Cause {
     NoPlacing,
 }
 
+impl From<model::Cause> for Cause {
+    fn from(cause: model::Cause) -> Self {
+        Self::Form(cause)
+    }
+}
+
+impl Cause {
+    pub(super) fn wrong_length(expected: usize, found: usize) -> Self {
+        Self::Form(model::Cause::WrongLength { expected, found })
+    }
+}
+
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Syntax(said) => write!(f, "not JSON: {said}"),
-            Self::WrongKind(expected) => write!(f, "expected {expected}"),
-            Self::UnknownKey(key, ..) => write!(f, "unknown key `{key}`"),
-            Self::DuplicateKey(key) => write!(f, "the key `{key}` is given twice"),
-            Self::MissingKey(key) => write!(f, "the key `{key}` is missing"),
-            Self::UnknownWord(word, _) => write!(f, "unknown word `{word}`"),
-            Self::WrongFormat(tag) => write!(f, "the format is `{tag}`, not `{}`", super::FORMAT),
+            Self::Form(cause) => write!(f, "{cause}"),
+            Self::OutsideRange(value, range) => {
+                write!(f, "the number must be {range}; it is {}", short(*value))
+            }
+            Self::Odd => write!(f, "the number must be even"),
+            Self::NoEffect(missing) => write!(f, "this has no effect without {missing}"),
+            Self::TwoRobots => write!(f, "`model` and `cradle_balls` are two robots"),
             Self::UnknownJoint(name, _) => write!(f, "no joint is called `{name}`"),
             Self::Undrivable(name) => {
                 write!(f, "`{name}` moves the floating base: no drive is there")
             }
-            Self::WrongLength(expected, found) => {
-                write!(f, "expected {expected} values, found {found}")
-            }
-            Self::NotPositive => write!(f, "the number must be positive"),
-            Self::Negative => write!(f, "the number must not be negative"),
-            Self::AboveOne => write!(f, "the number must not exceed 1"),
             Self::TooManyRows(most) => {
                 write!(f, "the log would have more than {most} rows")
             }
@@ -109,33 +109,35 @@ impl fmt::Display for Cause {
     }
 }
 
-impl Cause {
-    /// What to do about it.
-    pub fn hint(&self) -> Option<String> {
+impl Explained for Cause {
+    fn hint(&self) -> Option<String> {
         Some(match self {
-            Self::UnknownKey(_, Some(near), _) => format!("`{near}` is meant, perhaps"),
+            Self::Form(model::Cause::MissingKey("format") | model::Cause::WrongFormat { .. }) => {
+                format!("a scenario has `\"format\": \"{}\"`", super::FORMAT)
+            }
+            Self::Form(model::Cause::MissingKey(key)) => format!("add `\"{key}\": ..`"),
+            Self::Form(cause) => {
+                return cause.hint().or_else(|| Some("docs/scenario.md says what is right".into()));
+            }
             Self::UnknownJoint(_, Some(near)) | Self::UnknownColumn(_, Some(near)) => {
                 format!("`{near}` is meant, perhaps")
             }
-            Self::UnknownKey(_, None, known) => format!("keys are {}", known.join(", ")),
-            Self::UnknownWord(_, known) => format!("words are {}", known.join(", ")),
-            Self::MissingKey(key) => format!("add `\"{key}\": ..`"),
-            Self::WrongFormat(_) => format!("a scenario has `\"format\": \"{}\"`", super::FORMAT),
-            Self::WrongLength(expected, _) => format!("give {expected} numbers: [..]"),
             other => return other.fixed_hint().map(str::to_owned),
         })
     }
+}
 
+impl Cause {
     fn fixed_hint(&self) -> Option<&'static str> {
         Some(match self {
-            Self::WrongKind(_) => "docs/scenario.md says what stands here",
-            Self::DuplicateKey(_) => "keep one of them",
+            Self::OutsideRange(..) | Self::Odd => {
+                "`denavit schema scenario` has the ranges of all numbers"
+            }
+            Self::NoEffect(_) => "add that, or leave this out",
+            Self::TwoRobots => "keep one of them",
             Self::UnknownJoint(..) => "`denavit inspect MODEL` lists the joints",
             Self::UnknownColumn(..) => "columns are named in the first line of the log",
             Self::Undrivable(_) => "control the joints between links",
-            Self::NotPositive => "give a number above 0",
-            Self::Negative => "give 0 or more",
-            Self::AboveOne => "give 0 to 1",
             Self::TooManyRows(_) => "write a row less often: `log_period_s`",
             Self::Log(_) => "a log is a table with a column `t` that increases (docs/scenario.md)",
             Self::EmptyCell(..) => "fill the gap, or cut the log before it",
@@ -144,11 +146,12 @@ impl Cause {
                     "a shorter or lower step, or a more bent knee, may be within reach"
                 }
                 GaitError::Missing(_) => "this gait is TUlip's",
+                GaitError::TooMany(_) => "shorten `phases_s`, or lengthen `interval_s`",
                 GaitError::Times | GaitError::Spline(_) => {
                     "`phases_s` are four times that increase"
                 }
             },
-            Self::Start(_) => "raise the robot, or give `on_ground` in `initial`",
+            Self::Start(error) => start_hint(error),
             Self::Singular(_) => "give the link a mass and inertia, or start in another position",
             Self::TorqueNotFinite(_) => {
                 "gains times errors, or a reference, exceed what a number holds"
@@ -161,6 +164,9 @@ impl Cause {
                 TrajectoryError::NotFinite => "a number is too large",
                 TrajectoryError::NotPositive => "give a number above 0",
             },
+            Self::Plant(PlantError::Negative { .. }) => {
+                "masses, moments of inertia, stiffness and friction are not negative"
+            }
             Self::NoPlacing => "give the position itself, without `on_ground`",
             // what the readers of these say has its hint
             _ => return None,
@@ -168,49 +174,14 @@ impl Cause {
     }
 }
 
-/// A fault with its place.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
-    /// JSON pointer of the value at fault.
-    pub pointer: String,
-    /// Its line, from 1.
-    pub line: usize,
-    /// Its column in characters, from 1.
-    pub column: usize,
-    /// What is wrong.
-    pub cause: Cause,
-}
-
-/// Everything that is wrong with a scenario, in the order of the file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ScenarioError {
-    /// The name of the file, as it was given.
-    pub file: String,
-    /// The faults, at least one, at most [`MAX_FAULTS`](denavit_codegen::model::MAX_FAULTS).
-    pub faults: Vec<Fault>,
-    /// How many more there are.
-    pub omitted: usize,
-}
-
-impl fmt::Display for ScenarioError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, fault) in self.faults.iter().enumerate() {
-            let separator = if index == 0 { "" } else { "\n" };
-            write!(f, "{separator}{}:{}:{}: ", self.file, fault.line, fault.column)?;
-            if !fault.pointer.is_empty() {
-                write!(f, "{}: ", fault.pointer)?;
-            }
-            write!(f, "{}", fault.cause)?;
-            if let Some(hint) = fault.cause.hint() {
-                write!(f, "\n  hint: {hint}")?;
-            }
+fn start_hint(error: &StartError) -> &'static str {
+    match error {
+        StartError::Penetration(..) => "raise the robot, or give `on_ground` in `initial`",
+        StartError::EventSchemeOnly(_) => "take the scheme `event`, or leave this out",
+        StartError::MoreauOnly(_) => "take the method `moreau`, or leave this out",
+        StartError::Breakdown(_) => {
+            "start in the air or at rest, or give `contact` a finite friction"
         }
-        match self.omitted {
-            0 => Ok(()),
-            1 => write!(f, "\nand 1 more fault"),
-            more => write!(f, "\nand {more} more faults"),
-        }
+        StartError::Length(..) | StartError::Number(_) => "docs/scenario.md says what is right",
     }
 }
-
-impl std::error::Error for ScenarioError {}

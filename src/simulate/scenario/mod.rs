@@ -6,23 +6,24 @@
 mod fault;
 mod gait;
 mod options;
-mod place;
+mod ranges;
 mod read;
 mod reader;
 mod reference;
 mod start;
 mod stepping;
 
-pub use fault::{Cause, Fault, ScenarioError};
+pub use fault::{Cause, ScenarioError};
+pub use ranges::Range;
 pub use read::{Loader, read};
 
 use super::audit::Tolerances;
 use super::control::Control;
 use super::run::{Run, Simulation, simulate};
-use super::start::StartError;
 use super::state::State;
 use super::time_stepping::{Scheme, Stepping, simulate_by_steps};
 use crate::plants::Plant;
+use start::Origin;
 
 /// The tag of a scenario file.
 pub const FORMAT: &str = "denavit-scenario/1";
@@ -57,6 +58,7 @@ impl RunScheme {
 
 /// A scenario, ready to run.
 pub struct Scenario {
+    origin: Origin,
     /// Its name.
     pub name: String,
     /// What it shows.
@@ -81,18 +83,16 @@ pub struct Scenario {
 
 impl Scenario {
     /// Runs it by its scheme; the log's header says what it was made of.
-    pub fn run(&mut self) -> Result<Run, StartError> {
+    pub fn run(&mut self) -> Result<Run, ScenarioError> {
         let plant = self.plant.as_mut();
-        let mut run = match self.scheme {
-            RunScheme::Event => simulate(plant, &self.control, &self.initial, &self.simulation)?,
-            RunScheme::TimeStepping => simulate_by_steps(
-                plant,
-                &self.control,
-                &self.initial,
-                &self.simulation,
-                &self.stepping,
-            )?,
+        let (control, initial, simulation) = (&self.control, &self.initial, &self.simulation);
+        let run = match self.scheme {
+            RunScheme::Event => simulate(plant, control, initial, simulation),
+            RunScheme::TimeStepping => {
+                simulate_by_steps(plant, control, initial, simulation, &self.stepping)
+            }
         };
+        let mut run = run.map_err(|error| self.origin.place(error))?;
         run.log.header = self.header(&run);
         Ok(run)
     }

@@ -1,6 +1,7 @@
 //! How a scenario is simulated: everything but the robot, its start and its control.
 
 use super::fault::Cause;
+use super::ranges;
 use super::reader::{Fields, Report};
 use crate::simulate::audit::Tolerances;
 use crate::simulate::contact::Friction;
@@ -9,19 +10,20 @@ use crate::simulate::integrate::{Accuracy, Method};
 use crate::simulate::measure::Measurement;
 use crate::simulate::run::Simulation;
 use crate::simulate::settle::Scuffing;
+use denavit_codegen::model::json::Value;
 
 /// A log with more rows would not fit into memory.
 const MAX_ROWS: f64 = 1e6;
 
 pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation {
     let mut simulation = Simulation::default();
-    fields.require("duration_s", report);
-    simulation.end_s = fields.not_negative("duration_s", 0.0, report);
-    simulation.log_period_s = fields.positive("log_period_s", simulation.log_period_s, report);
+    simulation.end_s = fields.required_number("duration_s", ranges::DURATION_S, report);
+    simulation.log_period_s =
+        fields.number("log_period_s", ranges::LOG_PERIOD_S, simulation.log_period_s, report);
     if simulation.end_s / simulation.log_period_s > MAX_ROWS {
-        report.push(&format!("{}/log_period_s", fields.pointer), Cause::TooManyRows(MAX_ROWS));
+        report.push(fields.place("log_period_s"), Cause::TooManyRows(MAX_ROWS));
     }
-    simulation.seed = fields.count("seed", 0, report) as u64;
+    simulation.seed = fields.count("seed", ranges::SEED, 0, report) as u64;
     if let Some(drives) = fields.get("drives") {
         let meanings = [DriveModelling::Ideal, DriveModelling::Model];
         simulation.drives = drives.word(&["ideal", "model"], &meanings, report).unwrap_or_default();
@@ -31,9 +33,10 @@ pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation
     contact(fields, &mut simulation, report);
     let limits = fields.get("limits").and_then(|n| n.fields(&["events", "evaluations"], report));
     if let Some(limits) = limits {
-        simulation.max_events = limits.count("events", simulation.max_events, report);
+        simulation.max_events =
+            limits.count("events", ranges::EVENTS, simulation.max_events, report);
         simulation.max_evaluations =
-            limits.count("evaluations", simulation.max_evaluations, report);
+            limits.count("evaluations", ranges::EVALUATIONS, simulation.max_evaluations, report);
     }
     simulation
 }
@@ -43,11 +46,18 @@ fn measurement(fields: &Fields<'_>, report: &mut Report) -> Measurement {
     let Some(given) = fields.get("measurement").and_then(|node| node.fields(known, report)) else {
         return Measurement::default();
     };
+    let is_sampled = match fields.get("control").map(|node| &node.0.value) {
+        Some(Value::Object(entries)) => entries.iter().any(|(key, _)| key == "period_s"),
+        _ => false,
+    };
+    if !is_sampled {
+        report.push(fields.place("measurement"), Cause::NoEffect("`period_s` in `control`"));
+    }
     Measurement {
-        resolution: given.not_negative("resolution", 0.0, report),
-        position_noise: given.not_negative("position_noise", 0.0, report),
-        rate_noise: given.not_negative("rate_noise", 0.0, report),
-        delay_samples: given.count("delay_samples", 0, report).min(10_000),
+        resolution: given.number("resolution", ranges::RESOLUTION, 0.0, report),
+        position_noise: given.number("position_noise", ranges::NOISE, 0.0, report),
+        rate_noise: given.number("rate_noise", ranges::NOISE, 0.0, report),
+        delay_samples: given.count("delay_samples", ranges::DELAY_SAMPLES, 0, report),
         differentiates: given.flag("differentiates", report),
     }
 }
@@ -64,23 +74,20 @@ fn method(fields: &Fields<'_>, report: &mut Report) -> Method {
     let Some(given) = fields.get("integrator").and_then(|node| node.fields(known, report)) else {
         return Method::default();
     };
-    let words = &["dormand_prince", "sdirk", "runge_kutta"];
+    let words = &["dormand_prince", "radau", "runge_kutta"];
     let meanings = [Kind::Explicit, Kind::Implicit, Kind::Fixed];
     let word = given.get("method").and_then(|node| node.word(words, &meanings, report));
     let absent = Accuracy::default();
     let accuracy = Accuracy {
-        relative: given.positive("relative", absent.relative, report).max(1e-14),
-        absolute: given.positive("absolute", absent.absolute, report),
-        max_step_s: given.positive("max_step_s", absent.max_step_s, report),
+        relative: given.number("relative", ranges::RELATIVE, absent.relative, report),
+        absolute: given.number("absolute", ranges::ABSOLUTE, absent.absolute, report),
+        max_step_s: given.number("max_step_s", ranges::STEP_S, absent.max_step_s, report),
     };
+    let step_s = given.number("step_s", ranges::STEP_S, 1e-3, report);
     match word.unwrap_or(Kind::Explicit) {
         Kind::Explicit => Method::DormandPrince(accuracy),
-        Kind::Implicit => Method::Sdirk(accuracy),
-        Kind::Fixed => {
-            // shorter steps than time resolves would never end
-            let step_s = given.positive("step_s", 1e-3, report).max(1e-9);
-            Method::RungeKutta { step_s }
-        }
+        Kind::Implicit => Method::Radau(accuracy),
+        Kind::Fixed => Method::RungeKutta { step_s },
     }
 }
 
@@ -98,24 +105,27 @@ fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report
     };
     let touching = &mut simulation.touching;
     if let Some(friction) = given.get("friction") {
-        simulation.friction = if friction.value.is_number() {
-            Friction::Coulomb(given.not_negative("friction", 0.0, report))
+        simulation.friction = if friction.as_number().is_some() {
+            Friction::Coulomb(given.number("friction", ranges::FRICTION, 0.0, report))
         } else {
             let word = friction.word(&["no_slip"], &[Friction::NoSlip], report);
             word.unwrap_or(Friction::NoSlip)
         };
     }
-    touching.restitution = given.share("restitution", 0.0, report);
-    touching.rest_speed = given.not_negative("rest_speed_m_s", touching.rest_speed, report);
+    touching.restitution = given.number("restitution", ranges::RESTITUTION, 0.0, report);
+    touching.rest_speed =
+        given.number("rest_speed_m_s", ranges::REST_SPEED_M_S, touching.rest_speed, report);
     if given.get("fallback_friction").is_some() {
-        touching.fallback_friction = Some(given.positive("fallback_friction", 1.0, report));
+        let range = ranges::SOME_FRICTION;
+        touching.fallback_friction = Some(given.number("fallback_friction", range, 1.0, report));
     }
     if let Some(word) = given.get("scuffing") {
         let meanings = [Scuffing::Counts, Scuffing::IgnoredBehind];
         touching.scuffing =
             word.word(&["counts", "ignored_behind"], &meanings, report).unwrap_or_default();
     }
-    simulation.drift_rate = given.not_negative("drift_rate_per_s", simulation.drift_rate, report);
+    simulation.drift_rate =
+        given.number("drift_rate_per_s", ranges::DRIFT_RATE_PER_S, simulation.drift_rate, report);
 }
 
 /// What audits may miss, by the object under `tolerances`.
@@ -152,7 +162,7 @@ pub(super) fn tolerances(
         &mut t.cone_n,
     ];
     for (key, entry) in known.iter().zip(entries) {
-        *entry = given.positive(key, *entry, report);
+        *entry = given.number(key, ranges::TOLERANCE, *entry, report);
     }
     tolerances
 }

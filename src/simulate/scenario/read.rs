@@ -1,22 +1,24 @@
 //! From the bytes of a scenario file to a scenario.
 
-use super::fault::{Cause, Fault, ScenarioError};
+use super::fault::{Cause, ScenarioError};
 use super::gait::gait;
 use super::options;
-use super::place::{Places, line_and_column};
+use super::ranges;
 use super::reader::{Fields, Node, Report};
 use super::reference::{self, Logs};
-use super::start::find_start_faults;
+use super::start::{Origin, find_start_faults};
 use super::stepping;
 use super::{FORMAT, Scenario};
-use crate::plants::{Cradle, Override, Plant, PlantModel, plant_of};
+use crate::plants::{Cradle, Override, Plant, PlantError, PlantModel, plant_of};
 use crate::simulate::audit::Tolerances;
 use crate::simulate::control::{Compensation, Control, Feedback, JointControl};
+use crate::simulate::drive::DriveModelling;
 use crate::simulate::ground::Ground;
+use crate::simulate::run::Simulation;
 use crate::simulate::state::State;
 use denavit_codegen::expr::text::nearest;
-use denavit_codegen::model::{self, Robot};
-use serde_json::Value;
+use denavit_codegen::model::json::{self, Value};
+use denavit_codegen::model::{self, Robot, find_duplicate_keys};
 
 /// Reads a model by what a scenario calls it: a shipped name, or a path beside the scenario. The
 /// error is a sentence.
@@ -49,69 +51,60 @@ const KEYS: &[&str] = &[
 
 /// Reads a scenario file from its bytes. `file` is its name, for messages alone.
 pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, ScenarioError> {
-    let error = |faults, omitted| ScenarioError { file: file.to_owned(), faults, omitted };
-    let text = String::from_utf8_lossy(source);
-    let root: Value = match serde_json::from_str(&text) {
+    let mut report = Report::default();
+    let root = match json::parse(source) {
         Ok(root) => root,
-        Err(failure) => {
-            let said = failure.to_string();
-            let said = said.split(" at line ").next().unwrap_or_default().to_owned();
-            let fault = Fault {
-                pointer: String::new(),
-                line: failure.line(),
-                column: failure.column().max(1),
-                cause: Cause::Syntax(said),
-            };
-            return Err(error(vec![fault], 0));
+        Err(error) => {
+            report.push(error.at, Cause::Form(error.cause.into()));
+            return Err(report.into_error(file, source, None));
         }
     };
-    let mut report = Report::default();
-    let places = Places::new(&text);
-    for (pointer, key) in &places.duplicates {
-        report.push(pointer, Cause::DuplicateKey(key.clone()));
-    }
-    let scenario = scenario(&Node { value: &root, pointer: String::new() }, load, &mut report);
+    find_duplicate_keys(&root, &mut report);
+    let origin = Origin { file: file.to_owned(), source: source.to_vec() };
+    let scenario = Node(&root)
+        .fields(KEYS, &mut report)
+        .and_then(|fields| scenario(&fields, origin, load, &mut report));
     match scenario {
-        Some(scenario) if report.faults.is_empty() => Ok(scenario),
-        _ => {
-            let mut faults: Vec<(usize, Fault)> = report
-                .faults
-                .into_iter()
-                .map(|(pointer, cause)| {
-                    let start = places.find(&text, &pointer).2;
-                    let (line, column) = line_and_column(&text, start);
-                    (start, Fault { pointer, line, column, cause })
-                })
-                .collect();
-            faults.sort_by_key(|(start, _)| *start);
-            let faults = faults.into_iter().map(|(_, fault)| fault).collect();
-            Err(error(faults, report.omitted))
+        Some(mut scenario) if report.is_empty() => {
+            find_start_faults(&mut scenario, &root, &mut report);
+            if report.is_empty() {
+                return Ok(scenario);
+            }
         }
+        _ => {}
     }
+    Err(report.into_error(file, source, Some(&root)))
 }
 
-fn scenario(root: &Node<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Scenario> {
-    let fields = root.fields(KEYS, report)?;
+fn scenario(
+    fields: &Fields<'_>,
+    origin: Origin,
+    load: &Loader<'_>,
+    report: &mut Report,
+) -> Option<Scenario> {
     if let Some(tag) = fields.require("format", report)
         && let Some(found) = tag.text(report)
         && found != FORMAT
     {
-        report.push(&tag.pointer, Cause::WrongFormat(found.to_owned()));
+        let cause = model::Cause::WrongFormat { found: found.to_owned(), expected: FORMAT };
+        report.push(tag.at(), Cause::Form(cause));
     }
     let text = |key: &str, report: &mut Report| {
         fields.get(key).and_then(|node| node.text(report)).unwrap_or_default().to_owned()
     };
     let (name, description) = (text("name", report), text("description", report));
-    let mut simulation = options::simulation(&fields, report);
-    let tolerances = options::tolerances(&fields, Tolerances::default(), report);
-    let scheme = stepping::scheme(&fields, report);
-    let (stepping, stepping_tolerances) = stepping::stepping(&fields, report);
-    let mut plant = plant(&fields, load, report)?;
-    let mut control = control(&fields, plant.model(), &mut Logs::new(load), report);
-    let posture = gait(&fields, plant.as_mut(), &mut control, report);
-    let initial = initial(&fields, plant.as_mut(), posture, report);
+    let mut simulation = options::simulation(fields, report);
+    let tolerances = options::tolerances(fields, Tolerances::default(), report);
+    let scheme = stepping::scheme(fields, report);
+    let (stepping, stepping_tolerances) = stepping::stepping(fields, report);
+    let mut plant = plant(fields, load, report)?;
+    let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
+    let posture = gait(fields, plant.as_mut(), &mut control, report);
+    let initial = initial(fields, plant.as_mut(), posture, report);
     simulation.end_s += initial.t_s;
-    let mut scenario = Scenario {
+    find_idle(fields, plant.model(), &simulation, &control, report);
+    Some(Scenario {
+        origin,
         name,
         description,
         plant,
@@ -122,17 +115,64 @@ fn scenario(root: &Node<'_>, load: &Loader<'_>, report: &mut Report) -> Option<S
         scheme,
         stepping,
         stepping_tolerances,
+    })
+}
+
+/// Notes what is given and would do nothing: gains that follow nothing, drives of a model that has
+/// none.
+fn find_idle(
+    fields: &Fields<'_>,
+    model: &PlantModel,
+    simulation: &Simulation,
+    control: &Control,
+    report: &mut Report,
+) {
+    let mut has = |place: usize, any: bool, missing: &'static str| {
+        if !any {
+            report.push(place, Cause::NoEffect(missing));
+        }
     };
-    if report.faults.is_empty() {
-        find_start_faults(&mut scenario, report);
+    let drives = || model.joints.iter().filter_map(|joint| joint.drive);
+    if simulation.drives == DriveModelling::Model {
+        has(fields.place("drives"), drives().next().is_some(), "drives in the model");
     }
-    Some(scenario)
+    let given = |key: &str| match &fields.get("control")?.0.value {
+        Value::Object(entries) => {
+            entries.iter().find(|(known, _)| known == key).map(|(_, value)| value)
+        }
+        _ => None,
+    };
+    if let (Feedback::Motor, Some(value)) = (control.feedback, given("feedback")) {
+        let elastic = simulation.drives == DriveModelling::Model
+            && drives().any(|drive| drive.series_elastic.is_some());
+        has(value.start, elastic, "series elastic drives and `\"drives\": \"model\"`");
+    }
+    if let (true, Some(value)) = (control.saturates, given("saturates")) {
+        let limited = model.joints.iter().any(|joint| joint.torque_limits.is_some());
+        has(value.start, limited, "torque limits in the model");
+    }
+    for (name, own) in given("joints").map_or(&[][..], |joints| joints.entries()) {
+        let follows = |joint: usize| control.joints[joint].reference.is_some();
+        if model.find_joint(name).is_none_or(follows) {
+            continue;
+        }
+        let gains = own.entries().iter();
+        for (_, gain) in gains.filter(|(key, _)| ["kp", "kd", "gain_factor"].contains(&&**key)) {
+            has(gain.start, false, "a `reference`");
+        }
+    }
 }
 
 fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Box<dyn Plant>> {
-    if fields.get("cradle_balls").is_some() {
-        let balls = fields.count("cradle_balls", 2, report);
-        return Some(Box::new(Cradle::new(balls.clamp(2, 8))));
+    if let Some(balls) = fields.get("cradle_balls") {
+        if fields.get("model").is_some() {
+            report.push(balls.at(), Cause::TwoRobots);
+        }
+        if let Some(parameters) = fields.get("parameters") {
+            report.push(parameters.at(), Cause::NoEffect("a `model`"));
+        }
+        let balls = fields.count("cradle_balls", ranges::CRADLE_BALLS, 2, report);
+        return Some(Box::new(Cradle::new(balls)));
     }
     let node = fields.require("model", report)?;
     let name = node.text(report)?;
@@ -140,12 +180,12 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
         Ok(bytes) => match model::read(name, &bytes) {
             Ok(robot) => robot,
             Err(error) => {
-                report.push(&node.pointer, Cause::Model(error.to_string()));
+                report.push(node.at(), Cause::Model(error.to_string()));
                 return None;
             }
         },
         Err(reason) => {
-            report.push(&node.pointer, Cause::File(name.to_owned(), reason));
+            report.push(node.at(), Cause::File(name.to_owned(), reason));
             return None;
         }
     };
@@ -155,25 +195,25 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
             if robot.find_parameter(parameter).is_none() {
                 let names = robot.parameters.values().map(|parameter| parameter.name.as_str());
                 let meant = nearest(parameter, names).map(str::to_owned);
-                let error =
-                    crate::plants::PlantError::UnknownParameter(parameter.to_owned(), meant);
-                report.push(&node.pointer, Cause::Plant(error));
+                let error = PlantError::UnknownParameter(parameter.to_owned(), meant);
+                report.push(node.at(), Cause::Plant(error));
             } else if let Some(value) = node.number(report) {
                 overrides.push(Override { parameter: parameter.to_owned(), value });
             }
         }
     }
     let made = plant_of(&robot, &overrides);
-    made.map_err(|error| report.push(&node.pointer, Cause::Plant(error))).ok()
+    let place = if overrides.is_empty() { node.at() } else { fields.place("parameters") };
+    made.map_err(|error| report.push(place, Cause::Plant(error))).ok()
 }
 
 /// The joint that a key names.
-fn joint(model: &PlantModel, name: &str, node: &Node<'_>, report: &mut Report) -> Option<usize> {
+fn joint(model: &PlantModel, name: &str, node: Node<'_>, report: &mut Report) -> Option<usize> {
     let found = model.find_joint(name);
     if found.is_none() {
         let names = model.joints.iter().map(|joint| joint.name.as_str());
         let meant = nearest(name, names).map(str::to_owned);
-        report.push(&node.pointer, Cause::UnknownJoint(name.to_owned(), meant));
+        report.push(node.at(), Cause::UnknownJoint(name.to_owned(), meant));
     }
     found
 }
@@ -200,24 +240,24 @@ fn control(
         word.and_then(|node| node.word(&["joint", "motor"], &meanings, report)).unwrap_or_default();
     control.saturates = given.flag("saturates", report);
     if given.get("period_s").is_some() {
-        control.period_s = Some(given.positive("period_s", 1e-3, report));
+        control.period_s = Some(given.number("period_s", ranges::SAMPLE_PERIOD_S, 1e-3, report));
     }
     if let Some(joints) = given.get("joints").and_then(|node| node.members(report)) {
         for (name, node) in joints.all() {
-            let Some(index) = joint(model, name, &node, report) else { continue };
+            let Some(index) = joint(model, name, node, report) else { continue };
             if !model.joints[index].drivable {
-                report.push(&node.pointer, Cause::Undrivable(name.to_owned()));
+                report.push(node.at(), Cause::Undrivable(name.to_owned()));
             }
             let known = &["kp", "kd", "reference", "feed_forward", "gain_factor"];
             let Some(own) = node.fields(known, report) else { continue };
             let mut follow =
-                |key: &str| own.get(key).and_then(|n| reference::read(&n, logs, report));
+                |key: &str| own.get(key).and_then(|n| reference::read(n, logs, report));
             let [reference, feed_forward, gain_factor] =
                 ["reference", "feed_forward", "gain_factor"].map(&mut follow);
             control.joints[index] = JointControl {
                 reference,
-                stiffness: own.not_negative("kp", 0.0, report),
-                damping: own.not_negative("kd", 0.0, report),
+                stiffness: own.number("kp", ranges::GAIN, 0.0, report),
+                damping: own.number("kd", ranges::GAIN, 0.0, report),
                 gain_factor,
                 feed_forward,
             };
@@ -238,19 +278,19 @@ fn initial(
     let Some(given) = fields.get("initial").and_then(|node| node.fields(known, report)) else {
         return state;
     };
-    state.t_s = given.number("t_s", 0.0, report);
+    state.t_s = given.number("t_s", ranges::START_S, 0.0, report);
     for (key, values) in [("q", &mut state.q), ("qd", &mut state.qd)] {
         let Some(joints) = given.get(key).and_then(|node| node.members(report)) else { continue };
         for (name, node) in joints.all() {
-            if let Some(index) = joint(&model, name, &node, report)
-                && let Some(value) = node.number(report)
+            if let Some(index) = joint(&model, name, node, report)
+                && let Some(value) = node.number_in(ranges::COORDINATE, report)
             {
                 values[index] = value;
             }
         }
     }
     if given.flag("on_ground", report) && !put_on_ground(plant, &mut state) {
-        report.push(&format!("{}/on_ground", given.pointer), Cause::NoPlacing);
+        report.push(given.place("on_ground"), Cause::NoPlacing);
     }
     state
 }

@@ -1,117 +1,127 @@
-//! Reads JSON values by key, noting every fault with its pointer.
+//! Reads JSON values by key, noting every fault with its place.
 
 use super::fault::Cause;
-use super::place::escaped;
+use super::ranges::Range;
 use denavit_codegen::expr::text::nearest;
-use denavit_codegen::model::MAX_FAULTS;
-use serde_json::{Map, Value};
+use denavit_codegen::model;
+use denavit_codegen::model::json::{Json, Value};
+use std::borrow::Cow;
 
-/// The faults found so far, by pointer.
-#[derive(Debug, Default)]
-pub(super) struct Report {
-    pub(super) faults: Vec<(String, Cause)>,
-    /// How many more were found than are kept.
-    pub(super) omitted: usize,
-}
+/// The faults found so far.
+pub(super) type Report = model::Report<Cause>;
 
-impl Report {
-    /// How many faults there are.
-    pub(super) fn count(&self) -> usize {
-        self.faults.len() + self.omitted
-    }
+/// A value.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node<'v>(pub(super) &'v Json<'v>);
 
-    pub(super) fn push(&mut self, pointer: &str, cause: Cause) {
-        // garbage has millions
-        match self.faults.len() < MAX_FAULTS {
-            true => self.faults.push((pointer.to_owned(), cause)),
-            false => self.omitted += 1,
-        }
-    }
-}
-
-/// A value with its pointer.
-#[derive(Clone, Debug)]
-pub(super) struct Node<'v> {
-    pub(super) value: &'v Value,
-    pub(super) pointer: String,
-}
-
-/// An object with its pointer; its keys have been checked.
-#[derive(Clone, Debug)]
+/// An object; its keys have been checked.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Fields<'v> {
-    map: &'v Map<String, Value>,
-    pub(super) pointer: String,
+    entries: &'v [(Cow<'v, str>, Json<'v>)],
+    /// Where it begins.
+    pub(super) at: usize,
 }
 
 impl<'v> Node<'v> {
+    /// Where the value begins.
+    pub(super) fn at(self) -> usize {
+        self.0.start
+    }
+
     /// The value as an object that may have the keys `known`.
     pub(super) fn fields(
-        &self,
+        self,
         known: &'static [&'static str],
         report: &mut Report,
     ) -> Option<Fields<'v>> {
         let fields = self.members(report)?;
-        for (key, _) in fields.map {
-            if !known.contains(&key.as_str()) {
+        for (key, value) in fields.entries {
+            if !known.contains(&key.as_ref()) {
                 let nearest = nearest(key, known.iter().copied());
-                let cause = Cause::UnknownKey(key.clone(), nearest, known);
-                report.push(&format!("{}/{}", self.pointer, escaped(key)), cause);
+                let key = key.clone().into_owned();
+                let cause = model::Cause::UnknownKey { key, nearest, known };
+                report.push(value.start, Cause::Form(cause));
             }
         }
         Some(fields)
     }
 
     /// The value as an object with any keys.
-    pub(super) fn members(&self, report: &mut Report) -> Option<Fields<'v>> {
-        match self.value.as_object() {
-            Some(map) => Some(Fields { map, pointer: self.pointer.clone() }),
-            None => {
-                report.push(&self.pointer, Cause::WrongKind("an object"));
-                None
-            }
+    pub(super) fn members(self, report: &mut Report) -> Option<Fields<'v>> {
+        match &self.0.value {
+            Value::Object(entries) => Some(Fields { entries, at: self.at() }),
+            _ => self.wrong_kind("an object", report),
         }
     }
 
-    pub(super) fn number(&self, report: &mut Report) -> Option<f64> {
-        let number = self.value.as_f64().filter(|number| number.is_finite());
-        if number.is_none() {
-            report.push(&self.pointer, Cause::WrongKind("a number"));
-        }
-        number
+    /// Notes that something else should stand here.
+    pub(super) fn wrong_kind<T>(self, expected: &'static str, report: &mut Report) -> Option<T> {
+        let cause = model::Cause::WrongKind { expected, found: self.0.value.kind() };
+        report.push(self.at(), Cause::Form(cause));
+        None
     }
 
-    pub(super) fn items(&self, report: &mut Report) -> Vec<Node<'v>> {
-        let Some(list) = self.value.as_array() else {
-            report.push(&self.pointer, Cause::WrongKind("a list"));
-            return Vec::new();
+    /// The value, if it is a number, however large.
+    pub(super) fn as_number(self) -> Option<f64> {
+        match self.0.value {
+            Value::Number(text) => text.parse().ok(),
+            _ => None,
+        }
+    }
+
+    pub(super) fn number(self, report: &mut Report) -> Option<f64> {
+        let Some(number) = self.as_number() else {
+            return self.wrong_kind("a number", report);
         };
-        let node = |(index, value)| Node { value, pointer: format!("{}/{index}", self.pointer) };
-        list.iter().enumerate().map(node).collect()
-    }
-
-    pub(super) fn numbers(&self, report: &mut Report) -> Vec<f64> {
-        self.items(report).iter().filter_map(|item| item.number(report)).collect()
-    }
-
-    pub(super) fn text(&self, report: &mut Report) -> Option<&'v str> {
-        let text = self.value.as_str();
-        if text.is_none() {
-            report.push(&self.pointer, Cause::WrongKind("a string"));
+        if let (false, Value::Number(text)) = (number.is_finite(), &self.0.value) {
+            report.push(self.at(), Cause::Form(model::Cause::NotFinite((*text).to_owned())));
+            return None;
         }
-        text
+        Some(number)
+    }
+
+    /// A number of this range.
+    pub(super) fn number_in(self, range: Range, report: &mut Report) -> Option<f64> {
+        let number = self.number(report)?;
+        if !range.contains(number) {
+            report.push(self.at(), Cause::OutsideRange(number, range));
+            return None;
+        }
+        Some(number)
+    }
+
+    pub(super) fn items(self, report: &mut Report) -> Vec<Node<'v>> {
+        match &self.0.value {
+            Value::List(items) => items.iter().map(Node).collect(),
+            _ => self.wrong_kind("a list", report).unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn numbers(self, report: &mut Report) -> Vec<f64> {
+        self.items(report).into_iter().filter_map(|item| item.number(report)).collect()
+    }
+
+    pub(super) fn text(self, report: &mut Report) -> Option<&'v str> {
+        match &self.0.value {
+            Value::Text(text) => Some(text),
+            _ => self.wrong_kind("a string", report),
+        }
     }
 
     /// One of some words, each with its meaning.
     pub(super) fn word<T: Copy>(
-        &self,
-        words: &'static [&'static str],
+        self,
+        known: &'static [&'static str],
         meanings: &[T],
         report: &mut Report,
     ) -> Option<T> {
         let text = self.text(report)?;
-        let index = words.iter().position(|word| *word == text);
+        let index = known.iter().position(|word| *word == text);
         if index.is_none() {
-            report.push(&self.pointer, Cause::UnknownWord(text.to_owned(), words));
+            let nearest = nearest(text, known.iter().copied());
+            let found = text.to_owned();
+            let cause = model::Cause::UnknownWord { what: "word", found, known, nearest };
+            report.push(self.at(), Cause::Form(cause));
         }
         index.map(|index| meanings[index])
     }
@@ -119,92 +129,94 @@ impl<'v> Node<'v> {
 
 impl<'v> Fields<'v> {
     pub(super) fn get(&self, key: &str) -> Option<Node<'v>> {
-        let value = self.map.get(key)?;
-        Some(Node { value, pointer: format!("{}/{}", self.pointer, escaped(key)) })
+        let found = self.entries.iter().find(|(known, _)| known == key);
+        found.map(|(_, value)| Node(value))
+    }
+
+    /// Where the value of a key begins, or the object without it.
+    pub(super) fn place(&self, key: &str) -> usize {
+        self.get(key).map_or(self.at, Node::at)
     }
 
     pub(super) fn require(&self, key: &'static str, report: &mut Report) -> Option<Node<'v>> {
         let node = self.get(key);
         if node.is_none() {
-            report.push(&self.pointer, Cause::MissingKey(key));
+            report.push(self.at, Cause::Form(model::Cause::MissingKey(key)));
         }
         node
     }
 
-    /// All entries, by key in alphabetical order.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&'v str, Node<'v>)> + '_ {
-        self.map.iter().map(|(key, value)| {
-            let pointer = format!("{}/{}", self.pointer, escaped(key));
-            (key.as_str(), Node { value, pointer })
-        })
+    /// All entries, in the order of the file.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&'v str, Node<'v>)> + use<'v> {
+        self.entries.iter().map(|(key, value)| (key.as_ref(), Node(value)))
     }
 
-    pub(super) fn number(&self, key: &str, absent: f64, report: &mut Report) -> f64 {
-        self.get(key).and_then(|node| node.number(report)).unwrap_or(absent)
+    /// A number of this range; `absent` stands in for it, and for a fault.
+    pub(super) fn number(&self, key: &str, range: Range, absent: f64, report: &mut Report) -> f64 {
+        self.get(key).and_then(|node| node.number_in(range, report)).unwrap_or(absent)
     }
 
-    pub(super) fn positive(&self, key: &str, absent: f64, report: &mut Report) -> f64 {
-        let number = self.number(key, absent, report);
-        if number > 0.0 {
-            return number;
-        }
-        report.push(&format!("{}/{key}", self.pointer), Cause::NotPositive);
-        absent
+    /// A number of this range that must be there; the largest stands in for a fault.
+    pub(super) fn required_number(
+        &self,
+        key: &'static str,
+        range: Range,
+        report: &mut Report,
+    ) -> f64 {
+        let node = self.require(key, report);
+        node.and_then(|node| node.number_in(range, report)).unwrap_or(range.most)
     }
 
-    pub(super) fn not_negative(&self, key: &str, absent: f64, report: &mut Report) -> f64 {
-        let number = self.number(key, absent, report);
-        if number >= 0.0 {
-            return number;
-        }
-        report.push(&format!("{}/{key}", self.pointer), Cause::Negative);
-        absent
-    }
-
-    /// A number from 0 to 1.
-    pub(super) fn share(&self, key: &str, absent: f64, report: &mut Report) -> f64 {
-        let number = self.not_negative(key, absent, report);
-        if number > 1.0 {
-            report.push(&format!("{}/{key}", self.pointer), Cause::AboveOne);
-        }
-        number
-    }
-
-    /// A list of so many numbers.
+    /// A list of so many numbers of this range.
     pub(super) fn array<const N: usize>(
         &self,
         key: &str,
+        range: Range,
         absent: [f64; N],
         report: &mut Report,
     ) -> [f64; N] {
         let Some(node) = self.get(key) else { return absent };
-        let before = report.count();
-        let found = <[f64; N]>::try_from(node.numbers(report));
-        found.unwrap_or_else(|found| {
-            // a list with a wrong entry has been reported already
-            if report.count() == before {
-                report.push(&node.pointer, Cause::WrongLength(N, found.len()));
+        let items = node.items(report);
+        if items.len() != N {
+            // what is no list has been reported already
+            if matches!(node.0.value, Value::List(_)) {
+                report.push(node.at(), Cause::wrong_length(N, items.len()));
             }
-            absent
-        })
+            return absent;
+        }
+        let mut values = absent;
+        for (value, item) in values.iter_mut().zip(items) {
+            *value = item.number_in(range, report).unwrap_or(*value);
+        }
+        values
     }
 
-    pub(super) fn count(&self, key: &str, absent: usize, report: &mut Report) -> usize {
+    /// A whole number of this range.
+    pub(super) fn count(
+        &self,
+        key: &str,
+        range: Range,
+        absent: usize,
+        report: &mut Report,
+    ) -> usize {
         let Some(node) = self.get(key) else { return absent };
-        let count = node.value.as_u64().and_then(|count| usize::try_from(count).ok());
-        if count.is_none() {
-            report.push(&node.pointer, Cause::WrongKind("a whole number that is not negative"));
-        }
-        count.unwrap_or(absent)
+        let Some(number) = node.number_in(range, report) else { return absent };
+        let text = match node.0.value {
+            Value::Number(text) => text,
+            _ => "",
+        };
+        // a whole number may be written with an exponent
+        let whole = (number.fract() == 0.0 && number < 9e15).then_some(number as usize);
+        let count = text.parse().ok().or(whole);
+        count.or_else(|| node.wrong_kind("a whole number", report)).unwrap_or(absent)
     }
 
     pub(super) fn flag(&self, key: &str, report: &mut Report) -> bool {
         let Some(node) = self.get(key) else { return false };
-        let flag = node.value.as_bool();
-        if flag.is_none() {
-            report.push(&node.pointer, Cause::WrongKind("true or false"));
+        match node.0.value {
+            Value::Bool(flag) => flag,
+            _ => node.wrong_kind("true or false", report).unwrap_or_default(),
         }
-        flag.unwrap_or(false)
     }
 
     pub(super) fn numbers(&self, key: &'static str, report: &mut Report) -> Vec<f64> {

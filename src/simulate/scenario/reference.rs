@@ -1,6 +1,7 @@
 //! References of a scenario: an object with one key, the kind.
 
 use super::fault::Cause;
+use super::ranges;
 use super::read::Loader;
 use super::reader::{Fields, Node, Report};
 use crate::simulate::log::Log;
@@ -44,30 +45,29 @@ impl<'a> Logs<'a> {
 }
 
 /// A reference, or nothing with its faults noted.
-pub(super) fn read(node: &Node<'_>, logs: &mut Logs<'_>, report: &mut Report) -> Option<Reference> {
-    if let Some(constant) = node.value.as_f64() {
+pub(super) fn read(node: Node<'_>, logs: &mut Logs<'_>, report: &mut Report) -> Option<Reference> {
+    if let Some(constant) = node.as_number().filter(|number| number.is_finite()) {
         return Some(Reference::Constant(constant));
     }
     let before = report.count();
     let fields = node.fields(KINDS, report)?;
     let mut kinds = fields.all().filter(|(key, _)| KINDS.contains(key));
     let Some((kind, inner)) = kinds.next() else {
-        report.push(&node.pointer, Cause::WrongKind("a number, or an object with one kind"));
-        return None;
+        return node.wrong_kind("a number, or an object with one kind", report);
     };
     if let Some((_, other)) = kinds.next() {
-        report.push(&other.pointer, Cause::WrongKind("one kind of reference, not two"));
+        return other.wrong_kind("one kind of reference, not two", report);
     }
-    let made = make(kind, &inner, logs, report)?;
+    let made = make(kind, inner, logs, report)?;
     if report.count() > before {
         return None;
     }
-    made.map_err(|error| report.push(&inner.pointer, Cause::Reference(error))).ok()
+    made.map_err(|error| report.push(inner.at(), Cause::Reference(error))).ok()
 }
 
 fn make(
     kind: &str,
-    node: &Node<'_>,
+    node: Node<'_>,
     logs: &mut Logs<'_>,
     report: &mut Report,
 ) -> Option<Result<Reference, TrajectoryError>> {
@@ -93,8 +93,9 @@ fn make(
         "fourier" => {
             let known = &["frequency_rad_s", "offset", "sines", "cosines"];
             let fields = node.fields(known, report)?;
-            let frequency = fields.positive("frequency_rad_s", 0.0, report);
-            let offset = fields.number("offset", 0.0, report);
+            let frequency =
+                fields.required_number("frequency_rad_s", ranges::FREQUENCY_RAD_S, report);
+            let offset = fields.get("offset").and_then(|node| node.number(report)).unwrap_or(0.0);
             let [sines, cosines] = ["sines", "cosines"].map(|key| fields.numbers(key, report));
             Fourier::new(frequency, offset, sines, cosines).map(Reference::Fourier)
         }
@@ -144,17 +145,17 @@ fn logged(
     let log = match logs.get(file_name) {
         Ok(log) => log,
         Err(cause) => {
-            report.push(&file.pointer, cause.clone());
+            report.push(file.at(), cause.clone());
             return None;
         }
     };
     let Some(values) = log.column(name) else {
         let near = nearest(name, log.columns.iter().map(String::as_str)).map(str::to_owned);
-        report.push(&column.pointer, Cause::UnknownColumn(name.to_owned(), near));
+        report.push(column.at(), Cause::UnknownColumn(name.to_owned(), near));
         return None;
     };
     if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-        report.push(&column.pointer, Cause::EmptyCell(name.to_owned(), log.line_of_row(row)));
+        report.push(column.at(), Cause::EmptyCell(name.to_owned(), log.line_of_row(row)));
         return None;
     }
     let times = log.column("t")?;
@@ -176,9 +177,9 @@ fn sequence(
     let mut parts = Vec::new();
     for item in items {
         let Some(part) = item.fields(&["duration_s", "reference"], report) else { continue };
-        let duration_s = part.positive("duration_s", 0.0, report);
+        let duration_s = part.required_number("duration_s", ranges::PART_S, report);
         let reference = part.require("reference", report);
-        let reference = reference.and_then(|node| read(&node, logs, report));
+        let reference = reference.and_then(|node| read(node, logs, report));
         parts.extend(reference.map(|reference| Part { duration_s, reference }));
     }
     Sequence::new(parts, fields.flag("repeat", report)).map(Reference::Sequence)
@@ -188,8 +189,7 @@ fn pair(fields: &Fields<'_>, key: &'static str, report: &mut Report) -> Option<[
     let numbers = fields.numbers(key, report);
     let pair = <[f64; 2]>::try_from(numbers);
     pair.map_err(|numbers| {
-        let pointer = format!("{}/{key}", fields.pointer);
-        report.push(&pointer, Cause::WrongLength(2, numbers.len()));
+        report.push(fields.place(key), Cause::wrong_length(2, numbers.len()));
     })
     .ok()
 }

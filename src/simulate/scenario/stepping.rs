@@ -1,7 +1,9 @@
 //! Which scheme makes a run, and how the steps of time stepping are made.
 
 use super::RunScheme;
+use super::fault::Cause;
 use super::options::tolerances;
+use super::ranges;
 use super::reader::{Fields, Report};
 use crate::simulate::audit::Tolerances;
 use crate::simulate::contact::gauss_seidel::SweepLimits;
@@ -33,22 +35,25 @@ pub(super) fn stepping(fields: &Fields<'_>, report: &mut Report) -> (Stepping, T
     let Some(given) = fields.get("time_stepping").and_then(|node| node.fields(KEYS, report)) else {
         return (stepping, Tolerances::of_steps(stepping.step_s));
     };
-    // shorter steps than time resolves would never end
-    stepping.step_s = given.positive("step_s", stepping.step_s, report).max(1e-9);
-    stepping.implicitness = given.share("implicit_damping", stepping.implicitness, report);
-    stepping.corrections = given.count("corrections", 0, report).min(10);
-    stepping.no_slip_friction =
-        given.positive("no_slip_friction", stepping.no_slip_friction, report);
-    let reach_m = given.not_negative("reach_m", 0.01, report);
+    stepping.step_s = given.number("step_s", ranges::STEP_S, stepping.step_s, report);
+    stepping.implicitness =
+        given.number("implicit_damping", ranges::SHARE, stepping.implicitness, report);
+    stepping.corrections = given.count("corrections", ranges::CORRECTIONS, 0, report);
+    let (range, absent) = (ranges::SOME_FRICTION, stepping.no_slip_friction);
+    stepping.no_slip_friction = given.number("no_slip_friction", range, absent, report);
+    let reach_m = given.number("reach_m", ranges::REACH_M, 0.01, report);
     let meanings = [Scheme::MoreauMidpoint, Scheme::Anitescu { reach_m }];
     let word = given.get("method").and_then(|n| n.word(&["moreau", "anitescu"], &meanings, report));
     stepping.scheme = word.unwrap_or(stepping.scheme);
     let absent = SweepLimits::default();
     let limits = SweepLimits {
-        sweeps: given.count("sweeps", absent.sweeps, report).max(1),
-        response: given.positive("response_m_s", absent.response, report),
+        sweeps: given.count("sweeps", ranges::SWEEPS, absent.sweeps, report),
+        response: given.number("response_m_s", ranges::RESPONSE_M_S, absent.response, report),
     };
-    let facets = given.count("facets", 16, report).clamp(2, 64).next_multiple_of(2).max(4);
+    let facets = given.count("facets", ranges::FACETS, 16, report);
+    if !facets.is_multiple_of(2) {
+        report.push(given.place("facets"), Cause::Odd);
+    }
     let meanings = [StepSolver::Sweeps(limits), StepSolver::Pivots { facets }];
     let word = given.get("solver").and_then(|n| n.word(&["sweeps", "pivots"], &meanings, report));
     stepping.solver = word.unwrap_or(StepSolver::Sweeps(limits));

@@ -52,6 +52,7 @@ pub fn simulate_by_steps(
         longest_s: stepping.step_s,
         instrument: Instrument::new(simulation.measurement, simulation.seed),
         statistics: Statistics::default(),
+        iterations: 0,
         start_s: state.t_s,
         t_s: state.t_s,
         sample: 0,
@@ -96,6 +97,8 @@ struct Runner<'a> {
     recorder: StepRecorder,
     instrument: Instrument,
     statistics: Statistics,
+    /// Sweeps and pivots of all contact problems so far.
+    iterations: usize,
     falls: FallWatch,
     ground: Ground,
     start_s: f64,
@@ -174,6 +177,7 @@ impl Runner<'_> {
         self.t_s = end_s;
         self.statistics.steps += 1;
         self.statistics.evaluations += report.passes;
+        self.iterations += report.iterations;
         self.statistics.rejected += report.passes - 1;
         let settings = *self.stepper.stepping();
         let (before, after) = (&self.before, &self.qd);
@@ -186,8 +190,8 @@ impl Runner<'_> {
         if self.recorder.events.len() >= self.simulation.max_events {
             return Some(Stop::EventLimit);
         }
-        let spent = self.statistics.evaluations > self.simulation.max_evaluations;
-        spent.then_some(Stop::EvaluationLimit)
+        let spent = self.statistics.evaluations + self.iterations;
+        (spent > self.simulation.max_evaluations).then_some(Stop::EvaluationLimit)
     }
 
     fn write_row(&mut self) {

@@ -66,7 +66,7 @@ fn impossible_references_are_refused() {
         (r#"{"cosine": {"times": [0, 1], "values": [1]}}"#, "expected 2 values, found 1"),
         (r#"{"bezier": {"times": [0, 1], "values": []}}"#, "needs 1 values, 0 are given"),
         (r#"{"quintic": {"times": [0, 1], "values": [1, 2, 3]}}"#, "have 2 and 3 values"),
-        (r#"{"fourier": {"frequency_rad_s": -1, "sines": [], "cosines": []}}"#, "be positive"),
+        (r#"{"fourier": {"frequency_rad_s": -1, "sines": [], "cosines": []}}"#, "be from 1e-6 to"),
     ] {
         let text = reference(text);
         refused(&text, &["bad.json:2:", "/control/joints/link1/reference/", said]);
@@ -82,7 +82,7 @@ fn parts_without_mass_are_refused() {
 
 #[test]
 fn torques_that_are_no_numbers_are_refused() {
-    let text = arm(r#" "control": {"joints": {"link2": {"kp": 1e300, "reference": 1e300}}}"#);
+    let text = arm(r#" "control": {"joints": {"link2": {"kp": 1e9, "reference": 1e300}}}"#);
     refused(
         &text,
         &["bad.json:2:", "/control/joints/link2: the torque on `link2` is not a finite"],
@@ -129,6 +129,72 @@ fn no_run_goes_on_without_end() {
     }
 }
 
+/// Numbers that no run would end with are refused, each with its range.
+#[test]
+fn numbers_beyond_their_range_are_refused() {
+    for (entries, pointer) in [
+        (r#" "initial": {"t_s": 1e300}"#, "/initial/t_s"),
+        (r#" "time_stepping": {"sweeps": 1e12}"#, "/time_stepping/sweeps"),
+        (r#" "time_stepping": {"sweeps": 0}"#, "/time_stepping/sweeps"),
+        (r#" "time_stepping": {"response_m_s": 1e-300}"#, "/time_stepping/response_m_s"),
+        (r#" "time_stepping": {"facets": 0}"#, "/time_stepping/facets"),
+        (r#" "time_stepping": {"step_s": 1e-300}"#, "/time_stepping/step_s"),
+        (r#" "time_stepping": {"step_s": 10}"#, "/time_stepping/step_s"),
+        (r#" "control": {"period_s": 1e-300}"#, "/control/period_s"),
+        (r#" "log_period_s": 1e-300"#, "/log_period_s"),
+        (r#" "integrator": {"max_step_s": 1e-300}"#, "/integrator/max_step_s"),
+    ] {
+        refused(&arm(entries), &["bad.json:2:", &format!("{pointer}: the number must be from ")]);
+    }
+    let gait = |entries: &str| {
+        format!(
+            r#"{{"format": "denavit-scenario/1", "model": "tulip", "duration_s": 1,
+ "gait": {{"weight_shift_step": {{{entries}}}}}}}"#
+        )
+    };
+    refused(&gait(r#""interval_s": 1e-12"#), &["/interval_s: the number must be from 0.001 to 10"]);
+    refused(&gait(r#""phases_s": [1, 2, 3, 1e9]"#), &["/phases_s/3: the number must be from 0 to"]);
+    refused(
+        &gait(r#""interval_s": 0.001, "phases_s": [1, 2, 3, 999]"#),
+        &["/gait/weight_shift_step: the gait would have more than 20000 postures"],
+    );
+}
+
+/// What cannot be written is said before the run, not after it.
+#[test]
+fn outputs_are_checked_before_the_run() {
+    let directory = Directory::new("outputs");
+    let long = arm(r#" "limits": {"evaluations": 100}"#);
+    for (more, said) in [
+        (&["-o", "nowhere/a.csv"][..], "nowhere/a.csv: cannot be written"),
+        (&["-o", "."], ".: cannot be written"),
+        (&["-o", "a.csv", "--svg", "./a.csv"], "a.csv: two outputs would be this file"),
+        (&["--svg", "a.svg", "--window", "0.5,3"], "--window: the run is from 0 to 1 s"),
+    ] {
+        let run = simulate(&directory, &long, more);
+        assert_eq!(run.code, Some(2), "{more:?}: {}", run.stdout);
+        assert!(run.stderr.contains(said) && run.stderr.contains("hint: "), "{}", run.stderr);
+        assert_eq!(directory.files(), ["bad.json"]);
+    }
+}
+
+#[test]
+fn unknown_scenarios_and_models_are_guessed() {
+    let directory = Directory::new("names");
+    for (name, said) in [
+        ("bouncing_bal", "`bouncing_ball` is a shipped scenario"),
+        ("qqqqqqqqq", "or one of bouncing_ball, cradle"),
+    ] {
+        let run = run_in(&directory.path, &["simulate", name]);
+        assert_eq!(run.code, Some(2), "{}", run.stdout);
+        assert!(run.stderr.contains(said), "{}", run.stderr);
+    }
+    let run = simulate(&directory, &arm("\"seed\": 0").replace("planar_2r", "planar_2q"), &[]);
+    let said = "/model: planar_2q: cannot be read: no such file or directory (`planar_2r` is";
+    assert!(run.code == Some(2) && run.stderr.contains(said), "{}", run.stderr);
+    assert!(!run.stderr.contains("os error"), "{}", run.stderr);
+}
+
 #[test]
 fn what_a_scheme_cannot_do_is_said() {
     let directory = Directory::new("scheme");
@@ -137,7 +203,8 @@ fn what_a_scheme_cannot_do_is_said() {
  "time_stepping": {"method": "anitescu"}}"#;
     let run = simulate(&directory, text, &["--scheme", "time-stepping"]);
     assert_eq!(run.code, Some(2), "{}", run.stdout);
-    assert!(run.stderr.contains("bad.json: restitution: Anitescu's scheme"), "{}", run.stderr);
+    let said = "bad.json:2:62: /contact/restitution: restitution: Anitescu's scheme";
+    assert!(run.stderr.contains(said) && run.stderr.contains("hint: "), "{}", run.stderr);
     assert_eq!(simulate(&directory, text, &["--scheme", "event"]).code, Some(0));
 }
 

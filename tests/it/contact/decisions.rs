@@ -75,14 +75,14 @@ fn the_margin_is_the_force_of_the_least_loaded_corner() {
         let (foot, free) = loaded_foot([x, 0.0]);
         let contacts = resting(4, NO_SLIP);
         let problem = foot.problem(&contacts, &free);
-        let margin = solver.margin(&problem, &[Mode::Stick; 4]).unwrap();
+        let (margin, _) = solver.margin(&problem, &[Mode::Stick; 4]).unwrap();
         let expected = 2.0 * GRAVITY * (0.1 - x) / 0.4;
         assert_close(&[margin], &[expected], 1e-9);
     }
     // Off both axes the least forces would pull at the far corner; the best distribution does not.
     let (foot, free) = loaded_foot([0.08, 0.03]);
     let contacts = resting(4, NO_SLIP);
-    let margin = solver.margin(&foot.problem(&contacts, &free), &[Mode::Stick; 4]).unwrap();
+    let (margin, _) = solver.margin(&foot.problem(&contacts, &free), &[Mode::Stick; 4]).unwrap();
     assert!(margin > 0.1, "{margin}");
 }
 

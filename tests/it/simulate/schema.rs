@@ -1,7 +1,7 @@
 //! The JSON Schema of scenarios against an independent validator.
 
 use denavit::shipped;
-use denavit::simulate::scenario;
+use denavit::simulate::{Tolerances, scenario};
 use serde_json::Value;
 
 fn validator() -> jsonschema::Validator {
@@ -58,5 +58,91 @@ fn schema_and_reader_agree_on_form() {
         assert_eq!(validator.is_valid(&value), is_right, "{text}");
         let read = scenario::read("test.json", text.as_bytes(), &load);
         assert_eq!(read.is_ok(), is_right, "{text}");
+    }
+}
+
+/// Every number of the schema with a range: where it stands, and its limits.
+fn ranges(node: &Value, path: &mut Vec<String>, found: &mut Vec<(Vec<String>, [f64; 2])>) {
+    if let (Some(least), Some(most)) = (node["minimum"].as_f64(), node["maximum"].as_f64()) {
+        found.push((path.clone(), [least, most]));
+    }
+    if let Some(properties) = node["properties"].as_object() {
+        for (key, inner) in properties {
+            path.push(key.clone());
+            let shared = inner["$ref"].as_str() == Some("#/$defs/tolerances");
+            let tolerances: Value = serde_json::from_str(scenario::schema()).expect("JSON");
+            let inner = if shared { &tolerances["$defs"]["tolerances"] } else { inner };
+            ranges(inner, path, found);
+            path.pop();
+        }
+    }
+}
+
+/// A scenario with one value at a place.
+fn with_value(path: &[String], value: &str) -> String {
+    let mut text = value.to_owned();
+    for key in path.iter().rev() {
+        text = format!("{{\"{key}\": {text}}}");
+    }
+    let given: Value = serde_json::from_str(&text).expect("JSON");
+    let mut all: Value = serde_json::from_str(
+        "{\"format\": \"denavit-scenario/1\", \"model\": \"planar_2r\", \"duration_s\": 0}",
+    )
+    .expect("JSON");
+    let (key, value) = given.as_object().and_then(|given| given.iter().next()).expect("a key");
+    all[key] = value.clone();
+    if key == "cradle_balls" {
+        all.as_object_mut().expect("an object").remove("model");
+    }
+    all.to_string()
+}
+
+/// The ranges that the schema states are those of the reader.
+#[test]
+fn schema_and_reader_agree_on_ranges() {
+    let schema: Value = serde_json::from_str(scenario::schema()).expect("JSON");
+    let mut found = Vec::new();
+    ranges(&schema, &mut Vec::new(), &mut found);
+    assert!(found.len() >= 50, "{}", found.len());
+    let load = |name: &str| {
+        let model = shipped::find(name).ok_or("no such model")?;
+        Ok(model.text.as_bytes().to_vec())
+    };
+    for (path, [least, most]) in found {
+        let pointer = format!("/{}: the number must be", path.join("/"));
+        let outside = |value: f64| {
+            let text = with_value(&path, &format!("{value:e}"));
+            let read = scenario::read("test.json", text.as_bytes(), &load);
+            read.err().is_some_and(|error| error.to_string().contains(&pointer))
+        };
+        for (limit, beyond) in [(least, least - 0.5 * least.abs().max(1e-9)), (most, 2.0 * most)] {
+            assert!(!outside(limit), "{path:?}: {limit} is allowed");
+            assert!(outside(beyond), "{path:?}: {beyond} is not allowed");
+        }
+    }
+}
+
+/// The tolerances that the schema states are those of a scenario that gives none.
+#[test]
+fn the_schema_states_the_tolerances() {
+    let schema: Value = serde_json::from_str(scenario::schema()).expect("JSON");
+    let properties = &schema["properties"];
+    let [event, steps] =
+        [&properties["tolerances"], &properties["time_stepping"]["properties"]["tolerances"]];
+    for (stated, own) in [(event, Tolerances::default()), (steps, Tolerances::of_steps(1e-3))] {
+        for (key, value) in [
+            ("energy_j", own.energy_j),
+            ("momentum_ns", own.momentum_ns),
+            ("penetration_m", own.penetration_m),
+            ("complementarity_nm", own.complementarity_nm),
+            ("adhesion_n", own.adhesion_n),
+            ("separation_m_s", own.separation_m_s),
+            ("zmp_m", own.zmp_m),
+            ("force_n", own.force_n),
+            ("cone_n", own.cone_n),
+        ] {
+            let stated = stated["default"][key].as_f64().expect("a default");
+            assert!((stated - value).abs() <= 1e-12 * value, "{key}: {stated}, {value}");
+        }
     }
 }

@@ -23,7 +23,7 @@ fn after_one_step(name: &str, duration_s: f64, step_s: Option<f64>) -> Vec<f64> 
     let mut scenario = open(name, scheme);
     scenario.simulation.end_s = duration_s;
     let accuracy = Accuracy { relative: 1e-8, absolute: 1e-8, max_step_s: 0.02 };
-    scenario.simulation.method = Method::Sdirk(accuracy);
+    scenario.simulation.method = Method::Radau(accuracy);
     // enough for impacts not to slip, as the other scheme demands
     scenario.stepping.no_slip_friction = 1.0;
     step_s.into_iter().for_each(|step_s| scenario.set_step_s(step_s));

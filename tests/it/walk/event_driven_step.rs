@@ -20,7 +20,7 @@ fn make_step(roll_stiffness: f64, actuated: bool) -> Run {
     let accuracy = Accuracy { relative: 1e-7, absolute: 1e-8, max_step_s: 0.02 };
     let simulation = Simulation {
         end_s: END_S,
-        method: Method::Sdirk(accuracy),
+        method: Method::Radau(accuracy),
         friction: Friction::Coulomb(0.8),
         ..Simulation::default()
     };
@@ -70,7 +70,11 @@ fn assert_stepped(run: &Run) {
     let (forward, [right, left]) = outcome(run);
     assert!((forward - 0.10).abs() < 0.01, "{forward}");
     assert!((right + left - 25.29 * 9.81).abs() < 2.0, "{right} + {left}");
-    assert_eq!(run.closed.len(), 8, "both feet flat");
+    // a corner of a flat foot may be free of force, and count as open, without leaving the ground
+    let mut positions = vec![0.0; 24];
+    robot(300.0).contact_positions(&run.end.q, &mut positions);
+    let heights = positions.chunks_exact(3).map(|point| point[2].abs());
+    assert!(heights.fold(0.0, f64::max) < 1e-8, "both feet flat: {positions:?}");
     let carried = run.log.column("f_left_toe_inner_z").expect("a contact");
     let swings = carried[190..300].iter().all(|force| *force == 0.0);
     assert!(swings, "the left foot is off the ground");

@@ -27,8 +27,7 @@ impl IndependentRows {
             let of_left = free.map(|row| (row, self.left[row * (rows + 1)]));
             let Some((next, pivot)) = of_left.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
             largest = largest.max(pivot);
-            // written so that NaN ends it as well
-            if !(pivot > DEPENDENT * largest) {
+            if pivot.is_nan() || pivot <= DEPENDENT * largest {
                 break;
             }
             self.chosen.push(next);

@@ -366,6 +366,10 @@ impl ModeSolver {
     /// P = A where all stick.
     fn least_admissible(&mut self) -> Option<f64> {
         let (count, free) = (self.slack.len(), self.system.nullity());
+        self.values.copy_from_slice(&self.least);
+        if self.slack.iter().all(|slack| *slack >= 0.0) {
+            return Some(0.0);
+        }
         self.lcp.clear();
         for i in 0..count {
             for j in 0..count {
@@ -375,7 +379,6 @@ impl ModeSolver {
         }
         let report = self.lemke.solve(&self.lcp, &self.slack, 50 * (count + 1));
         let solved = report.outcome == LcpOutcome::Solved;
-        self.values.copy_from_slice(&self.least);
         for direction in 0..if solved { free } else { 0 } {
             let multipliers = self.lemke.solution();
             let along = (0..count).map(|i| multipliers[i] * self.push[i * free + direction]).sum();

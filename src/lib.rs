@@ -6,11 +6,13 @@
 //!   library was built
 //! - [`simulate`]: robots in motion, on the ground
 //! - [`plants`]: robots as numbers, generated or interpreted
+//! - [`identify`]: parameters from measured motion, and motion that shows them
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
 
 mod generated;
+pub mod identify;
 pub mod plants;
 pub mod report;
 pub mod shipped;

@@ -34,6 +34,7 @@ pub const MODELS: &[ShippedModel] = &shipped!["models":
     "tulip_leg",
     "tulip_leg5",
     "tulip_leg6",
+    "tulip_leg_table34",
     "tulip_one_torso",
 ];
 

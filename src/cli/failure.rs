@@ -1,6 +1,7 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
 use denavit::emit::rust::EmitError;
+use denavit::identify::excite::ExciteError;
 use denavit::model::{BakeError, ModelError};
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
@@ -62,6 +63,8 @@ pub(crate) enum Failure {
     SameOutput(String),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
     Window([f64; 2]),
+    /// No trajectory can be looked for.
+    Excite(ExciteError),
     /// A step was given for the scheme that chooses its own.
     StepOfEventScheme,
     /// The answer cannot be written to standard output.
@@ -144,6 +147,7 @@ impl Failure {
             Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
             | Self::Scenario(_)
+            | Self::Excite(_)
             | Self::Base(_)
             | Self::Decompose(..)
             | Self::Equations(_)
@@ -216,6 +220,7 @@ impl fmt::Display for Failure {
                 write!(f, "{file}: is no certificate: {error}")?;
             }
             Self::Scenario(error) => write!(f, "{error}")?,
+            Self::Excite(error) => write!(f, "{error}")?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }

@@ -10,6 +10,7 @@ mod demo;
 mod derive;
 mod elimination;
 mod emit;
+mod excite;
 mod failure;
 mod files;
 mod inspect;
@@ -52,6 +53,7 @@ enum Command {
     Verify(verify::Arguments),
     Schema(schema::Arguments),
     Simulate(simulate::Arguments),
+    Excite(excite::Arguments),
 }
 
 /// What a command that ran to its end says.
@@ -99,6 +101,7 @@ impl Command {
             Self::Verify(arguments) => verify::run(arguments, out),
             Self::Schema(arguments) => schema::run(arguments, out),
             Self::Simulate(arguments) => simulate::run(arguments, out),
+            Self::Excite(arguments) => excite::run(arguments, out),
         }
     }
 }

@@ -33,14 +33,19 @@ enum Format {
     /// A simulation
     #[value(alias = denavit::simulate::scenario::FORMAT)]
     Scenario,
+    /// What joints follow
+    #[value(alias = denavit::simulate::scenario::TRAJECTORY_FORMAT)]
+    Trajectory,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let trajectory = denavit::simulate::scenario::trajectory_schema();
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
         Format::Equations => denavit::model::equations::schema(),
         Format::Certificate => denavit::regressor::certificate::schema(),
         Format::Scenario => denavit::simulate::scenario::schema(),
+        Format::Trajectory => &trajectory,
     };
     writeln!(out, "{}", schema.trim_end())?;
     Ok(Answer::Done)

@@ -3,6 +3,7 @@
 //! - [`Table`], [`paragraph`]: columns and lines of text
 //! - [`Values`]: the numbers behind a model's expressions
 //! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
+//! - [`excitation_picture`]: a trajectory with its limits, and how it was found
 //! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
 //! - [`html`]: reports as one page that needs nothing from elsewhere
 //!
@@ -25,6 +26,6 @@ mod values;
 pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
-pub use run::{RunPicture, run_picture};
+pub use run::{ExcitationPicture, RunPicture, excitation_picture, run_picture};
 pub use table::{Align, Table};
 pub use values::{Values, short};

@@ -4,38 +4,55 @@ use super::Setpoint;
 use super::error::{TrajectoryError, check_finite, check_length};
 use denavit_runtime::Scalar;
 
-/// offset + sum over k = 1 .. of a_k sin(k w t) + b_k cos(k w t).
+/// offset + sum over k = 1 .. of a_k sin(w_k t) + b_k cos(w_k t): thesis 3.10 with one offset, which
+/// is all that can be told apart, and phases as sines with cosines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fourier {
-    /// w [rad/s].
-    frequency: f64,
+    /// w_k [rad/s].
+    frequencies: Vec<f64>,
     offset: f64,
     sines: Vec<f64>,
     cosines: Vec<f64>,
 }
 
 impl Fourier {
-    /// The series of a base frequency [rad/s], an offset, and as many sines as cosines.
+    /// The series of the multiples w, 2 w, .. of a base frequency [rad/s], an offset, and as many
+    /// sines as cosines.
     pub fn new(
         frequency: f64,
         offset: f64,
         sines: Vec<f64>,
         cosines: Vec<f64>,
     ) -> Result<Self, TrajectoryError> {
-        check_finite(&[frequency, offset])?;
-        check_finite(&sines)?;
-        check_finite(&cosines)?;
-        check_length(sines.len(), cosines.len())?;
+        check_finite(&[frequency])?;
+        let multiple = |k: usize| (k + 1) as f64 * frequency;
         if frequency <= 0.0 {
             return Err(TrajectoryError::NotPositive);
         }
-        Ok(Self { frequency, offset, sines, cosines })
+        Self::with_frequencies((0..sines.len()).map(multiple).collect(), offset, sines, cosines)
+    }
+
+    /// The series of any frequencies [rad/s], each with its sine and its cosine.
+    pub fn with_frequencies(
+        frequencies: Vec<f64>,
+        offset: f64,
+        sines: Vec<f64>,
+        cosines: Vec<f64>,
+    ) -> Result<Self, TrajectoryError> {
+        check_finite(&[offset])?;
+        for list in [&frequencies, &sines, &cosines] {
+            check_finite(list)?;
+            check_length(frequencies.len(), list.len())?;
+        }
+        if frequencies.iter().any(|frequency| *frequency <= 0.0) {
+            return Err(TrajectoryError::NotPositive);
+        }
+        Ok(Self { frequencies, offset, sines, cosines })
     }
 
     pub(super) fn at(&self, t_s: f64) -> Setpoint {
         let mut sum = Setpoint::resting(self.offset);
-        for (k, (a, b)) in self.sines.iter().zip(&self.cosines).enumerate() {
-            let w = (k + 1) as f64 * self.frequency;
+        for ((&w, a), b) in self.frequencies.iter().zip(&self.sines).zip(&self.cosines) {
             let (sine, cosine) = (w * t_s).sincos();
             let value = a * sine + b * cosine;
             sum.position += value;

@@ -4,6 +4,7 @@ mod answers;
 mod base;
 mod decompose;
 mod errors;
+mod excite;
 mod help;
 mod readme;
 mod simulate;

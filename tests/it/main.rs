@@ -5,6 +5,7 @@ mod contact;
 mod emitted;
 mod identify;
 mod report;
+mod excite;
 mod simulate;
 mod singular_values;
 mod tidy;

@@ -2,7 +2,10 @@
 //! the torque that drives them (figures 3.4, 3.6), and contact forces.
 
 mod axes;
+mod excitation;
 mod figures;
+
+pub use excitation::{ExcitationPicture, excitation_picture};
 
 use super::svg::Svg;
 use crate::plants::{Plant, PlantModel};

@@ -54,6 +54,10 @@ pub enum Cause {
     Plant(PlantError),
     /// The model file is wrong; holds what its reader says.
     Model(String),
+    /// The trajectory file is wrong; holds what its reader says.
+    Trajectory(String),
+    /// A trajectory without joints.
+    NoJoints,
     /// The robot cannot be put on the ground: it has no `base_z`, or no contact.
     NoPlacing,
 }
@@ -104,6 +108,8 @@ impl fmt::Display for Cause {
             Self::Reference(error) => write!(f, "{error}"),
             Self::Plant(error) => write!(f, "{error}"),
             Self::Model(said) => write!(f, "the model is wrong:\n{said}"),
+            Self::Trajectory(said) => write!(f, "the trajectory is wrong:\n{said}"),
+            Self::NoJoints => write!(f, "the trajectory moves no joint"),
             Self::NoPlacing => write!(f, "a robot is put on the ground by `base_z` and contacts"),
         }
     }
@@ -112,7 +118,10 @@ impl fmt::Display for Cause {
 impl Explained for Cause {
     fn hint(&self) -> Option<String> {
         Some(match self {
-            Self::Form(model::Cause::MissingKey("format") | model::Cause::WrongFormat { .. }) => {
+            Self::Form(model::Cause::WrongFormat { expected, .. }) => {
+                format!("this file has `\"format\": \"{expected}\"`")
+            }
+            Self::Form(model::Cause::MissingKey("format")) => {
                 format!("a scenario has `\"format\": \"{}\"`", super::FORMAT)
             }
             Self::Form(model::Cause::MissingKey(key)) => format!("add `\"{key}\": ..`"),
@@ -168,6 +177,7 @@ impl Cause {
                 "masses, moments of inertia, stiffness and friction are not negative"
             }
             Self::NoPlacing => "give the position itself, without `on_ground`",
+            Self::NoJoints => "give a reference for each joint that moves",
             // what the readers of these say has its hint
             _ => return None,
         })

@@ -12,13 +12,16 @@ mod reader;
 mod reference;
 mod start;
 mod stepping;
+mod trajectory;
 
 pub use fault::{Cause, ScenarioError};
 pub use ranges::Range;
 pub use read::{Loader, read};
+pub use trajectory::{TRAJECTORY_FORMAT, Trajectory, read_trajectory, trajectory_schema};
 
 use super::audit::Tolerances;
 use super::control::Control;
+use super::measured_log::measured_log;
 use super::run::{Run, Simulation, simulate};
 use super::state::State;
 use super::time_stepping::{Scheme, Stepping, simulate_by_steps};
@@ -79,6 +82,9 @@ pub struct Scenario {
     pub stepping: Stepping,
     /// What the audits of time stepping may miss.
     pub stepping_tolerances: Tolerances,
+    /// The noise of torques in a log as instruments write it [N m, N]; none writes the run as it
+    /// is.
+    pub logged_torque_noise: Option<f64>,
 }
 
 impl Scenario {
@@ -94,6 +100,10 @@ impl Scenario {
         };
         let mut run = run.map_err(|error| self.origin.place(error))?;
         run.log.header = self.header(&run);
+        if let Some(noise) = self.logged_torque_noise {
+            let Simulation { measurement, seed, .. } = &self.simulation;
+            run.log = measured_log(&run.log, measurement, noise, *seed);
+        }
         Ok(run)
     }
 

@@ -41,8 +41,27 @@ pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation
     simulation
 }
 
+const MEASUREMENT: &[&str] = &[
+    "resolution",
+    "position_noise",
+    "rate_noise",
+    "delay_samples",
+    "differentiates",
+    "logged",
+    "torque_noise",
+];
+
+/// The noise of torques, if the log is to be what instruments write.
+pub(super) fn logged_torque_noise(fields: &Fields<'_>, report: &mut Report) -> Option<f64> {
+    let given = fields.get("measurement")?;
+    // what is wrong with the object has been noted already
+    let given = given.fields(MEASUREMENT, &mut Report::default())?;
+    let noise = given.number("torque_noise", ranges::NOISE, 0.0, report);
+    given.flag("logged", report).then_some(noise)
+}
+
 fn measurement(fields: &Fields<'_>, report: &mut Report) -> Measurement {
-    let known = &["resolution", "position_noise", "rate_noise", "delay_samples", "differentiates"];
+    let known = MEASUREMENT;
     let Some(given) = fields.get("measurement").and_then(|node| node.fields(known, report)) else {
         return Measurement::default();
     };

@@ -8,6 +8,7 @@ use super::reader::{Fields, Node, Report};
 use super::reference::{self, Logs};
 use super::start::{Origin, find_start_faults};
 use super::stepping;
+use super::trajectory::read_trajectory;
 use super::{FORMAT, Scenario};
 use crate::plants::{Cradle, Override, Plant, PlantError, PlantModel, plant_of};
 use crate::simulate::audit::Tolerances;
@@ -17,7 +18,7 @@ use crate::simulate::ground::Ground;
 use crate::simulate::run::Simulation;
 use crate::simulate::state::State;
 use denavit_codegen::expr::text::nearest;
-use denavit_codegen::model::json::{self, Value};
+use denavit_codegen::model::json::{self, Json, Value};
 use denavit_codegen::model::{self, Robot, find_duplicate_keys};
 
 /// Reads a model by what a scenario calls it: a shipped name, or a path beside the scenario. The
@@ -51,6 +52,23 @@ const KEYS: &[&str] = &[
 
 /// Reads a scenario file from its bytes. `file` is its name, for messages alone.
 pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, ScenarioError> {
+    let origin = Origin { file: file.to_owned(), source: source.to_vec() };
+    read_document(file, source, KEYS, |fields, root, report| {
+        let mut scenario = scenario(fields, origin, load, report)?;
+        if report.is_empty() {
+            find_start_faults(&mut scenario, root, report);
+        }
+        Some(scenario)
+    })
+}
+
+/// Reads a JSON document with these keys: what `build` makes of it, if nothing is wrong with it.
+pub(super) fn read_document<T>(
+    file: &str,
+    source: &[u8],
+    keys: &'static [&'static str],
+    build: impl FnOnce(&Fields<'_>, &Json<'_>, &mut Report) -> Option<T>,
+) -> Result<T, ScenarioError> {
     let mut report = Report::default();
     let root = match json::parse(source) {
         Ok(root) => root,
@@ -60,20 +78,23 @@ pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, Sc
         }
     };
     find_duplicate_keys(&root, &mut report);
-    let origin = Origin { file: file.to_owned(), source: source.to_vec() };
-    let scenario = Node(&root)
-        .fields(KEYS, &mut report)
-        .and_then(|fields| scenario(&fields, origin, load, &mut report));
-    match scenario {
-        Some(mut scenario) if report.is_empty() => {
-            find_start_faults(&mut scenario, &root, &mut report);
-            if report.is_empty() {
-                return Ok(scenario);
-            }
-        }
-        _ => {}
+    let fields = Node(&root).fields(keys, &mut report);
+    let made = fields.and_then(|fields| build(&fields, &root, &mut report));
+    match made {
+        Some(made) if report.is_empty() => Ok(made),
+        _ => Err(report.into_error(file, source, Some(&root))),
     }
-    Err(report.into_error(file, source, Some(&root)))
+}
+
+/// Notes a tag that is missing or of another format.
+pub(super) fn check_format(fields: &Fields<'_>, expected: &'static str, report: &mut Report) {
+    if let Some(tag) = fields.require("format", report)
+        && let Some(found) = tag.text(report)
+        && found != expected
+    {
+        let cause = model::Cause::WrongFormat { found: found.to_owned(), expected };
+        report.push(tag.at(), Cause::Form(cause));
+    }
 }
 
 fn scenario(
@@ -82,13 +103,7 @@ fn scenario(
     load: &Loader<'_>,
     report: &mut Report,
 ) -> Option<Scenario> {
-    if let Some(tag) = fields.require("format", report)
-        && let Some(found) = tag.text(report)
-        && found != FORMAT
-    {
-        let cause = model::Cause::WrongFormat { found: found.to_owned(), expected: FORMAT };
-        report.push(tag.at(), Cause::Form(cause));
-    }
+    check_format(fields, FORMAT, report);
     let text = |key: &str, report: &mut Report| {
         fields.get(key).and_then(|node| node.text(report)).unwrap_or_default().to_owned()
     };
@@ -100,7 +115,7 @@ fn scenario(
     let mut plant = plant(fields, load, report)?;
     let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
     let posture = gait(fields, plant.as_mut(), &mut control, report);
-    let initial = initial(fields, plant.as_mut(), posture, report);
+    let initial = initial(fields, plant.as_mut(), &control, posture, report);
     simulation.end_s += initial.t_s;
     find_idle(fields, plant.model(), &simulation, &control, report);
     Some(Scenario {
@@ -115,6 +130,7 @@ fn scenario(
         scheme,
         stepping,
         stepping_tolerances,
+        logged_torque_noise: options::logged_torque_noise(fields, report),
     })
 }
 
@@ -225,7 +241,7 @@ fn control(
     report: &mut Report,
 ) -> Control {
     let mut control = Control::passive(model.joints.len());
-    let known = &["compensation", "feedback", "saturates", "period_s", "joints"];
+    let known = &["compensation", "feedback", "saturates", "period_s", "trajectory", "joints"];
     let Some(given) = fields.get("control").and_then(|node| node.fields(known, report)) else {
         return control;
     };
@@ -242,6 +258,9 @@ fn control(
     if given.get("period_s").is_some() {
         control.period_s = Some(given.number("period_s", ranges::SAMPLE_PERIOD_S, 1e-3, report));
     }
+    if let Some(node) = given.get("trajectory") {
+        follow(&mut control, node, model, logs, report);
+    }
     if let Some(joints) = given.get("joints").and_then(|node| node.members(report)) {
         for (name, node) in joints.all() {
             let Some(index) = joint(model, name, node, report) else { continue };
@@ -255,7 +274,7 @@ fn control(
             let [reference, feed_forward, gain_factor] =
                 ["reference", "feed_forward", "gain_factor"].map(&mut follow);
             control.joints[index] = JointControl {
-                reference,
+                reference: reference.or_else(|| control.joints[index].reference.take()),
                 stiffness: own.number("kp", ranges::GAIN, 0.0, report),
                 damping: own.number("kd", ranges::GAIN, 0.0, report),
                 gain_factor,
@@ -266,19 +285,60 @@ fn control(
     control
 }
 
+/// Joints follow a trajectory file, unless they have references of their own.
+fn follow(
+    control: &mut Control,
+    node: Node<'_>,
+    model: &PlantModel,
+    logs: &Logs<'_>,
+    report: &mut Report,
+) {
+    let Some(file) = node.text(report) else { return };
+    let bytes = match logs.load(file) {
+        Ok(bytes) => bytes,
+        Err(reason) => {
+            report.push(node.at(), Cause::File(file.to_owned(), reason));
+            return;
+        }
+    };
+    let trajectory = match read_trajectory(file, &bytes, logs.loader()) {
+        Ok(trajectory) => trajectory,
+        Err(error) => {
+            report.push(node.at(), Cause::Trajectory(error.to_string()));
+            return;
+        }
+    };
+    for (name, reference) in &trajectory.joints {
+        if let Some(index) = joint(model, name, node, report) {
+            match model.joints[index].drivable {
+                true => control.joints[index].reference = Some(trajectory.repeated(reference)),
+                false => report.push(node.at(), Cause::Undrivable(name.clone())),
+            }
+        }
+    }
+}
+
 fn initial(
     fields: &Fields<'_>,
     plant: &mut dyn Plant,
+    control: &Control,
     posture: Option<Vec<f64>>,
     report: &mut Report,
 ) -> State {
     let model = plant.model().clone();
     let mut state = State::resting(posture.unwrap_or_else(|| vec![0.0; model.joints.len()]));
-    let known = &["t_s", "q", "qd", "on_ground"];
+    let known = &["t_s", "q", "qd", "on_reference", "on_ground"];
     let Some(given) = fields.get("initial").and_then(|node| node.fields(known, report)) else {
         return state;
     };
     state.t_s = given.number("t_s", ranges::START_S, 0.0, report);
+    if given.flag("on_reference", report) {
+        for index in 0..model.joints.len() {
+            if let Some(setpoint) = control.setpoint(index, state.t_s) {
+                (state.q[index], state.qd[index]) = (setpoint.position, setpoint.rate);
+            }
+        }
+    }
     for (key, values) in [("q", &mut state.q), ("qd", &mut state.qd)] {
         let Some(joints) = given.get(key).and_then(|node| node.members(report)) else { continue };
         for (name, node) in joints.all() {

@@ -35,6 +35,14 @@ impl<'a> Logs<'a> {
         Self { load, read: BTreeMap::new() }
     }
 
+    pub(super) fn loader(&self) -> &'a Loader<'a> {
+        self.load
+    }
+
+    pub(super) fn load(&self, file: &str) -> Result<Vec<u8>, String> {
+        (self.load)(file)
+    }
+
     fn get(&mut self, file: &str) -> &Result<Log, Cause> {
         let load = self.load;
         self.read.entry(file.to_owned()).or_insert_with(|| {
@@ -91,13 +99,8 @@ fn make(
             Bezier::new(times?, values).map(Reference::Bezier)
         }
         "fourier" => {
-            let known = &["frequency_rad_s", "offset", "sines", "cosines"];
-            let fields = node.fields(known, report)?;
-            let frequency =
-                fields.required_number("frequency_rad_s", ranges::FREQUENCY_RAD_S, report);
-            let offset = fields.get("offset").and_then(|node| node.number(report)).unwrap_or(0.0);
-            let [sines, cosines] = ["sines", "cosines"].map(|key| fields.numbers(key, report));
-            Fourier::new(frequency, offset, sines, cosines).map(Reference::Fourier)
+            let known = &["frequency_rad_s", "frequencies_rad_s", "offset", "sines", "cosines"];
+            fourier(&node.fields(known, report)?, report)
         }
         "log" => logged(&node.fields(&["file", "column", "between"], report)?, logs, report)?,
         _ => sequence(&node.fields(&["parts", "repeat"], report)?, logs, report),
@@ -121,6 +124,25 @@ fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, Trajec
     };
     let (rates, accelerations) = (still("rates", report), still("accelerations", report));
     QuinticSpline::new(times, values, &rates, &accelerations).map(Reference::Quintic)
+}
+
+/// A series of multiples of one frequency, or of frequencies of its own.
+fn fourier(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
+    let offset = fields.get("offset").and_then(|node| node.number(report)).unwrap_or(0.0);
+    let own = fields.get("frequencies_rad_s").map(|node| node.numbers(report));
+    if let (true, Some(both)) = (own.is_some(), fields.get("frequency_rad_s")) {
+        both.wrong_kind::<()>("either frequency_rad_s or frequencies_rad_s", report);
+    }
+    let [sines, cosines] = ["sines", "cosines"].map(|key| fields.numbers(key, report));
+    let made = match own {
+        Some(frequencies) => Fourier::with_frequencies(frequencies, offset, sines, cosines),
+        None => {
+            let frequency =
+                fields.required_number("frequency_rad_s", ranges::FREQUENCY_RAD_S, report);
+            Fourier::new(frequency, offset, sines, cosines)
+        }
+    };
+    made.map(Reference::Fourier)
 }
 
 #[derive(Clone, Copy)]

@@ -4,7 +4,7 @@ use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
 /// certificate.
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "demo",
     "inspect",
     "derive",
@@ -15,6 +15,7 @@ const COMMANDS: [&str; 10] = [
     "verify",
     "schema",
     "simulate",
+    "excite",
 ];
 
 /// The command lines of a help text's examples; three blanks begin a remark.

@@ -1,0 +1,308 @@
+//! `denavit excite`: trajectories that excite what is to be identified.
+
+mod answer;
+
+use super::Answer;
+use super::base::{With, regressor_options};
+use super::failure::Failure;
+use super::files::{load_beside, on_stdout, read_file, read_model, write_whole};
+use super::progress::Progress;
+use answer::Found;
+use clap::{Args, ValueEnum};
+use denavit::identify::excite::{
+    Check, Columns, Ends, ExciteOptions, Excited, Family, Objective, check_trajectory, excite,
+};
+use denavit::model::Robot;
+use denavit::report::{ExcitationPicture, excitation_picture};
+use denavit::simulate::scenario::read_trajectory;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Find a trajectory that excites what is to be identified
+///
+/// Within the limits of position, velocity, acceleration and torque that the model gives each
+/// joint, and with its contact points clear of the ground, the trajectory makes the condition
+/// number of the stacked base regressor small. Exits with 1 if none keeps the limits.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit excite tulip_leg_table34 --harmonics 3 --starts 2 --evaluations 60 -o leg.json
+  denavit excite tulip_leg_table34 --check leg.json
+  denavit excite tulip_leg_table34 --basis polynomial --degree 9 --starts 1 --json")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: super::options::ModelArgument,
+    /// Where the trajectory goes, as a trajectory file; - is standard output
+    #[arg(short, long, value_name = "TRAJECTORY")]
+    output: Option<PathBuf>,
+    /// The functions of time
+    #[arg(long, value_enum, default_value_t)]
+    basis: Basis,
+    /// Frequencies of a Fourier series
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    harmonics: usize,
+    /// Degree of polynomials
+    #[arg(long, value_name = "N", default_value_t = 12)]
+    degree: usize,
+    /// Samples joined by a spline, both ends included
+    #[arg(long, value_name = "N", default_value_t = 15)]
+    samples: usize,
+    /// Length of a lap
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
+    duration_s: f64,
+    /// What is asked of start and end, separated by commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum,
+          default_values_t = [End::Rest, End::Unaccelerated, End::Closed])]
+    ends: Vec<End>,
+    /// What is made good
+    #[arg(long, value_enum, default_value_t)]
+    objective: ObjectiveName,
+    /// Columns of the regressor count by their length: the condition number of scaled columns
+    #[arg(long)]
+    scaled: bool,
+    /// Joint parameters to add to those of the bodies, separated by commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
+    with: Vec<With>,
+    /// The base parameters whose columns are meant
+    #[arg(long, value_enum, default_value_t)]
+    parameters: Parameters,
+    /// Columns to keep before others, as for `denavit base`
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    keep: Vec<String>,
+    /// Joints that do not move, separated by commas: knee=0.5
+    #[arg(long, value_name = "JOINT=POSITION", value_delimiter = ',', value_parser = named)]
+    hold: Vec<(String, f64)>,
+    /// Weights of joints, 1 over the noise of their torque; 1 where nothing is said, and 0 for
+    /// the wrench on a floating base
+    #[arg(long, value_name = "JOINT=WEIGHT", value_delimiter = ',', value_parser = named)]
+    weights: Vec<(String, f64)>,
+    /// Height that contact points, and points that must not touch, keep; or none
+    #[arg(long, value_name = "METRES", default_value = "0.01", value_parser = clearance)]
+    clearance_m: Clearance,
+    /// Of the starts
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// How many starts
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    starts: usize,
+    /// The largest use of a limit that starts make; above 1 they are infeasible
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    reach: f64,
+    /// Evaluations of a start, at most
+    #[arg(long, value_name = "N", default_value_t = 400)]
+    evaluations: usize,
+    /// Steps of the grid of times that the solver sees
+    #[arg(long, value_name = "N")]
+    grid: Option<usize>,
+    /// Threads; as many as the machine has where nothing is said. They do not change the result
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Draw the trajectory with its limits, and the condition number over the iterations; - is
+    /// standard output
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Check this trajectory instead of looking for one
+    #[arg(long, value_name = "TRAJECTORY", conflicts_with_all = ["output", "svg"])]
+    check: Option<PathBuf>,
+    /// The answer as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Basis {
+    /// Multiples of one frequency: sines and cosines
+    #[default]
+    Fourier,
+    /// Frequencies of each joint's own, chosen too
+    FreeFourier,
+    /// Polynomials in time
+    Polynomial,
+    /// Positions at even times, joined by a cubic spline
+    Samples,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum End {
+    /// No rate
+    Rest,
+    /// No acceleration
+    Unaccelerated,
+    /// The same position: laps can follow each other
+    Closed,
+    /// Nothing
+    Free,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum ObjectiveName {
+    /// The condition number
+    #[default]
+    Condition,
+    /// The determinant of W^T W: the volume of the confidence region
+    DOptimal,
+    /// Both: e-folds of the condition number, and mean e-folds of the determinant
+    Both,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Parameters {
+    /// Those on the joint axes, in which estimates are computed
+    #[default]
+    Joints,
+    /// Those of kept columns, which are reported
+    Kept,
+}
+
+/// A height, or none.
+#[derive(Clone, Copy, Debug)]
+struct Clearance(Option<f64>);
+
+fn clearance(text: &str) -> Result<Clearance, String> {
+    if text == "none" {
+        return Ok(Clearance(None));
+    }
+    match text.parse::<f64>() {
+        Ok(height) if height.is_finite() => Ok(Clearance(Some(height))),
+        _ => Err("a height in metres, or none".to_owned()),
+    }
+}
+
+fn named(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once('=').and_then(|(name, number)| {
+        let number = number.trim().parse::<f64>().ok().filter(|number| number.is_finite())?;
+        Some((name.trim().to_owned(), number))
+    });
+    parts.ok_or_else(|| "a joint and a number, as knee=0.5".to_owned())
+}
+
+impl Arguments {
+    fn options(&self, robot: &Robot) -> ExciteOptions {
+        let has = |end| self.ends.contains(&end);
+        let objective = match self.objective {
+            ObjectiveName::Condition => Objective::CONDITION,
+            ObjectiveName::DOptimal => Objective::D_OPTIMAL,
+            ObjectiveName::Both => Objective::BOTH,
+        };
+        ExciteOptions {
+            family: match self.basis {
+                Basis::Fourier => Family::Fourier { harmonics: self.harmonics },
+                Basis::FreeFourier => Family::FreeFourier { terms: self.harmonics },
+                Basis::Polynomial => Family::Polynomial { degree: self.degree },
+                Basis::Samples => Family::Samples { knots: self.samples },
+            },
+            duration_s: self.duration_s,
+            ends: Ends {
+                at_rest: has(End::Rest),
+                unaccelerated: has(End::Unaccelerated),
+                closed: has(End::Closed),
+            },
+            objective: Objective { is_scaled: self.scaled, ..objective },
+            columns: match self.parameters {
+                Parameters::Joints => Columns::Axes,
+                Parameters::Kept => Columns::Kept,
+            },
+            with: regressor_options(robot, &self.with),
+            keep: self.keep.clone(),
+            hold: self.hold.clone(),
+            weights: self.weights.clone(),
+            clearance_m: self.clearance_m.0,
+            seed: self.seed,
+            starts: self.starts,
+            reach: self.reach,
+            evaluations: self.evaluations,
+            steps: self.grid,
+            threads: self.threads,
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let files = [arguments.output.as_ref(), arguments.svg.as_ref()];
+    let is_answered = on_stdout(&files, arguments.json)?;
+    let robot = read_model(&arguments.model.model)?;
+    let options = arguments.options(&robot);
+    if let Some(path) = &arguments.check {
+        return checked(arguments, &robot, &options, path, out);
+    }
+    let progress = Progress::new();
+    let tell = |at: &denavit::identify::excite::Progress| {
+        let (start, count) = (at.start + 1, options.starts);
+        let (evaluations, condition) = (at.evaluations, at.iterate.condition);
+        progress.show(&format!(
+            "start {start} of {count}: {evaluations} evaluations, condition {condition:.4e}"
+        ));
+    };
+    let found = excite(&robot, &options, &tell).map_err(Failure::Excite)?;
+    progress.clear();
+    if let Some(path) = &arguments.output {
+        write_whole(path, &trajectory(arguments, &found)?)?;
+    }
+    if let Some(path) = &arguments.svg {
+        write_whole(path, picture(&found).as_bytes())?;
+    }
+    let shown = Found { robot: &robot, stack: &found.stack, check: &found.found().ended };
+    match (is_answered, arguments.json) {
+        (true, _) => {}
+        (_, true) => answer::write_json_answer(out, &shown, Some(&found))?,
+        (_, false) => answer::write_text(out, &shown, Some(&found))?,
+    }
+    Ok(verdict(shown.check))
+}
+
+fn verdict(check: &Check) -> Answer {
+    if check.is_feasible() { Answer::Done } else { Answer::Negative }
+}
+
+fn checked(
+    arguments: &Arguments,
+    robot: &Robot,
+    options: &ExciteOptions,
+    path: &Path,
+    out: &mut dyn Write,
+) -> Result<Answer, Failure> {
+    let name = path.display().to_string();
+    let load = |log: &str| load_beside(path, log);
+    let bytes = read_file(path)?;
+    let trajectory = read_trajectory(&name, &bytes, &load).map_err(Failure::Scenario)?;
+    let (check, stack) = check_trajectory(robot, options, &trajectory).map_err(Failure::Excite)?;
+    let shown = Found { robot, stack: &stack, check: &check };
+    match arguments.json {
+        true => answer::write_json_answer(out, &shown, None)?,
+        false => answer::write_text(out, &shown, None)?,
+    }
+    Ok(verdict(&check))
+}
+
+/// The trajectory file; what is remarked says how it was found.
+fn trajectory(arguments: &Arguments, found: &Excited) -> Result<Vec<u8>, Failure> {
+    let check = &found.found().ended;
+    let model = &found.model.regression.model;
+    let remarks = serde_json::json!({
+        "denavit": env!("CARGO_PKG_VERSION"),
+        "condition": check.excitation.condition,
+        "condition_scaled": check.excitation.condition_scaled,
+        "feasible": check.is_feasible(),
+        "seed": arguments.seed,
+        "start": found.best + 1,
+        "starts": arguments.starts,
+    });
+    let mut bytes =
+        serde_json::to_vec_pretty(&found.to_json(&format!("{model}_excitation"), &remarks))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+fn picture(found: &Excited) -> String {
+    let check = &found.found().ended;
+    let model = &found.model.regression.model;
+    let title = format!("{}: exciting trajectory", model.replace('_', " "));
+    let subtitle = format!(
+        "condition {:.1} (columns of length 1: {:.1}), {}",
+        check.excitation.condition,
+        check.excitation.condition_scaled,
+        if check.is_feasible() { "within all limits" } else { "outside of a limit" },
+    );
+    let picture = ExcitationPicture { title: &title, subtitle: &subtitle, excited: found };
+    excitation_picture(&picture)
+}

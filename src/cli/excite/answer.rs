@@ -1,0 +1,180 @@
+//! What is said of an excitation, as text and as JSON.
+
+use crate::cli::failure::Failure;
+use crate::cli::json::write_json;
+use denavit::identify::excite::{Check, Excited, Extremes, JointUse, Stack, StartReport};
+use denavit::model::Robot;
+use denavit::report::{Align, Table, paragraph};
+use serde_json::{Value, json};
+use std::io::Write;
+
+/// A trajectory that was found or checked.
+pub(super) struct Found<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) stack: &'a Stack,
+    pub(super) check: &'a Check,
+}
+
+pub(super) fn write_json_answer(
+    out: &mut dyn Write,
+    found: &Found<'_>,
+    excited: Option<&Excited>,
+) -> Result<(), Failure> {
+    let check = found.check;
+    let mut answer = json!({
+        "model": found.robot.name,
+        "feasible": check.is_feasible(),
+        "condition": finite(check.excitation.condition),
+        "condition_scaled": finite(check.excitation.condition_scaled),
+        "log_determinant": finite(check.excitation.log_determinant),
+        "worst_use": finite(check.worst()),
+        "columns": found.stack.names,
+        "not_excited": found.stack.left_out,
+        "joints": check.joints.iter().map(joint).collect::<Vec<_>>(),
+        "lowest_point": check.lowest.as_ref().map(|(point, height)| json!({
+            "point": point, "height_m": finite(*height),
+            "clearance_m": finite(check.clearance_m),
+        })),
+    });
+    if let Some(excited) = excited {
+        answer["start"] = json!(excited.best + 1);
+        answer["starts"] = excited.starts.iter().map(start).collect();
+    }
+    write_json(out, &answer)
+}
+
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}
+
+fn joint(joint: &JointUse) -> Value {
+    let of = |extremes: &Option<Extremes>| {
+        extremes.as_ref().map(|e| json!({ "range": e.range, "limits": e.limits, "use": e.usage }))
+    };
+    json!({
+        "name": joint.name,
+        "position": of(&joint.position),
+        "velocity": of(&joint.velocity),
+        "acceleration": of(&joint.acceleration),
+        "torque": of(&joint.torque),
+    })
+}
+
+fn start(start: &StartReport) -> Value {
+    json!({
+        "condition_at_start": finite(start.began.excitation.condition),
+        "feasible_at_start": start.began.is_feasible(),
+        "condition": finite(start.ended.excitation.condition),
+        "feasible": start.ended.is_feasible(),
+        "objective": finite(start.objective),
+        "worst_use": finite(start.ended.worst()),
+        "evaluations": start.evaluations,
+        "stop": start.stop.word(),
+        "shrunk": start.shrunk,
+    })
+}
+
+pub(super) fn write_text(
+    out: &mut dyn Write,
+    found: &Found<'_>,
+    excited: Option<&Excited>,
+) -> Result<(), Failure> {
+    let check = found.check;
+    let columns = found.stack.names.len();
+    writeln!(
+        out,
+        "{}: {columns} base parameters, condition {}, of columns of length 1 {}",
+        found.robot.name,
+        shown(check.excitation.condition),
+        shown(check.excitation.condition_scaled)
+    )?;
+    if !found.stack.left_out.is_empty() {
+        let text = format!("not excited by what moves: {}", found.stack.left_out.join(", "));
+        writeln!(out, "{}", paragraph("", "  ", &text))?;
+    }
+    writeln!(out, "\n{}", uses(check))?;
+    if let Some((point, height)) = &check.lowest {
+        writeln!(
+            out,
+            "lowest point: {point}, {height:.4} m above the ground ({:.4} m to be kept)\n",
+            check.clearance_m
+        )?;
+    }
+    if let Some(excited) = excited {
+        writeln!(out, "{}", starts(excited))?;
+    }
+    match check.is_feasible() {
+        true => writeln!(out, "within all limits")?,
+        false => {
+            writeln!(out, "outside of a limit: {:.2} % of its range", 100.0 * check.worst())?;
+        }
+    }
+    Ok(())
+}
+
+fn shown(number: f64) -> String {
+    match number {
+        number if !number.is_finite() => "infinite".to_owned(),
+        number if number < 1e5 => format!("{number:.2}"),
+        number => format!("{number:.3e}"),
+    }
+}
+
+/// Ranges and the largest use of each limit.
+fn uses(check: &Check) -> Table {
+    let mut table = Table::new(&[
+        ("joint", Align::Left),
+        ("position", Align::Right),
+        ("use", Align::Right),
+        ("velocity", Align::Right),
+        ("use", Align::Right),
+        ("acceleration", Align::Right),
+        ("use", Align::Right),
+        ("torque", Align::Right),
+        ("use", Align::Right),
+    ]);
+    for joint in &check.joints {
+        let all = [&joint.position, &joint.velocity, &joint.acceleration, &joint.torque];
+        let mut cells = vec![joint.name.clone()];
+        for extremes in all {
+            match extremes {
+                Some(Extremes { range: [low, high], usage, .. }) => {
+                    cells.push(format!("{low:.3} .. {high:.3}"));
+                    cells.push(format!("{:.1} %", 100.0 * usage));
+                }
+                None => cells.extend(["".to_owned(), "".to_owned()]),
+            }
+        }
+        table.push(cells);
+    }
+    table.without_empty_columns()
+}
+
+fn starts(excited: &Excited) -> Table {
+    let mut table = Table::new(&[
+        ("start", Align::Right),
+        ("condition", Align::Right),
+        ("worst use", Align::Right),
+        ("->", Align::Left),
+        ("condition", Align::Right),
+        ("worst use", Align::Right),
+        ("evaluations", Align::Right),
+        ("stopped by", Align::Left),
+        ("", Align::Left),
+    ]);
+    for (index, start) in excited.starts.iter().enumerate() {
+        let percent = |check: &Check| format!("{:.1} %", 100.0 * check.worst());
+        table.push(vec![
+            (index + 1).to_string(),
+            shown(start.began.excitation.condition),
+            percent(&start.began),
+            "->".to_owned(),
+            shown(start.ended.excitation.condition),
+            percent(&start.ended),
+            start.evaluations.to_string(),
+            start.stop.word().to_owned(),
+            if index == excited.best { "taken".to_owned() } else { String::new() },
+        ]);
+    }
+    table
+}

@@ -3,7 +3,8 @@
 /// A model file, or a file of equations, that is part of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShippedModel {
-    /// The name; the file is `models/NAME.json`, or in `equations`, `bodies` or `scenarios` there.
+    /// The name; the file is `models/NAME.json`, or in `equations`, `bodies`, `trajectories`
+    /// or `scenarios` there.
     pub name: &'static str,
     /// The content of the file.
     pub text: &'static str,
@@ -51,6 +52,12 @@ pub const BODIES: &[ShippedModel] = &shipped!["models/bodies":
     "slope",
 ];
 
+/// Every shipped trajectory, by name.
+pub const TRAJECTORIES: &[ShippedModel] = &shipped!["models/trajectories":
+    "tulip_leg_elastic_excitation",
+    "tulip_leg_excitation",
+];
+
 /// Every shipped scenario, by name.
 pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "bouncing_ball",
@@ -61,6 +68,8 @@ pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "planar_biped_zmp_gait",
     "rocking_block",
     "sliding_block",
+    "tulip_leg_elastic_identification",
+    "tulip_leg_identification",
     "tulip_leg_tracking",
     "tulip_standing",
     "tulip_step",
@@ -79,6 +88,16 @@ pub fn find_equations(name: &str) -> Option<&'static ShippedModel> {
 /// The shipped body of that name.
 pub fn find_body(name: &str) -> Option<&'static ShippedModel> {
     BODIES.iter().find(|body| body.name == name)
+}
+
+/// The shipped trajectory of that name.
+pub fn find_trajectory(name: &str) -> Option<&'static ShippedModel> {
+    TRAJECTORIES.iter().find(|trajectory| trajectory.name == name)
+}
+
+/// What a scenario can refer to by a name: a model, a body, a trajectory.
+pub fn find_referred(name: &str) -> Option<&'static ShippedModel> {
+    find(name).or_else(|| find_body(name)).or_else(|| find_trajectory(name))
 }
 
 /// The shipped scenario of that name.
@@ -112,7 +131,10 @@ mod tests {
         assert_eq!(names(EQUATIONS), stems("models/equations"));
         assert_eq!(names(BODIES), stems("models/bodies"));
         assert_eq!(names(SCENARIOS), stems("models/scenarios"));
+        assert_eq!(names(TRAJECTORIES), stems("models/trajectories"));
         assert!(names(MODELS).is_disjoint(&names(EQUATIONS)));
         assert!(names(MODELS).is_disjoint(&names(BODIES)));
+        assert!(names(TRAJECTORIES).is_disjoint(&names(BODIES)));
+        assert!(names(TRAJECTORIES).is_disjoint(&names(MODELS)));
     }
 }

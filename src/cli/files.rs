@@ -115,7 +115,7 @@ fn no_model(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Failure {
 /// A model or a log that another file refers to: a shipped model, or a path from that file's
 /// directory. The error is a sentence.
 pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
-    if let Some(shipped) = shipped::find(model).or_else(|| shipped::find_body(model)) {
+    if let Some(shipped) = shipped::find_referred(model) {
         return Ok(shipped.text.as_bytes().to_vec());
     }
     let directory = file.parent().unwrap_or(Path::new(""));

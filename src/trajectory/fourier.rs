@@ -4,8 +4,8 @@ use super::Setpoint;
 use super::error::{TrajectoryError, check_finite, check_length};
 use denavit_runtime::Scalar;
 
-/// offset + sum over k = 1 .. of a_k sin(w_k t) + b_k cos(w_k t): thesis 3.10 with one offset, which
-/// is all that can be told apart, and phases as sines with cosines.
+/// offset + sum over k = 1 .. of a_k sin(w_k t) + b_k cos(w_k t): thesis 3.10 with one offset,
+/// which is all that can be told apart, and phases as sines with cosines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fourier {
     /// w_k [rad/s].

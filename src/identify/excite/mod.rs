@@ -94,8 +94,9 @@ const SHARPNESS: [f64; 2] = [40.0, 200.0];
 const FIRST_SHARE: f64 = 0.4;
 /// Share of each limit that stays unused on the solver's grid.
 const RESERVE: f64 = 0.004;
-/// Steps of the finer grid for one of the solver's.
-const FINER: usize = 10;
+/// The use of limits that a motion is made smaller to: what remains is for what happens between
+/// the samples of a check.
+const SAFE: f64 = 1.0 - 1e-4;
 
 /// Looks for a trajectory that excites the base parameters of `robot`; `tell` hears what each
 /// start does, from several threads.
@@ -176,7 +177,7 @@ pub fn check_trajectory(
     Ok((check(&model, &stack, &mut evaluators, &references, lap), stack))
 }
 
-/// Steps of the grid on which a given trajectory is checked.
+/// Steps of the grid on which trajectories are checked.
 const CHECKED_STEPS: usize = 2_000;
 
 impl Excited {
@@ -341,7 +342,7 @@ impl Search<'_> {
     fn judged(&self, x: &[f64], evaluators: &mut Evaluators) -> Check {
         let lap = Lap {
             duration_s: self.space.duration_s(),
-            steps: FINER * (self.space.times().len() - 1),
+            steps: CHECKED_STEPS,
             clearance_m: self.clearance_m(),
         };
         check(self.model, self.stack, evaluators, &references(self.model, self.space, x), lap)
@@ -350,7 +351,8 @@ impl Search<'_> {
     /// The motion made smaller about its middle by the least factor that keeps all limits; as it
     /// is if none does.
     fn within_limits(&self, x: Vec<f64>, evaluators: &mut Evaluators) -> (Vec<f64>, f64) {
-        if self.judged(&x, evaluators).is_feasible() {
+        let is_safe = |check: Check| check.worst() <= SAFE;
+        if is_safe(self.judged(&x, evaluators)) {
             return (x, 1.0);
         }
         let count = self.space.coordinates();
@@ -358,12 +360,12 @@ impl Search<'_> {
             x.chunks_exact(count).flat_map(|own| self.space.scaled(own, factor)).collect()
         };
         let (mut good, mut bad) = (0.0, 1.0);
-        if !self.judged(&smaller(good), evaluators).is_feasible() {
+        if !is_safe(self.judged(&smaller(good), evaluators)) {
             return (x, 1.0);
         }
         for _ in 0..30 {
             let middle = 0.5 * (good + bad);
-            match self.judged(&smaller(middle), evaluators).is_feasible() {
+            match is_safe(self.judged(&smaller(middle), evaluators)) {
                 true => good = middle,
                 false => bad = middle,
             }

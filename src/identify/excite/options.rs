@@ -128,8 +128,7 @@ impl ExciteOptions {
             return None;
         }
         let space = Space::new(self.family, self.duration_s, self.ends, self.grid());
-        // one coordinate is the constant
-        if space.coordinates() < 2 {
+        if !space.moves() {
             faults.push(ExciteFault::TooFewFunctions);
             return None;
         }

@@ -354,7 +354,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         let robot = model::read("arm.json", ARM.as_bytes()).expect("a sound model");
-        for family in [Family::Fourier { harmonics: 3 }, Family::FreeFourier { terms: 2 }] {
+        for family in [Family::Fourier { harmonics: 3 }, Family::FreeFourier { terms: 4 }] {
             let ends = Ends { at_rest: true, unaccelerated: true, closed: true };
             let mut options = ExciteOptions { family, ends, ..ExciteOptions::default() };
             options.duration_s = 2.5;

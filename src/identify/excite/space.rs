@@ -111,6 +111,14 @@ impl Space {
         linear + self.family.frequencies()
     }
 
+    /// Whether there is more than resting trajectories in the space.
+    pub fn moves(&self) -> bool {
+        let terms = self.family.frequencies();
+        let frequencies: Vec<f64> = (1..=terms).map(|k| k as f64 + 0.25).collect();
+        // the trace of a projection is the dimension of what it leaves: the constant, and more
+        self.projection(&frequencies).trace() > 1.5
+    }
+
     /// The times of the grid \[s\].
     pub fn times(&self) -> &[f64] {
         &self.times
@@ -376,14 +384,11 @@ impl Space {
         // what is far below the terms it is made of is rounding
         let sizes = at_ends.each_ref().map(|values| values.amax());
         rows.retain(|row| row.amax() > 1e-9 * sizes[0].min(sizes[1]));
-        rows.iter_mut().for_each(|row| *row /= row.norm());
-        let identity = DMatrix::identity(count, count);
-        if rows.is_empty() {
-            return identity;
+        let mut projection = DMatrix::identity(count, count);
+        for direction in orthonormal(rows.into_iter().map(|row| row.normalize().transpose())) {
+            projection -= &direction * direction.transpose();
         }
-        let conditions = DMatrix::from_rows(&rows);
-        let inverse = conditions.clone().pseudo_inverse(1e-9);
-        identity - inverse.expect("the tolerance is not negative") * conditions
+        projection
     }
 }
 
@@ -394,10 +399,24 @@ fn pairs(coefficients: &[f64]) -> [Vec<f64>; 2] {
 
 /// An orthonormal basis of what a projection leaves alone.
 fn null_space(projection: &DMatrix<f64>) -> DMatrix<f64> {
-    let eigen = projection.clone().symmetric_eigen();
-    let kept: Vec<_> = (0..eigen.eigenvalues.len())
-        .filter(|&at| eigen.eigenvalues[at] > 0.5)
-        .map(|at| eigen.eigenvectors.column(at).into_owned())
-        .collect();
-    DMatrix::from_columns(&kept)
+    let columns = projection.column_iter().map(|column| column.into_owned());
+    DMatrix::from_columns(&orthonormal(columns))
+}
+
+/// An orthonormal basis of the span of vectors no longer than 1, by orthogonalisation twice; what
+/// is left of a vector that depends on others is rounding.
+fn orthonormal(vectors: impl Iterator<Item = DVector<f64>>) -> Vec<DVector<f64>> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    for mut rest in vectors {
+        for _ in 0..2 {
+            for direction in &basis {
+                let along = direction.dot(&rest);
+                rest.axpy(-along, direction, 1.0);
+            }
+        }
+        if rest.norm() > 1e-9 {
+            basis.push(rest.normalize());
+        }
+    }
+    basis
 }

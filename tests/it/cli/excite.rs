@@ -72,6 +72,7 @@ fn bad_input_is_told_all_at_once_and_exits_with_2() {
     for (words, text) in [
         (vec!["tulip_leg_table34", "--harmonics", "0"], "at least 1 harmonics"),
         (vec!["tulip_leg_table34", "--basis", "polynomial", "--degree", "2"], "moves and ends"),
+        (vec!["tulip_leg_table34", "--basis", "free-fourier", "--harmonics", "2"], "moves and"),
         (vec!["tulip_leg_table34", "--starts", "0"], "at least 1 starts"),
         (vec!["tulip_leg_table34", "--reach", "-1"], "--reach"),
         (vec!["tulip_leg_table34", "--hold", "knee=9"], "outside its position limits"),

@@ -1,6 +1,7 @@
 //! Identification: from motion and torques to parameters.
 
 mod regression;
+mod statics;
 
 use denavit::model::{self, Robot};
 use denavit::plants::regression::RegressionModel;

@@ -6,7 +6,7 @@ use denavit::simulate::scenario::{self, Scenario, ScenarioError};
 use denavit::simulate::{Run, Stop};
 
 fn load(name: &str) -> Result<Vec<u8>, String> {
-    let found = shipped::find(name).or_else(|| shipped::find_body(name));
+    let found = shipped::find_referred(name);
     found.map(|model| model.text.as_bytes().to_vec()).ok_or_else(|| "no such model".to_owned())
 }
 
@@ -45,6 +45,19 @@ fn the_double_pendulum_swings() {
 fn the_leg_tracks() {
     let (_, run) = assert_good("tulip_leg_tracking");
     assert_near(run.end.q[3], 0.0, 0.1);
+}
+
+/// The log of the simulated experiment is what instruments write, and follows its trajectory.
+#[test]
+fn the_leg_is_identified_from_what_instruments_write() {
+    let (_, run) = assert_good("tulip_leg_identification");
+    let column = |name: &str| run.log.column(name).unwrap_or_else(|| panic!("{name}"));
+    let (q, reference) = (column("q_knee"), column("ref_knee"));
+    let apart = q.iter().zip(&reference).map(|(q, r)| (q - r).abs()).fold(0.0, f64::max);
+    assert!((1e-4..0.05).contains(&apart), "{apart}");
+    let step = 0.0000314159;
+    assert!(q.iter().all(|q| (q / step - (q / step).round()).abs() < 1e-6));
+    assert!(run.log.column("qd_knee").is_none() && run.log.column("energy").is_none());
 }
 
 /// How often one foot takes over from the other: new contacts of a foot that had none.

@@ -5,7 +5,7 @@ use denavit::simulate::scenario::{self, RunScheme, Scenario};
 use denavit::simulate::{Run, Stop};
 
 fn load(name: &str) -> Result<Vec<u8>, String> {
-    let found = shipped::find(name).or_else(|| shipped::find_body(name));
+    let found = shipped::find_referred(name);
     found.map(|model| model.text.as_bytes().to_vec()).ok_or_else(|| "no such model".to_owned())
 }
 

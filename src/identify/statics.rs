@@ -1,0 +1,188 @@
+//! Static identification (thesis 3.2.1): what follows from weighings and from gravity torques of
+//! held postures, without any motion.
+//!
+//! A weighing gives the sum of the masses of the links that lie on the scale. A posture that is
+//! held gives the row tau = Y(q, 0, 0) phi of every joint whose torque was measured: first moments
+//! across the axes. Where links are held one after the other, differences of postures give them
+//! link by link; least squares in all rows does the subtraction.
+
+use super::knowledge::Knowledge;
+use crate::plants::regression::{RegressionModel, RegressionRows};
+use denavit_codegen::expr::text::nearest;
+use std::fmt;
+
+/// Something that was measured at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StaticMeasurement {
+    /// The mass of links on a scale.
+    Weighing {
+        /// Their names.
+        links: Vec<String>,
+        /// Their mass together \[kg\].
+        mass_kg: f64,
+        /// Its standard deviation \[kg\].
+        std_kg: f64,
+    },
+    /// Torques that hold a posture.
+    Posture {
+        /// Positions of all joints, in the order of q [rad, m].
+        q: Vec<f64>,
+        /// The torques that were measured.
+        torques: Vec<HoldingTorque>,
+    },
+}
+
+/// A torque that holds a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HoldingTorque {
+    /// The joint's name.
+    pub joint: String,
+    /// The torque along the joint axis [N m, N].
+    pub torque: f64,
+    /// Its standard deviation, with half of the stiction that hides in it [N m, N].
+    pub std: f64,
+}
+
+/// Why a measurement is no knowledge; each holds the measurement's number, from 0.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StaticFault {
+    /// The model has no such link or joint; holds it and the one that is meant, perhaps.
+    UnknownName(usize, String, Option<String>),
+    /// A link has no mass among the unknowns: it is known, or written in symbols of its own.
+    NoMass(usize, String),
+    /// A posture has not one position for each joint: expected, found.
+    WrongPosture(usize, usize, usize),
+    /// A standard deviation is not positive, or a number not finite.
+    BadNumber(usize),
+}
+
+impl fmt::Display for StaticFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownName(at, name, near) => {
+                write!(f, "measurement {}: nothing is called `{name}`", at + 1)?;
+                match near {
+                    Some(near) => write!(f, "\n  hint: `{near}` is meant, perhaps"),
+                    None => Ok(()),
+                }
+            }
+            Self::NoMass(at, link) => write!(
+                f,
+                "measurement {}: the mass of `{link}` is not among the unknown parameters",
+                at + 1
+            ),
+            Self::WrongPosture(at, expected, found) => write!(
+                f,
+                "measurement {}: a posture has {expected} positions, {found} are given",
+                at + 1
+            ),
+            Self::BadNumber(at) => write!(
+                f,
+                "measurement {}: numbers must be finite, and standard deviations positive",
+                at + 1
+            ),
+        }
+    }
+}
+
+impl std::error::Error for StaticFault {}
+
+/// What measurements at rest say of the standard parameters, or all that is wrong with them.
+///
+/// Coulomb friction and viscous friction have no part in it: a joint at rest has no rate.
+pub fn static_knowledge(
+    model: &RegressionModel,
+    measurements: &[StaticMeasurement],
+) -> Result<Knowledge, Vec<StaticFault>> {
+    let mut knowledge = Knowledge::none(model.standard.len());
+    let mut faults = Vec::new();
+    let mut evaluator = model.evaluator();
+    for (at, measurement) in measurements.iter().enumerate() {
+        match measurement {
+            StaticMeasurement::Weighing { links, mass_kg, std_kg } => {
+                let members = masses(model, at, links, &mut faults);
+                if !(mass_kg.is_finite() && *std_kg > 0.0 && std_kg.is_finite()) {
+                    faults.push(StaticFault::BadNumber(at));
+                } else {
+                    knowledge.add(&members, *mass_kg, *std_kg);
+                }
+            }
+            StaticMeasurement::Posture { q, torques } => {
+                let n = model.joints.len();
+                if q.len() != n {
+                    faults.push(StaticFault::WrongPosture(at, n, q.len()));
+                    continue;
+                }
+                let numbers = torques
+                    .iter()
+                    .all(|t| t.torque.is_finite() && t.std > 0.0 && t.std.is_finite());
+                if !numbers || q.iter().any(|position| !position.is_finite()) {
+                    faults.push(StaticFault::BadNumber(at));
+                    continue;
+                }
+                let resting: Vec<f64> =
+                    q.iter().copied().chain(std::iter::repeat_n(0.0, 2 * n)).collect();
+                let columns: Vec<&[f64]> = resting.iter().map(std::slice::from_ref).collect();
+                let mut rows = RegressionRows::default();
+                evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");
+                for torque in torques {
+                    hold(model, &rows, (at, torque), &mut knowledge, &mut faults);
+                }
+            }
+        }
+    }
+    if faults.is_empty() { Ok(knowledge) } else { Err(faults) }
+}
+
+/// The masses of links, with factor 1.
+fn masses(
+    model: &RegressionModel,
+    at: usize,
+    links: &[String],
+    faults: &mut Vec<StaticFault>,
+) -> Vec<(usize, f64)> {
+    let owners = || model.standard.iter().filter_map(|one| one.owner.as_ref());
+    let mut members = Vec::new();
+    for link in links {
+        let is_mass = |owner: &Option<(String, &'static str)>| {
+            owner.as_ref().is_some_and(|(name, prefix)| name == link && *prefix == "m")
+        };
+        if let Some(mass) = model.standard.iter().position(|one| is_mass(&one.owner)) {
+            members.push((mass, 1.0));
+        } else if owners().any(|(name, _)| name == link)
+            || model.joints.iter().any(|joint| joint.name == *link)
+        {
+            faults.push(StaticFault::NoMass(at, link.clone()));
+        } else {
+            let near = nearest(link, owners().map(|(name, _)| name.as_str())).map(str::to_owned);
+            faults.push(StaticFault::UnknownName(at, link.clone(), near));
+        }
+    }
+    members
+}
+
+/// One torque of a posture: a row of Y at rest, in standard parameters.
+fn hold(
+    model: &RegressionModel,
+    rows: &RegressionRows,
+    (at, torque): (usize, &HoldingTorque),
+    knowledge: &mut Knowledge,
+    faults: &mut Vec<StaticFault>,
+) {
+    let names = || model.joints.iter().map(|joint| joint.name.as_str());
+    let Some(joint) = names().position(|name| name == torque.joint) else {
+        let near = nearest(&torque.joint, names()).map(str::to_owned);
+        faults.push(StaticFault::UnknownName(at, torque.joint.clone(), near));
+        return;
+    };
+    let mut members = Vec::new();
+    for (place, &phi) in model.pattern()[joint].iter().enumerate() {
+        let entry = rows.column(joint, place)[0];
+        if entry != 0.0 {
+            let own = model.axes[phi].members.iter();
+            members.extend(own.map(|&(parameter, factor)| (parameter, entry * factor)));
+        }
+    }
+    let known = rows.known(joint).map_or(0.0, |known| known[0]);
+    knowledge.add(&members, torque.torque - known, torque.std);
+}

@@ -3,9 +3,9 @@
 mod cli;
 mod contact;
 mod emitted;
+mod excite;
 mod identify;
 mod report;
-mod excite;
 mod simulate;
 mod singular_values;
 mod tidy;

@@ -1,8 +1,8 @@
 //! Trajectory files: what joints follow, together, for some time (`"denavit-trajectory/1"`).
 
 use super::fault::{Cause, ScenarioError};
-use super::read::{Loader, check_format, read_document};
 use super::ranges;
+use super::read::{Loader, check_format, read_document};
 use super::reader::{Fields, Report};
 use super::reference::{self, Logs};
 use crate::trajectory::{Part, Reference, Sequence};
@@ -57,11 +57,7 @@ pub fn read_trajectory(
     read_document(file, source, KEYS, |fields, _, report| trajectory(fields, load, report))
 }
 
-fn trajectory(
-    fields: &Fields<'_>,
-    load: &Loader<'_>,
-    report: &mut Report,
-) -> Option<Trajectory> {
+fn trajectory(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Trajectory> {
     check_format(fields, TRAJECTORY_FORMAT, report);
     let text = |key: &str, report: &mut Report| {
         fields.get(key).and_then(|node| node.text(report)).unwrap_or_default().to_owned()

@@ -5,6 +5,7 @@
 //! - [`tulip`], [`puma560`], [`planar_biped`]: what the compiler made of three of them when this
 //!   library was built
 //! - [`simulate`]: robots in motion, on the ground
+//! - [`identify`]: parameters from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`identify`]: parameters from measured motion, and motion that shows them
 //! - [`trajectory`]: references for their joints

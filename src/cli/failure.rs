@@ -1,5 +1,6 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
+use super::identify::IdentifyFailure;
 use denavit::emit::rust::EmitError;
 use denavit::identify::excite::ExciteError;
 use denavit::model::{BakeError, ModelError};
@@ -65,6 +66,8 @@ pub(crate) enum Failure {
     Window([f64; 2]),
     /// No trajectory can be looked for.
     Excite(ExciteError),
+    /// Nothing is identified.
+    Identify(IdentifyFailure),
     /// A step was given for the scheme that chooses its own.
     StepOfEventScheme,
     /// The answer cannot be written to standard output.
@@ -148,6 +151,7 @@ impl Failure {
             Self::Model(_)
             | Self::Scenario(_)
             | Self::Excite(_)
+            | Self::Identify(_)
             | Self::Base(_)
             | Self::Decompose(..)
             | Self::Equations(_)
@@ -221,6 +225,7 @@ impl fmt::Display for Failure {
             }
             Self::Scenario(error) => write!(f, "{error}")?,
             Self::Excite(error) => write!(f, "{error}")?,
+            Self::Identify(error) => write!(f, "{error}")?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }

@@ -5,7 +5,7 @@ use denavit::model::equations::{self, Equations};
 use denavit::model::{self, Robot};
 use denavit::shipped::{self, ShippedModel};
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -30,6 +30,21 @@ fn complete(robot: Robot) -> Result<Robot, Failure> {
         Some(added) => Err(Failure::Effect(robot.name, added.effect.clone())),
         None => Ok(robot),
     }
+}
+
+/// The robot of a path, with the text of its file.
+pub(crate) fn read_model_text(place: &Path) -> Result<(Robot, String), Failure> {
+    let (name, bytes) = read_named(place, &[shipped::MODELS])?;
+    let robot = complete(model::read(&name, &bytes).map_err(Failure::Model)?)?;
+    // a model that was read is UTF-8
+    Ok((robot, String::from_utf8_lossy(&bytes).into_owned()))
+}
+
+/// A log, to be read row by row.
+pub(crate) fn open_log(path: &Path) -> Result<BufReader<File>, Failure> {
+    let failure = |error| Failure::Read { file: path.display().to_string(), error };
+    let file = open(path).map_err(failure)?;
+    Ok(BufReader::with_capacity(1 << 16, file))
 }
 
 /// What a command can be about that takes models and equations.

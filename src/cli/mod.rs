@@ -13,6 +13,7 @@ mod emit;
 mod excite;
 mod failure;
 mod files;
+mod identify;
 mod inspect;
 mod json;
 mod options;
@@ -54,6 +55,7 @@ enum Command {
     Schema(schema::Arguments),
     Simulate(simulate::Arguments),
     Excite(excite::Arguments),
+    Identify(identify::Arguments),
 }
 
 /// What a command that ran to its end says.
@@ -102,6 +104,7 @@ impl Command {
             Self::Schema(arguments) => schema::run(arguments, out),
             Self::Simulate(arguments) => simulate::run(arguments, out),
             Self::Excite(arguments) => excite::run(arguments, out),
+            Self::Identify(arguments) => identify::run(arguments, out),
         }
     }
 }

@@ -1,9 +1,27 @@
-//! Identification: from motion to parameters.
+//! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
 //! - [`excite`]: trajectories that excite what is to be identified
+//! - [`log`]: what was measured, checked
+//! - [`condition`]: filtered, differentiated, decimated
+//! - [`add_contact_forces`]: what the ground does to each equation
+//! - [`estimate`]: base parameters with their errors, and what they leave unexplained
+//! - [`identify`]: all of it at once
+//! - [`model_values`], [`updated_text`]: back into the model file
 //! - [`statics`]: what weighings and held postures say
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 
+pub mod condition;
+mod contact_forces;
+pub mod estimate;
 pub mod excite;
+mod identification;
 pub mod knowledge;
+pub mod log;
+mod model_text;
+mod model_values;
 pub mod statics;
+
+pub use contact_forces::add_contact_forces;
+pub use identification::{Identification, Request, identify};
+pub use model_text::{NewValue, updated as updated_text};
+pub use model_values::model_values;

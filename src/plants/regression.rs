@@ -71,6 +71,9 @@ pub struct ModelParameter {
     pub value: f64,
     /// Its standard deviation, if the model states one.
     pub std: Option<f64>,
+    /// Whether it is a mass or a moment of inertia, friction or the inertia of a rotor, which
+    /// cannot be negative.
+    pub is_positive: bool,
 }
 
 /// The base parameters of a robot with the programs that compute their columns.
@@ -408,6 +411,7 @@ fn parameters(robot: &Robot, base: &BaseParameters, theta0: &Program) -> Vec<Mod
             link,
             value: parameter.default.and_then(|value| numbers.number(value)).unwrap_or(0.0),
             std: parameter.std.and_then(|std| numbers.number(std)),
+            is_positive: is_positive(robot, parameter.symbol),
         });
     }
     for name in &theta0.parameters {
@@ -422,8 +426,20 @@ fn parameters(robot: &Robot, base: &BaseParameters, theta0: &Program) -> Vec<Mod
                 link,
                 value: 0.0,
                 std: None,
+                is_positive: !name.starts_with("off_"),
             });
         }
     }
     found
+}
+
+/// Whether a symbol is a mass, a moment of inertia, friction or the inertia of a rotor.
+fn is_positive(robot: &Robot, symbol: ExprId) -> bool {
+    robot.links.values().any(|link| {
+        let of_body =
+            link.body.iter().any(|body| body.mass == symbol || body.inertia[..3].contains(&symbol));
+        let drive = link.drive.unwrap_or_default();
+        let of_joint = [drive.viscous, drive.coulomb, drive.rotor_inertia, link.joint.damping];
+        of_body || of_joint.contains(&Some(symbol))
+    })
 }

@@ -6,6 +6,7 @@
 //! - [`excitation_picture`]: a trajectory with its limits, and how it was found
 //! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
 //! - [`html`]: reports as one page that needs nothing from elsewhere
+//! - [`torque_picture`]: measured torques beside those of a model
 //!
 //! Nothing here prints; text is handed to whoever does.
 
@@ -26,6 +27,8 @@ mod values;
 pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
-pub use run::{ExcitationPicture, RunPicture, excitation_picture, run_picture};
+pub use run::{
+    ExcitationPicture, RunPicture, TorquePicture, excitation_picture, run_picture, torque_picture,
+};
 pub use table::{Align, Table};
 pub use values::{Values, short};

@@ -6,6 +6,7 @@ mod decompose;
 mod errors;
 mod excite;
 mod help;
+mod identify;
 mod readme;
 mod simulate;
 

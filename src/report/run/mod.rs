@@ -4,6 +4,9 @@
 mod axes;
 mod excitation;
 mod figures;
+mod torques;
+
+pub use torques::{TorquePicture, torque_picture};
 
 pub use excitation::{ExcitationPicture, excitation_picture};
 

@@ -4,7 +4,7 @@ use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
 /// certificate.
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "demo",
     "inspect",
     "derive",
@@ -16,6 +16,7 @@ const COMMANDS: [&str; 11] = [
     "schema",
     "simulate",
     "excite",
+    "identify",
 ];
 
 /// The command lines of a help text's examples; three blanks begin a remark.

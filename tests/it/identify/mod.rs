@@ -1,5 +1,9 @@
 //! Identification: from motion and torques to parameters.
 
+mod emps;
+mod estimate;
+mod log;
+mod noise;
 mod regression;
 mod statics;
 

@@ -1,0 +1,249 @@
+//! `denavit identify`: parameters from logs.
+
+mod failure;
+mod json;
+mod logs;
+mod text;
+
+use super::Answer;
+use super::base::{With, regressor_options};
+use super::failure::Failure;
+use super::files::{on_stdout, read_model_text, write_whole};
+use super::progress::Progress;
+use clap::{Args, ValueEnum};
+use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow};
+use denavit::identify::log::LogRemark;
+use denavit::identify::{Identification, NewValue, Request, identify, model_values, updated_text};
+use denavit::model::{self, About, Robot};
+use denavit::plants::regression::RegressionModel;
+use denavit::report::{TorquePicture, torque_picture};
+pub(crate) use failure::IdentifyFailure;
+use logs::Conditions;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Identify parameters: base parameters with standard errors, from logs of motion and torque
+///
+/// A log is CSV with the columns t, q_JOINT, tau_JOINT (qd_, qdd_, ref_, f_CONTACT_x|y|z if there
+/// are any); --columns maps those of other logs. Positions and torques pass one zero-phase filter,
+/// torques and regressor one decimator. Base parameters are exact; what the motion does not show
+/// keeps the model's value and is said to. Exits with 1 if what is found explains nothing.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit simulate tulip_leg_tracking -o tracking.csv
+  denavit identify tulip_leg --train tracking.csv --filter 20 --svg torques.svg
+  denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json")]
+pub(crate) struct Arguments {
+    /// Path of a model, name of a shipped one, or - for standard input
+    #[arg(value_name = "MODEL")]
+    model: PathBuf,
+    /// Logs to estimate from
+    #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
+    train: Vec<PathBuf>,
+    /// Logs to judge the estimate with
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    validate: Vec<PathBuf>,
+    /// Logs of the same motion without its noise, for --method iv: simulated, sample by sample
+    #[arg(long, value_name = "LOG", num_args = 1.., required_if_eq("method", "iv"))]
+    instruments: Vec<PathBuf>,
+    /// How parameters are estimated
+    #[arg(long, value_enum, default_value_t)]
+    method: MethodName,
+    /// How standard errors are found
+    #[arg(long, value_enum, default_value_t)]
+    errors: ErrorsName,
+    /// What random drawings begin with
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Joint parameters to find, separated by commas
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        value_enum,
+        default_value = "modelled"
+    )]
+    with: Vec<With>,
+    /// Parameters to keep before others, as for `denavit base`
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    keep: Vec<String>,
+    /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0}}
+    #[arg(long, value_name = "MAP.json")]
+    columns: Option<PathBuf>,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// Take the standard deviations that the model states as knowledge
+    #[arg(long)]
+    prior: bool,
+    /// The step of the encoders [rad, m], for --method ml where it cannot be seen in the log
+    #[arg(long, value_name = "STEP")]
+    resolution: Option<f64>,
+    /// Take logs as they are, however wrong they look
+    #[arg(long)]
+    accept_suspicious: bool,
+    /// Write the model with the identified values; - is standard output
+    #[arg(short, long, value_name = "MODEL")]
+    output: Option<PathBuf>,
+    /// Draw measured and computed torques; - is standard output
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Least squares, all torques alike
+    Ols,
+    /// Least squares, each joint weighted by its noise
+    #[default]
+    Wls,
+    /// Outliers count by their size, not its square
+    Huber,
+    /// Outliers do not count
+    Bisquare,
+    /// Total least squares
+    Tls,
+    /// Instrumental variables
+    Iv,
+    /// Maximum likelihood with noise of positions and torques
+    Ml,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum ErrorsName {
+    /// Residuals may be correlated over a part of the log
+    #[default]
+    Correlated,
+    /// As if residuals were independent
+    Classical,
+    /// From logs put together of parts drawn at random
+    Bootstrap,
+}
+
+impl Arguments {
+    fn options(&self, model: &RegressionModel, noise: Vec<f64>) -> Options {
+        let method = match self.method {
+            MethodName::Ols => Method::Ordinary,
+            MethodName::Wls => Method::Weighted,
+            MethodName::Huber => Method::Robust(Loss::Huber),
+            MethodName::Bisquare => Method::Robust(Loss::Bisquare),
+            MethodName::Tls => Method::Total,
+            MethodName::Iv => Method::Instrumental,
+            MethodName::Ml => Method::Likelihood,
+        };
+        let errors = match self.errors {
+            ErrorsName::Correlated => Errors::Correlated,
+            ErrorsName::Classical => Errors::Classical,
+            ErrorsName::Bootstrap => Errors::Bootstrap { draws: 200, seed: self.seed },
+        };
+        let prior = if self.prior { prior(model) } else { Vec::new() };
+        Options { method, errors, prior, position_noise: noise }
+    }
+}
+
+/// What the model's standard deviations say of base parameters all of whose members have one.
+fn prior(model: &RegressionModel) -> Vec<PriorRow> {
+    let std_of = |place: usize| {
+        let name = &model.standard[place].name;
+        model.parameters.iter().find(|one| one.name == *name).and_then(|one| one.std)
+    };
+    let of = |(row, listed): (usize, &denavit::plants::regression::RegressionParameter)| {
+        let variances: Option<Vec<f64>> = listed
+            .members
+            .iter()
+            .map(|&(place, factor)| Some((factor * std_of(place)?).powi(2)))
+            .collect();
+        let std = variances?.iter().sum::<f64>().sqrt();
+        let factors = model.to_listed().row(row).iter().copied().collect();
+        let value = listed.value?;
+        (std > 0.0).then_some(PriorRow { factors, value, std })
+    };
+    model.listed.iter().enumerate().filter_map(of).collect()
+}
+
+/// Everything that is shown.
+struct Shown<'a> {
+    robot: &'a Robot,
+    model: &'a RegressionModel,
+    found: &'a Identification,
+    remarks: &'a [(String, LogRemark)],
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
+    let is_answered = on_stdout(&outputs, arguments.json)?;
+    let (robot, source) = read_model_text(&arguments.model)?;
+    let options = regressor_options(&robot, &arguments.with);
+    let model = RegressionModel::new(&robot, options, &arguments.keep)
+        .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
+    let progress = Progress::new();
+    progress.show("reading logs");
+    let read = logs::read(arguments, &robot, &model)?;
+    let options = arguments.options(&model, read.position_noise.clone());
+    progress.show("estimating");
+    let request = Request {
+        model: &model,
+        train: &read.train,
+        validate: &read.validate,
+        instruments: &read.instruments,
+        options: &options,
+    };
+    let found =
+        identify(request).map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
+    progress.clear();
+    if let Some(path) = &arguments.svg {
+        let picture = TorquePicture {
+            title: &model.model.replace('_', " "),
+            subtitle: if found.validate.is_some() {
+                "torques of the logs for validation"
+            } else {
+                "torques of the logs that the estimate is from"
+            },
+            validation: found.validate.as_ref().unwrap_or(&found.train),
+        };
+        write_whole(path, torque_picture(&picture).as_bytes())?;
+    }
+    if let Some(path) = &arguments.output {
+        let text = identified_model(&robot, &model, &found, &source)?;
+        write_whole(path, text.as_bytes())?;
+    }
+    let shown = Shown { robot: &robot, model: &model, found: &found, remarks: &read.remarks };
+    match (is_answered, arguments.json) {
+        (true, _) => {}
+        (_, true) => json::write(out, &shown)?,
+        (_, false) => text::write(out, &shown)?,
+    }
+    let judged = found.validate.as_ref().unwrap_or(&found.train);
+    Ok(if judged.relative < 1.0 { Answer::Done } else { Answer::Negative })
+}
+
+/// The model's text with the identified values, read again to be sure of it.
+fn identified_model(
+    robot: &Robot,
+    model: &RegressionModel,
+    found: &Identification,
+    source: &str,
+) -> Result<String, Failure> {
+    let is_about_com = |link: &str| {
+        let body = robot.find_link(link).and_then(|link| robot.links[link].body);
+        body.is_some_and(|body| body.about == About::Com)
+    };
+    let values = model_values(model, &found.consistent, &is_about_com);
+    let std_of = |name: &str| {
+        let place = model.listed.iter().position(|one| one.is_alone && one.name == name)?;
+        found.parameters[place].std.filter(|std| *std > 0.0 && std.is_finite())
+    };
+    let new: Vec<NewValue<'_>> = model
+        .parameters
+        .iter()
+        .zip(values)
+        .map(|(parameter, value)| NewValue { parameter, value, std: std_of(&parameter.name) })
+        .collect();
+    let text = updated_text(source, &new)
+        .ok_or_else(|| IdentifyFailure::NotUpdated(model.model.clone()))?;
+    model::read("the identified model", text.as_bytes()).map_err(Failure::Model)?;
+    Ok(text)
+}

@@ -1,0 +1,177 @@
+//! Logs read, checked and conditioned as the options say.
+
+use super::{Arguments, IdentifyFailure};
+use crate::cli::failure::Failure;
+use crate::cli::files::{open_log, read_file};
+use clap::{Args, ValueEnum};
+use denavit::identify::add_contact_forces;
+use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
+use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
+use denavit::model::Robot;
+use denavit::plants::regression::RegressionModel;
+use denavit::plants::{Plant, plant_of};
+use std::path::Path;
+
+/// How logs are conditioned.
+#[derive(Debug, Args)]
+pub(super) struct Conditions {
+    /// Cutoff of the zero-phase Butterworth filter [Hz], with the order of one pass if it is not 4;
+    /// or none. A tenth of the rate of sampling if nothing is said
+    #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter)]
+    filter: Option<FilterChoice>,
+    /// Leave one sample in so many; as many as the filter allows if nothing is said
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    decimate: Option<u32>,
+    /// Average laps of this period [s], or of the one that is found
+    #[arg(long, value_name = "PERIOD|found", value_parser = averaging)]
+    average: Option<Averaging>,
+    /// Where rates and accelerations come from
+    #[arg(long, value_enum, default_value_t)]
+    rates: Rates,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FilterChoice {
+    None,
+    Some(Filter),
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Rates {
+    /// Differences of the filtered positions
+    #[default]
+    Differences,
+    /// The columns qd_ and qdd_ of the log
+    Logged,
+}
+
+fn filter(text: &str) -> Result<FilterChoice, String> {
+    if text == "none" {
+        return Ok(FilterChoice::None);
+    }
+    let (cutoff, order) = text.split_once(':').unwrap_or((text, "4"));
+    match (cutoff.parse::<f64>(), order.parse::<usize>()) {
+        (Ok(cutoff_hz), Ok(order)) if cutoff_hz > 0.0 && (1..=10).contains(&order) => {
+            Ok(FilterChoice::Some(Filter { order, cutoff_hz }))
+        }
+        _ => Err("a cutoff in Hz, with an order from 1 to 10 perhaps, as 100:4; or none".into()),
+    }
+}
+
+fn averaging(text: &str) -> Result<Averaging, String> {
+    match text.parse::<f64>() {
+        _ if text == "found" => Ok(Averaging::Found),
+        Ok(period) if period > 0.0 && period.is_finite() => Ok(Averaging::Period(period)),
+        _ => Err("a period in seconds, or `found`".to_owned()),
+    }
+}
+
+impl Conditions {
+    fn of(&self, step_s: f64) -> Conditioning {
+        let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s };
+        let filter = match self.filter {
+            Some(FilterChoice::None) => None,
+            Some(FilterChoice::Some(filter)) => Some(filter),
+            None => Some(tenth),
+        };
+        // The decimator passes up to 0.4 of what is left of the rate.
+        let allowed = filter.map_or(1.0, |filter| 0.4 / (filter.cutoff_hz * step_s));
+        let decimation = self.decimate.map_or(allowed.max(1.0) as usize, |n| n as usize);
+        Conditioning {
+            filter,
+            derivatives: match self.rates {
+                Rates::Differences => Derivatives::Central,
+                Rates::Logged => Derivatives::Logged,
+            },
+            decimation,
+            averaging: self.average.unwrap_or_default(),
+        }
+    }
+}
+
+/// All logs of a run.
+pub(super) struct Read {
+    pub(super) train: Vec<Conditioned>,
+    pub(super) validate: Vec<Conditioned>,
+    pub(super) instruments: Vec<Conditioned>,
+    /// What was found, by log.
+    pub(super) remarks: Vec<(String, LogRemark)>,
+    /// Deviation of each measured position [rad, m].
+    pub(super) position_noise: Vec<f64>,
+}
+
+pub(super) fn read(
+    arguments: &Arguments,
+    robot: &Robot,
+    model: &RegressionModel,
+) -> Result<Read, Failure> {
+    let mapping = match &arguments.columns {
+        None => ColumnMapping::default(),
+        Some(path) => {
+            let name = path.display().to_string();
+            ColumnMapping::from_json(&name, &read_file(path)?).map_err(IdentifyFailure::Mapping)?
+        }
+    };
+    let needs_plant = model.joints.iter().any(|joint| joint.is_base);
+    let plant = needs_plant.then(|| plant_of(robot, &[])).transpose();
+    let plant = plant.map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
+    let contacts = robot.contacts.values().map(|contact| contact.name.clone()).collect();
+    let mut reader = Reader {
+        arguments,
+        model,
+        mapping,
+        plant,
+        contacts,
+        names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
+        remarks: Vec::new(),
+        noise: vec![0.0; model.joints.len()],
+    };
+    let train = reader.all(&arguments.train)?;
+    let validate = reader.all(&arguments.validate)?;
+    let instruments = reader.all(&arguments.instruments)?;
+    let Reader { remarks, noise, .. } = reader;
+    Ok(Read { train, validate, instruments, remarks, position_noise: noise })
+}
+
+struct Reader<'a> {
+    arguments: &'a Arguments,
+    model: &'a RegressionModel,
+    mapping: ColumnMapping,
+    plant: Option<Box<dyn Plant>>,
+    contacts: Vec<String>,
+    names: Vec<String>,
+    remarks: Vec<(String, LogRemark)>,
+    noise: Vec<f64>,
+}
+
+impl Reader<'_> {
+    fn all(&mut self, paths: &[std::path::PathBuf]) -> Result<Vec<Conditioned>, Failure> {
+        paths.iter().map(|path| self.one(path)).collect()
+    }
+
+    fn one(&mut self, path: &Path) -> Result<Conditioned, Failure> {
+        let file = path.display().to_string();
+        let of = LogOf {
+            model: &self.model.model,
+            joints: &self.model.joints,
+            contacts: &self.contacts,
+            accepts_suspicious: self.arguments.accept_suspicious,
+        };
+        let mut log: MeasuredLog =
+            read_log(&file, open_log(path)?, of, &self.mapping).map_err(IdentifyFailure::Log)?;
+        let remarks = std::mem::take(&mut log.remarks);
+        self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
+        if let Some(plant) = &mut self.plant {
+            let is_base: Vec<bool> = self.model.joints.iter().map(|joint| joint.is_base).collect();
+            add_contact_forces(&mut log, plant.as_mut(), &is_base);
+        }
+        for (noise, joint) in self.noise.iter_mut().zip(&log.joints) {
+            // An encoder's error is anywhere within its step.
+            let step = joint.step.or(self.arguments.resolution).unwrap_or(0.0);
+            *noise = noise.max(step / 12.0_f64.sqrt());
+        }
+        let how = self.arguments.conditions.of(log.step_s);
+        let conditioned = Conditioned::new(log, &self.names, &how);
+        Ok(conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?)
+    }
+}

@@ -1,0 +1,106 @@
+//! What was identified, as a table.
+
+use super::Shown;
+use crate::cli::failure::Failure;
+use denavit::identify::estimate::{JointResidual, Status};
+use denavit::report::{Align, Table, paragraph, short};
+use std::io::Write;
+
+pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
+    let Shown { robot, model, found, remarks } = shown;
+    let solution = &found.estimate.solution;
+    for (file, remark) in *remarks {
+        writeln!(out, "{file}: {remark}")?;
+    }
+    if !remarks.is_empty() {
+        writeln!(out)?;
+    }
+    let (excited, rank) = (solution.excited(), model.rank());
+    writeln!(
+        out,
+        "{}: {excited} of {rank} base parameters are excited, condition {} (columns scaled: {})\n",
+        robot.name,
+        short(solution.condition),
+        short(solution.scaled_condition)
+    )?;
+    let mut table = Table::new(&[
+        ("parameter", Align::Left),
+        ("value", Align::Right),
+        ("std", Align::Right),
+        ("model", Align::Right),
+        ("unit", Align::Left),
+        ("", Align::Left),
+        ("formula", Align::Left),
+    ]);
+    for one in &found.parameters {
+        let status = match one.status {
+            Status::Identified => "",
+            Status::Uncertain => "may be 0",
+            Status::NotExcited => "not excited",
+        };
+        let formula = if one.expression == one.name { "" } else { &one.expression };
+        table.push(vec![
+            one.name.clone(),
+            short(one.value),
+            one.std.map_or("-".to_owned(), |std| format!("{std:.1e}")),
+            one.model_value.map_or(String::new(), short),
+            one.unit.clone(),
+            status.to_owned(),
+            shortened(formula),
+        ]);
+    }
+    writeln!(out, "{}", table.without_empty_columns())?;
+    write_residuals(out, shown)?;
+    if found.consistent.distance > 1.0 {
+        let text = format!(
+            "The estimate belongs to no bodies that exist: the nearest ones are {} standard errors \
+             away, over all parameters. A model file gets those.",
+            short(found.consistent.distance.sqrt())
+        );
+        writeln!(out, "\n{}", paragraph("", "", &text))?;
+    }
+    Ok(())
+}
+
+/// Long formulas are for JSON.
+fn shortened(formula: &str) -> String {
+    const LONGEST: usize = 60;
+    if formula.chars().count() <= LONGEST {
+        return formula.to_owned();
+    }
+    let start: String = formula.chars().take(LONGEST - 4).collect();
+    format!("{start} ...")
+}
+
+fn write_residuals(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
+    let found = shown.found;
+    let mut table = Table::new(&[
+        ("joint", Align::Left),
+        ("train", Align::Right),
+        ("validate", Align::Right),
+        ("residual", Align::Right),
+        ("correlation", Align::Right),
+    ]);
+    let held_out = |joint: &JointResidual| {
+        let joints = &found.validate.as_ref()?.joints;
+        joints.iter().find(|other| other.name == joint.name)
+    };
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    for joint in &found.train.joints {
+        let other = held_out(joint);
+        table.push(vec![
+            joint.name.clone(),
+            percent(joint.relative),
+            other.map_or(String::new(), |other| percent(other.relative)),
+            short(joint.residual_rms),
+            format!("{:.2}", joint.autocorrelation.first().copied().unwrap_or(0.0)),
+        ]);
+    }
+    let all = found.validate.as_ref().map_or(String::new(), |all| percent(all.relative));
+    table.push(vec!["all".to_owned(), percent(found.train.relative), all]);
+    write!(out, "{}", table.without_empty_columns())?;
+    if let Some(before) = found.before {
+        writeln!(out, "\nbefore, with the model's values: {} of the torque left", percent(before))?;
+    }
+    Ok(())
+}

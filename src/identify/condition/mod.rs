@@ -1,0 +1,344 @@
+//! From what was measured to what is regressed: filtered, differentiated, decimated.
+//!
+//! Both sides of tau = Y(q, qd, qdd) phi go through the same filters. Positions and torques pass
+//! one zero-phase low-pass filter, which makes derivatives possible; the torques and the columns
+//! of Y then pass the same decimator, which is linear and so keeps the equation.
+
+mod butterworth;
+mod decimate;
+mod laps;
+
+pub use butterworth::Butterworth;
+pub use decimate::Decimator;
+pub use laps::Laps;
+
+use super::log::{JointSignals, MeasuredLog};
+use std::fmt;
+use std::ops::Range;
+
+/// Where rates and accelerations come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Derivatives {
+    /// Central differences of sixth order of the filtered positions.
+    #[default]
+    Central,
+    /// Those of the log.
+    Logged,
+}
+
+/// A low-pass filter, applied forwards and backwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filter {
+    /// Of one pass.
+    pub order: usize,
+    /// Where one pass halves the power \[Hz\].
+    pub cutoff_hz: f64,
+}
+
+/// Which laps are averaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Averaging {
+    /// None.
+    #[default]
+    No,
+    /// Laps of this period \[s\].
+    Period(f64),
+    /// Laps of the period that is found.
+    Found,
+}
+
+/// How a log is conditioned.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Conditioning {
+    /// The filter of positions and torques; none leaves them as they are.
+    pub filter: Option<Filter>,
+    /// Where rates and accelerations come from.
+    pub derivatives: Derivatives,
+    /// One sample in so many is left; 0 and 1 leave all.
+    pub decimation: usize,
+    /// Whether laps are averaged.
+    pub averaging: Averaging,
+}
+
+/// Why a log cannot be conditioned.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConditionError {
+    /// The cutoff is not below half the rate of sampling, or the order not from 1 to 10.
+    Cutoff {
+        /// The cutoff \[Hz\].
+        cutoff_hz: f64,
+        /// Half the rate of sampling \[Hz\].
+        nyquist_hz: f64,
+    },
+    /// What is left without the edges is too short: samples left.
+    TooShort(usize),
+    /// The rates or accelerations of this joint were not logged.
+    NoRates(String),
+    /// A period is no whole number of samples.
+    PeriodNotWhole {
+        /// The period \[s\].
+        period_s: f64,
+        /// The distance of samples \[s\].
+        step_s: f64,
+    },
+    /// There is no second lap to average with.
+    OneLap {
+        /// The period \[s\].
+        period_s: f64,
+    },
+    /// The motion does not repeat.
+    NoPeriod,
+}
+
+impl fmt::Display for ConditionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cutoff { cutoff_hz, nyquist_hz } => write!(
+                f,
+                "no filter of order 1 to 10 has its cutoff at {cutoff_hz} Hz: half the rate of \
+                 sampling is {nyquist_hz} Hz"
+            ),
+            Self::TooShort(samples) => {
+                write!(f, "without its edges the log has {samples} samples, too few")
+            }
+            Self::NoRates(joint) => {
+                write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
+            }
+            Self::PeriodNotWhole { period_s, step_s } => write!(
+                f,
+                "a period of {period_s} s is no whole number of samples of {step_s} s, or too few"
+            ),
+            Self::OneLap { period_s } => {
+                write!(f, "the log has no two whole laps of {period_s} s")
+            }
+            Self::NoPeriod => {
+                write!(f, "the motion does not repeat\n  hint: give its period, or do not average")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ConditionError {}
+
+/// What is regressed: motion and torque, sample by sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conditioned {
+    /// The name of the log.
+    pub file: String,
+    /// The time of sample 0 \[s\].
+    pub start_s: f64,
+    /// The distance of samples, before decimation \[s\].
+    pub step_s: f64,
+    /// Positions of every joint.
+    pub q: Vec<Vec<f64>>,
+    /// Rates and accelerations of every joint; none where they are differences of `q`.
+    pub rates: Option<[Vec<Vec<f64>>; 2]>,
+    /// Required torque of every joint; none where it was not measured.
+    pub torque: Vec<Option<Vec<f64>>>,
+    /// The samples that count: those at the edges depend on what was not measured.
+    pub range: Range<usize>,
+    /// One sample in so many is left.
+    pub decimation: usize,
+    /// The filter that positions and torques went through.
+    pub filter: Option<Butterworth>,
+    /// Standard deviation of the torque of each joint about the mean lap, where there are laps.
+    pub lap_noise: Option<Vec<Option<f64>>>,
+    /// The laps that were found in the log.
+    pub laps: Option<Laps>,
+}
+
+/// Samples on either side that a derivative looks at.
+const STENCIL: usize = 3;
+
+impl Conditioned {
+    /// Conditions a log. It is consumed, since nothing of it is held twice: 16 bytes a joint and
+    /// sample.
+    pub fn new(
+        log: MeasuredLog,
+        names: &[String],
+        how: &Conditioning,
+    ) -> Result<Self, ConditionError> {
+        let MeasuredLog { file, start_s, step_s, joints, .. } = log;
+        let filter = how.filter.map(|filter| lawful(filter, step_s)).transpose()?;
+        let samples = joints.first().map_or(0, |joint| joint.q.len());
+        let logged = how.derivatives == Derivatives::Logged;
+        let mut edge = if logged { 0 } else { STENCIL };
+        edge += filter.as_ref().map_or(0, Butterworth::settling);
+        let decimation = how.decimation.max(1);
+        let reach = Decimator::new(decimation).reach();
+        if samples < 2 * (edge + reach) + 8 * decimation {
+            return Err(ConditionError::TooShort(samples.saturating_sub(2 * (edge + reach))));
+        }
+        let mut found = Self {
+            file,
+            start_s,
+            step_s,
+            range: edge..samples - edge,
+            decimation,
+            ..Self::default()
+        };
+        let mut rates = [Vec::new(), Vec::new()];
+        for (joint, name) in joints.into_iter().zip(names) {
+            let JointSignals { mut q, qd, qdd, mut tau, .. } = joint;
+            if let Some(filter) = &filter {
+                filter.zero_phase(&mut q);
+                if let Some(tau) = &mut tau {
+                    filter.zero_phase(tau);
+                }
+            }
+            if logged {
+                let no_rates = || ConditionError::NoRates(name.clone());
+                for (column, all) in [qd, qdd].into_iter().zip(&mut rates) {
+                    let mut column = column.ok_or_else(no_rates)?;
+                    if let Some(filter) = &filter {
+                        filter.zero_phase(&mut column);
+                    }
+                    all.push(column);
+                }
+            }
+            found.q.push(q);
+            found.torque.push(tau);
+        }
+        found.rates = logged.then_some(rates);
+        found.filter = filter;
+        found.average(how.averaging)?;
+        Ok(found)
+    }
+
+    /// Replaces laps by their mean: everything once, with the noise that the laps show.
+    fn average(&mut self, averaging: Averaging) -> Result<(), ConditionError> {
+        let span = (self.range.start, self.range.end);
+        let laps = match averaging {
+            Averaging::No => return Ok(()),
+            Averaging::Period(period_s) => Laps::of_period(period_s, self.step_s, span)?,
+            Averaging::Found => Laps::find(&self.q, self.step_s, span)?,
+        };
+        // A lap goes on as it began, so that its edges can be filtered and differentiated.
+        let wrap = STENCIL + Decimator::new(self.decimation).reach();
+        let around = |mean: &[f64]| -> Vec<f64> {
+            let n = mean.len();
+            (0..n + 2 * wrap).map(|k| mean[(k + n * wrap.div_ceil(n) - wrap) % n]).collect()
+        };
+        for q in &mut self.q {
+            *q = around(&laps.mean(q).0);
+        }
+        for column in self.rates.iter_mut().flatten().flatten() {
+            *column = around(&laps.mean(column).0);
+        }
+        let mut noise = Vec::new();
+        for torque in &mut self.torque {
+            let mean = torque.as_ref().map(|torque| laps.mean(torque));
+            noise.push(mean.as_ref().map(|(_, noise)| *noise));
+            *torque = mean.map(|(mean, _)| around(&mean));
+        }
+        self.start_s += laps.start as f64 * self.step_s - wrap as f64 * self.step_s;
+        self.range = STENCIL..laps.samples + 2 * wrap - STENCIL;
+        self.lap_noise = Some(noise);
+        self.laps = Some(laps);
+        Ok(())
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.q.len()
+    }
+
+    /// Samples that are left after decimation.
+    pub fn samples(&self) -> usize {
+        let reach = Decimator::new(self.decimation).reach();
+        let inner = self.range.len().saturating_sub(2 * reach);
+        inner.div_ceil(self.decimation)
+    }
+
+    /// The time of a sample that is left \[s\].
+    pub fn time_s(&self, sample: usize) -> f64 {
+        let reach = Decimator::new(self.decimation).reach();
+        let at = self.range.start + reach + sample * self.decimation;
+        self.start_s + self.step_s * at as f64
+    }
+
+    /// q, qd and qdd of every joint at samples of the log, 3 n columns; `range` must lie within
+    /// [`Conditioned::range`].
+    pub fn motion(&self, range: Range<usize>, columns: &mut Vec<Vec<f64>>) {
+        let n = self.joints();
+        columns.resize(3 * n, Vec::new());
+        for (joint, q) in self.q.iter().enumerate() {
+            let fill = |column: &mut Vec<f64>, at: &dyn Fn(usize) -> f64| {
+                column.clear();
+                column.extend(range.clone().map(at));
+            };
+            fill(&mut columns[joint], &|k| q[k]);
+            match &self.rates {
+                Some([rates, accelerations]) => {
+                    fill(&mut columns[n + joint], &|k| rates[joint][k]);
+                    fill(&mut columns[2 * n + joint], &|k| accelerations[joint][k]);
+                }
+                None => {
+                    let h = self.step_s;
+                    fill(&mut columns[n + joint], &|k| rate(q, k) / h);
+                    fill(&mut columns[2 * n + joint], &|k| acceleration(q, k) / (h * h));
+                }
+            }
+        }
+    }
+}
+
+impl Conditioned {
+    /// q, qd and qdd at so many samples that are left, from `first` on.
+    pub fn motion_at(&self, first: usize, samples: usize, columns: &mut Vec<Vec<f64>>) {
+        let start = self.range.start + Decimator::new(self.decimation).reach();
+        let from = start + first * self.decimation;
+        self.motion(from..from + (samples - 1) * self.decimation + 1, columns);
+        if self.decimation > 1 {
+            for column in columns {
+                *column = column.iter().copied().step_by(self.decimation).collect();
+            }
+        }
+    }
+
+    /// The covariance of position, rate and acceleration that white noise of variance 1 of the
+    /// measured position makes, after both filters.
+    pub fn noise_gains(&self) -> [[f64; 3]; 3] {
+        let decimator = Decimator::new(self.decimation);
+        let settling = self.filter.as_ref().map_or(0, Butterworth::settling);
+        let margin = 2 * settling + decimator.reach() + STENCIL;
+        let mut impulse = vec![0.0; 2 * margin + 1 + 2 * decimator.reach()];
+        let middle = impulse.len() / 2;
+        impulse[middle] = 1.0;
+        if let Some(filter) = &self.filter {
+            filter.zero_phase(&mut impulse);
+        }
+        let mut smooth = vec![0.0; impulse.len() - 2 * decimator.reach()];
+        decimator.smooth(&impulse, &mut smooth);
+        let h = self.step_s;
+        let mut gains = [[0.0; 3]; 3];
+        for k in STENCIL..smooth.len() - STENCIL {
+            let q = [smooth[k], rate(&smooth, k) / h, acceleration(&smooth, k) / (h * h)];
+            for (row, gains) in gains.iter_mut().enumerate() {
+                for (column, gain) in gains.iter_mut().enumerate() {
+                    *gain += q[row] * q[column];
+                }
+            }
+        }
+        gains
+    }
+}
+
+fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, ConditionError> {
+    let Filter { order, cutoff_hz } = filter;
+    let nyquist_hz = 0.5 / step_s;
+    let found = Butterworth::new(order, cutoff_hz, step_s);
+    found.ok_or(ConditionError::Cutoff { cutoff_hz, nyquist_hz })
+}
+
+/// The first difference of sixth order, per sample.
+fn rate(q: &[f64], k: usize) -> f64 {
+    let odd = |d: usize| q[k + d] - q[k - d];
+    (45.0 * odd(1) - 9.0 * odd(2) + odd(3)) / 60.0
+}
+
+/// The second difference of sixth order, per sample squared.
+fn acceleration(q: &[f64], k: usize) -> f64 {
+    let even = |d: usize| q[k + d] - q[k] + (q[k - d] - q[k]);
+    (270.0 * even(1) - 27.0 * even(2) + 2.0 * even(3)) / 180.0
+}

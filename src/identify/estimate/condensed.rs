@@ -1,0 +1,141 @@
+//! Logs condensed to triangles: one for each joint and each part of a log.
+//!
+//! Joints are kept apart, so that they can be weighted afterwards; parts are, so that errors can be
+//! found that residuals make which are alike from one sample to the next.
+
+use super::rows::{Block, BlockMaker};
+use super::triangle::Triangle;
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::RegressionModel;
+use std::borrow::Cow;
+
+/// Parts that logs are cut into, altogether.
+const PARTS: usize = 96;
+
+/// The fewest samples of a part.
+const MIN_PART: usize = 20;
+
+/// Triangles of every joint, part by part.
+#[derive(Clone, Debug)]
+pub struct Condensed {
+    /// For each joint the places of phi that its columns belong to.
+    pub pattern: Vec<Vec<usize>>,
+    /// Part by part, for each joint its triangle.
+    pub parts: Vec<Vec<Triangle>>,
+    /// The log that each part is of.
+    pub log_of_part: Vec<usize>,
+    /// For each part the time of its last sample since the beginning of its log \[s\].
+    pub end_s: Vec<f64>,
+    /// Number of base parameters.
+    pub rank: usize,
+}
+
+/// What the rows of a joint in a block become: columns, and what they are to give, of one length;
+/// none where there are none. The first argument is the number of the log.
+pub(super) type RowsOf<'a> =
+    &'a mut dyn for<'b> FnMut(usize, &'b Block, usize) -> Option<Vec<Cow<'b, [f64]>>>;
+
+impl Condensed {
+    /// Condenses conditioned logs.
+    pub fn new(model: &RegressionModel, logs: &[Conditioned]) -> Self {
+        Self::of_rows(model, logs, (model.pattern().to_vec(), model.rank()), &mut plain)
+    }
+
+    /// Condenses them with each row multiplied by a factor, which is found for a log, a block and a
+    /// joint.
+    pub(super) fn weighted(
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        factors: &dyn Fn(usize, &Block, usize) -> Vec<f64>,
+    ) -> Self {
+        let shape = (model.pattern().to_vec(), model.rank());
+        Self::of_rows(model, logs, shape, &mut |log, block, joint| {
+            let columns = block.with_target(joint)?;
+            let factors = factors(log, block, joint);
+            let scaled = |column: &[f64]| -> Vec<f64> {
+                column.iter().zip(&factors).map(|(a, b)| a * b).collect()
+            };
+            Some(columns.into_iter().map(|column| Cow::Owned(scaled(column))).collect())
+        })
+    }
+
+    /// Condenses rows of another pattern and rank.
+    pub(super) fn of_rows(
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        (pattern, rank): (Vec<Vec<usize>>, usize),
+        rows: RowsOf<'_>,
+    ) -> Self {
+        let all: usize = logs.iter().map(Conditioned::samples).sum();
+        let length = all.div_ceil(PARTS).max(MIN_PART);
+        let (parts, log_of_part, end_s) = (Vec::new(), Vec::new(), Vec::new());
+        let mut condensed = Self { pattern, parts, log_of_part, end_s, rank };
+        for (index, log) in logs.iter().enumerate() {
+            // A short rest goes with the part before it.
+            let count = (log.samples() / length).max(1);
+            let begin = condensed.parts.len();
+            for part in 0..count {
+                let widths = condensed.pattern.iter().map(Vec::len);
+                condensed.parts.push(widths.map(Triangle::new).collect());
+                condensed.log_of_part.push(index);
+                let last = if part + 1 == count { log.samples() } else { (part + 1) * length };
+                condensed.end_s.push(log.time_s(last.max(1) - 1) - log.time_s(0));
+            }
+            BlockMaker::new(model, log).for_each(|block| {
+                for joint in 0..condensed.pattern.len() {
+                    if let Some(columns) = rows(index, block, joint) {
+                        condensed.add((block, joint), &columns, (begin, count, length));
+                    }
+                }
+            });
+        }
+        condensed
+    }
+
+    fn add(
+        &mut self,
+        (block, joint): (&Block, usize),
+        columns: &[Cow<'_, [f64]>],
+        (begin, count, length): (usize, usize, usize),
+    ) {
+        let mut from = 0;
+        while from < block.samples {
+            let part = ((block.first + from) / length).min(count - 1);
+            let end = if part + 1 == count { usize::MAX } else { (part + 1) * length };
+            let to = block.samples.min(end.saturating_sub(block.first));
+            let rows: Vec<&[f64]> = columns.iter().map(|column| &column[from..to]).collect();
+            self.parts[begin + part][joint].push(&rows);
+            from = to;
+        }
+    }
+
+    /// For each joint the triangle of the given parts.
+    pub fn merged(&self, parts: impl Iterator<Item = usize>) -> Vec<Triangle> {
+        let mut merged: Vec<Triangle> =
+            self.pattern.iter().map(|places| Triangle::new(places.len())).collect();
+        for part in parts {
+            for (sum, own) in merged.iter_mut().zip(&self.parts[part]) {
+                if own.rows() > 0 {
+                    sum.merge(own);
+                }
+            }
+        }
+        merged
+    }
+
+    /// For each joint the triangle of all parts.
+    pub fn whole(&self) -> Vec<Triangle> {
+        self.merged(0..self.parts.len())
+    }
+
+    /// The entries of phi that a joint's columns belong to.
+    pub fn of_joint(&self, joint: usize, phi: &[f64]) -> Vec<f64> {
+        self.pattern[joint].iter().map(|&place| phi[place]).collect()
+    }
+}
+
+/// The rows as they are.
+fn plain(_: usize, block: &Block, joint: usize) -> Option<Vec<Cow<'_, [f64]>>> {
+    let columns = block.with_target(joint)?;
+    Some(columns.into_iter().map(Cow::Borrowed).collect())
+}

@@ -1,0 +1,380 @@
+//! Bodies that exist: the parameters nearest to an estimate with positive definite pseudo-inertias,
+//! and friction and rotor inertia that are not negative.
+//!
+//! The pseudo-inertia of a body is J = L L^T with L lower triangular and of positive diagonal
+//! (log-Cholesky; Rucker, Wensing 2022), so that no step can leave the bodies that exist. What the
+//! estimate says nothing about stays near where it started.
+
+use super::least_squares::Estimate;
+use super::solve::stacked;
+use crate::plants::regression::RegressionModel;
+use nalgebra::{DMatrix, DVector, Matrix4};
+
+/// Steps of the search.
+const MAX_STEPS: usize = 200;
+
+/// What a unit of change of a body's coordinates costs, in squared standard errors of the estimate:
+/// little, so that it decides only what the data leave open.
+const STAY: f64 = 1e-8;
+
+/// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
+const LEAST_SHARE: f64 = 1e-4;
+
+/// Bodies and joints near an estimate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Consistent {
+    /// theta0, in the order of [`RegressionModel::standard`].
+    pub standard: Vec<f64>,
+    /// phi of it.
+    pub phi: Vec<f64>,
+    /// How far phi is from the estimate: squared standard errors over the number of parameters.
+    /// Far below 1, the estimate itself belongs to bodies that exist.
+    pub distance: f64,
+    /// Values of the model's own numbers, where columns are products of them: their places in
+    /// [`RegressionModel::parameters`].
+    pub own: Vec<(usize, f64)>,
+    /// Steps that were made.
+    pub steps: usize,
+}
+
+/// What coordinates stand for.
+enum Piece {
+    /// Ten coordinates of the body whose parameters begin at this place.
+    Body(usize),
+    /// The square root of a parameter that is not negative.
+    NotNegative(usize),
+    /// The parameter itself.
+    Free(usize),
+    /// A number of the model's file that columns without an owner are made of, or its logarithm:
+    /// its place in [`RegressionModel::parameters`].
+    Own(usize),
+}
+
+impl Piece {
+    fn len(&self) -> usize {
+        if let Self::Body(_) = self { 10 } else { 1 }
+    }
+}
+
+/// The nearest parameters of bodies that exist; `start` is theta0 of the model before.
+pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> Consistent {
+    let triangles = found.condensed.whole();
+    let rank = found.condensed.rank;
+    let r = stacked(&triangles, &found.condensed.pattern, &found.weights, &[], rank);
+    let w = r.view((0, 0), (rank, rank)).into_owned();
+    let b = members(model);
+    let target = &w * &found.solution.phi;
+    // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
+    let scale = noise_scale(&r, &target, rank);
+    let problem = Problem { model, jacobian: (&w * b) / scale, target: target / scale };
+    let pieces = pieces(model);
+    let mut eta = coordinates(model, &pieces, start);
+    let first = eta.clone();
+    let mut damping = 1e-3;
+    let mut steps = 0;
+    let mut cost = problem.cost(&pieces, &eta, &first);
+    while steps < MAX_STEPS {
+        steps += 1;
+        let (theta, slope) = standard(model, &pieces, &eta);
+        let j = &problem.jacobian * slope;
+        let residual = &problem.target - &problem.jacobian * &theta;
+        let step = |damping: f64| -> Option<DVector<f64>> {
+            let (rows, columns) = j.shape();
+            let mut matrix = DMatrix::zeros(rows + columns, columns);
+            let mut right = DVector::zeros(rows + columns);
+            matrix.rows_mut(0, rows).copy_from(&j);
+            right.rows_mut(0, rows).copy_from(&residual);
+            let stay = (STAY + damping).sqrt();
+            for place in 0..columns {
+                matrix[(rows + place, place)] = stay;
+                right[rows + place] = STAY / stay * (first[place] - eta[place]);
+            }
+            let qr = matrix.qr();
+            let right = qr.q().tr_mul(&right);
+            qr.r().solve_upper_triangular(&right)
+        };
+        let next = step(damping).map(|step| {
+            let longest = step.amax();
+            let limited = if longest > 2.0 { step * (2.0 / longest) } else { step };
+            &eta + limited
+        });
+        let better = next.map(|next| (problem.cost(&pieces, &next, &first), next));
+        match better.filter(|(there, _)| *there < cost) {
+            Some((there, next)) => {
+                let gain = cost - there;
+                (cost, eta) = (there, next);
+                damping = (damping * 0.2).max(1e-14);
+                if gain < 1e-12 * cost.max(1e-12) {
+                    break;
+                }
+            }
+            None if damping > 1e12 => break,
+            None => damping = damping.max(1e-12) * 8.0,
+        }
+    }
+    let (theta, _) = standard(model, &pieces, &eta);
+    let residual = &problem.target - &problem.jacobian * &theta;
+    let standard = theta.as_slice().to_vec();
+    let phi = model.axes_of_standard(&standard);
+    let own = own_values(model, &pieces, &eta);
+    let distance = residual.norm_squared() / rank.max(1) as f64;
+    Consistent { standard, phi, distance, own, steps }
+}
+
+struct Problem<'a> {
+    model: &'a RegressionModel,
+    /// Of theta0.
+    jacobian: DMatrix<f64>,
+    target: DVector<f64>,
+}
+
+impl Problem<'_> {
+    fn cost(&self, pieces: &[Piece], eta: &DVector<f64>, first: &DVector<f64>) -> f64 {
+        let (theta, _) = standard(self.model, pieces, eta);
+        let residual = &self.target - &self.jacobian * theta;
+        residual.norm_squared() + STAY * (eta - first).norm_squared()
+    }
+}
+
+/// The deviation of a weighted row: from the residual, or from rounding where there is none.
+fn noise_scale(r: &DMatrix<f64>, target: &DVector<f64>, rank: usize) -> f64 {
+    let left = if r.nrows() > rank { r[(rank, rank)].abs() } else { 0.0 };
+    let floor = 1e-9 * target.norm();
+    // Weighted rows have a deviation near 1, whatever their number is.
+    if left > floor { 1.0 } else { floor.max(f64::MIN_POSITIVE) }
+}
+
+/// phi = B theta0.
+fn members(model: &RegressionModel) -> DMatrix<f64> {
+    let mut b = DMatrix::zeros(model.axes.len(), model.standard.len());
+    for (row, parameter) in model.axes.iter().enumerate() {
+        for &(column, factor) in &parameter.members {
+            b[(row, column)] += factor;
+        }
+    }
+    b
+}
+
+fn pieces(model: &RegressionModel) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut place = 0;
+    while let Some(parameter) = model.standard.get(place) {
+        match &parameter.owner {
+            // The ten parameters of a body stand beside each other.
+            Some((_, "m")) => {
+                pieces.push(Piece::Body(place));
+                place += 9;
+            }
+            Some((_, "fv" | "fc" | "Ia")) => pieces.push(Piece::NotNegative(place)),
+            Some(_) => pieces.push(Piece::Free(place)),
+            None => {}
+        }
+        place += 1;
+    }
+    let has_own = model.standard.iter().any(|one| one.owner.is_none());
+    let is_own = |place: &usize| has_own && !is_owned(model, *place);
+    pieces.extend((0..model.parameters.len()).filter(is_own).map(Piece::Own));
+    pieces
+}
+
+/// Whether a number of the file has columns of its own, or goes into those of its link.
+fn is_owned(model: &RegressionModel, place: usize) -> bool {
+    let parameter = &model.parameters[place];
+    let prefix = parameter.name.split('_').next().unwrap_or_default();
+    let body = matches!(parameter.role, Some(denavit_codegen::model::Role::Body(..)));
+    model.standard.iter().any(|one| {
+        let Some((link, own)) = &one.owner else { return false };
+        let is_of_link = parameter.link.as_ref() == Some(link);
+        is_of_link && (body && *own == "m" || *own == prefix)
+    })
+}
+
+/// The numbers of the file that coordinates stand for.
+fn own_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<(usize, f64)> {
+    let mut at = 0;
+    let mut values = Vec::new();
+    for piece in pieces {
+        if let Piece::Own(place) = *piece {
+            let is_positive = model.parameters[place].is_positive;
+            values.push((place, if is_positive { eta[at].exp() } else { eta[at] }));
+        }
+        at += piece.len();
+    }
+    values
+}
+
+/// The pseudo-inertia [[integral of x x^T dm, integral of x dm], [.., m]] of ten parameters.
+pub(super) fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
+    let &[m, x, y, z, xx, yy, zz, xy, xz, yz] = ten else {
+        unreachable!("a body has ten parameters")
+    };
+    let half = 0.5 * (xx + yy + zz);
+    Matrix4::new(
+        half - xx,
+        -xy,
+        -xz,
+        x, //
+        -xy,
+        half - yy,
+        -yz,
+        y, //
+        -xz,
+        -yz,
+        half - zz,
+        z, //
+        x,
+        y,
+        z,
+        m,
+    )
+}
+
+fn ten_parameters(j: &Matrix4<f64>) -> [f64; 10] {
+    let trace = j[(0, 0)] + j[(1, 1)] + j[(2, 2)];
+    let moment = |axis: usize| trace - j[(axis, axis)];
+    let (m, h) = (j[(3, 3)], [j[(0, 3)], j[(1, 3)], j[(2, 3)]]);
+    let products = [-j[(0, 1)], -j[(0, 2)], -j[(1, 2)]];
+    let [x, y, z] = h;
+    let [xy, xz, yz] = products;
+    [m, x, y, z, moment(0), moment(1), moment(2), xy, xz, yz]
+}
+
+/// L of coordinates: the logarithms of its diagonal, then what is below, row by row.
+fn lower(eta: &[f64]) -> Matrix4<f64> {
+    let mut l = Matrix4::zeros();
+    let mut next = 4;
+    for row in 0..4 {
+        l[(row, row)] = eta[row].exp();
+        for column in 0..row {
+            l[(row, column)] = eta[next];
+            next += 1;
+        }
+    }
+    l
+}
+
+/// Coordinates of given parameters, moved into the bodies that exist.
+fn coordinates(model: &RegressionModel, pieces: &[Piece], start: &[f64]) -> DVector<f64> {
+    let mut eta = Vec::new();
+    for piece in pieces {
+        match *piece {
+            Piece::NotNegative(place) => eta.push(start[place].max(1e-8).sqrt()),
+            Piece::Free(place) => eta.push(start[place]),
+            Piece::Own(place) => {
+                let own = &model.parameters[place];
+                let start = own.value;
+                eta.push(if own.is_positive { start.max(1e-5).ln() } else { start });
+            }
+            Piece::Body(place) => {
+                let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
+                eta.extend((0..4).map(|row| l[(row, row)].ln()));
+                for row in 0..4 {
+                    eta.extend((0..row).map(|column| l[(row, column)]));
+                }
+            }
+        }
+    }
+    DVector::from_vec(eta)
+}
+
+/// The Cholesky factor of a pseudo-inertia, its eigenvalues raised where they are too small.
+fn cholesky_of_near(j: &Matrix4<f64>) -> Matrix4<f64> {
+    // A body that is nothing yet: 10 g of the size of a fist.
+    let nothing = Matrix4::from_diagonal(&nalgebra::Vector4::new(1e-5, 1e-5, 1e-5, 1e-2));
+    let trace = j.trace();
+    let j = if trace > 1e-9 { *j } else { nothing };
+    let least = LEAST_SHARE * j.trace().abs();
+    // Masses and moments have sizes of their own: the block of moments is measured by itself.
+    let mut eigen = j.symmetric_eigen();
+    let moments = 1e-3 * (j[(0, 0)] + j[(1, 1)] + j[(2, 2)]).abs().max(1e-6);
+    let floor = least.min(moments).max(1e-9);
+    eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(floor));
+    let raised = eigen.recompose();
+    let raised = (raised + raised.transpose()) * 0.5;
+    raised.cholesky().map_or_else(|| cholesky_of_near(&nothing), |cholesky| cholesky.l())
+}
+
+/// theta0 of coordinates, and its derivative.
+fn standard(
+    model: &RegressionModel,
+    pieces: &[Piece],
+    eta: &DVector<f64>,
+) -> (DVector<f64>, DMatrix<f64>) {
+    let size = model.standard.len();
+    let mut theta = DVector::zeros(size);
+    let mut slope = DMatrix::zeros(size, eta.len());
+    products(model, pieces, eta, (&mut theta, &mut slope));
+    let mut at = 0;
+    for piece in pieces {
+        match *piece {
+            Piece::Own(_) => {}
+            Piece::Free(place) => {
+                theta[place] = eta[at];
+                slope[(place, at)] = 1.0;
+            }
+            Piece::NotNegative(place) => {
+                theta[place] = eta[at] * eta[at];
+                slope[(place, at)] = 2.0 * eta[at];
+            }
+            Piece::Body(place) => {
+                let l = lower(&eta.as_slice()[at..at + 10]);
+                let own = ten_parameters(&(l * l.transpose()));
+                theta.rows_mut(place, 10).copy_from_slice(&own);
+                let mut next = 4;
+                for row in 0..4 {
+                    for column in 0..=row {
+                        // d(L L^T) = dL L^T + L dL^T
+                        let mut change = Matrix4::zeros();
+                        let is_diagonal = row == column;
+                        change[(row, column)] = if is_diagonal { l[(row, row)] } else { 1.0 };
+                        let moved = change * l.transpose() + l * change.transpose();
+                        let coordinate = if is_diagonal { row } else { next };
+                        next += usize::from(!is_diagonal);
+                        let moved = ten_parameters(&moved);
+                        slope.view_mut((place, at + coordinate), (10, 1)).copy_from_slice(&moved);
+                    }
+                }
+            }
+        }
+        at += piece.len();
+    }
+    (theta, slope)
+}
+
+/// Columns that are products of the model's own numbers, with their derivatives: polynomials of low
+/// degree, whose central differences are nearly exact.
+fn products(
+    model: &RegressionModel,
+    pieces: &[Piece],
+    eta: &DVector<f64>,
+    (theta, slope): (&mut DVector<f64>, &mut DMatrix<f64>),
+) {
+    let own = own_values(model, pieces, eta);
+    if own.is_empty() {
+        return;
+    }
+    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+    own.iter().for_each(|&(place, value)| values[place] = value);
+    let is_product: Vec<bool> = model.standard.iter().map(|one| one.owner.is_none()).collect();
+    let here = model.standard_values(&values);
+    for (row, value) in here.iter().enumerate().filter(|(row, _)| is_product[*row]) {
+        theta[row] = *value;
+    }
+    let mut at = 0;
+    for piece in pieces {
+        if let Piece::Own(place) = *piece {
+            let value = values[place];
+            let step = 1e-4 * value.abs().max(1e-2);
+            values[place] = value + step;
+            let above = model.standard_values(&values);
+            values[place] = value - step;
+            let below = model.standard_values(&values);
+            values[place] = value;
+            let inner = if model.parameters[place].is_positive { value } else { 1.0 };
+            for row in (0..is_product.len()).filter(|&row| is_product[row]) {
+                slope[(row, at)] = inner * (above[row] - below[row]) / (2.0 * step);
+            }
+        }
+        at += piece.len();
+    }
+}

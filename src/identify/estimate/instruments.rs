@@ -1,0 +1,123 @@
+//! Instrumental variables: estimates that noise of the motion does not bias.
+//!
+//! In closed loop the noise of a torque finds its way into the motion, and so into W. Columns Z of
+//! a motion without that noise, simulated with a model that is nearly right or taken from the
+//! references, are correlated with W and not with it: Z^T W phi = Z^T y (Janot, Vandanjon, Gautier
+//! 2014). With [Z | W | y] = Q R the equation is the upper block of R, and no square is formed.
+
+use super::condensed::Condensed;
+use super::least_squares::{Estimate, EstimateError};
+use super::rows::BlockMaker;
+use super::triangle::{Triangle, upper};
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::RegressionModel;
+use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
+
+/// Replaces phi and its covariance by those of instruments, joints weighted as they are.
+pub(super) fn instrumental(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    instruments: &[Conditioned],
+    found: &mut Estimate,
+) -> Result<(), EstimateError> {
+    let fits = |(log, instrument): (&Conditioned, &Conditioned)| {
+        log.samples() == instrument.samples() && log.decimation == instrument.decimation
+    };
+    if logs.len() != instruments.len() || !logs.iter().zip(instruments).all(fits) {
+        return Err(EstimateError::Instruments);
+    }
+    let condensed = paired(model, logs, instruments);
+    let system = System::new(&condensed, &condensed.whole(), &found.weights);
+    let solved = system.solve().ok_or(EstimateError::Instruments)?;
+    found.solution.phi = solved;
+    let (covariance, degrees_of_freedom) =
+        system.covariance(&condensed, found).ok_or(EstimateError::Instruments)?;
+    found.covariance = covariance;
+    found.degrees_of_freedom = degrees_of_freedom;
+    Ok(())
+}
+
+/// Rows of Z and W beside each other: columns of Z come first.
+fn paired(model: &RegressionModel, logs: &[Conditioned], instruments: &[Conditioned]) -> Condensed {
+    let rank = model.rank();
+    let pattern: Vec<Vec<usize>> = model
+        .pattern()
+        .iter()
+        .map(|places| places.iter().copied().chain(places.iter().map(|at| at + rank)).collect())
+        .collect();
+    let mut makers: Vec<BlockMaker<'_>> =
+        instruments.iter().map(|log| BlockMaker::new(model, log)).collect();
+    Condensed::of_rows(model, logs, (pattern, 2 * rank), &mut |log, block, joint| {
+        let columns = block.with_target(joint)?;
+        let other = makers[log].at(block.first, block.samples);
+        let z = other.columns[joint].iter().map(|column| Cow::Owned(column.clone()));
+        Some(z.chain(columns.into_iter().map(Cow::Borrowed)).collect())
+    })
+}
+
+/// R of [Z | W | y], all joints weighted.
+struct System {
+    rank: usize,
+    r: DMatrix<f64>,
+}
+
+impl System {
+    fn new(condensed: &Condensed, triangles: &[Triangle], weights: &[f64]) -> Self {
+        let size = condensed.rank;
+        let heights = triangles.iter().map(|triangle| triangle.width() + 1);
+        let mut stacked = DMatrix::zeros(heights.sum::<usize>().max(size + 1), size + 1);
+        let mut row = 0;
+        for (joint, triangle) in triangles.iter().enumerate() {
+            for own in 0..=triangle.width() {
+                for place in own..=triangle.width() {
+                    let target = condensed.pattern[joint].get(place).copied().unwrap_or(size);
+                    stacked[(row, target)] = weights[joint] * triangle.matrix()[(own, place)];
+                }
+                row += 1;
+            }
+        }
+        Self { rank: size / 2, r: upper(stacked) }
+    }
+
+    /// Q^T W of the rows that Z spans.
+    fn matrix(&self) -> DMatrix<f64> {
+        self.r.view((0, self.rank), (self.rank, self.rank)).into_owned()
+    }
+
+    fn solve(&self) -> Option<DVector<f64>> {
+        let target = self.r.view((0, 2 * self.rank), (self.rank, 1)).column(0).into_owned();
+        let phi = self.matrix().lu().solve(&target)?;
+        phi.iter().all(|entry| entry.is_finite()).then_some(phi)
+    }
+
+    /// (Z^T W)^-1 S (W^T Z)^-1 with S the long-run covariance of Z^T (y - W phi) of parts.
+    fn covariance(&self, condensed: &Condensed, found: &Estimate) -> Option<(DMatrix<f64>, f64)> {
+        let rank = self.rank;
+        let z = self.r.view((0, 0), (rank, rank)).into_owned();
+        // (Z^T W)^-1 = (Q^T W)^-1 R_z^-T
+        let inverse = self.matrix().try_inverse()? * z.transpose().try_inverse()?;
+        let phi = found.solution.phi.as_slice();
+        let count = condensed.parts.len();
+        let scores: Vec<DVector<f64>> = (0..count)
+            .map(|part| {
+                let own = Self::new(condensed, &condensed.parts[part], &found.weights);
+                let fitted = |row: usize| {
+                    (0..rank).map(|place| own.r[(row, rank + place)] * phi[place]).sum::<f64>()
+                };
+                let residual =
+                    DVector::from_fn(own.r.nrows(), |row, _| own.r[(row, 2 * rank)] - fitted(row));
+                &inverse * (own.r.columns(0, rank).transpose() * residual)
+            })
+            .collect();
+        let mut sum = DMatrix::zeros(rank, rank);
+        for (part, score) in scores.iter().enumerate() {
+            sum += score * score.transpose();
+            if let Some(next) = scores.get(part + 1) {
+                let cross = score * next.transpose();
+                sum += (&cross + cross.transpose()) * 0.5;
+            }
+        }
+        Some((sum * (count as f64 / (count as f64 - 1.0).max(1.0)), count as f64 - 1.0))
+    }
+}

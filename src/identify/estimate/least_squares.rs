@@ -1,0 +1,316 @@
+//! The estimates: one loop of weighting and solving, by method.
+
+use super::condensed::Condensed;
+use super::errors::{Errors, Problem};
+use super::instruments;
+use super::likelihood;
+use super::robust::{Loss, scales};
+use super::rows::Block;
+use super::solve::{PriorRow, Solution, solve, stacked};
+use super::total;
+use super::triangle::Triangle;
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::RegressionModel;
+use nalgebra::DMatrix;
+use std::fmt;
+
+/// Times that weights are found anew.
+const MAX_REWEIGHTING: usize = 30;
+
+/// Change of phi, in standard errors, below which weights have settled.
+const SETTLED: f64 = 1e-3;
+
+/// How base parameters are estimated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Least squares, all torques alike.
+    Ordinary,
+    /// Least squares, each joint weighted by its noise.
+    #[default]
+    Weighted,
+    /// Weighted, and outliers lose weight.
+    Robust(Loss),
+    /// Total least squares: every column as noisy as the torques, relative to its length.
+    Total,
+    /// Instrumental variables: what is correlated with the motion of other logs, free of noise,
+    /// sample by sample.
+    Instrumental,
+    /// Weighted sample by sample with what noise of the positions does to each row.
+    Likelihood,
+}
+
+/// Everything about an estimate but its data.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// How.
+    pub method: Method,
+    /// How standard errors are found.
+    pub errors: Errors,
+    /// What is known beforehand.
+    pub prior: Vec<PriorRow>,
+    /// Standard deviation of the measured positions of each joint before filtering [rad, m]; used
+    /// by [`Method::Likelihood`].
+    pub position_noise: Vec<f64>,
+}
+
+/// Why there is no estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EstimateError {
+    /// No torque was measured.
+    NoTorque,
+    /// Fewer rows than parameters: rows, parameters.
+    TooFewRows(usize, usize),
+    /// Instruments that have other samples than the logs.
+    Instruments,
+    /// Weights that do not settle.
+    NotSettled,
+}
+
+impl fmt::Display for EstimateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoTorque => write!(f, "no torque was measured"),
+            Self::TooFewRows(rows, parameters) => {
+                write!(f, "{rows} rows are too few for {parameters} parameters")
+            }
+            Self::Instruments => write!(
+                f,
+                "instruments must be as many logs as there are for training, each with as many \
+                 samples"
+            ),
+            Self::NotSettled => write!(f, "the weights do not settle"),
+        }
+    }
+}
+
+impl std::error::Error for EstimateError {}
+
+/// Base parameters on the joint axes, with their errors.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Solution and conditions.
+    pub solution: Solution,
+    /// Covariance of phi.
+    pub covariance: DMatrix<f64>,
+    /// Degrees of freedom of the errors.
+    pub degrees_of_freedom: f64,
+    /// Standard deviation of each joint's residuals [N m, N]; 0 where no torque was measured.
+    pub noise: Vec<f64>,
+    /// The rows, as they were weighted last.
+    pub condensed: Condensed,
+    /// What each joint's rows count.
+    pub weights: Vec<f64>,
+    /// Times that weights were found.
+    pub rounds: usize,
+}
+
+/// Estimates phi from logs. `instruments` are logs of the same samples, for
+/// [`Method::Instrumental`]; `start` is where phi stays in directions that nothing is known of.
+pub fn estimate(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    instruments: &[Conditioned],
+    options: &Options,
+    start: &[f64],
+) -> Result<Estimate, EstimateError> {
+    let condensed = Condensed::new(model, logs);
+    let triangles = condensed.whole();
+    let rows: usize = triangles.iter().map(Triangle::rows).sum();
+    if rows == 0 {
+        return Err(EstimateError::NoTorque);
+    }
+    if rows < condensed.rank {
+        return Err(EstimateError::TooFewRows(rows, condensed.rank));
+    }
+    let fit = Fit { options, start };
+    let mut first = fit.by_joint(condensed, options.method != Method::Ordinary);
+    match options.method {
+        Method::Ordinary | Method::Weighted => {}
+        Method::Robust(loss) => first = fit.robust(model, logs, first, loss)?,
+        Method::Likelihood => first = fit.likely(model, logs, first)?,
+        Method::Total => total::total(&mut first),
+        Method::Instrumental => {
+            instruments::instrumental(model, logs, instruments, &mut first)?;
+            return Ok(first);
+        }
+    }
+    let problem = Problem {
+        condensed: &first.condensed,
+        weights: &first.weights,
+        prior: &options.prior,
+        solution: &first.solution,
+    };
+    let (mut covariance, degrees_of_freedom) = problem.covariance(options.errors);
+    if options.method == Method::Ordinary && options.errors == Errors::Classical {
+        let triangles = first.condensed.whole();
+        let squares: f64 = first.squares(&triangles).iter().sum();
+        covariance *= squares / degrees_of_freedom;
+    }
+    Ok(Estimate { covariance, degrees_of_freedom, ..first })
+}
+
+struct Fit<'a> {
+    options: &'a Options,
+    start: &'a [f64],
+}
+
+impl Fit<'_> {
+    fn solved(&self, condensed: &Condensed, triangles: &[Triangle], weights: &[f64]) -> Solution {
+        let prior = &self.options.prior;
+        let r = stacked(triangles, &condensed.pattern, weights, prior, condensed.rank);
+        solve(&r, self.start)
+    }
+
+    /// Least squares, joints weighted by their noise if that is wanted: a few rounds, since the
+    /// noise is that of the residuals.
+    fn by_joint(&self, condensed: Condensed, is_weighted: bool) -> Estimate {
+        let triangles = condensed.whole();
+        let mut weights: Vec<f64> =
+            triangles.iter().map(|one| if one.rows() > 0 { 1.0 } else { 0.0 }).collect();
+        // Torques of one size to begin with, whatever their units.
+        if is_weighted {
+            for (weight, triangle) in weights.iter_mut().zip(&triangles) {
+                let (rows, squares) = (triangle.rows() as f64, triangle.target_squares());
+                *weight = if squares > 0.0 { (rows / squares).sqrt() } else { 0.0 };
+            }
+        }
+        let solution = self.solved(&condensed, &triangles, &weights);
+        let noise = vec![0.0; weights.len()];
+        let covariance = DMatrix::zeros(0, 0);
+        let mut found = Estimate {
+            solution,
+            covariance,
+            degrees_of_freedom: 0.0,
+            noise,
+            condensed,
+            weights,
+            rounds: 1,
+        };
+        found.noise = found.deviations(&triangles);
+        while is_weighted && found.rounds < MAX_REWEIGHTING {
+            found.weights = reciprocal(&found.noise, &triangles);
+            let next = self.solved(&found.condensed, &triangles, &found.weights);
+            let change = moved(&found.solution, &next);
+            found.solution = next;
+            found.noise = found.deviations(&triangles);
+            found.rounds += 1;
+            if change < SETTLED {
+                break;
+            }
+        }
+        found
+    }
+
+    fn robust(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        mut found: Estimate,
+        loss: Loss,
+    ) -> Result<Estimate, EstimateError> {
+        for _ in 0..MAX_REWEIGHTING {
+            let phi = found.solution.phi.as_slice().to_vec();
+            let scales = scales(model, logs, &phi);
+            let factors = |_: usize, block: &Block, joint: usize| -> Vec<f64> {
+                let own = found.condensed.of_joint(joint, &phi);
+                let residual = block.residual(joint, &own).unwrap_or_default();
+                let scale = scales[joint].max(f64::MIN_POSITIVE);
+                residual.iter().map(|residual| loss.factor(residual / scale)).collect()
+            };
+            let condensed = Condensed::weighted(model, logs, &factors);
+            let triangles = condensed.whole();
+            let joint_weights = reciprocal(&scales, &triangles);
+            let next = self.solved(&condensed, &triangles, &joint_weights);
+            let change = moved(&found.solution, &next);
+            found.weights = joint_weights;
+            found.condensed = condensed;
+            found.solution = next;
+            found.noise = scales;
+            found.rounds += 1;
+            if change < SETTLED {
+                return Ok(found);
+            }
+        }
+        Err(EstimateError::NotSettled)
+    }
+
+    fn likely(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        mut found: Estimate,
+    ) -> Result<Estimate, EstimateError> {
+        for _ in 0..MAX_REWEIGHTING {
+            let phi = found.solution.phi.as_slice().to_vec();
+            let variance =
+                likelihood::Variance::new(model, logs, (&phi, &self.options.position_noise));
+            let noise = variance.torque_noise(&found.noise);
+            let factors = |log: usize, block: &Block, joint: usize| {
+                variance.factors((log, joint), block, &noise)
+            };
+            let condensed = Condensed::weighted(model, logs, &factors);
+            let triangles = condensed.whole();
+            let ones: Vec<f64> =
+                triangles.iter().map(|one| if one.rows() > 0 { 1.0 } else { 0.0 }).collect();
+            let next = self.solved(&condensed, &triangles, &ones);
+            let change = moved(&found.solution, &next);
+            found.weights = ones;
+            found.condensed = condensed;
+            found.solution = next;
+            found.rounds += 1;
+            if change < SETTLED {
+                return Ok(found);
+            }
+        }
+        Err(EstimateError::NotSettled)
+    }
+}
+
+impl Estimate {
+    /// |W phi - y|^2 of each joint.
+    fn squares(&self, triangles: &[Triangle]) -> Vec<f64> {
+        let phi = self.solution.phi.as_slice();
+        let of_joint = |(joint, triangle): (usize, &Triangle)| {
+            triangle.squares(&self.condensed.of_joint(joint, phi))
+        };
+        triangles.iter().enumerate().map(of_joint).collect()
+    }
+
+    /// The deviation of each joint's residuals; the parameters are shared by the joints.
+    fn deviations(&self, triangles: &[Triangle]) -> Vec<f64> {
+        let rows: usize = triangles.iter().map(Triangle::rows).sum();
+        let used = self.solution.excited() as f64 / rows as f64;
+        let squares = self.squares(triangles);
+        let deviation = |(triangle, squares): (&Triangle, f64)| match triangle.rows() {
+            0 => 0.0,
+            rows => (squares / (rows as f64 * (1.0 - used).max(1e-3))).sqrt(),
+        };
+        triangles.iter().zip(squares).map(deviation).collect()
+    }
+}
+
+/// 1 / noise; a joint without noise counts like one with a millionth of its torque.
+fn reciprocal(noise: &[f64], triangles: &[Triangle]) -> Vec<f64> {
+    let weight = |(noise, triangle): (&f64, &Triangle)| {
+        if triangle.rows() == 0 {
+            return 0.0;
+        }
+        let size = (triangle.target_squares() / triangle.rows() as f64).sqrt();
+        let least = if size > 0.0 { 1e-12 * size } else { 1.0 };
+        1.0 / noise.max(least)
+    };
+    noise.iter().zip(triangles).map(weight).collect()
+}
+
+/// The largest change of an entry of phi, in its standard errors.
+fn moved(before: &Solution, after: &Solution) -> f64 {
+    let covariance = after.covariance();
+    let change = |place: usize| {
+        let deviation = covariance[(place, place)].sqrt();
+        let step = (after.phi[place] - before.phi[place]).abs();
+        // Without noise, deviations are rounding.
+        let rounding = 1e-9 * after.phi.amax();
+        if step <= rounding { 0.0 } else { step / deviation.max(f64::MIN_POSITIVE) }
+    };
+    (0..after.phi.len()).map(change).fold(0.0, f64::max)
+}

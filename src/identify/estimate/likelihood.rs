@@ -1,0 +1,115 @@
+//! Noise on both sides: what noise of the positions does to the residual of each row.
+//!
+//! Filter and differences turn the noise of a position into noise of position, rate and
+//! acceleration of known covariance; how much each moves the torque follows from the model, row by
+//! row. Rows weighted by the deviation of all that together give the maximum of the likelihood
+//! where the torque is near enough to linear over the noise (Swevers et al. 1997).
+
+use super::rows::Block;
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::{RegressionModel, RegressionRows};
+
+/// Samples in a block.
+const BLOCK: usize = 512;
+
+/// The least share of the residual's variance that is taken for noise of the torque itself.
+const LEAST_TORQUE_SHARE: f64 = 0.05;
+
+/// Variances of rows from noise of the positions.
+pub(super) struct Variance {
+    /// Log, joint, sample [(N m)^2, N^2].
+    of_positions: Vec<Vec<Vec<f64>>>,
+}
+
+impl Variance {
+    /// Of logs, with phi and the deviation of each measured position.
+    pub(super) fn new(
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        (phi, deviations): (&[f64], &[f64]),
+    ) -> Self {
+        let of_log = |log: &Conditioned| of_log(model, log, phi, deviations);
+        Self { of_positions: logs.iter().map(of_log).collect() }
+    }
+
+    /// The noise of the torques themselves, of residuals with given deviations.
+    pub(super) fn torque_noise(&self, residual: &[f64]) -> Vec<f64> {
+        let of_joint = |(joint, &deviation): (usize, &f64)| {
+            let rows = self.of_positions.iter().flat_map(|log| &log[joint]);
+            let (sum, count) = rows.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
+            let mean = sum / f64::from(count.max(1));
+            let all = deviation * deviation;
+            (all - mean).max(LEAST_TORQUE_SHARE * all).sqrt()
+        };
+        residual.iter().enumerate().map(of_joint).collect()
+    }
+
+    /// 1 over the deviation of each row.
+    pub(super) fn factors(
+        &self,
+        (log, joint): (usize, usize),
+        block: &Block,
+        torque_noise: &[f64],
+    ) -> Vec<f64> {
+        let rows = &self.of_positions[log][joint][block.first..block.first + block.samples];
+        let own = torque_noise[joint].powi(2);
+        rows.iter().map(|variance| 1.0 / (own + variance).sqrt().max(f64::MIN_POSITIVE)).collect()
+    }
+}
+
+fn of_log(
+    model: &RegressionModel,
+    log: &Conditioned,
+    phi: &[f64],
+    deviations: &[f64],
+) -> Vec<Vec<f64>> {
+    let n = log.joints();
+    let gains = log.noise_gains();
+    let samples = log.samples();
+    let mut variance = vec![vec![0.0; samples]; n];
+    let mut evaluator = model.evaluator();
+    let (mut rows, mut motion) = (RegressionRows::default(), Vec::new());
+    let own: Vec<Vec<f64>> =
+        model.pattern().iter().map(|places| places.iter().map(|&at| phi[at]).collect()).collect();
+    for first in (0..samples).step_by(BLOCK) {
+        let count = BLOCK.min(samples - first);
+        log.motion_at(first, count, &mut motion);
+        for joint in 0..n {
+            let deviation = deviations.get(joint).copied().unwrap_or(0.0);
+            if deviation == 0.0 {
+                continue;
+            }
+            // Half the difference over +- one deviation: a derivative that steps do not upset.
+            let mut slopes = vec![vec![vec![0.0; count]; n]; 3];
+            for (order, slopes) in slopes.iter_mut().enumerate() {
+                let step = deviation * gains[order][order].sqrt();
+                let place = order * n + joint;
+                for sign in [1.0, -1.0] {
+                    motion[place].iter_mut().for_each(|value| *value += sign * step);
+                    let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+                    evaluator.evaluate(&columns, &mut rows).expect("every joint has its columns");
+                    motion[place].iter_mut().for_each(|value| *value -= sign * step);
+                    let mut torque = vec![0.0; count];
+                    for (row, slope) in slopes.iter_mut().enumerate() {
+                        rows.torque(row, &own[row], &mut torque);
+                        for (slope, torque) in slope.iter_mut().zip(&torque) {
+                            *slope += 0.5 * sign * torque / step;
+                        }
+                    }
+                }
+            }
+            for (row, variance) in variance.iter_mut().enumerate() {
+                for k in 0..count {
+                    let mut sum = 0.0;
+                    for a in 0..3 {
+                        for b in 0..3 {
+                            sum += slopes[a][row][k] * gains[a][b] * slopes[b][row][k];
+                        }
+                    }
+                    variance[first + k] += deviation * deviation * sum;
+                }
+            }
+        }
+    }
+    variance
+}

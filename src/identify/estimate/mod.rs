@@ -1,0 +1,32 @@
+//! Estimation: base parameters of conditioned logs, with errors that say what they mean.
+//!
+//! - [`Condensed`]: logs as triangles of joints and parts
+//! - [`estimate`]: least squares, weighted, robust, by instruments, with noise on both sides
+//! - [`Errors`]: standard errors for residuals that are correlated
+//! - [`validate`]: what is left of the torques
+//! - [`consistent()`]: the nearest bodies that exist
+
+mod condensed;
+mod consistent;
+mod errors;
+mod instruments;
+mod least_squares;
+mod likelihood;
+mod report;
+mod robust;
+mod rows;
+mod solve;
+mod total;
+mod triangle;
+mod validate;
+
+pub use condensed::Condensed;
+pub use consistent::{Consistent, consistent};
+pub use errors::{Errors, interval_factor};
+pub use least_squares::{Estimate, EstimateError, Method, Options, estimate};
+pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
+pub use robust::Loss;
+pub use rows::{Block, BlockMaker};
+pub use solve::{PriorRow, Solution, solve, stacked};
+pub use triangle::Triangle;
+pub use validate::{JointResidual, LAGS, Validation, validate};

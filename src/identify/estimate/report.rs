@@ -1,0 +1,140 @@
+//! What was found, in the parameters that are reported: values, errors, and which mean something.
+
+use super::errors::interval_factor;
+use super::least_squares::Estimate;
+use super::solve::{solve, stacked};
+use crate::plants::regression::RegressionModel;
+use nalgebra::DVector;
+
+/// How much of a parameter may lie in directions that are not excited.
+const DEAD_SHARE: f64 = 1e-6;
+
+/// Points of time at which convergence is shown.
+const CONVERGENCE_POINTS: usize = 24;
+
+/// What the data say about a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Its interval of 95 % excludes 0.
+    Identified,
+    /// Its interval contains 0: the motion excites it too little, or it is small.
+    Uncertain,
+    /// The motion does not show it at all; its value is the model's.
+    NotExcited,
+}
+
+impl Status {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Uncertain => "uncertain",
+            Self::NotExcited => "not_excited",
+        }
+    }
+}
+
+/// A base parameter with what was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdentifiedParameter {
+    /// Name of its column.
+    pub name: String,
+    /// The sum that it is.
+    pub expression: String,
+    /// The same as LaTeX.
+    pub latex: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error; none where it is not excited.
+    pub std: Option<f64>,
+    /// Half the width of the interval that holds the true value in 95 of 100 cases.
+    pub interval: Option<f64>,
+    /// The value of the model before.
+    pub model_value: Option<f64>,
+    /// What the data say about it.
+    pub status: Status,
+}
+
+/// The listed parameters of an estimate.
+pub fn parameters(model: &RegressionModel, found: &Estimate) -> Vec<IdentifiedParameter> {
+    let to_listed = model.to_listed();
+    let values = to_listed * &found.solution.phi;
+    let covariance = to_listed * &found.covariance * to_listed.transpose();
+    let dead = to_listed * &found.solution.dead;
+    let factor = interval_factor(found.degrees_of_freedom);
+    // Against how far a parameter moves along all directions, the excited among them.
+    let alive = to_listed * &found.solution.factor;
+    let size = |row: usize| (dead.row(row).norm_squared() + alive.row(row).norm_squared()).sqrt();
+    let one = |(row, listed): (usize, &crate::plants::regression::RegressionParameter)| {
+        let is_dead = dead.row(row).norm() > DEAD_SHARE * size(row);
+        let std = (!is_dead).then(|| covariance[(row, row)].max(0.0).sqrt());
+        let interval = std.map(|std| factor * std);
+        let status = match interval {
+            None => Status::NotExcited,
+            Some(interval) if values[row].abs() > interval => Status::Identified,
+            Some(_) => Status::Uncertain,
+        };
+        IdentifiedParameter {
+            name: listed.name.clone(),
+            expression: listed.expression.clone(),
+            latex: listed.latex.clone(),
+            unit: listed.unit.clone(),
+            value: values[row],
+            std,
+            interval,
+            model_value: listed.value,
+            status,
+        }
+    };
+    model.listed.iter().enumerate().map(one).collect()
+}
+
+/// An estimate of the data up to a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convergence {
+    /// Time of measurement so far \[s\].
+    pub time_s: f64,
+    /// The listed parameters.
+    pub values: Vec<f64>,
+    /// Largest over smallest singular value.
+    pub condition: f64,
+    /// The same of columns scaled to length 1.
+    pub scaled_condition: f64,
+}
+
+/// How the estimate came about as data came in (thesis figures 3.5, 3.7, 3.9), with the weights of
+/// the end.
+pub fn convergence(model: &RegressionModel, found: &Estimate) -> Vec<Convergence> {
+    let condensed = &found.condensed;
+    let count = condensed.parts.len();
+    let stride = count.div_ceil(CONVERGENCE_POINTS).max(1);
+    let start = vec![0.0; condensed.rank];
+    let mut merged = condensed.merged(std::iter::empty());
+    let mut points = Vec::new();
+    let mut before_s = 0.0;
+    for part in 0..count {
+        for (sum, own) in merged.iter_mut().zip(&condensed.parts[part]) {
+            if own.rows() > 0 {
+                sum.merge(own);
+            }
+        }
+        let is_last_of_log =
+            condensed.log_of_part.get(part + 1) != Some(&condensed.log_of_part[part]);
+        let time_s = before_s + condensed.end_s[part];
+        if is_last_of_log {
+            before_s = time_s;
+        }
+        if (part + 1) % stride != 0 && part + 1 != count {
+            continue;
+        }
+        let r = stacked(&merged, &condensed.pattern, &found.weights, &[], condensed.rank);
+        let solution = solve(&r, &start);
+        let values: DVector<f64> = model.to_listed() * &solution.phi;
+        let (condition, scaled_condition) = (solution.condition, solution.scaled_condition);
+        let values = values.as_slice().to_vec();
+        points.push(Convergence { time_s, values, condition, scaled_condition });
+    }
+    points
+}

@@ -1,0 +1,238 @@
+//! Whether a log says what it seems to say: units, swapped joints, signals that do not move.
+
+use super::fault::{LogFault, LogRemark, Suspicion};
+use super::{JointSignals, MeasuredLog};
+use crate::plants::regression::RegressionJoint;
+
+/// A step of the time from which on it hardly counts seconds.
+const SLOWEST_STEP_S: f64 = 0.1;
+
+/// A turning joint without limits hardly goes further \[rad\].
+const LARGEST_ANGLE_RAD: f64 = 20.0;
+
+/// Two signals that are one.
+const SAME: f64 = 0.98;
+
+/// Two signals that are not one.
+const OTHER: f64 = 0.7;
+
+/// What looks wrong, and what is worth a remark.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub(super) faults: Vec<LogFault>,
+    pub(super) suspicions: Vec<Suspicion>,
+    pub(super) remarks: Vec<LogRemark>,
+}
+
+/// Looks at every signal.
+pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
+    let mut found = Findings::default();
+    time_unit(log, &mut found);
+    let rates: Vec<Option<Vec<f64>>> =
+        log.joints.iter().map(|joint| moves(joint).then(|| slopes(&joint.q, log.step_s))).collect();
+    for ((signals, joint), rate) in log.joints.iter().zip(joints).zip(&rates) {
+        position(signals, joint, &mut found);
+        if let Some(rate) = rate {
+            logged_rate(signals, joint, rate, &mut found);
+        } else if !joint.is_base {
+            found.remarks.push(LogRemark::Resting { joint: joint.name.clone() });
+        }
+        torque(signals, joint, rate.is_some(), &mut found);
+    }
+    if rates.iter().all(Option::is_none) {
+        found.faults.push(LogFault::NothingMoves);
+    }
+    swapped(log, joints, &rates, &mut found);
+    found
+}
+
+fn time_unit(log: &MeasuredLog, found: &mut Findings) {
+    if log.step_s > SLOWEST_STEP_S {
+        let factor = if log.step_s >= 50.0 { 1e-6 } else { 1e-3 };
+        found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor });
+    }
+}
+
+fn range(column: &[f64]) -> [f64; 2] {
+    column.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
+/// A joint moves if it goes further than rounding and the steps of its encoder.
+fn moves(joint: &JointSignals) -> bool {
+    let [low, high] = range(&joint.q);
+    high - low > (4.0 * joint.step.unwrap_or(0.0)).max(1e-7 * high.abs().max(low.abs()).max(1e-3))
+}
+
+fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Findings) {
+    let [low, high] = range(&signals.q);
+    let column = format!("q_{}", joint.name);
+    let largest = low.abs().max(high.abs());
+    match joint.position_limits {
+        Some(limits) => {
+            let slack = 0.02 * (limits[1] - limits[0]);
+            let beyond = [low < limits[0] - slack, high > limits[1] + slack];
+            let reach = limits[0].abs().max(limits[1].abs());
+            if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
+                found.suspicions.push(Suspicion::Degrees { column, largest });
+            } else if beyond[0] || beyond[1] {
+                let value = if beyond[0] { low } else { high };
+                found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
+            }
+        }
+        None if !joint.slides && largest > LARGEST_ANGLE_RAD => {
+            found.suspicions.push(Suspicion::Degrees { column, largest });
+        }
+        None => {}
+    }
+    if let Some(step) = signals.step {
+        let column = format!("q_{}", joint.name);
+        found.remarks.push(LogRemark::Steps { column, step });
+    }
+}
+
+fn logged_rate(
+    signals: &JointSignals,
+    joint: &RegressionJoint,
+    rate: &[f64],
+    found: &mut Findings,
+) {
+    let Some(logged) = &signals.qd else { return };
+    let column = format!("qd_{}", joint.name);
+    let correlation = correlation(logged, rate);
+    // The swapped ones are found below.
+    if correlation.abs() < OTHER {
+        found.suspicions.push(Suspicion::NotTheRate { column, correlation });
+        return;
+    }
+    let ratio = slope(rate, logged);
+    if !(0.8..1.25).contains(&ratio) {
+        found.suspicions.push(Suspicion::RateScale { column, ratio });
+    }
+}
+
+fn torque(signals: &JointSignals, joint: &RegressionJoint, moves: bool, found: &mut Findings) {
+    let Some(torque) = &signals.tau else { return };
+    let [low, high] = range(torque);
+    let column = format!("tau_{}", joint.name);
+    if joint.is_base {
+        return;
+    }
+    if low == high {
+        if moves {
+            found.suspicions.push(Suspicion::ConstantTorque { column });
+        }
+        return;
+    }
+    for value in [low, high] {
+        // Samples that stand at the very extreme, five or more at once.
+        let mut run = 0;
+        let mut at_once = 0;
+        let mut count = 0;
+        for &one in torque {
+            run = if one == value { run + 1 } else { 0 };
+            at_once = at_once.max(run);
+            count += usize::from(one == value);
+        }
+        let share = count as f64 / torque.len() as f64;
+        if at_once >= 5 && share > 0.002 {
+            let column = column.clone();
+            found.remarks.push(LogRemark::Saturated { column, share, value });
+        }
+    }
+}
+
+/// q of one joint fits the rate, or the reference, of another, and not its own.
+fn swapped(
+    log: &MeasuredLog,
+    joints: &[RegressionJoint],
+    rates: &[Option<Vec<f64>>],
+    found: &mut Findings,
+) {
+    let fits = |a: usize, b: usize| {
+        let by_rate = rates[a].as_ref().zip(log.joints[b].qd.as_ref());
+        let by_rate = by_rate.map(|(rate, logged)| correlation(rate, logged));
+        let by_reference = log.joints[b].reference.as_ref();
+        let by_reference = by_reference.map(|reference| correlation(&log.joints[a].q, reference));
+        by_rate.or(by_reference)
+    };
+    for a in 0..joints.len() {
+        let Some(own) = fits(a, a).filter(|own| *own < OTHER) else { continue };
+        let others = (0..joints.len()).filter(|&b| b != a);
+        let best = others.filter_map(|b| Some((b, fits(a, b)?))).max_by(|x, y| x.1.total_cmp(&y.1));
+        if let Some((b, fit)) = best
+            && fit > SAME.max(own)
+        {
+            let (joint, other) = (joints[a].name.clone(), joints[b].name.clone());
+            found.suspicions.push(Suspicion::Swapped { joint, other });
+        }
+    }
+}
+
+/// Slopes over a few samples, so that steps of an encoder matter less.
+fn slopes(q: &[f64], step_s: f64) -> Vec<f64> {
+    let half = (q.len() / 200).clamp(1, 20);
+    let at = |index: usize| {
+        let (low, high) = (index.saturating_sub(half), (index + half).min(q.len() - 1));
+        (q[high] - q[low]) / ((high - low) as f64 * step_s)
+    };
+    (0..q.len()).map(at).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// The correlation of two signals; 0 where one of them is constant.
+pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let (at, bt) = (mean(a), mean(b));
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        let (x, y) = (x - at, y - bt);
+        ab += x * y;
+        aa += x * x;
+        bb += y * y;
+    }
+    if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+}
+
+/// The slope of `b` over `a`.
+fn slope(a: &[f64], b: &[f64]) -> f64 {
+    let (at, bt) = (mean(a), mean(b));
+    let (mut ab, mut aa) = (0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        ab += (x - at) * (y - bt);
+        aa += (x - at) * (x - at);
+    }
+    ab / aa
+}
+
+/// The step of an encoder: what all differences of neighbouring samples are multiples of.
+pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
+    let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let size = range(q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let tiny = 1e-12 * size.max(1e-6);
+    let mut moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
+    if moved.len() < 20 {
+        return None;
+    }
+    let step = moved.iter().copied().fold(f64::INFINITY, f64::min);
+    // Printing rounds: a step is one if it is large against that.
+    let rounding = 1e-9 * size;
+    if step < 20.0 * rounding {
+        return None;
+    }
+    let is_multiple = |d: &&f64| {
+        let times = **d / step;
+        (times - times.round()).abs() < 0.02 + 2.0 * rounding / step && times < 1e5
+    };
+    let multiples = moved.iter().filter(is_multiple).count();
+    let equal = moved.iter().filter(|&&d| d < 1.5 * step).count();
+    moved.truncate(0);
+    let of_moved = |count: usize, all: usize| count as f64 / all.max(1) as f64;
+    let all = q.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > tiny).take(20_000).count();
+    // A smooth signal has few differences that are near its smallest one.
+    let is_step = of_moved(multiples, all) > 0.995 && of_moved(equal, all) > 0.001;
+    is_step.then_some(step)
+}

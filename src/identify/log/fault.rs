@@ -1,0 +1,277 @@
+//! What is wrong with a log, or looks wrong.
+
+use std::fmt;
+
+/// All that is wrong with a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogFaults {
+    /// The file, as it was given.
+    pub file: String,
+    /// The faults, those that keep it from being read first.
+    pub faults: Vec<LogFault>,
+}
+
+/// What keeps a log from being used.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the fields are what the messages name
+pub enum LogFault {
+    /// The file cannot be read.
+    Unreadable(String),
+    /// A line is not UTF-8 text.
+    NotUtf8 { line: usize },
+    /// There is no line with the names of the columns.
+    NoColumns,
+    /// Two columns have one name.
+    RepeatedColumn { column: String },
+    /// A column that is needed is not there.
+    MissingColumn { column: String, nearest: Option<String> },
+    /// A name that is mapped is none of the model's columns.
+    UnknownName { name: String, nearest: Option<String> },
+    /// The log says that it is of another model.
+    OtherModel { log: String, model: String },
+    /// The log has joints that the model does not have.
+    OtherJoints { joints: Vec<String> },
+    /// Fewer rows than anything can be made of.
+    TooShort { rows: usize },
+    /// A row with another number of cells than there are columns.
+    RowLength { line: usize, expected: usize, found: usize },
+    /// A cell that is no number.
+    NotANumber { line: usize, column: String, cell: String },
+    /// Cells without a number, more than are filled in.
+    Undefined { column: String, count: usize, line: usize },
+    /// A time that is before the one of the row above.
+    TimeNotIncreasing { line: usize },
+    /// A time twice, with other numbers beside it.
+    TimeRepeated { line: usize },
+    /// The distances of samples scatter too much for derivatives.
+    Jitter { relative: f64 },
+    /// Samples are missing, more than are filled in.
+    Gaps { missing: usize, samples: usize, longest: usize, line: usize },
+    /// The log says something else than it seems to.
+    Suspicion(Suspicion),
+    /// No joint moves.
+    NothingMoves,
+}
+
+/// What looks wrong: it may be accepted by whoever knows better.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Suspicion {
+    /// The time seems to count milliseconds or microseconds.
+    TimeUnit { step: f64, factor: f64 },
+    /// A position seems to be in degrees.
+    Degrees { column: String, largest: f64 },
+    /// A logged rate is another multiple of the derivative of its position.
+    RateScale { column: String, ratio: f64 },
+    /// A logged rate is not the derivative of its position.
+    NotTheRate { column: String, correlation: f64 },
+    /// A joint's position fits another joint's rate or reference.
+    Swapped { joint: String, other: String },
+    /// A torque never changes while its joint moves.
+    ConstantTorque { column: String },
+    /// A position is beyond its limits.
+    BeyondLimits { column: String, value: f64, limits: [f64; 2] },
+}
+
+/// What was found and needs no answer: repairs that were made, properties that matter.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum LogRemark {
+    /// Rows that said the same twice were dropped.
+    DroppedRepeats { count: usize },
+    /// Missing samples were filled in by cubic interpolation.
+    FilledGaps { missing: usize, samples: usize, longest: usize },
+    /// Cells without a number were filled in.
+    FilledCells { column: String, count: usize },
+    /// Samples were brought to equal distances.
+    Resampled { jitter: f64 },
+    /// A joint that does not move.
+    Resting { joint: String },
+    /// The torque stands at its extreme value.
+    Saturated { column: String, share: f64, value: f64 },
+    /// The position has steps, as of an encoder.
+    Steps { column: String, step: f64 },
+    /// The torque that was commanded is taken for the measured one.
+    CommandedTorque { joint: String },
+    /// A suspicion that was accepted.
+    Accepted(Suspicion),
+}
+
+impl fmt::Display for LogFaults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, fault) in self.faults.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            match fault.line() {
+                Some(line) => write!(f, "{}:{line}: {fault}", self.file)?,
+                None => write!(f, "{}: {fault}", self.file)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for LogFaults {}
+
+impl LogFault {
+    /// The line that it is about.
+    pub fn line(&self) -> Option<usize> {
+        match *self {
+            Self::NotUtf8 { line }
+            | Self::RowLength { line, .. }
+            | Self::NotANumber { line, .. }
+            | Self::Undefined { line, .. }
+            | Self::TimeNotIncreasing { line }
+            | Self::TimeRepeated { line }
+            | Self::Gaps { line, .. } => Some(line),
+            _ => None,
+        }
+    }
+}
+
+fn meant(f: &mut fmt::Formatter<'_>, nearest: &Option<String>, other: &str) -> fmt::Result {
+    match nearest {
+        Some(name) => write!(f, "\n  hint: the log has `{name}`; --columns MAP.json can name it"),
+        None => write!(f, "\n  hint: {other}"),
+    }
+}
+
+impl fmt::Display for LogFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable(reason) => write!(f, "cannot be read: {reason}"),
+            Self::NotUtf8 { .. } => write!(f, "not UTF-8 text"),
+            Self::NoColumns => write!(f, "no line with the names of columns"),
+            Self::RepeatedColumn { column } => write!(f, "two columns `{column}`"),
+            Self::MissingColumn { column, nearest } => {
+                write!(f, "there is no column `{column}`")?;
+                meant(f, nearest, "--columns MAP.json says which column of the log it is")
+            }
+            Self::UnknownName { name, nearest } => {
+                write!(f, "--columns maps `{name}`, which is no column of this model")?;
+                match nearest {
+                    Some(name) => write!(f, "\n  hint: did you mean `{name}`?"),
+                    None => Ok(()),
+                }
+            }
+            Self::OtherModel { log, model } => {
+                write!(f, "is a log of `{log}`, and the model is `{model}`")
+            }
+            Self::OtherJoints { joints } => write!(
+                f,
+                "has joints that the model does not have: {}\n  hint: is it a log of this robot?",
+                joints.join(", ")
+            ),
+            Self::TooShort { rows } => write!(f, "{rows} rows are too few"),
+            Self::RowLength { expected, found, .. } => {
+                write!(f, "{found} cells, where there are {expected} columns")
+            }
+            Self::NotANumber { column, cell, .. } => {
+                write!(f, "`{cell}` in column `{column}` is not a number")
+            }
+            Self::Undefined { column, count, .. } => write!(
+                f,
+                "{count} cells of column `{column}` have no number, more than can be filled in"
+            ),
+            Self::TimeNotIncreasing { .. } => {
+                write!(f, "the time is before that of the row above")
+            }
+            Self::TimeRepeated { .. } => {
+                write!(f, "the time is that of the row above, with other numbers")
+            }
+            Self::Jitter { relative } => write!(
+                f,
+                "the distances of samples scatter by {:.0} %, too much for derivatives",
+                100.0 * relative
+            ),
+            Self::Gaps { missing, samples, longest, .. } => write!(
+                f,
+                "{missing} of {samples} samples are missing, up to {longest} at once: more than \
+                 can be filled in\n  hint: cut the log at its gaps"
+            ),
+            Self::Suspicion(suspicion) => write!(f, "{suspicion}"),
+            Self::NothingMoves => write!(f, "no joint moves"),
+        }
+    }
+}
+
+impl fmt::Display for Suspicion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TimeUnit { step, factor } => write!(
+                f,
+                "a step of `t` is {step}, as if it did not count seconds\n  hint: map it: {{\"t\": \
+                 {{\"scale\": {factor}}}}}"
+            )?,
+            Self::Degrees { column, largest } => write!(
+                f,
+                "`{column}` goes to {largest:.4}, as if it were in degrees\n  hint: map it: \
+                 {{\"{column}\": {{\"scale\": {}}}}}",
+                1.0_f64.to_radians()
+            )?,
+            Self::RateScale { column, ratio } => write!(
+                f,
+                "`{column}` is {ratio:.4} times the derivative of its position\n  hint: time, \
+                 position or rate is in another unit; --columns can scale each"
+            )?,
+            Self::NotTheRate { column, correlation } => write!(
+                f,
+                "`{column}` does not follow the derivative of its position (correlation \
+                 {correlation:.2})"
+            )?,
+            Self::Swapped { joint, other } => write!(
+                f,
+                "the position of `{joint}` fits the rate of `{other}`: are the two swapped?\n  \
+                 hint: --columns can name them the other way round"
+            )?,
+            Self::ConstantTorque { column } => {
+                write!(f, "`{column}` never changes while its joint moves")?;
+            }
+            Self::BeyondLimits { column, value, limits: [low, high] } => write!(
+                f,
+                "`{column}` goes to {value:.4}, and the model's limits are {low:.4} to {high:.4}"
+            )?,
+        }
+        write!(f, "\n  hint: --accept-suspicious takes the log as it is")
+    }
+}
+
+impl fmt::Display for LogRemark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DroppedRepeats { count } => write!(f, "{count} repeated rows dropped"),
+            Self::FilledGaps { missing, samples, longest } => write!(
+                f,
+                "{missing} of {samples} samples were missing, up to {longest} at once: filled in \
+                 by cubic interpolation"
+            ),
+            Self::FilledCells { column, count } => {
+                write!(f, "{count} cells of `{column}` without a number: filled in")
+            }
+            Self::Resampled { jitter } => write!(
+                f,
+                "distances of samples scatter by {:.1} %: interpolated at equal distances",
+                100.0 * jitter
+            ),
+            Self::Resting { joint } => {
+                write!(f, "`{joint}` never moves: what only its motion shows is not identified")
+            }
+            Self::Saturated { column, share, value } => write!(
+                f,
+                "`{column}` stands at {value:.6} in {:.1} % of the samples: saturated?",
+                100.0 * share
+            ),
+            Self::Steps { column, step } => {
+                write!(f, "`{column}` has steps of {step:.3e}, as of an encoder")
+            }
+            Self::CommandedTorque { joint } => {
+                write!(f, "`{joint}`: the commanded torque stands for the measured one")
+            }
+            Self::Accepted(suspicion) => {
+                let text = suspicion.to_string();
+                write!(f, "accepted: {}", text.lines().next().unwrap_or_default())
+            }
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Logs of measurements: read, mapped to our columns, checked, brought to equal distances.
+//!
+//! - [`ColumnMapping`]: which column of a foreign log is which of ours
+//! - [`read_log`]: a CSV log of a robot; all that is wrong with it at once
+//! - [`MeasuredLog`]: what was measured, joint by joint
+//!
+//! A log is streamed: only the columns that are used are held, 8 bytes a sample each.
+
+mod check;
+mod fault;
+mod mapping;
+mod reader;
+mod repair;
+
+pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
+pub use mapping::{ColumnMapping, ColumnSource, MappingError};
+
+use crate::plants::regression::RegressionJoint;
+use denavit_codegen::expr::text::nearest;
+use reader::{Head, Lines, read_head, read_rows};
+use std::io::BufRead;
+
+/// What was measured of a joint, one entry for each sample. Torques are those along the joint axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointSignals {
+    /// Position [rad, m].
+    pub q: Vec<f64>,
+    /// Rate, if it was logged [rad/s, m/s].
+    pub qd: Option<Vec<f64>>,
+    /// Acceleration, if it was logged [rad/s^2, m/s^2].
+    pub qdd: Option<Vec<f64>>,
+    /// Torque [N m, N].
+    pub tau: Option<Vec<f64>>,
+    /// Reference position [rad, m].
+    pub reference: Option<Vec<f64>>,
+    /// The step of the encoder, if the position has steps [rad, m].
+    pub step: Option<f64>,
+}
+
+/// A log at equal distances of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeasuredLog {
+    /// The name of the file.
+    pub file: String,
+    /// What the log says of itself.
+    pub header: Vec<(String, String)>,
+    /// The time of the first sample \[s\].
+    pub start_s: f64,
+    /// The distance of samples \[s\].
+    pub step_s: f64,
+    /// The joints, in the order of the model.
+    pub joints: Vec<JointSignals>,
+    /// Forces of contacts in the world \[N\], x, y, z of each point of the model that the log has.
+    pub contacts: Vec<(String, [Vec<f64>; 3])>,
+    /// What was found and repaired.
+    pub remarks: Vec<LogRemark>,
+}
+
+impl MeasuredLog {
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.joints.first().map_or(0, |joint| joint.q.len())
+    }
+}
+
+/// Of which robot a log is to be.
+#[derive(Clone, Copy, Debug)]
+pub struct LogOf<'a> {
+    /// The model's name.
+    pub model: &'a str,
+    /// Its joints.
+    pub joints: &'a [RegressionJoint],
+    /// Names of its contact points.
+    pub contacts: &'a [String],
+    /// Whether suspicions are remarks, not faults.
+    pub accepts_suspicious: bool,
+}
+
+/// Signals of a joint, by the beginning of their columns' names.
+const SIGNALS: [&str; 6] = ["q", "qd", "qdd", "tau", "tau_cmd", "ref"];
+
+/// Reads a log of a robot. `file` is its name, for messages alone.
+pub fn read_log(
+    file: &str,
+    source: impl BufRead,
+    robot: LogOf<'_>,
+    mapping: &ColumnMapping,
+) -> Result<MeasuredLog, LogFaults> {
+    let failed = |faults| LogFaults { file: file.to_owned(), faults };
+    let mut lines = Lines::new(source);
+    let head = read_head(&mut lines).map_err(failed)?;
+    let wanted = Wanted::new(&head, robot, mapping).map_err(failed)?;
+    let places: Vec<usize> = wanted.columns.iter().map(|column| column.place).collect();
+    let mut table = read_rows(&mut lines, &head, &places).map_err(failed)?;
+    for (values, column) in table.columns.iter_mut().zip(&wanted.columns) {
+        let Column { scale, offset, .. } = *column;
+        if scale != 1.0 || offset != 0.0 {
+            values.iter_mut().for_each(|value| *value = scale * *value + offset);
+        }
+    }
+    if table.rows() == 0 {
+        return Err(failed(vec![LogFault::TooShort { rows: 0 }]));
+    }
+    let names: Vec<String> = wanted.columns.iter().map(|column| column.name.clone()).collect();
+    let even = repair::even(table, &names).map_err(failed)?;
+    let mut log = MeasuredLog {
+        file: file.to_owned(),
+        header: head.header,
+        start_s: even.start_s,
+        step_s: even.step_s,
+        joints: vec![JointSignals::default(); robot.joints.len()],
+        contacts: Vec::new(),
+        remarks: even.remarks,
+    };
+    wanted.hand_out(&mut log, even.columns, robot);
+    let mut found = check::check(&log, robot.joints);
+    log.remarks.append(&mut found.remarks);
+    let mut faults = found.faults;
+    for suspicion in found.suspicions {
+        match robot.accepts_suspicious {
+            true => log.remarks.push(LogRemark::Accepted(suspicion)),
+            false => faults.push(LogFault::Suspicion(suspicion)),
+        }
+    }
+    if faults.is_empty() { Ok(log) } else { Err(failed(faults)) }
+}
+
+/// A column that is read.
+struct Column {
+    /// Our name.
+    name: String,
+    place: usize,
+    scale: f64,
+    offset: f64,
+    goes_to: Target,
+}
+
+/// Where the values of a column go.
+enum Target {
+    Time,
+    /// Joint, and which of [`SIGNALS`].
+    Joint(usize, usize),
+    /// Contact, axis.
+    Contact(usize, usize),
+}
+
+struct Wanted {
+    columns: Vec<Column>,
+}
+
+impl Wanted {
+    fn new(head: &Head, robot: LogOf<'_>, mapping: &ColumnMapping) -> Result<Self, Vec<LogFault>> {
+        let mut all = vec![("t".to_owned(), Target::Time, true)];
+        for (joint, described) in robot.joints.iter().enumerate() {
+            for (signal, prefix) in SIGNALS.iter().enumerate() {
+                let name = format!("{prefix}_{}", described.name);
+                all.push((name, Target::Joint(joint, signal), signal == 0));
+            }
+        }
+        for (contact, name) in robot.contacts.iter().enumerate() {
+            for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+                all.push((format!("f_{name}_{letter}"), Target::Contact(contact, axis), false));
+            }
+        }
+        let mut faults = Vec::new();
+        let known = || all.iter().map(|(name, ..)| name.as_str());
+        for name in mapping.names().filter(|name| known().all(|known| known != *name)) {
+            let nearest = nearest(name, known()).map(str::to_owned);
+            faults.push(LogFault::UnknownName { name: name.to_owned(), nearest });
+        }
+        let is_mapped = |name: &str| mapping.names().any(|mapped| mapped == name);
+        let mut columns = Vec::new();
+        for (name, goes_to, is_needed) in all {
+            let source = mapping.source(&name);
+            match head.columns.iter().position(|column| *column == source.column) {
+                Some(place) => {
+                    let (scale, offset) = (source.scale, source.offset);
+                    columns.push(Column { name, place, scale, offset, goes_to });
+                }
+                None if is_needed || is_mapped(&name) => {
+                    let names = head.columns.iter().map(String::as_str);
+                    let nearest = nearest(&source.column, names).map(str::to_owned);
+                    faults.push(LogFault::MissingColumn { column: source.column, nearest });
+                }
+                None => {}
+            }
+        }
+        faults.extend(other_robot(head, robot));
+        if faults.is_empty() { Ok(Self { columns }) } else { Err(faults) }
+    }
+
+    fn hand_out(&self, log: &mut MeasuredLog, values: Vec<Vec<f64>>, robot: LogOf<'_>) {
+        let mut forces: Vec<[Vec<f64>; 3]> = vec![Default::default(); robot.contacts.len()];
+        let mut commanded = vec![None; robot.joints.len()];
+        let targets = self.columns.iter().filter(|c| !matches!(c.goes_to, Target::Time));
+        for (column, mut values) in targets.zip(values) {
+            match column.goes_to {
+                Target::Time => {}
+                Target::Contact(contact, axis) => forces[contact][axis] = values,
+                Target::Joint(joint, signal) => {
+                    let factor = robot.joints[joint].torque_factor;
+                    if matches!(signal, 3 | 4) && factor != 1.0 {
+                        values.iter_mut().for_each(|value| *value *= factor);
+                    }
+                    let own = &mut log.joints[joint];
+                    match signal {
+                        0 => {
+                            own.step = check::encoder_step(&values);
+                            own.q = values;
+                        }
+                        1 => own.qd = Some(values),
+                        2 => own.qdd = Some(values),
+                        3 => own.tau = Some(values),
+                        4 => commanded[joint] = Some(values),
+                        _ => own.reference = Some(values),
+                    }
+                }
+            }
+        }
+        for ((own, command), joint) in log.joints.iter_mut().zip(commanded).zip(robot.joints) {
+            if own.tau.is_none() && command.is_some() {
+                own.tau = command;
+                log.remarks.push(LogRemark::CommandedTorque { joint: joint.name.clone() });
+            }
+        }
+        let named = robot.contacts.iter().cloned().zip(forces);
+        log.contacts = named.filter(|(_, axes)| axes.iter().any(|axis| !axis.is_empty())).collect();
+    }
+}
+
+/// Whether the log says that it is of another robot, or has joints that this one lacks.
+fn other_robot(head: &Head, robot: LogOf<'_>) -> Vec<LogFault> {
+    let mut faults = Vec::new();
+    let said = head.header.iter().find(|(name, _)| name == "model");
+    if let Some((_, value)) = said {
+        let log = value.split_whitespace().next().unwrap_or_default();
+        if !log.is_empty() && log != robot.model {
+            let (log, model) = (log.to_owned(), robot.model.to_owned());
+            faults.push(LogFault::OtherModel { log, model });
+        }
+    }
+    let is_ours = |name: &str| robot.joints.iter().any(|joint| joint.name == name);
+    let named = head.columns.iter().filter_map(|column| column.strip_prefix("q_"));
+    let others: Vec<String> = named.filter(|name| !is_ours(name)).map(str::to_owned).collect();
+    if !others.is_empty() && others.len() * 2 > robot.joints.len() {
+        faults.push(LogFault::OtherJoints { joints: others });
+    }
+    faults
+}

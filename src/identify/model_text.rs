@@ -1,0 +1,323 @@
+//! New values in the text of a model file, which else stays as it is.
+
+use crate::plants::regression::ModelParameter;
+use denavit_codegen::model::{BodyEntry, Role};
+use std::fmt::Write;
+use std::ops::Range;
+
+/// A value of JSON with its place in the text.
+struct Node {
+    span: Range<usize>,
+    kind: Kind,
+}
+
+enum Kind {
+    Object(Vec<(String, Node)>),
+    Array(Vec<Node>),
+    Text(String),
+    Other,
+}
+
+impl Node {
+    fn get(&self, key: &str) -> Option<&Self> {
+        match &self.kind {
+            Kind::Object(entries) => entries.iter().find(|(own, _)| own == key).map(|(_, v)| v),
+            _ => None,
+        }
+    }
+
+    fn items(&self) -> &[Self] {
+        if let Kind::Array(items) = &self.kind { items } else { &[] }
+    }
+}
+
+/// Reads sound JSON: the model was read from it before.
+struct Scanner<'a> {
+    text: &'a [u8],
+    at: usize,
+}
+
+impl Scanner<'_> {
+    fn blank(&mut self) {
+        while self.text.get(self.at).is_some_and(u8::is_ascii_whitespace) {
+            self.at += 1;
+        }
+    }
+
+    fn next_is(&mut self, byte: u8) -> bool {
+        self.blank();
+        let is = self.text.get(self.at) == Some(&byte);
+        self.at += usize::from(is);
+        is
+    }
+
+    fn string(&mut self) -> Option<String> {
+        let start = self.at;
+        if !self.next_is(b'"') {
+            return None;
+        }
+        while *self.text.get(self.at)? != b'"' {
+            self.at += if self.text[self.at] == b'\\' { 2 } else { 1 };
+        }
+        self.at += 1;
+        serde_json::from_slice(&self.text[start..self.at]).ok()
+    }
+
+    fn value(&mut self) -> Option<Node> {
+        self.blank();
+        let start = self.at;
+        let kind = match self.text.get(self.at)? {
+            b'{' => {
+                self.at += 1;
+                let mut entries = Vec::new();
+                while !self.next_is(b'}') {
+                    self.next_is(b',');
+                    self.blank();
+                    let key = self.string()?;
+                    if !self.next_is(b':') {
+                        return None;
+                    }
+                    entries.push((key, self.value()?));
+                }
+                Kind::Object(entries)
+            }
+            b'[' => {
+                self.at += 1;
+                let mut items = Vec::new();
+                while !self.next_is(b']') {
+                    self.next_is(b',');
+                    items.push(self.value()?);
+                }
+                Kind::Array(items)
+            }
+            b'"' => Kind::Text(self.string()?),
+            _ => {
+                let is_end = |byte: &u8| byte.is_ascii_whitespace() || b",]}".contains(byte);
+                while self.text.get(self.at).is_some_and(|byte| !is_end(byte)) {
+                    self.at += 1;
+                }
+                Kind::Other
+            }
+        };
+        Some(Node { span: start..self.at, kind })
+    }
+}
+
+/// A parameter with its new value, and its standard error if it is known by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewValue<'a> {
+    /// Which number of the file.
+    pub parameter: &'a ModelParameter,
+    /// Its value.
+    pub value: f64,
+    /// Its standard error.
+    pub std: Option<f64>,
+}
+
+/// The text with new values; none if it is not the JSON of a model.
+pub fn updated(text: &str, values: &[NewValue<'_>]) -> Option<String> {
+    let root = Scanner { text: text.as_bytes(), at: 0 }.value()?;
+    let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+    let mut inserted: Vec<(usize, String, String)> = Vec::new();
+    for new in values {
+        let written = written(new);
+        match place(&root, new.parameter) {
+            Some(Place::Value(span)) => edits.push((span, written)),
+            Some(Place::Parts(value, std)) => {
+                edits.push((value, number(new.value)));
+                match (*std, new.std) {
+                    (Place::Value(span), Some(std)) => edits.push((span, number(std))),
+                    (Place::In(object, key), Some(std)) => {
+                        inserted.push((object, key, number(std)));
+                    }
+                    _ => {}
+                }
+            }
+            Some(Place::In(object, key)) => inserted.push((object, key, written)),
+            None => missing_joint(&root, new.parameter, written, &mut inserted)?,
+        }
+    }
+    for (at, text) in grouped(text, inserted) {
+        edits.push((at..at, text));
+    }
+    edits.sort_by_key(|(span, _)| (span.start, span.end));
+    let mut result = String::with_capacity(text.len() + 64 * edits.len());
+    let mut from = 0;
+    for (span, new) in edits {
+        result.push_str(text.get(from..span.start)?);
+        result.push_str(&new);
+        from = span.end;
+    }
+    result.push_str(text.get(from..)?);
+    Some(result)
+}
+
+fn written(new: &NewValue<'_>) -> String {
+    match new.std {
+        Some(std) => format!("{{\"value\": {}, \"std\": {}}}", number(new.value), number(std)),
+        None => number(new.value),
+    }
+}
+
+/// A number of JSON with twelve digits, which reading turns into the same number.
+fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    format!("{:?}", rounded + 0.0)
+}
+
+/// Where a value stands, or goes.
+enum Place {
+    Value(Range<usize>),
+    /// The value in an object, and the place of its standard error.
+    Parts(Range<usize>, Box<Place>),
+    /// After the bracket that opens an object, with a key.
+    In(usize, String),
+}
+
+fn in_object(object: &Node, key: &str) -> Place {
+    match object.get(key) {
+        Some(node) => Place::Value(node.span.clone()),
+        None => Place::In(object.span.start + 1, key.to_owned()),
+    }
+}
+
+fn place(root: &Node, parameter: &ModelParameter) -> Option<Place> {
+    let link = parameter.link.as_deref();
+    match parameter.role {
+        Some(Role::Unknown | Role::Constant) => {
+            let group = root.get("unknowns").filter(|node| node.get(&parameter.name).is_some());
+            let own = group.or_else(|| root.get("constants"))?.get(&parameter.name)?;
+            let std = Box::new(in_object(own, "std"));
+            Some(match own.get("value") {
+                Some(value) => Place::Parts(value.span.clone(), std),
+                None if matches!(own.kind, Kind::Object(_)) => in_object(own, "value"),
+                None => Place::Value(own.span.clone()),
+            })
+        }
+        Some(Role::Body(_, entry)) => body_entry(body(root, link?)?, entry),
+        _ => {
+            let drive = root.get("drives").and_then(|drives| drives.get(link?));
+            let key = match parameter.name.split('_').next()? {
+                "fv" => "viscous",
+                "fc" => "coulomb",
+                "Ia" => "rotor_inertia",
+                "off" => "offset",
+                _ => return None,
+            };
+            let joint = link_of(root, link?).and_then(|link| link.get("joint"));
+            let damping = joint.and_then(|joint| joint.get("damping"));
+            match damping.filter(|_| key == "viscous") {
+                Some(damping) => Some(Place::Value(damping.span.clone())),
+                None => Some(in_object(drive?, key)),
+            }
+        }
+    }
+}
+
+fn link_of<'a>(root: &'a Node, name: &str) -> Option<&'a Node> {
+    let is_named = |link: &&Node| {
+        let own = link.get("name").map(|name| &name.kind);
+        matches!(own, Some(Kind::Text(own)) if own == name)
+    };
+    root.get("links")?.items().iter().find(is_named)
+}
+
+fn body<'a>(root: &'a Node, link: &str) -> Option<&'a Node> {
+    link_of(root, link).and_then(|link| link.get("body")).or_else(|| root.get("base")?.get("body"))
+}
+
+fn body_entry(body: &Node, entry: BodyEntry) -> Option<Place> {
+    use BodyEntry::{ComX, ComY, ComZ, Mass};
+    let axis = match entry {
+        Mass => return Some(in_object(body, "mass")),
+        ComX => 0,
+        ComY => 1,
+        ComZ => 2,
+        _ => {
+            let key = &entry.prefix()[1..];
+            return match body.get("inertia") {
+                Some(inertia) => Some(in_object(inertia, key)),
+                None => Some(Place::In(body.span.start + 1, format!("inertia.{key}"))),
+            };
+        }
+    };
+    match body.get("com") {
+        Some(com) => com.items().get(axis).map(|node| Place::Value(node.span.clone())),
+        None => Some(Place::In(body.span.start + 1, format!("com.{axis}"))),
+    }
+}
+
+/// A joint parameter of a joint without a drive of its own.
+fn missing_joint(
+    root: &Node,
+    parameter: &ModelParameter,
+    written: String,
+    inserted: &mut Vec<(usize, String, String)>,
+) -> Option<()> {
+    let link = parameter.link.as_deref()?;
+    let key = match parameter.name.split('_').next()? {
+        "fv" => "viscous",
+        "fc" => "coulomb",
+        "Ia" => "rotor_inertia",
+        "off" => "offset",
+        _ => return None,
+    };
+    let (at, prefix) = match root.get("drives") {
+        Some(drives) => (drives.span.start + 1, String::new()),
+        None => (root.span.start + 1, "drives.".to_owned()),
+    };
+    inserted.push((at, format!("{prefix}{link}.{key}"), written));
+    Some(())
+}
+
+/// Insertions at one place as text, keys with dots as objects in objects; entries of `com` that are
+/// not given are 0.
+fn grouped(text: &str, inserted: Vec<(usize, String, String)>) -> Vec<(usize, String)> {
+    let mut places: Vec<usize> = inserted.iter().map(|(at, ..)| *at).collect();
+    places.sort_unstable();
+    places.dedup();
+    let at_place = |at: usize| {
+        let own = inserted.iter().filter(|(own, ..)| *own == at);
+        let own: Vec<(Vec<&str>, &str)> =
+            own.map(|(_, key, value)| (key.split('.').collect(), value.as_str())).collect();
+        let mut new = entries(&own);
+        let is_empty = text[at..].trim_start().starts_with('}');
+        if !is_empty {
+            new.push_str(", ");
+        }
+        (at, new)
+    };
+    places.into_iter().map(at_place).collect()
+}
+
+fn entries(given: &[(Vec<&str>, &str)]) -> String {
+    let mut heads: Vec<&str> = Vec::new();
+    for (keys, _) in given {
+        if !heads.contains(&keys[0]) {
+            heads.push(keys[0]);
+        }
+    }
+    let mut result = String::new();
+    for (index, head) in heads.iter().enumerate() {
+        let inner: Vec<(Vec<&str>, &str)> = given
+            .iter()
+            .filter(|(keys, _)| keys[0] == *head)
+            .map(|(keys, value)| (keys[1..].to_vec(), *value))
+            .collect();
+        let separator = if index > 0 { ", " } else { "" };
+        let value = match &inner[..] {
+            [(keys, value)] if keys.is_empty() => (*value).to_owned(),
+            _ if *head == "com" => {
+                let axis = |axis: &str| {
+                    let own = inner.iter().find(|(keys, _)| keys[0] == axis);
+                    own.map_or("0", |(_, value)| value)
+                };
+                format!("[{}, {}, {}]", axis("0"), axis("1"), axis("2"))
+            }
+            _ => format!("{{{}}}", entries(&inner)),
+        };
+        // writing to a string cannot fail
+        let _ = write!(result, "{separator}\"{head}\": {value}");
+    }
+    result
+}

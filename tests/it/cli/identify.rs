@@ -1,0 +1,85 @@
+//! `denavit identify` from a simulated log to a model that every command reads.
+
+use super::{Directory, run_in};
+use serde_json::Value;
+
+fn simulated(directory: &Directory) {
+    let run = run_in(&directory.path, &["simulate", "tulip_leg_tracking", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+}
+
+#[test]
+fn a_simulated_log_gives_parameters_and_a_model() {
+    let directory = Directory::new("identify");
+    simulated(&directory);
+    let words = [
+        "identify",
+        "tulip_leg",
+        "--train",
+        "log.csv",
+        "--validate",
+        "log.csv",
+        "--filter",
+        "20",
+        "-o",
+        "new.json",
+        "--json",
+    ];
+    let run = run_in(&directory.path, &words);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let json: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let parameters = json["parameters"].as_array().expect("a list");
+    assert!(parameters.len() >= 14);
+    for parameter in parameters {
+        for key in ["name", "expression", "value", "unit"] {
+            assert!(!parameter[key].is_null(), "{key}: {parameter}");
+        }
+        assert!(parameter["identifiable"].is_boolean());
+    }
+    for key in ["train", "validate", "per_joint"] {
+        assert!(!json["residual"][key].is_null(), "{key}");
+    }
+    assert!(json["condition"].is_number());
+    let again = run_in(&directory.path, &["inspect", "new.json"]);
+    assert_eq!(again.code, Some(0), "{}", again.stderr);
+    // The same input gives the same bytes.
+    let words = [
+        "identify",
+        "tulip_leg",
+        "--train",
+        "log.csv",
+        "--validate",
+        "log.csv",
+        "--filter",
+        "20",
+        "--json",
+    ];
+    let first = run_in(&directory.path, &words).stdout;
+    assert_eq!(first, run_in(&directory.path, &words).stdout);
+}
+
+#[test]
+fn what_is_wrong_is_said_and_exits_with_2() {
+    let directory = Directory::new("identify_wrong");
+    simulated(&directory);
+    std::fs::write(directory.path.join("map.json"), r#"{"q_knie": "q_knee"}"#).expect("written");
+    for (words, says) in [
+        (vec!["identify", "puma560", "--train", "log.csv"], "is a log of `tulip_leg`"),
+        (vec!["identify", "tulip_leg", "--train", "no.csv"], "no.csv"),
+        (
+            vec!["identify", "tulip_leg", "--train", "log.csv", "--columns", "map.json"],
+            "did you mean `q_knee`?",
+        ),
+        (
+            vec!["identify", "tulip_leg", "--train", "log.csv", "--filter", "9e9"],
+            "half the rate of sampling",
+        ),
+        (vec!["identify", "tulip_leg", "--train", "log.csv", "--average", "found"], "repeat"),
+        (vec!["identify", "tulip_leg", "--train", "log.csv", "--keep", "mass"], "mass"),
+    ] {
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(2), "{words:?}: {}", run.stderr);
+        assert!(run.stderr.contains(says), "{words:?}: {}", run.stderr);
+        assert!(run.stdout.is_empty());
+    }
+}

@@ -47,9 +47,10 @@ fn instruments_remove_the_bias_of_noisy_motion() {
     let robot = bare("planar_2r");
     let clean = Experiment { samples: 6000, noise: 0.02, seed: 8, friction: false }.run(&robot);
     let noisy = noisy(&clean, 3.0, 5);
-    let plain = error(&model, &[noisy.clone()], &[], &Options::default());
+    let own = std::slice::from_ref(&noisy);
+    let plain = error(&model, own, &[], &Options::default());
     let options = Options { method: Method::Instrumental, ..Options::default() };
-    let ours = error(&model, &[noisy.clone()], std::slice::from_ref(&clean), &options);
+    let ours = error(&model, own, std::slice::from_ref(&clean), &options);
     assert!(ours < 0.3 * plain, "{ours} {plain}");
     // Instruments of another length are refused.
     let mut short = clean.clone();

@@ -191,9 +191,7 @@ impl fmt::Display for Failure {
             Self::NoParallelAxes(model) => {
                 write!(f, "{model}: there are no parallel axes whose angles could be cumulated")?;
             }
-            Self::NoModel { name, is_path: true, .. } => {
-                write!(f, "{name}: there is no such file")?
-            }
+            Self::NoModel { name, is_path: true, .. } => write!(f, "{name}: no such file")?,
             Self::NoModel { name, is_path: false, .. } => {
                 write!(f, "{name}: there is no such file, and no shipped model of that name")?;
             }

@@ -1,14 +1,18 @@
-//! How long a step of time stepping takes for TUlip: 18 degrees of freedom, 8 contact points, a PD
-//! controller on its twelve joints, h = 1 ms.
+//! How long simulated seconds take.
 //!
-//! A sample is 1000 steps: one simulated second. The setting is that of the peers' figures in
-//! docs/benchmarks.md: standing still, and marching on the spot.
+//! Time stepping: TUlip with 18 degrees of freedom, 8 contact points, a PD controller on its twelve
+//! joints, h = 1 ms. From event to event: parts of shipped scenarios, with log and audits.
+//!
+//! A sample of time stepping is 1000 steps: one simulated second. The setting is that of the peers'
+//! figures in docs/benchmarks.md: standing still, and marching on the spot.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use denavit::plants::{Plant, tulip};
+use denavit::shipped;
 use denavit::simulate::Control;
 use denavit::simulate::contact::Space;
 use denavit::simulate::contact::gauss_seidel::SweepLimits;
+use denavit::simulate::scenario::{self, RunScheme};
 use denavit::simulate::time_stepping::{
     ControlledPlant, Instant, Scheme, StepLaw, StepReport, StepSolver, Stepping, Terms,
     TimeStepper, TimeSteppingModel,
@@ -139,5 +143,33 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, steps);
+/// Shipped scenarios from event to event, so many seconds of each.
+fn events(criterion: &mut Criterion) {
+    let load = |name: &str| {
+        let model = shipped::find(name).ok_or("no such model")?;
+        Ok(model.text.as_bytes().to_vec())
+    };
+    let mut group = criterion.benchmark_group("from_event_to_event");
+    group.sample_size(10);
+    for (name, duration_s) in [
+        ("planar_biped_zmp_gait", 2.4),
+        ("planar_biped_limit_cycle_gait", 0.9),
+        ("tulip_standing", 1.0),
+        ("tulip_step", 7.4),
+    ] {
+        let file = shipped::find_scenario(name).expect("it is shipped");
+        let mut scenario =
+            scenario::read(name, file.text.as_bytes(), &load).expect("shipped scenarios are sound");
+        scenario.scheme = RunScheme::Event;
+        scenario.simulation.end_s = duration_s;
+        let run = scenario.run().expect("it begins");
+        let label = format!("{name}, {duration_s} s, {} evaluations", run.statistics.evaluations);
+        group.bench_function(label, |b| {
+            b.iter(|| std::hint::black_box(scenario.run().expect("it begins")));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, steps, events);
 criterion_main!(benches);

@@ -1,11 +1,12 @@
 //! The equations of motion between two events (thesis 2.43 and 2.50): the set of closed contacts
 //! and what each of them does stay as they are.
 
+mod manifold;
+
 use super::breakdown::Breakdown;
 use super::contact::cholesky::dot;
 use super::contact::delassus::Delassus;
 use super::contact::independent::IndependentRows;
-use super::contact::minimum_norm::MinimumNorm;
 use super::contact::solver::ContactSolver;
 use super::contact::{Contact, ContactFailure, ContactProblem, Friction, Mode, Tolerance};
 use super::control::{Control, ControlMemory};
@@ -455,38 +456,5 @@ impl Rates for Motion<'_> {
 
     fn integrals(&self) -> usize {
         INTEGRALS
-    }
-}
-
-impl Motion<'_> {
-    /// Adds the rates that impulses of the projected rows make: v+ = v- + D^-1 W P.
-    pub(super) fn apply_impulses(&mut self, impulse: &[f64], y: &mut [f64]) {
-        let rates = self.layout.joint_rates();
-        self.delassus.respond(impulse, &mut y[rates], &mut self.work.scratch);
-    }
-
-    /// Takes the velocities of the listed rows of the projected contacts out of `y`: what is left
-    /// after the last of infinitely many bounces, and of rounding. Returns the impulses of all rows
-    /// that this takes, none if there is nothing to take out.
-    pub(super) fn still(&mut self, held: &[usize], y: &mut [f64]) -> Option<Vec<f64>> {
-        let largest = held.iter().fold(0.0_f64, |sum, row| sum.max(self.work.velocity[*row].abs()));
-        if largest <= 1e-14 {
-            return None;
-        }
-        let (total, size) = (self.delassus.rows(), held.len());
-        let matrix = self.delassus.matrix();
-        let mut system = MinimumNorm::default();
-        let block: Vec<f64> = held
-            .iter()
-            .flat_map(|row| held.iter().map(move |column| matrix[row * total + column]))
-            .collect();
-        system.factor(&block, size, 1e-10);
-        let right: Vec<f64> = held.iter().map(|row| -self.work.velocity[*row]).collect();
-        let mut impulse = vec![0.0; size];
-        system.solve(&right, &mut impulse);
-        let mut all = vec![0.0; total];
-        held.iter().zip(impulse).for_each(|(row, p)| all[*row] = p);
-        self.apply_impulses(&all, y);
-        Some(all)
     }
 }

@@ -129,8 +129,9 @@ const START_TOUCH_M: f64 = 1e-6;
 /// This many events within `ZENO_S` are without end.
 const ZENO_EVENTS: usize = 200;
 const ZENO_S: f64 = 1e-9;
-/// Steps are audited at this distance at least, besides rows of the log \[s\].
-const AUDIT_S: f64 = 1e-3;
+/// Steps are audited at this distance at least, besides rows of the log and the first step after
+/// every event \[s\].
+const AUDIT_S: f64 = 4e-3;
 
 /// Runs a plant under control from a state; deterministic.
 pub fn simulate(
@@ -212,6 +213,8 @@ impl Runner<'_> {
         if touching.is_empty() {
             return Ok(());
         }
+        // from here on what touches is held where it is
+        self.motion.set_down(&touching, &mut self.y).map_err(StartError::Breakdown)?;
         self.happen(EventKind::Start, self.start_s, &touching).map_err(StartError::Breakdown)
     }
 
@@ -249,6 +252,7 @@ impl Runner<'_> {
             if let Some(fired) = self.watch.find(&mut self.motion, &mut self.stepper)? {
                 self.stepper.restep(&mut self.motion, fired.t_s, &mut self.y)?;
                 let stop = self.respond(fired)?;
+                self.audited_s = f64::NEG_INFINITY;
                 self.stepper.restart(fired.t_s, &self.y);
                 return Ok(stop);
             }

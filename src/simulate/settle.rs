@@ -120,7 +120,34 @@ impl Settler {
             motion.closed.clone_from(&before);
             motion.pose(ahead.0, ahead.1)?;
         }
+        let same = before.len() == motion.closed.len()
+            && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
+        if same && self.let_go(motion, &before, ahead)? {
+            self.decide(motion, touching, &mut settled)?;
+            motion.project(y, &candidates);
+            settled.impulses.extend(self.adopt(motion, &candidates, y));
+        }
         Ok(settled)
+    }
+
+    /// Poses the problem of the modes before once more, without the contact that pulls most in
+    /// them: what the laws see nothing to change in has let go of it. False if none pulls.
+    fn let_go(
+        &mut self,
+        motion: &mut Motion<'_>,
+        before: &[Closed],
+        ahead: (f64, &[f64]),
+    ) -> Result<bool, Breakdown> {
+        motion.closed.clear();
+        motion.closed.extend_from_slice(before);
+        motion.constrained_motion(ahead.0, ahead.1)?;
+        let rows = motion.ground.rows();
+        let normal = |index: usize| motion.work.force[index * rows + rows - 1];
+        let worst = (0..before.len()).min_by(|a, b| normal(*a).total_cmp(&normal(*b)));
+        let Some(worst) = worst.filter(|index| normal(*index) < 0.0) else { return Ok(false) };
+        self.contacts.clone_from(&motion.work.contacts);
+        self.contacts[worst].released = true;
+        Ok(true)
     }
 
     fn collide(

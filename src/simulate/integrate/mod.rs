@@ -53,6 +53,11 @@ impl Default for Accuracy {
 /// Where steps as short as this have no answer, there is none \[s\].
 const SHORTEST_FAILURE_S: f64 = 1e-10;
 
+/// So many steps in a row that are shorter than `SHORT_S` lead nowhere: the rates have a limit
+/// there that no step gets over.
+const SHORT_STEPS: usize = 2000;
+const SHORT_S: f64 = 1e-8;
+
 /// The method of integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
@@ -103,6 +108,8 @@ pub struct Stepper {
     dense: [Vec<f64>; 5],
     trial: Vec<f64>,
     error: Vec<f64>,
+    /// How many accepted steps in a row were short.
+    short: usize,
     /// The next step to try; none before the first.
     proposal: Option<f64>,
     implicit: Implicit,
@@ -127,6 +134,7 @@ impl Stepper {
             dense: std::array::from_fn(|_| zero.clone()),
             trial: zero.clone(),
             error: zero,
+            short: 0,
             proposal: None,
             implicit: Implicit::default(),
             known: false,
@@ -159,7 +167,7 @@ impl Stepper {
     }
 
     /// One accepted step, which ends at `stop_s` at the latest. `Ok(false)`: the step would have to
-    /// be shorter than time can resolve.
+    /// be shorter than time can resolve, or too many have been nearly that.
     pub fn advance(&mut self, system: &mut dyn Rates, stop_s: f64) -> Result<bool, Breakdown> {
         self.t0 = self.t1;
         std::mem::swap(&mut self.y0, &mut self.y1);
@@ -188,7 +196,7 @@ impl Stepper {
                 left if left < 2.0 * capped => 0.5 * left,
                 _ => capped,
             };
-            if trial <= 1e-14 * self.t0.abs().max(1e-2) {
+            if trial <= 1e-14 * self.t0.abs().max(1e-2) || self.short > SHORT_STEPS {
                 return Ok(false);
             }
             let (tried, order) = match self.method {
@@ -218,6 +226,7 @@ impl Stepper {
                 let grown = if keeps { trial } else { trial * factor };
                 // a step cut short by a stop says nothing against the longer one
                 self.proposal = Some(if trial < capped { grown.max(capped) } else { grown });
+                self.short = if trial < SHORT_S && trial < left { self.short + 1 } else { 0 };
                 return self.accept(system, trial, stop_s);
             }
             self.statistics.rejected += 1;

@@ -2,7 +2,7 @@
 
 use super::{assert_near, plant, plant_with};
 use denavit::plants::{Cradle, InterpretedPlant, Plant};
-use denavit::simulate::contact::Friction;
+use denavit::simulate::contact::{ContactFailure, Friction};
 use denavit::simulate::integrate::{Accuracy, Method};
 use denavit::simulate::{
     Breakdown, Control, Event, EventKind, Run, Simulation, StartError, State, Stop, Tolerances,
@@ -190,4 +190,50 @@ fn bad_starts_are_refused() {
     let mut massless = plant_with("bodies/ball", &[("m_base_pitch", 0.0)]);
     let run = simulate(&mut massless, &control, &State::resting(vec![1.0, 0.0, 0.0]), &accurate());
     assert!(matches!(run.map(|run| run.stop), Ok(Stop::Breakdown(Breakdown::Singular { .. }))));
+}
+
+/// A rod that rolls off its end, 0.8 rad from the vertical: no slip would need the ground to pull,
+/// and without forces the end would sink. It slides by the fallback law, as its equations say:
+/// I th'' = h N (s + mu c), x'' = -mu N, N = (g - h c th'^2) / (1 + (h^2/I) s (s + mu c)).
+#[test]
+fn where_no_forces_hold_the_fallback_friction_acts() {
+    const HALF: f64 = 0.5;
+    const MU: f64 = 0.3;
+    let rates = |[_, theta, speed, rate]: [f64; 4]| {
+        let (s, c) = (theta.sin(), theta.cos());
+        let lever = s + MU * c;
+        let normal = (G - HALF * c * rate * rate) / (1.0 + 12.0 * HALF * HALF * s * lever);
+        [speed, rate, -MU * normal, 12.0 * HALF * normal * lever]
+    };
+    let tilt = 0.8_f64;
+    let rate = (0.8 * G / (HALF * tilt.cos())).sqrt();
+    let start = [HALF * tilt.sin(), tilt, HALF * rate * tilt.cos(), rate];
+    let (end_s, steps) = (0.05, 2000);
+    let (mut y, h) = (start, end_s / f64::from(steps));
+    for _ in 0..steps {
+        let along = |k: [f64; 4], share: f64| std::array::from_fn(|i| y[i] + share * h * k[i]);
+        let a = rates(y);
+        let b = rates(along(a, 0.5));
+        let c = rates(along(b, 0.5));
+        let d = rates(along(c, 1.0));
+        y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+    }
+    let mut rod = plant("bodies/rod");
+    let initial = State {
+        qd: vec![-HALF * rate * tilt.sin(), start[2], rate],
+        ..State::resting(vec![HALF * tilt.cos(), start[0], tilt])
+    };
+    let control = Control::passive(3);
+    let mut simulation = Simulation { end_s, friction: Friction::NoSlip, ..accurate() };
+    let refused = simulate(&mut rod, &control, &initial, &simulation).unwrap_err();
+    let no_solution = Breakdown::Contact(ContactFailure::NoSolution);
+    assert_eq!(refused, StartError::Breakdown(no_solution));
+    simulation.touching.fallback_friction = Some(MU);
+    let run = run(&mut rod, &initial, &simulation);
+    assert!(run.events[0].fell_back);
+    assert_near(run.end.q[1], y[0], 1e-9);
+    assert_near(run.end.q[2], y[1], 1e-9);
+    assert_near(run.end.qd[2], y[3], 1e-8);
+    let slid = run.end.q[1] - HALF * y[1].sin() - (start[0] - HALF * tilt.sin());
+    assert!(slid > 1e-3, "its end slides: {slid} m");
 }

@@ -36,7 +36,7 @@ fn assert_audited(run: &Run) {
         penetration_m: 1e-8,
         complementarity_nm: 1e-6,
         adhesion_n: 1e-6,
-        separation_m_s: 1e-7,
+        separation_m_s: 1e-8,
         zmp_m: 1e-9,
         force_n: 1e-9,
         ..Tolerances::default()
@@ -83,6 +83,11 @@ fn assert_stepped(run: &Run) {
 #[test]
 fn the_step_is_completed_on_stiff_rolls() {
     assert_stepped(&make_step(300.0, false));
+}
+
+#[test]
+fn the_step_is_completed_on_stiffer_rolls() {
+    assert_stepped(&make_step(600.0, false));
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! - [`condition`]: filtered, differentiated, decimated
 //! - [`add_contact_forces`]: what the ground does to each equation
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
+//! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`identify`]: all of it at once
 //! - [`model_values`], [`updated_text`]: back into the model file
 //! - [`statics`]: what weighings and held postures say
@@ -20,6 +21,7 @@ pub mod log;
 mod model_text;
 mod model_values;
 pub mod statics;
+pub mod two_stage;
 
 pub use contact_forces::add_contact_forces;
 pub use identification::{Identification, Request, identify};

@@ -8,8 +8,17 @@ use super::measure::{Measurement, Random};
 ///
 /// A stiff drive's torque is that of its motor, `tau_cmd_`, which friction has still to be taken
 /// off; it becomes `tau_`. Of a series elastic drive `tau_` is left out: the spring's torque is
-/// known through both angles alone. `seed` is of the noise; the controller has noise of its own.
-pub fn measured_log(log: &Log, measurement: &Measurement, torque_noise: f64, seed: u64) -> Log {
+/// known through both angles alone. Where rows are the samples of a controller (`is_sampled`), a
+/// command jumps at every row, which has the torque after the jump, as the row before it has that
+/// before it: an instrument reads their mean. Either one alone is half a period early or late,
+/// which an estimate takes for viscous friction. `seed` is of the noise; the controller has its
+/// own.
+pub fn measured_log(
+    log: &Log,
+    measurement: &Measurement,
+    (torque_noise, is_sampled): (f64, bool),
+    seed: u64,
+) -> Log {
     let has_motor =
         |joint: &str| log.columns.iter().any(|column| *column == format!("motor_{joint}"));
     let mut kept: Vec<(usize, String, Instrument)> = Vec::new();
@@ -33,10 +42,17 @@ pub fn measured_log(log: &Log, measurement: &Measurement, torque_noise: f64, see
     // another stream than that of the controller's instruments
     let mut random = Random::new(seed ^ 0x6d65_6173_7572_6564);
     let mut values = Vec::with_capacity(log.len() * kept.len());
+    let mut before: Option<&[f64]> = None;
     for row in log.rows() {
+        let last = before.filter(|_| is_sampled).unwrap_or(row);
         for (at, _, kind) in &kept {
-            values.push(kind.measured(row[*at], measurement, torque_noise, &mut random));
+            let value = match kind {
+                Instrument::Torque => 0.5 * (last[*at] + row[*at]),
+                _ => row[*at],
+            };
+            values.push(kind.measured(value, measurement, torque_noise, &mut random));
         }
+        before = Some(row);
     }
     let columns = kept.into_iter().map(|(_, name, _)| name).collect();
     Log { header: log.header.clone(), columns, values }
@@ -86,13 +102,14 @@ mod tests {
             values: (0..12 * 500).map(|at| (at % 12) as f64 + 0.26).collect(),
         };
         let measurement = Measurement { resolution: 0.1, ..Measurement::default() };
-        let measured = measured_log(&log, &measurement, 0.5, 1);
+        let measured = measured_log(&log, &measurement, (0.5, true), 1);
         let names = ["t", "q_a", "q_b", "ref_a", "tau_a", "tau_cmd_b", "motor_b", "f_toe_z"];
         assert_eq!(measured.columns, names);
         let column = |name: &str| measured.column(name).expect("a column");
         assert!(column("t").iter().all(|t| *t == 0.26));
         assert!(column("q_a").iter().all(|q| (q - 1.3).abs() < 1e-12));
         let torque = column("tau_a");
+        // noise and nothing else: the command does not change in this log
         let mean = torque.iter().sum::<f64>() / 500.0;
         let spread = torque.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 499.0;
         // of tau_cmd_a; five standard errors

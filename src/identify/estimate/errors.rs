@@ -31,6 +31,9 @@ pub(super) struct Problem<'a> {
     pub(super) solution: &'a Solution,
 }
 
+/// A larger share of what is known of a direction is taken for this one.
+const MOST_LEVERAGE: f64 = 0.95;
+
 impl Problem<'_> {
     /// The covariance of phi, and its degrees of freedom.
     pub(super) fn covariance(&self, errors: Errors) -> (DMatrix<f64>, f64) {
@@ -53,7 +56,7 @@ impl Problem<'_> {
         let count = self.condensed.parts.len();
         // F^T g of each part, whose squares are those of the excited directions alone.
         let scores: Vec<DVector<f64>> =
-            (0..count).map(|part| factor.tr_mul(&self.score(part))).collect();
+            (0..count).map(|part| self.left_out(part, factor.tr_mul(&self.score(part)))).collect();
         let size = factor.ncols();
         let mut sum = DMatrix::zeros(size, size);
         for (part, score) in scores.iter().enumerate() {
@@ -66,8 +69,6 @@ impl Problem<'_> {
                 sum += (&cross + cross.transpose()) * 0.5;
             }
         }
-        let parts = count as f64;
-        sum *= parts / (parts - 1.0);
         // Half of one lag may leave a variance below 0 where there are few parts.
         let floor = self.solution.covariance() * 1e-4;
         let mut covariance = factor * sum * factor.transpose();
@@ -75,6 +76,30 @@ impl Problem<'_> {
             covariance[(place, place)] = covariance[(place, place)].max(floor[(place, place)]);
         }
         covariance
+    }
+
+    /// A score in the excited directions as it is for the estimate without its part: the change of
+    /// phi when the part is left out is (I - H)^-1 g with H = F^T W^T W F of the part (the
+    /// jackknife of parts). The estimate adapts to a part that says much about the parameters,
+    /// whose residuals are too small therefore; this puts it right, and errs to the safe side.
+    fn left_out(&self, part: usize, score: DVector<f64>) -> DVector<f64> {
+        let factor = &self.solution.factor;
+        let size = factor.ncols();
+        let mut leverage = DMatrix::zeros(size, size);
+        for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
+            let pattern = &self.condensed.pattern[joint];
+            let own = DMatrix::from_fn(pattern.len(), size, |at, c| factor[(pattern[at], c)]);
+            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+            let rows = self.weights[joint] * (r * own);
+            leverage += rows.tr_mul(&rows);
+        }
+        let eigen = leverage.symmetric_eigen();
+        let mut turned = eigen.eigenvectors.tr_mul(&score);
+        for (entry, share) in turned.iter_mut().zip(eigen.eigenvalues.iter()) {
+            // what one part alone determines cannot be compared with the others
+            *entry /= 1.0 - share.clamp(0.0, MOST_LEVERAGE);
+        }
+        eigen.eigenvectors * turned
     }
 
     /// sum over joints of w^2 W^T (y - W phi) of a part.

@@ -101,8 +101,9 @@ impl Scenario {
         let mut run = run.map_err(|error| self.origin.place(error))?;
         run.log.header = self.header(&run);
         if let Some(noise) = self.logged_torque_noise {
-            let Simulation { measurement, seed, .. } = &self.simulation;
-            run.log = measured_log(&run.log, measurement, noise, *seed);
+            let Simulation { measurement, seed, log_period_s, .. } = &self.simulation;
+            let torque = (noise, self.control.period_s == Some(*log_period_s));
+            run.log = measured_log(&run.log, measurement, torque, *seed);
         }
         Ok(run)
     }

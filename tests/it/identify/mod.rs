@@ -2,10 +2,12 @@
 
 mod emps;
 mod estimate;
+mod leg;
 mod log;
 mod noise;
 mod regression;
 mod statics;
+mod two_stage;
 
 use denavit::model::{self, Robot};
 use denavit::plants::regression::RegressionModel;

@@ -1,0 +1,415 @@
+//! Robots with series elastic drives in two stages (thesis 3.3.2).
+//!
+//! 1. Each spring with the friction of its motor, from motor torque, motor angle and joint angle
+//!    alone (3.23):
+//!    tau_M - Ia th'' = fv th' + fc sgn(th') + k (r_M / N)(r_M th / N - r_L q).
+//! 2. The springs then measure the torque on their joints, tau_L = k r_L (r_M th / N - r_L q)
+//!    (3.24), and these joints join the stiff ones, whose motors measure it (3.17), in one
+//!    regression of the base parameters (3.25).
+//!
+//! Both sides of each equation pass the same zero-phase filter. Residuals of motion are correlated
+//! in time, so that covariances are those of sums over blocks which are long against the
+//! correlation (a sandwich with batch means). The uncertainty of the springs goes on into the
+//! loads: with d = phi(k + s) - phi(k), s the deviation of k, the covariance of phi grows by d d^T.
+
+use super::condition::{ConditionError, Conditioned, Conditioning};
+use super::estimate::{self, EstimateError, estimate};
+use super::log::{JointSignals, MeasuredLog};
+use crate::plants::regression::RegressionModel;
+use crate::plants::{DriveModel, PlantModel, SeriesElasticModel};
+use crate::simulate::Log;
+use denavit_runtime::Transcendental;
+use nalgebra::{DMatrix, DVector};
+use std::fmt;
+
+/// How Coulomb friction depends on the rate of the motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum FrictionSign {
+    /// Its sign.
+    #[default]
+    Sign,
+    /// The hyperbolic tangent of the rate over this one [rad/s].
+    Tanh(f64),
+}
+
+impl FrictionSign {
+    fn of(self, rate: f64) -> f64 {
+        match self {
+            Self::Sign if rate == 0.0 => 0.0,
+            Self::Sign => rate.signum(),
+            Self::Tanh(width) => (rate / width).hyperbolic_tangent(),
+        }
+    }
+}
+
+/// A number with its standard deviation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+}
+
+/// Spring and motor friction of one joint: a row of table 3.5.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// The joint's name.
+    pub joint: String,
+    /// Viscous friction of the motor [N m s/rad].
+    pub viscous: Estimate,
+    /// Coulomb friction of the motor [N m].
+    pub coulomb: Estimate,
+    /// [N/m].
+    pub stiffness: Estimate,
+    /// Root mean square of what the equation misses \[N m\].
+    pub residual: f64,
+    /// Root mean square of its left side \[N m\].
+    pub torque: f64,
+}
+
+/// What both stages came to.
+#[derive(Clone, Debug)]
+pub struct TwoStage {
+    /// The elastic joints, in the order of q.
+    pub springs: Vec<Spring>,
+    /// The base parameters of kept columns.
+    pub listed: Vec<Estimate>,
+    /// Those on the joint axes.
+    pub axes: Vec<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// For each joint the deviation of what its equation misses, and the root mean square of its
+    /// torque [N m, N].
+    pub residuals: Vec<[f64; 2]>,
+}
+
+/// Why a log does not give the parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TwoStageError {
+    /// The log has no such column.
+    MissingColumn(String),
+    /// The columns are not at equal distances of time.
+    UnevenTime,
+    /// The log cannot be conditioned.
+    Condition(ConditionError),
+    /// The load cannot be estimated.
+    Estimate(EstimateError),
+    /// The motion does not tell these parameters apart; holds a joint, or the load.
+    NotExcited(String),
+    /// The gear ratio of an elastic drive is 0; holds the joint.
+    NoDrive(String),
+}
+
+impl fmt::Display for TwoStageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MissingColumn(column) => write!(f, "the log has no column `{column}`"),
+            Self::UnevenTime => write!(f, "the rows of the log are at unequal distances of time"),
+            Self::Condition(error) => write!(f, "{error}"),
+            Self::Estimate(error) => write!(f, "{error}"),
+            Self::NotExcited(what) => {
+                write!(f, "the motion does not tell the parameters of {what} apart")
+            }
+            Self::NoDrive(joint) => write!(f, "the drive of `{joint}` has no gear ratio"),
+        }
+    }
+}
+
+impl std::error::Error for TwoStageError {}
+
+/// Blocks over which scores are summed.
+const BLOCKS: usize = 50;
+
+/// Identifies a robot whose plant says which joints are elastic. The log has `q_` and `motor_`
+/// angles, `tau_` of stiff joints (torque of their motors, joint side) and `tau_cmd_` of elastic
+/// ones (the same of theirs). The two stages have conditionings of their own: the first has no
+/// acceleration of a joint in it, and needs the reversals of friction. Rotor inertias, gear ratios and radii are known (thesis 3.3.1).
+pub fn two_stage(
+    plant: &PlantModel,
+    model: &RegressionModel,
+    log: &Log,
+    [of_springs, of_loads]: [&Conditioning; 2],
+    sign: FrictionSign,
+) -> Result<TwoStage, TwoStageError> {
+    let elastic = elastic_joints(plant)?;
+    let measured = measured(plant, &elastic, log)?;
+    let names: Vec<String> = plant
+        .joints
+        .iter()
+        .map(|joint| joint.name.clone())
+        .chain(elastic.iter().map(|one| format!("motor_{}", plant.joints[one.joint].name)))
+        .collect();
+    let conditioned = |how: &Conditioning| {
+        Conditioned::new(measured.clone(), &names, how).map_err(TwoStageError::Condition)
+    };
+    let motion = Motion::new(&conditioned(of_springs)?, plant.joints.len());
+    let mut springs = Vec::new();
+    for (place, one) in elastic.iter().enumerate() {
+        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, sign)?);
+    }
+    let conditioned = conditioned(of_loads)?;
+    let load = Load { plant, model, conditioned: &conditioned, elastic: &elastic };
+    load.identify(springs)
+}
+
+/// A drive with a spring.
+#[derive(Clone, Copy, Debug)]
+struct Elastic {
+    joint: usize,
+    drive: DriveModel,
+    spring: SeriesElasticModel,
+}
+
+fn elastic_joints(plant: &PlantModel) -> Result<Vec<Elastic>, TwoStageError> {
+    let mut elastic = Vec::new();
+    for (joint, described) in plant.joints.iter().enumerate() {
+        let Some(drive) = described.drive else { continue };
+        let Some(spring) = drive.series_elastic else { continue };
+        if drive.gear_ratio == 0.0 {
+            return Err(TwoStageError::NoDrive(described.name.clone()));
+        }
+        elastic.push(Elastic { joint, drive, spring });
+    }
+    Ok(elastic)
+}
+
+/// The joints, then the motors of the elastic ones, as signals of one log.
+fn measured(
+    plant: &PlantModel,
+    elastic: &[Elastic],
+    log: &Log,
+) -> Result<MeasuredLog, TwoStageError> {
+    let column = |name: String| log.column(&name).ok_or(TwoStageError::MissingColumn(name));
+    let times = column("t".to_owned())?;
+    let step_s = match (times.first(), times.last()) {
+        (Some(first), Some(last)) if times.len() > 1 => (last - first) / (times.len() - 1) as f64,
+        _ => return Err(TwoStageError::UnevenTime),
+    };
+    let start_s = times[0];
+    let is_even = times
+        .iter()
+        .enumerate()
+        .all(|(k, t)| (t - start_s - k as f64 * step_s).abs() < 1e-3 * step_s);
+    if !is_even {
+        return Err(TwoStageError::UnevenTime);
+    }
+    let mut joints = Vec::new();
+    for (index, joint) in plant.joints.iter().enumerate() {
+        let q = column(format!("q_{}", joint.name))?;
+        let is_elastic = elastic.iter().any(|one| one.joint == index);
+        let tau = match is_elastic {
+            true => None,
+            false => Some(column(format!("tau_{}", joint.name))?),
+        };
+        joints.push(JointSignals { q, tau, ..JointSignals::default() });
+    }
+    for one in elastic {
+        let name = &plant.joints[one.joint].name;
+        let q = column(format!("motor_{name}"))?;
+        let mut tau = column(format!("tau_cmd_{name}"))?;
+        tau.iter_mut().for_each(|torque| *torque /= one.drive.gear_ratio);
+        joints.push(JointSignals { q, tau: Some(tau), ..JointSignals::default() });
+    }
+    Ok(MeasuredLog { start_s, step_s, joints, ..MeasuredLog::default() })
+}
+
+/// What the first stage needs of the conditioned samples that count.
+struct Motion {
+    /// Of each joint.
+    positions: Vec<Vec<f64>>,
+    /// Angle, rate and acceleration of each motor of an elastic joint.
+    motors: Vec<[Vec<f64>; 3]>,
+    /// Torques of these motors.
+    torques: Vec<Vec<f64>>,
+}
+
+impl Motion {
+    fn new(conditioned: &Conditioned, joints: usize) -> Self {
+        let range = conditioned.range.clone();
+        let mut all = Vec::new();
+        conditioned.motion(range.clone(), &mut all);
+        let count = conditioned.joints();
+        let motor = |at: usize| [0, 1, 2].map(|order| all[order * count + at].clone());
+        let torque = |at: usize| {
+            conditioned.torque[at].as_ref().map_or(Vec::new(), |t| t[range.clone()].to_vec())
+        };
+        Self {
+            motors: (joints..count).map(motor).collect(),
+            torques: (joints..count).map(torque).collect(),
+            positions: all[..joints].to_vec(),
+        }
+    }
+}
+
+impl Elastic {
+    /// The elongation of the spring \[m\] (3.18).
+    fn elongation(&self, motor: f64, q: f64) -> f64 {
+        let SeriesElasticModel { motor_radius, load_radius, .. } = self.spring;
+        motor_radius * motor / self.drive.gear_ratio - load_radius * q
+    }
+
+    /// The first stage (3.23).
+    fn identify(
+        &self,
+        name: &str,
+        motion: &Motion,
+        place: usize,
+        sign: FrictionSign,
+    ) -> Result<Spring, TwoStageError> {
+        let [angles, rates, accelerations] = &motion.motors[place];
+        let lever = self.spring.motor_radius / self.drive.gear_ratio;
+        let pairs = angles.iter().zip(&motion.positions[self.joint]);
+        let columns = [
+            rates.clone(),
+            rates.iter().map(|rate| sign.of(*rate)).collect(),
+            pairs.map(|(motor, q)| lever * self.elongation(*motor, *q)).collect::<Vec<f64>>(),
+        ];
+        let rows = columns[0].len();
+        let x = DMatrix::from_fn(rows, 3, |row, column| columns[column][row]);
+        let inertia = self.drive.rotor_inertia;
+        let left = motion.torques[place].iter().zip(accelerations);
+        let y = DVector::from_iterator(rows, left.map(|(torque, a)| torque - inertia * a));
+        let solved = Solved::new(&x, &y)
+            .ok_or_else(|| TwoStageError::NotExcited(format!("the spring of `{name}`")))?;
+        let covariance = solved.covariance();
+        let estimate = |at: usize| Estimate {
+            value: solved.values[at],
+            std: covariance[(at, at)].max(0.0).sqrt(),
+        };
+        Ok(Spring {
+            joint: name.to_owned(),
+            viscous: estimate(0),
+            coulomb: estimate(1),
+            stiffness: estimate(2),
+            residual: rms(solved.residuals.as_slice()),
+            torque: rms(y.as_slice()),
+        })
+    }
+}
+
+/// The second stage.
+struct Load<'a> {
+    plant: &'a PlantModel,
+    model: &'a RegressionModel,
+    /// The joints, then the motors of the elastic ones.
+    conditioned: &'a Conditioned,
+    elastic: &'a [Elastic],
+}
+
+impl Load<'_> {
+    fn identify(&self, springs: Vec<Spring>) -> Result<TwoStage, TwoStageError> {
+        let stiffness: Vec<f64> = springs.iter().map(|spring| spring.stiffness.value).collect();
+        let found = self.estimate(&stiffness)?;
+        let phi = found.solution.phi.clone();
+        let mut covariance = found.covariance.clone();
+        for (place, spring) in springs.iter().enumerate() {
+            let mut moved = stiffness.clone();
+            moved[place] += spring.stiffness.std;
+            let direction = self.estimate(&moved)?.solution.phi - &phi;
+            covariance += &direction * direction.transpose();
+        }
+        let to = self.model.to_listed();
+        let (values, spread) = (to * &phi, to * &covariance * to.transpose());
+        let listed = (0..values.len())
+            .map(|at| Estimate { value: values[at], std: spread[(at, at)].max(0.0).sqrt() });
+        let listed = listed.collect();
+        let torques = self.loads(&stiffness).torque;
+        let size = |torque: &Option<Vec<f64>>| rms(torque.as_deref().unwrap_or_default());
+        let residuals = found.noise.iter().zip(&torques).map(|(noise, t)| [*noise, size(t)]);
+        let residuals = residuals.collect();
+        let axes = phi.as_slice().to_vec();
+        Ok(TwoStage { springs, listed, axes, covariance, residuals })
+    }
+
+    fn estimate(&self, stiffness: &[f64]) -> Result<estimate::Estimate, TwoStageError> {
+        let logs = [self.loads(stiffness)];
+        let start = vec![0.0; self.model.rank()];
+        let options = estimate::Options::default();
+        let found = estimate(self.model, &logs, &[], &options, &start);
+        let found = found.map_err(TwoStageError::Estimate)?;
+        match found.solution.excited() == self.model.rank() {
+            true => Ok(found),
+            false => Err(TwoStageError::NotExcited("the load".to_owned())),
+        }
+    }
+
+    /// The log of the joints alone, with the torques on the loads: those of the springs (3.24),
+    /// and those of stiff drives without the known inertia of their rotors.
+    fn loads(&self, stiffness: &[f64]) -> Conditioned {
+        let n = self.plant.joints.len();
+        let mut loads = self.conditioned.clone();
+        let range = loads.range.clone();
+        let mut motion = Vec::new();
+        loads.motion(range.clone(), &mut motion);
+        let all = loads.joints();
+        let motors = loads.q.split_off(n);
+        loads.torque.truncate(n);
+        for rates in loads.rates.iter_mut().flatten() {
+            rates.truncate(n);
+        }
+        for (joint, described) in self.plant.joints.iter().enumerate() {
+            if let Some(place) = self.elastic.iter().position(|one| one.joint == joint) {
+                let one = &self.elastic[place];
+                let angles = motors[place].iter().zip(&loads.q[joint]);
+                let factor = stiffness[place] * one.spring.load_radius;
+                let torque = angles.map(|(motor, q)| factor * one.elongation(*motor, *q));
+                loads.torque[joint] = Some(torque.collect());
+            } else if let Some(torque) = &mut loads.torque[joint] {
+                let reflected = |drive: &DriveModel| drive.gear_ratio.powi(2) * drive.rotor_inertia;
+                let reflected = described.drive.as_ref().map_or(0.0, reflected);
+                let accelerations = &motion[2 * all + joint];
+                for (torque, a) in torque[range.clone()].iter_mut().zip(accelerations) {
+                    *torque -= reflected * a;
+                }
+            }
+        }
+        loads
+    }
+}
+
+/// Least squares by QR.
+struct Solved {
+    values: DVector<f64>,
+    residuals: DVector<f64>,
+    q: DMatrix<f64>,
+    /// R^-1.
+    inverse: DMatrix<f64>,
+}
+
+impl Solved {
+    /// None if a column depends on others.
+    fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<Self> {
+        if x.nrows() < x.ncols() {
+            return None;
+        }
+        let qr = x.clone().qr();
+        let (q, r) = (qr.q(), qr.r());
+        let lengths: Vec<f64> = r.column_iter().map(|column| column.norm()).collect();
+        let is_regular =
+            lengths.iter().enumerate().all(|(at, length)| r[(at, at)].abs() > 1e-11 * length);
+        let inverse = r.try_inverse().filter(|_| is_regular)?;
+        let values = &inverse * (q.transpose() * y);
+        let residuals = y - x * &values;
+        values.iter().all(|v| v.is_finite()).then_some(Self { values, residuals, q, inverse })
+    }
+
+    /// Covariance of the values, from sums of scores over blocks of time.
+    fn covariance(&self) -> DMatrix<f64> {
+        let (rows, columns) = self.q.shape();
+        let blocks = BLOCKS.min(rows / 4).max(1);
+        let mut spread = DMatrix::zeros(columns, columns);
+        for block in 0..blocks {
+            let (from, to) = (block * rows / blocks, (block + 1) * rows / blocks);
+            let part = self.q.rows(from, to - from);
+            let score = part.tr_mul(&self.residuals.rows(from, to - from));
+            spread += &score * score.transpose();
+        }
+        let correction = blocks as f64 / (blocks as f64 - 1.0).max(1.0);
+        correction * &self.inverse * spread * self.inverse.transpose()
+    }
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

@@ -124,7 +124,8 @@ const BLOCKS: usize = 50;
 /// Identifies a robot whose plant says which joints are elastic. The log has `q_` and `motor_`
 /// angles, `tau_` of stiff joints (torque of their motors, joint side) and `tau_cmd_` of elastic
 /// ones (the same of theirs). The two stages have conditionings of their own: the first has no
-/// acceleration of a joint in it, and needs the reversals of friction. Rotor inertias, gear ratios and radii are known (thesis 3.3.1).
+/// acceleration of a joint in it, and needs the reversals of friction. Rotor inertias, gear ratios
+/// and radii are known (thesis 3.3.1).
 pub fn two_stage(
     plant: &PlantModel,
     model: &RegressionModel,

@@ -22,6 +22,7 @@ macro_rules! shipped {
 /// Every shipped model, by name.
 pub const MODELS: &[ShippedModel] = &shipped!["models":
     "double_pendulum",
+    "emps",
     "iiwa",
     "panda",
     "planar_2r",

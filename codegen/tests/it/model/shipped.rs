@@ -8,6 +8,7 @@ use denavit_codegen::model::{Base, Convention, JointKind, Robot, Side};
 fn every_shipped_model_is_in_order_and_says_where_it_comes_from() {
     let degrees_of_freedom = [
         ("double_pendulum", 2),
+        ("emps", 1),
         ("iiwa", 7),
         ("panda", 7),
         ("planar_2r", 2),
@@ -21,6 +22,7 @@ fn every_shipped_model_is_in_order_and_says_where_it_comes_from() {
         ("tulip_leg", 5),
         ("tulip_leg5", 5),
         ("tulip_leg6", 6),
+        ("tulip_leg_table34", 5),
         ("tulip_one_torso", 18),
     ];
     let models = shipped_models();

@@ -13,7 +13,9 @@ use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow};
 use denavit::identify::log::LogRemark;
-use denavit::identify::{Identification, NewValue, Request, identify, model_values, updated_text};
+use denavit::identify::{
+    Identification, NewValue, Request, identify, model_values, updated_text, with_effect,
+};
 use denavit::model::{self, About, Robot};
 use denavit::plants::regression::RegressionModel;
 use denavit::report::{TorquePicture, torque_picture};
@@ -236,14 +238,25 @@ fn identified_model(
         let place = model.listed.iter().position(|one| one.is_alone && one.name == name)?;
         found.parameters[place].std.filter(|std| *std > 0.0 && std.is_finite())
     };
-    let new: Vec<NewValue<'_>> = model
-        .parameters
-        .iter()
-        .zip(values)
-        .map(|(parameter, value)| NewValue { parameter, value, std: std_of(&parameter.name) })
-        .collect();
-    let text = updated_text(source, &new)
-        .ok_or_else(|| IdentifyFailure::NotUpdated(model.model.clone()))?;
-    model::read("the identified model", text.as_bytes()).map_err(Failure::Model)?;
-    Ok(text)
+    let effects = with_effect(model, &values);
+    let text = |is_written: &dyn Fn(usize) -> bool| {
+        let all = model.parameters.iter().zip(&values).enumerate();
+        let new: Vec<NewValue<'_>> = all
+            .filter(|(place, _)| is_written(*place))
+            .map(|(_, (parameter, &value))| NewValue {
+                parameter,
+                value,
+                std: std_of(&parameter.name),
+            })
+            .collect();
+        updated_text(source, &new).ok_or_else(|| IdentifyFailure::NotUpdated(model.model.clone()))
+    };
+    let read = |text: &str| model::read("the identified model", text.as_bytes());
+    // What moves nothing stays as it is written, unless no body has it beside the rest.
+    let mut written = text(&|place| effects[place])?;
+    if read(&written).is_err() {
+        written = text(&|_| true)?;
+    }
+    read(&written).map_err(Failure::Model)?;
+    Ok(written)
 }

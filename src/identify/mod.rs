@@ -26,4 +26,4 @@ pub mod two_stage;
 pub use contact_forces::add_contact_forces;
 pub use identification::{Identification, Request, identify};
 pub use model_text::{NewValue, updated as updated_text};
-pub use model_values::model_values;
+pub use model_values::{model_values, with_effect};

@@ -56,3 +56,19 @@ fn direct(
         BodyEntry::InertiaYz => of("Iyz")? + about * y * z,
     })
 }
+
+/// Which numbers of the file any base parameter depends on, near given values of all of them.
+pub fn with_effect(model: &RegressionModel, values: &[f64]) -> Vec<bool> {
+    let of = |values: &[f64]| model.axes_of_standard(&model.standard_values(values));
+    let here = of(values);
+    let mut moved = values.to_vec();
+    let mut depends = |place: usize| {
+        let value = values[place];
+        moved[place] = value + 0.1 * value.abs() + 0.01;
+        let there = of(&moved);
+        moved[place] = value;
+        let is_other = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-12 * a.abs().max(1e-9);
+        here.iter().zip(&there).any(is_other)
+    };
+    (0..values.len()).map(&mut depends).collect()
+}

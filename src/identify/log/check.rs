@@ -28,21 +28,20 @@ pub(super) struct Findings {
 pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
     let mut found = Findings::default();
     time_unit(log, &mut found);
-    let rates: Vec<Option<Vec<f64>>> =
-        log.joints.iter().map(|joint| moves(joint).then(|| slopes(&joint.q, log.step_s))).collect();
-    for ((signals, joint), rate) in log.joints.iter().zip(joints).zip(&rates) {
+    let moving: Vec<bool> = log.joints.iter().map(moves).collect();
+    for ((signals, joint), &moves) in log.joints.iter().zip(joints).zip(&moving) {
         position(signals, joint, &mut found);
-        if let Some(rate) = rate {
-            logged_rate(signals, joint, rate, &mut found);
+        if moves {
+            logged_rate((signals, log.step_s), joint, &mut found);
         } else if !joint.is_base {
             found.remarks.push(LogRemark::Resting { joint: joint.name.clone() });
         }
-        torque(signals, joint, rate.is_some(), &mut found);
+        torque(signals, joint, moves, &mut found);
     }
-    if rates.iter().all(Option::is_none) {
+    if !moving.contains(&true) {
         found.faults.push(LogFault::NothingMoves);
     }
-    swapped(log, joints, &rates, &mut found);
+    swapped(log, joints, &moving, &mut found);
     found
 }
 
@@ -92,21 +91,23 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
     }
 }
 
+/// The integral of a rate against its position: neither noise nor steps of an encoder matter there,
+/// as they would in a derivative.
 fn logged_rate(
-    signals: &JointSignals,
+    (signals, step_s): (&JointSignals, f64),
     joint: &RegressionJoint,
-    rate: &[f64],
     found: &mut Findings,
 ) {
     let Some(logged) = &signals.qd else { return };
     let column = format!("qd_{}", joint.name);
-    let correlation = correlation(logged, rate);
+    let (position, travelled) = (level(&signals.q), level(&integral(logged, step_s)));
+    let correlation = correlation(&travelled, &position);
     // The swapped ones are found below.
     if correlation.abs() < OTHER {
         found.suspicions.push(Suspicion::NotTheRate { column, correlation });
         return;
     }
-    let ratio = slope(rate, logged);
+    let ratio = slope(&position, &travelled);
     if !(0.8..1.25).contains(&ratio) {
         found.suspicions.push(Suspicion::RateScale { column, ratio });
     }
@@ -144,18 +145,14 @@ fn torque(signals: &JointSignals, joint: &RegressionJoint, moves: bool, found: &
 }
 
 /// q of one joint fits the rate, or the reference, of another, and not its own.
-fn swapped(
-    log: &MeasuredLog,
-    joints: &[RegressionJoint],
-    rates: &[Option<Vec<f64>>],
-    found: &mut Findings,
-) {
+fn swapped(log: &MeasuredLog, joints: &[RegressionJoint], moving: &[bool], found: &mut Findings) {
     let fits = |a: usize, b: usize| {
-        let by_rate = rates[a].as_ref().zip(log.joints[b].qd.as_ref());
-        let by_rate = by_rate.map(|(rate, logged)| correlation(rate, logged));
+        let own = &log.joints[a].q;
+        let by_rate = log.joints[b].qd.as_ref().filter(|_| moving[a]);
+        let by_rate =
+            by_rate.map(|rate| correlation(&level(own), &level(&integral(rate, log.step_s))));
         let by_reference = log.joints[b].reference.as_ref();
-        let by_reference = by_reference.map(|reference| correlation(&log.joints[a].q, reference));
-        by_rate.or(by_reference)
+        by_rate.or(by_reference.map(|reference| correlation(own, reference)))
     };
     for a in 0..joints.len() {
         let Some(own) = fits(a, a).filter(|own| *own < OTHER) else { continue };
@@ -170,14 +167,26 @@ fn swapped(
     }
 }
 
-/// Slopes over a few samples, so that steps of an encoder matter less.
-fn slopes(q: &[f64], step_s: f64) -> Vec<f64> {
-    let half = (q.len() / 200).clamp(1, 20);
-    let at = |index: usize| {
-        let (low, high) = (index.saturating_sub(half), (index + half).min(q.len() - 1));
-        (q[high] - q[low]) / ((high - low) as f64 * step_s)
+/// The integral by trapezoids, from 0.
+fn integral(rate: &[f64], step_s: f64) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut before = rate.first().copied().unwrap_or(0.0);
+    let mut next = |&rate: &f64| {
+        sum += 0.5 * step_s * (rate + before);
+        before = rate;
+        sum
     };
-    (0..q.len()).map(at).collect()
+    rate.iter().map(&mut next).collect()
+}
+
+/// A signal without the line that fits it best: what an offset of a rate adds to its integral.
+fn level(signal: &[f64]) -> Vec<f64> {
+    let middle = 0.5 * (signal.len() as f64 - 1.0);
+    let at = |index: usize| index as f64 - middle;
+    let squares: f64 = (0..signal.len()).map(|index| at(index).powi(2)).sum();
+    let products: f64 = signal.iter().enumerate().map(|(index, value)| at(index) * value).sum();
+    let (mean, slope) = (mean(signal), products / squares.max(f64::MIN_POSITIVE));
+    signal.iter().enumerate().map(|(index, value)| value - mean - slope * at(index)).collect()
 }
 
 fn mean(values: &[f64]) -> f64 {

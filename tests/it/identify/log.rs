@@ -202,6 +202,15 @@ fn degrees_are_no_radians() {
     assert!(says, "{faults:?}");
 }
 
+/// Derivatives of such positions are mostly noise; that is no fault of the rates.
+#[test]
+fn noisy_positions_and_coarse_encoders_are_no_suspicion() {
+    let noisy = Made::new().each(|k, row| row[1] += 0.01 * (k as f64 * 12.9898).sin());
+    assert!(noisy.read().is_ok());
+    let coarse = Made::new().each(|_, row| row[1] = (row[1] / 0.02).round() * 0.02);
+    assert!(coarse.read().is_ok());
+}
+
 #[test]
 fn swapped_joints_are_named() {
     let faults = Made::new().each(|_, row| row.swap(3, 4)).read().unwrap_err();

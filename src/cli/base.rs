@@ -218,7 +218,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if arguments.numeric {
         *robot = bake_geometry(&robot).map_err(Failure::Bake)?;
     }
-    let options = regressor_options(&robot, &arguments.with);
+    let options = regressor_options(&robot, &arguments.with)?;
     let mut base = base_parameters(&robot, options, &arguments.keep)
         .map_err(|error| Failure::Base(Box::new(error)))?;
     let joints = match arguments.basis {
@@ -255,16 +255,16 @@ pub(crate) fn latex(found: &Found<'_>) -> String {
 }
 
 /// What a list of joint parameters asks for.
-pub(crate) fn regressor_options(robot: &Robot, with: &[With]) -> RegressorOptions {
+pub(crate) fn regressor_options(robot: &Robot, with: &[With]) -> Result<RegressorOptions, Failure> {
     let has = |one| with.contains(&one);
-    if has(With::Modelled) && with.len() == 1 {
-        return modelled(robot);
+    if has(With::Modelled) {
+        let alone = with.iter().all(|&one| one == With::Modelled);
+        return if alone { Ok(modelled(robot)) } else { Err(Failure::ModelledAndMore) };
     }
-    RegressorOptions {
-        friction: has(With::Friction) || has(With::Modelled) && robot.terms.friction,
-        rotor: has(With::Rotor) || has(With::Modelled) && robot.terms.rotor,
-        offset: has(With::Offset) || has(With::Modelled),
-        only_modelled: has(With::Modelled),
+    Ok(RegressorOptions {
+        friction: has(With::Friction),
+        rotor: has(With::Rotor),
+        offset: has(With::Offset),
         ..RegressorOptions::default()
-    }
+    })
 }

@@ -93,7 +93,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             if let Some(list) = &arguments.terms {
                 robot.terms = terms(list);
             }
-            let options = regressor_options(&robot, &arguments.with);
+            let options = regressor_options(&robot, &arguments.with)?;
             Found::of_model(robot, options, basis, &mut expansion)?
         }
         Input::Equations(equations) => Found::of_equations(equations, basis, &mut expansion)?,

@@ -177,14 +177,14 @@ fn named(text: &str) -> Result<(String, f64), String> {
 }
 
 impl Arguments {
-    fn options(&self, robot: &Robot) -> ExciteOptions {
+    fn options(&self, robot: &Robot) -> Result<ExciteOptions, Failure> {
         let has = |end| self.ends.contains(&end);
         let objective = match self.objective {
             ObjectiveName::Condition => Objective::CONDITION,
             ObjectiveName::DOptimal => Objective::D_OPTIMAL,
             ObjectiveName::Both => Objective::BOTH,
         };
-        ExciteOptions {
+        Ok(ExciteOptions {
             family: match self.basis {
                 Basis::Fourier => Family::Fourier { harmonics: self.harmonics },
                 Basis::FreeFourier => Family::FreeFourier { terms: self.harmonics },
@@ -202,7 +202,7 @@ impl Arguments {
                 Parameters::Joints => Columns::Axes,
                 Parameters::Kept => Columns::Kept,
             },
-            with: regressor_options(robot, &self.with),
+            with: regressor_options(robot, &self.with)?,
             keep: self.keep.clone(),
             hold: self.hold.clone(),
             weights: self.weights.clone(),
@@ -213,7 +213,7 @@ impl Arguments {
             evaluations: self.evaluations,
             steps: self.grid,
             threads: self.threads,
-        }
+        })
     }
 }
 
@@ -221,7 +221,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let files = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&files, arguments.json)?;
     let robot = read_model(&arguments.model.model)?;
-    let options = arguments.options(&robot);
+    let options = arguments.options(&robot)?;
     if let Some(path) = &arguments.check {
         return checked(arguments, &robot, &options, path, out);
     }

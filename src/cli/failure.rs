@@ -51,6 +51,8 @@ pub(crate) enum Failure {
     Equations(EquationsError),
     /// There are no angles to cumulate; holds the model.
     NoParallelAxes(String),
+    /// `--with modelled` was given with other joint parameters.
+    ModelledAndMore,
     /// Options that only models have were given for equations; holds their name.
     NotOfEquations(String),
     /// A document would be too long to be read, or set.
@@ -115,6 +117,7 @@ impl Failure {
                 "--terms inertia,gravity; --with friction,rotor adds the parameters of joints"
                     .to_owned()
             }
+            Self::ModelledAndMore => "the others add those of all joints".to_owned(),
             Self::TwoDocuments => "give all but one of them a file".to_owned(),
             Self::Effect(..) => "take \"effects\" out of the model".to_owned(),
             Self::Write { error, .. } => match error.kind() {
@@ -208,6 +211,7 @@ impl fmt::Display for Failure {
             Self::NoMotionTerms(model) => {
                 write!(f, "{model}: base parameters need inertia or gravity among the terms")?;
             }
+            Self::ModelledAndMore => write!(f, "--with modelled stands alone")?,
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::Effect(model, effect) => {
                 write!(f, "{model}: the equations do not have the effect `{effect}` yet")?;

@@ -178,7 +178,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let (robot, source) = read_model_text(&arguments.model)?;
-    let options = regressor_options(&robot, &arguments.with);
+    let options = regressor_options(&robot, &arguments.with)?;
     let model = RegressionModel::new(&robot, options, &arguments.keep)
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
     let progress = Progress::new();

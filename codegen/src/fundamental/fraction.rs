@@ -5,7 +5,7 @@
 //! That is a canonical form: equal members are written equally.
 
 use super::gcd::{divide, gcd, without_unit};
-use super::{Monomial, Polynomial, TooManyTerms};
+use super::{Monomial, Polynomial, TooManyTerms, Work};
 use crate::expr::{Dag, ExprId};
 use crate::number::{Rational, integer};
 use num_traits::One;
@@ -102,12 +102,13 @@ impl Fraction {
 #[derive(Clone, Debug, Default)]
 pub struct Field {
     cosine_of: BTreeMap<ExprId, ExprId>,
+    work: Work,
 }
 
 impl Field {
     /// The field in which the given atoms are sines, each with its cosine.
     pub fn new(cosine_of: BTreeMap<ExprId, ExprId>) -> Self {
-        Self { cosine_of }
+        Self { cosine_of, work: Work::default() }
     }
 
     /// `a + b`.
@@ -118,7 +119,7 @@ impl Field {
         }
         let left = self.product(&a.numerator, &b.denominator)?;
         let right = self.product(&b.numerator, &a.denominator)?;
-        let denominator = a.denominator.times(&b.denominator, MAX_PRODUCT)?;
+        let denominator = self.work.times(&a.denominator, &b.denominator, MAX_PRODUCT)?;
         self.reduced(left.plus(&right, &Rational::one()), denominator)
     }
 
@@ -128,7 +129,7 @@ impl Field {
         if a.has_unit_denominator() && b.has_unit_denominator() {
             return Ok(Fraction::polynomial(numerator));
         }
-        let denominator = a.denominator.times(&b.denominator, MAX_PRODUCT)?;
+        let denominator = self.work.times(&a.denominator, &b.denominator, MAX_PRODUCT)?;
         self.reduced(numerator, denominator)
     }
 
@@ -153,7 +154,7 @@ impl Field {
     /// The product of two polynomials, with s^2 = 1 - c^2.
     fn product(&self, a: &Polynomial, b: &Polynomial) -> Result<Polynomial, TooManyTerms> {
         let cosine_of = |atom: ExprId| self.cosine_of.get(&atom).copied();
-        a.times(b, MAX_PRODUCT)?.without_squared_sines(&cosine_of, usize::MAX)
+        self.work.times(a, b, MAX_PRODUCT)?.without_squared_sines(&cosine_of, usize::MAX)
     }
 
     /// Takes `place` out of a sparse row with a row that has 1 there.
@@ -185,13 +186,13 @@ impl Field {
             return Ok(Fraction::polynomial(top));
         }
         if bottom.len() == 1 {
-            let quotient = divide(&top, &bottom)?.expect("units divide");
+            let quotient = divide(&self.work, &top, &bottom)?.expect("units divide");
             return Ok(Fraction::polynomial(quotient));
         }
         // The powers of the sines are independent over the rest: the divisor divides each part.
         let mut divisor = bottom.clone();
         for part in self.parts(&top).values() {
-            divisor = gcd(&divisor, part)?;
+            divisor = gcd(&self.work, &divisor, part)?;
             if divisor.len() == 1 {
                 break;
             }
@@ -200,15 +201,15 @@ impl Field {
         if divisor.len() > 1 {
             let mut quotient = Polynomial::zero();
             for (sines, part) in self.parts(&top) {
-                let part = divide(&part, &divisor)?.expect("the gcd divides");
+                let part = divide(&self.work, &part, &divisor)?.expect("the gcd divides");
                 let part = super::gcd::times_monomial(&part, &sines)?;
                 quotient = quotient.plus(&part, &Rational::one());
             }
             top = quotient;
-            bottom = divide(&bottom, &divisor)?.expect("the gcd divides");
+            bottom = divide(&self.work, &bottom, &divisor)?.expect("the gcd divides");
         }
         let (unit, denominator) = without_unit(&bottom)?;
-        let numerator = divide(&top, &unit)?.expect("units divide");
+        let numerator = divide(&self.work, &top, &unit)?.expect("units divide");
         Ok(Fraction { numerator, denominator })
     }
 

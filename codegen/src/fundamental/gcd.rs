@@ -4,7 +4,7 @@
 //! remainder sequences in one atom at a time; a gcd of images modulo 2^61 - 1 first finds out, and
 //! proves, that there is nothing to find, which is by far the most frequent case.
 
-use super::{Monomial, Polynomial, TooManyTerms};
+use super::{Monomial, Polynomial, TooManyTerms, Work};
 use crate::arena::Handle;
 use crate::expr::ExprId;
 use crate::number::{Rational, Residue, integer};
@@ -97,13 +97,14 @@ fn leading(parts: &Univariate) -> (i32, &Polynomial) {
 
 /// `parts -= factor x^shift other`.
 fn subtract(
+    work: &Work,
     parts: &mut Univariate,
     factor: &Polynomial,
     shift: i32,
     other: &Univariate,
 ) -> Result<(), TooManyTerms> {
     for (&exponent, coefficient) in other {
-        let product = coefficient.times(factor, MAX_PRODUCT)?;
+        let product = work.times(coefficient, factor, MAX_PRODUCT)?;
         let place = parts.entry(exponent + shift).or_default();
         *place = std::mem::take(place).plus(&product, &minus_one());
     }
@@ -112,7 +113,12 @@ fn subtract(
 }
 
 /// `a / b` if it is a Laurent polynomial; b must not be 0.
-pub fn divide(a: &Polynomial, b: &Polynomial) -> Result<Option<Polynomial>, TooManyTerms> {
+pub fn divide(
+    work: &Work,
+    a: &Polynomial,
+    b: &Polynomial,
+) -> Result<Option<Polynomial>, TooManyTerms> {
+    work.look(a, b)?;
     if a.is_zero() {
         return Ok(Some(Polynomial::zero()));
     }
@@ -130,23 +136,24 @@ pub fn divide(a: &Polynomial, b: &Polynomial) -> Result<Option<Polynomial>, TooM
         if rest_degree < degree {
             return Ok(None);
         }
-        let Some(factor) = divide(rest_lead, lead)? else { return Ok(None) };
+        let Some(factor) = divide(work, rest_lead, lead)? else { return Ok(None) };
         let shift = rest_degree - degree;
-        subtract(&mut rest, &factor, shift, &divisor)?;
+        subtract(work, &mut rest, &factor, shift, &divisor)?;
         if quotient.insert(shift, factor).is_some() {
             return Ok(None);
         }
     }
     let quotient = multivariate(&quotient, atom)?;
-    let unit = divide(&unit_a, &unit_b)?.expect("units divide");
+    let unit = divide(work, &unit_a, &unit_b)?.expect("units divide");
     // A factor with negative powers would make the quotient of stripped parts wrong.
-    let quotient = quotient.times(&unit, MAX_PRODUCT)?;
+    let quotient = work.times(&quotient, &unit, MAX_PRODUCT)?;
     Ok(Some(quotient))
 }
 
 /// The greatest common divisor without units: no monomial factor, last coefficient 1; 0 if both
 /// are 0.
-pub fn gcd(a: &Polynomial, b: &Polynomial) -> Result<Polynomial, TooManyTerms> {
+pub fn gcd(work: &Work, a: &Polynomial, b: &Polynomial) -> Result<Polynomial, TooManyTerms> {
+    work.look(a, b)?;
     let one = || Polynomial::constant(Rational::one());
     match (a.is_zero(), b.is_zero()) {
         (true, true) => return Ok(Polynomial::zero()),
@@ -164,10 +171,10 @@ pub fn gcd(a: &Polynomial, b: &Polynomial) -> Result<Polynomial, TooManyTerms> {
     let (of_a, of_b) = (atoms(&a), atoms(&b));
     // An atom of one alone is not in the divisor: neither are its powers apart.
     if let Some(&atom) = of_a.iter().find(|atom| !of_b.contains(atom)) {
-        return content_with(&a, atom, b);
+        return content_with(work, &a, atom, b);
     }
     if let Some(&atom) = of_b.iter().find(|atom| !of_a.contains(atom)) {
-        return content_with(&b, atom, a);
+        return content_with(work, &b, atom, a);
     }
     if of_a.iter().all(|&atom| is_free_of(&a, &b, atom)) {
         return Ok(one());
@@ -177,14 +184,19 @@ pub fn gcd(a: &Polynomial, b: &Polynomial) -> Result<Polynomial, TooManyTerms> {
         .copied()
         .find(|&atom| !is_free_of(&a, &b, atom))
         .expect("some atom may be in the divisor");
-    by_remainders(&a, &b, atom)
+    by_remainders(work, &a, &b, atom)
 }
 
 /// gcd(coefficients of a in `atom`, b).
-fn content_with(a: &Polynomial, atom: ExprId, b: Polynomial) -> Result<Polynomial, TooManyTerms> {
+fn content_with(
+    work: &Work,
+    a: &Polynomial,
+    atom: ExprId,
+    b: Polynomial,
+) -> Result<Polynomial, TooManyTerms> {
     let mut divisor = b;
     for part in univariate(a, atom).values() {
-        divisor = gcd(&divisor, part)?;
+        divisor = gcd(work, &divisor, part)?;
         if divisor.len() == 1 {
             break;
         }
@@ -192,10 +204,10 @@ fn content_with(a: &Polynomial, atom: ExprId, b: Polynomial) -> Result<Polynomia
     Ok(divisor)
 }
 
-fn content(parts: &Univariate) -> Result<Polynomial, TooManyTerms> {
+fn content(work: &Work, parts: &Univariate) -> Result<Polynomial, TooManyTerms> {
     let mut divisor = Polynomial::zero();
     for part in parts.values() {
-        divisor = gcd(&divisor, part)?;
+        divisor = gcd(work, &divisor, part)?;
         if divisor.len() == 1 {
             break;
         }
@@ -203,19 +215,24 @@ fn content(parts: &Univariate) -> Result<Polynomial, TooManyTerms> {
     Ok(divisor)
 }
 
-fn primitive(parts: &Univariate) -> Result<Univariate, TooManyTerms> {
-    let content = content(parts)?;
+fn primitive(work: &Work, parts: &Univariate) -> Result<Univariate, TooManyTerms> {
+    let content = content(work, parts)?;
     let mut result = Univariate::new();
     for (&exponent, part) in parts {
-        result.insert(exponent, divide(part, &content)?.expect("the content divides"));
+        result.insert(exponent, divide(work, part, &content)?.expect("the content divides"));
     }
     Ok(result)
 }
 
-fn by_remainders(a: &Polynomial, b: &Polynomial, atom: ExprId) -> Result<Polynomial, TooManyTerms> {
+fn by_remainders(
+    work: &Work,
+    a: &Polynomial,
+    b: &Polynomial,
+    atom: ExprId,
+) -> Result<Polynomial, TooManyTerms> {
     let (parts_a, parts_b) = (univariate(a, atom), univariate(b, atom));
-    let common = gcd(&content(&parts_a)?, &content(&parts_b)?)?;
-    let (mut large, mut small) = (primitive(&parts_a)?, primitive(&parts_b)?);
+    let common = gcd(work, &content(work, &parts_a)?, &content(work, &parts_b)?)?;
+    let (mut large, mut small) = (primitive(work, &parts_a)?, primitive(work, &parts_b)?);
     if leading(&large).0 < leading(&small).0 {
         std::mem::swap(&mut large, &mut small);
     }
@@ -227,22 +244,22 @@ fn by_remainders(a: &Polynomial, b: &Polynomial, atom: ExprId) -> Result<Polynom
             let (rest_lead, lead) = (rest_lead.clone(), lead.clone());
             // lead(small) rest - lead(rest) x^k small
             for part in rest.values_mut() {
-                *part = part.times(&lead, MAX_PRODUCT)?;
+                *part = work.times(part, &lead, MAX_PRODUCT)?;
             }
-            subtract(&mut rest, &rest_lead, rest_degree - degree, &small)?;
+            subtract(work, &mut rest, &rest_lead, rest_degree - degree, &small)?;
         }
         if rest.is_empty() {
             break;
         }
         let is_constant = leading(&rest).0 == 0;
         large = small;
-        small = primitive(&rest)?;
+        small = primitive(work, &rest)?;
         if is_constant {
             small = BTreeMap::from([(0, Polynomial::constant(Rational::one()))]);
             break;
         }
     }
-    let divisor = multivariate(&small, atom)?.times(&common, MAX_PRODUCT)?;
+    let divisor = work.times(&multivariate(&small, atom)?, &common, MAX_PRODUCT)?;
     Ok(without_unit(&divisor)?.1)
 }
 

@@ -28,6 +28,7 @@ mod series;
 #[cfg(test)]
 mod tests;
 mod whole;
+mod work;
 
 pub use canonical::{
     CanonicalError, MAX_TERMS, canonical, canonical_all, canonical_generic, equal,
@@ -42,3 +43,4 @@ pub use gcd::{divide, gcd};
 pub use polynomial::{Monomial, Polynomial, TooManyTerms};
 pub use readable::written_out;
 pub use separate::{Separated, equal_columns, separate};
+pub use work::Work;

@@ -15,6 +15,7 @@ use super::rank::{PARAMETERS, rows_at};
 use super::settle::{settle, without_denominators};
 use super::turning::table_angles;
 use crate::expr::{ClassSet, Dag, ExprId, Node, angle_atoms, is_pi, text};
+use crate::fundamental::{Entry, canonical_generic};
 use crate::model::{BakeError, Robot, Terms, bake_geometry};
 use crate::number::Residue;
 use serde::{Deserialize, Serialize};
@@ -302,17 +303,15 @@ impl Certificate {
         for relation in &self.relations {
             let refuted = || Verdict::Relation(relation.column.clone());
             let Some(amounts) = amounts(regressor, &mut dag, relation) else { return refuted() };
-            let divides = amounts.iter().any(|&(_, amount)| divides_by_waves(&dag, amount));
             let list = match settle(regressor, &mut dag, &amounts) {
                 true if !is_small => continue,
                 true => &mut settled,
                 // a relation of no tree, but perhaps of these terms, or of this geometry
-                false if divides => return refuted(),
                 false => &mut unsettled,
             };
-            is_small &= !divides;
-            let Some(sums) = sums(regressor, &mut dag, &amounts) else { return refuted() };
-            list.push(relation, sums);
+            let Some(amounts) = without_denominators(&mut dag, &amounts) else { return refuted() };
+            is_small &= !amounts.iter().any(|&(_, amount)| divides_by_waves(&dag, amount));
+            list.push(relation, sums(regressor, &mut dag, &amounts));
         }
         match unsettled.first_not_zero(&mut dag, COINCIDENCE_BYTES) {
             Some(None) => {}
@@ -388,8 +387,14 @@ impl WrittenOut {
             return Some(None);
         }
         let found = written_out(dag, &self.torques, memory_bytes)?;
+        let coefficients: Vec<ExprId> =
+            found.coefficients.iter().map(|one| one.to_expr(dag)).collect();
+        // sines and cosines of the angles of the table obey s^2 + c^2 = 1
+        let forms = canonical_generic(dag, &coefficients).ok()?;
+        let is_left = |entry: &Entry| !forms[entry.coefficient as usize].is_zero();
         let mut columns = found.columns.iter().zip(&self.names);
-        Some(columns.find(|(column, _)| !column.is_empty()).map(|(_, name)| name.as_str()))
+        let left = columns.find(|(column, _)| column.iter().any(is_left));
+        Some(left.map(|(_, name)| name.as_str()))
     }
 }
 
@@ -434,16 +439,16 @@ fn amounts(
     Some(amounts)
 }
 
-/// The sums of columns in these amounts, times a common denominator, torque by torque.
-fn sums(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, ExprId)]) -> Option<Vec<ExprId>> {
+/// The sums of columns in these amounts, torque by torque.
+fn sums(regressor: &Regressor, dag: &mut Dag, amounts: &[(usize, ExprId)]) -> Vec<ExprId> {
     let mut sums = vec![dag.zero(); regressor.joints.len()];
-    for (column, amount) in without_denominators(dag, amounts)? {
+    for &(column, amount) in amounts {
         for (sum, &entry) in sums.iter_mut().zip(&regressor.columns[column].entries) {
             let product = dag.mul(amount, entry);
             *sum = dag.add(*sum, product);
         }
     }
-    Some(sums)
+    sums
 }
 
 /// Whether there is a sine or cosine in a denominator, which [`vanishing`] cannot cancel.

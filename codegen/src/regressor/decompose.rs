@@ -21,6 +21,8 @@ use std::fmt;
 pub enum DecomposeError {
     /// There is no regressor.
     Regressor(RegressorError),
+    /// A floating base without the terms of inertia; holds the model.
+    TorsoTerms(String),
     /// It is not written out; holds the model and the cause.
     Fourier(String, FourierError),
     /// A column to keep that there is not; holds the model and what was asked for.
@@ -33,6 +35,11 @@ impl fmt::Display for DecomposeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Regressor(error) => write!(f, "{error}"),
+            Self::TorsoTerms(model) => write!(
+                f,
+                "{model}: a floating base is written in the motion of its torso, which takes the \
+                 terms of inertia\n  hint: --terms inertia,gravity has the relations of all terms"
+            ),
             Self::Fourier(model, error) => write!(f, "{model}: {error}"),
             Self::NoColumn(model, name) => write!(
                 f,
@@ -74,6 +81,9 @@ pub fn decompose_robot(
     bases: &[Basis],
     expansion: &mut Expansion<'_>,
 ) -> Result<RobotDecomposition, DecomposeError> {
+    if robot.base != Base::Fixed && !robot.terms.inertia {
+        return Err(DecomposeError::TorsoTerms(robot.name.clone()));
+    }
     let regressor =
         Regressor::new(robot, options, robot.torque_side).map_err(DecomposeError::Regressor)?;
     let Regressor { model, mut dag, columns, mechanism, known_features, .. } = regressor;

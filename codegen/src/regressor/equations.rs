@@ -43,6 +43,15 @@ pub enum EquationsError {
         /// The equations' name.
         name: String,
     },
+    /// Functions that count as different obey a relation.
+    Related {
+        /// The equations' name.
+        name: String,
+        /// The rank of B.
+        rank: usize,
+        /// The rank of the columns at random points.
+        at_points: usize,
+    },
     /// B is not eliminated.
     Echelon {
         /// The equations' name.
@@ -77,6 +86,13 @@ impl fmt::Display for EquationsError {
                 f,
                 "{name}: no equation has an unknown\n  hint: declare what is to be found under \
                  \"unknowns\""
+            ),
+            Self::Related { name, rank, at_points } => write!(
+                f,
+                "{name}: of {rank} columns only {at_points} are independent at random points: \
+                 functions of the equations obey a relation that their form does not show, as \
+                 tan^2 = 1/cos^2 - 1\n  hint: multiply the equations by their denominators, and \
+                 write tan as sin over cos"
             ),
             Self::Echelon { name, error } => write!(f, "{name}: {error}"),
             Self::Evaluate { name, error } => {
@@ -230,8 +246,17 @@ impl EquationsRegressor {
     }
 
     /// Whether the equations are `zeta = f^T B_u theta` at random points modulo a prime: whether
-    /// what was written out, separated and eliminated is still what was given.
+    /// what was written out, separated and eliminated is still what was given. Columns that are not
+    /// independent there are an error.
     pub fn holds(&mut self, theta: &Theta) -> Result<bool, EquationsError> {
+        let name = || self.name.clone();
+        let at_points = theta
+            .rank_at_points(&mut self.dag, &self.decomposition)
+            .map_err(|error| EquationsError::Evaluate { name: name(), error })?;
+        if at_points < theta.rank() {
+            let rank = theta.rank();
+            return Err(EquationsError::Related { name: name(), rank, at_points });
+        }
         let sides = self.residuals.iter().zip(&self.left);
         let right: Vec<ExprId> =
             sides.map(|(&residual, &left)| self.dag.add(residual, left)).collect();

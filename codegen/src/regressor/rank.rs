@@ -62,7 +62,7 @@ pub fn rank(regressor: &Regressor, order: &[usize]) -> Result<Ranking, EvaluateE
 }
 
 /// Reduces a row by those before; keeps it if something is left.
-fn insert(echelon: &mut Vec<(usize, Vec<Residue>)>, mut row: Vec<Residue>) -> bool {
+pub(super) fn insert(echelon: &mut Vec<(usize, Vec<Residue>)>, mut row: Vec<Residue>) -> bool {
     for (pivot, known) in echelon.iter() {
         let factor = row[*pivot];
         if factor != Residue::ZERO {

@@ -2,6 +2,7 @@
 //! been decomposed, of a model or of given equations.
 
 use super::column::Column;
+use super::rank::{FIRST_POINT, PARAMETERS, insert};
 use crate::expr::{
     ClassSet, Dag, EvaluateError, ExprId, Node, Residues, SymbolClass, UnaryFunction, angle_atoms,
     evaluate, substitute,
@@ -10,6 +11,7 @@ use crate::fundamental::{Decomposition, Echelon, EchelonError, echelon};
 use crate::number::{Rational, Residue};
 use num_traits::One;
 use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
 /// Seeds of the points at which results are compared with what they came from.
 const SEEDS: [u64; 3] = [0x7468_6561, 0x7468_6562, 0x7468_6563];
@@ -106,6 +108,42 @@ impl Theta {
             }
         }
         Ok(true)
+    }
+
+    /// The rank of the columns of the pivots at random points modulo a prime: less than
+    /// [`Theta::rank`] if functions that count as different obey a relation, as 1/cos^2 and tan^2.
+    pub fn rank_at_points(
+        &self,
+        dag: &mut Dag,
+        decomposition: &Decomposition,
+    ) -> Result<usize, EvaluateError> {
+        let f: Vec<ExprId> = decomposition.functions.iter().map(|one| one.to_expr(dag)).collect();
+        let b: Vec<ExprId> =
+            decomposition.coefficients.iter().map(|one| one.to_expr(dag)).collect();
+        let all = with_whole_angles(dag, &[f.as_slice(), &b].concat());
+        let mut found = Vec::new();
+        let (mut idle, mut point) = (0, FIRST_POINT);
+        while idle < 3 && found.len() < self.rank() {
+            let mut ring = Residues::with_parameters(point, PARAMETERS);
+            let values = evaluate(dag, &all, &mut ring)?;
+            let (f, b) = values.split_at(f.len());
+            let mut rows: BTreeMap<u32, Vec<Residue>> = BTreeMap::new();
+            for (place, &pivot) in self.echelon.pivots.iter().enumerate() {
+                for entry in &decomposition.columns[pivot] {
+                    let row = rows.entry(entry.equation);
+                    let row = row.or_insert_with(|| vec![Residue::ZERO; self.rank()]);
+                    let product = b[entry.coefficient as usize] * f[entry.function as usize];
+                    row[place] = row[place] + product;
+                }
+            }
+            let before = found.len();
+            for row in rows.into_values() {
+                insert(&mut found, row);
+            }
+            idle = if found.len() > before { 0 } else { idle + 1 };
+            point += 1;
+        }
+        Ok(found.len())
     }
 }
 

@@ -155,6 +155,23 @@ fn what_was_eliminated_is_still_what_was_given() {
     }
 }
 
+/// Relations between functions that the canonical form does not know are seen at points.
+#[test]
+fn columns_that_only_points_show_to_depend_are_refused() {
+    for (equation, rank, at_points) in [
+        ("y = a*sin(x)^2/cos(x)^2 + b/cos(x)^2 + a*b", 3, 2),
+        ("y = a*tan(x) + b*sin(x)/cos(x)", 2, 1),
+    ] {
+        let equations = read("test.json", file(&format!("\"{equation}\"")).as_bytes())
+            .unwrap_or_else(|error| panic!("{error}"));
+        let mut found = regressor(&equations).unwrap_or_else(|error| panic!("{error}"));
+        let theta = found.theta::<&str>(&[]).expect("small");
+        let name = "test".to_owned();
+        let expected = EquationsError::Related { name, rank, at_points };
+        assert_eq!(found.holds(&theta), Err(expected), "{equation}");
+    }
+}
+
 /// Units of products, where all their factors have one.
 #[test]
 fn columns_have_the_units_of_their_products() {

@@ -6,7 +6,9 @@ use denavit_codegen::expr::{Residues, derivative, evaluate};
 use denavit_codegen::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion, echelon, smallest};
 use denavit_codegen::model::{self, About, BodyEntry, Role};
 use denavit_codegen::number::Residue;
-use denavit_codegen::regressor::{RegressorOptions, RobotDecomposition, decompose_robot};
+use denavit_codegen::regressor::{
+    DecomposeError, RegressorOptions, RobotDecomposition, decompose_robot,
+};
 
 /// Every term, Coriolis terms among them or not.
 const FULL: bool = true;
@@ -106,4 +108,15 @@ fn springs_are_on_the_left_side() {
     let expected = dag.sub(variables.tau, torque);
     let values = evaluate(dag, &[found.left[0], expected], &mut Residues::new(5)).unwrap();
     assert_eq!(values[0], values[1]);
+}
+
+/// Without the terms of inertia the motion of the torso is no other way to write its joints.
+#[test]
+fn floating_bases_need_the_terms_of_inertia() {
+    let mut robot = load("planar_biped");
+    robot.terms.inertia = false;
+    let options = RegressorOptions::default();
+    let mut expansion = Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut |_| {} };
+    let error = decompose_robot(&robot, options, &[Basis::Fourier], &mut expansion).unwrap_err();
+    assert_eq!(error, DecomposeError::TorsoTerms("planar_biped".to_owned()));
 }

@@ -2,8 +2,9 @@
 
 use super::{INERTIAL, base, rigid, tree};
 use crate::robots::{fixture, load};
-use denavit_codegen::model::{Base, Robot};
+use denavit_codegen::model::{self, Base, Robot};
 use denavit_codegen::regressor::{BaseError, Certificate, RegressorOptions, base_parameters};
+use serde_json::json;
 
 /// Ranks: inertial, + friction, + rotor, + offset.
 fn ranks(robot: &Robot) -> [usize; 4] {
@@ -131,6 +132,39 @@ fn terms_may_be_any() {
             robot.terms.gravity = gravity;
             certified(&robot);
         }
+    }
+}
+
+/// Their relations have sines and cosines in denominators.
+#[test]
+fn terms_of_skew_arms_may_be_any() {
+    for second in ["al", "0.62"] {
+        let rows = [("revolute", "0", "pi/2", "0", None), ("revolute", "0", second, "0", Some(0))];
+        let mut robot = tree("skew", ["0", "0", "-g"], &rows);
+        robot.terms.inertia = false;
+        certified(&robot);
+    }
+}
+
+/// Numbers and symbols as angles, on slides: the coefficients are found, or refused, but looked for
+/// no longer than a number of multiplications.
+#[test]
+fn large_coefficients_come_to_an_end() {
+    let body = json!({"mass": 3.4, "com": [-0.1, 0.2, -0.1], "about": "com",
+        "inertia": {"xx": 1.1, "yy": 1, "zz": 1, "xy": 0.05, "xz": -0.03, "yz": 0.02}});
+    let file = json!({
+        "format": "denavit-model/1", "name": "slides", "convention": "modified",
+        "gravity": [0, 0, "-g"], "base": "floating",
+        "constants": {"g": 9.81, "al": 0.4, "be": 0.7},
+        "links": [
+            {"name": "k0", "joint": {"type": "prismatic", "alpha": "be", "theta": 1}, "body": body},
+            {"name": "k1", "joint": {"type": "prismatic", "alpha": 1}, "parent": "base"},
+            {"name": "k2", "joint": {"type": "revolute", "alpha": "al"}},
+        ],
+    });
+    let robot = model::read("slides", &serde_json::to_vec(&file).unwrap()).unwrap();
+    if let Err(error) = base_parameters(&robot, INERTIAL, &[]) {
+        assert!(matches!(error, BaseError::Canonical(_)), "{error}");
     }
 }
 

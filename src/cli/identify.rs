@@ -3,6 +3,7 @@
 mod failure;
 mod json;
 mod logs;
+mod page;
 mod text;
 
 use super::Answer;
@@ -35,6 +36,7 @@ use std::path::PathBuf;
 Examples:
   denavit simulate tulip_leg_tracking -o tracking.csv
   denavit identify tulip_leg --train tracking.csv --filter 20 --svg torques.svg
+  denavit identify tulip_leg --train tracking.csv --filter 20 --html tulip_leg.html
   denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json")]
 pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
@@ -90,6 +92,9 @@ pub(crate) struct Arguments {
     /// Draw measured and computed torques; - is standard output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// Write all of it as one page of HTML; - is standard output
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -175,7 +180,7 @@ struct Shown<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
+    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let (robot, source) = read_model_text(&arguments.model)?;
     let options = regressor_options(&robot, &arguments.with)?;
@@ -213,6 +218,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(path, text.as_bytes())?;
     }
     let shown = Shown { robot: &robot, model: &model, found: &found, remarks: &read.remarks };
+    if let Some(path) = &arguments.html {
+        write_whole(path, page::of(arguments, &shown)?.as_bytes())?;
+    }
     match (is_answered, arguments.json) {
         (true, _) => {}
         (_, true) => json::write(out, &shown)?,

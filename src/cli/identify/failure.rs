@@ -6,6 +6,7 @@ use denavit::identify::estimate::EstimateError;
 use denavit::identify::log::{LogFaults, MappingError};
 use denavit::plants::PlantError;
 use denavit::plants::regression::RegressionError;
+use denavit::report::html::FormulaError;
 use std::fmt;
 
 /// Why nothing is identified.
@@ -25,6 +26,8 @@ pub(crate) enum IdentifyFailure {
     Estimate(String, EstimateError),
     /// Values have no place in the model's file; holds the model's name.
     NotUpdated(String),
+    /// A formula is not shown in a page.
+    Formula(FormulaError),
 }
 
 impl fmt::Display for IdentifyFailure {
@@ -36,6 +39,7 @@ impl fmt::Display for IdentifyFailure {
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
             Self::Estimate(model, error) => write!(f, "{model}: {error}"),
+            Self::Formula(error) => write!(f, "{error}"),
             Self::NotUpdated(model) => {
                 write!(f, "{model}: the identified values have no place in its file")
             }

@@ -2,10 +2,12 @@
 //! the torque that drives them (figures 3.4, 3.6), and contact forces.
 
 mod axes;
+mod convergence;
 mod excitation;
 mod figures;
 mod torques;
 
+pub use convergence::convergence_picture;
 pub use torques::{TorquePicture, torque_picture};
 
 pub use excitation::{ExcitationPicture, excitation_picture};

@@ -1,0 +1,43 @@
+//! What was identified, as a page of HTML.
+
+use super::{Arguments, IdentifyFailure, Shown};
+use crate::cli::failure::Failure;
+use clap::ValueEnum;
+use denavit::report::IdentificationPage;
+use denavit::report::html::Fact;
+use std::path::PathBuf;
+
+pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Failure> {
+    let list = |paths: &[PathBuf]| {
+        let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        names.join(", ")
+    };
+    let facts = [
+        ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
+        ("model", format!("{}, content {:016x}", shown.robot.name, shown.robot.hash)),
+        ("estimated from", list(&arguments.train)),
+        ("judged with", list(&arguments.validate)),
+        ("method", word(arguments.method)),
+        ("standard errors", word(arguments.errors)),
+        ("seed", arguments.seed.to_string()),
+    ];
+    let facts: Vec<Fact> = facts
+        .into_iter()
+        .filter(|(_, value)| !value.is_empty())
+        .map(|(name, value)| Fact { name: name.to_owned(), value })
+        .collect();
+    let remarks: Vec<String> =
+        shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
+    let page = IdentificationPage {
+        model: &shown.robot.name,
+        facts: &facts,
+        remarks: &remarks,
+        found: shown.found,
+    };
+    Ok(page.page().map_err(IdentifyFailure::Formula)?.render())
+}
+
+/// The word by which an option's value is given.
+fn word(value: impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}

@@ -4,6 +4,7 @@ mod checks;
 mod compiled;
 mod counts;
 mod decomposed;
+mod identified;
 mod simulated;
 mod states;
 
@@ -25,13 +26,14 @@ use denavit::function::FunctionName;
 use denavit::model::Robot;
 use denavit::regressor::{Certificate, RegressorOptions, base_parameters};
 use denavit::report::{Align, Pose, Table, picture};
+use identified::Identified;
 use serde::Serialize;
 use simulated::Simulated;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Derive, emit, draw, check and simulate the humanoid TUlip, the arm PUMA 560 and a biped
+/// Derive, emit, draw, check, simulate and identify TUlip, PUMA 560 and a walking biped
 ///
 /// Needs no file: the models are part of the command. Its functions were generated when it was
 /// built; they are run at random states against equations of motion that are derived in another
@@ -98,6 +100,7 @@ struct DemoJson<'a> {
     robots: &'a [Outcome],
     decomposed: &'a Decomposed,
     simulated: &'a [Simulated],
+    identified: &'a Identified,
     seconds: f64,
     passed: bool,
 }
@@ -123,20 +126,34 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     progress.show("simulating");
     let simulated = Simulated::all(directory)?;
+    let identified = Identified::new(arguments.seed, directory, &progress)?;
     drop(progress);
     let decomposed = Decomposed::new(directory)?;
     if !arguments.json {
         decomposed.write(out)?;
         simulated::write_all(&simulated, out)?;
+        identified.write(out)?;
     }
     let checked = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
     let walked = simulated.iter().all(Simulated::passed);
-    let passed = checked && walked && outcomes.iter().all(|outcome| outcome.base.verified);
+    let passed = checked
+        && walked
+        && identified.passed()
+        && outcomes.iter().all(|outcome| outcome.base.verified);
     let seconds = started.elapsed().as_secs_f64();
     if arguments.json {
         let seed = arguments.seed;
         let (robots, decomposed, simulated) = (&outcomes[..], &decomposed, &simulated[..]);
-        let json = DemoJson { version, seed, robots, decomposed, simulated, seconds, passed };
+        let json = DemoJson {
+            version,
+            seed,
+            robots,
+            decomposed,
+            simulated,
+            identified: &identified,
+            seconds,
+            passed,
+        };
         write_json(out, &json)?;
     } else {
         let verdict = if passed { "all checks passed" } else { "A CHECK FAILED" };

@@ -31,7 +31,7 @@ use std::path::PathBuf;
 /// are any); --columns maps those of other logs. Positions and torques pass one zero-phase filter,
 /// torques and regressor one decimator. Base parameters are exact; what the motion does not show
 /// keeps the model's value and is said to. Exits with 1 if what is found explains nothing.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:
   denavit simulate tulip_leg_tracking -o tracking.csv
@@ -179,28 +179,69 @@ struct Shown<'a> {
     remarks: &'a [(String, LogRemark)],
 }
 
+/// All that the arguments lead to.
+struct Answered {
+    robot: Robot,
+    source: String,
+    model: RegressionModel,
+    found: Identification,
+    remarks: Vec<(String, LogRemark)>,
+}
+
+impl Answered {
+    fn new(arguments: &Arguments, progress: &Progress) -> Result<Self, Failure> {
+        let (robot, source) = read_model_text(&arguments.model)?;
+        let options = regressor_options(&robot, &arguments.with)?;
+        let model = RegressionModel::new(&robot, options, &arguments.keep)
+            .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
+        progress.show("reading logs");
+        let read = logs::read(arguments, &robot, &model)?;
+        let options = arguments.options(&model, read.position_noise.clone());
+        progress.show("estimating");
+        let request = Request {
+            model: &model,
+            train: &read.train,
+            validate: &read.validate,
+            instruments: &read.instruments,
+            options: &options,
+        };
+        let found = identify(request)
+            .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
+        Ok(Self { robot, source, model, found, remarks: read.remarks })
+    }
+
+    fn shown(&self) -> Shown<'_> {
+        let Self { robot, model, found, remarks, .. } = self;
+        Shown { robot, model, found, remarks }
+    }
+}
+
+/// What is found in one log below a frequency \[Hz\], and its page.
+pub(crate) fn of_log(
+    model: &str,
+    (log, cutoff_hz): (PathBuf, f64),
+    progress: &Progress,
+) -> Result<(Identification, String), Failure> {
+    let arguments = Arguments {
+        model: PathBuf::from(model),
+        train: vec![log],
+        seed: 1,
+        with: vec![With::Modelled],
+        conditions: Conditions::filtered(cutoff_hz),
+        ..Arguments::default()
+    };
+    let answered = Answered::new(&arguments, progress)?;
+    let page = page::of(&arguments, &answered.shown())?;
+    Ok((answered.found, page))
+}
+
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let (robot, source) = read_model_text(&arguments.model)?;
-    let options = regressor_options(&robot, &arguments.with)?;
-    let model = RegressionModel::new(&robot, options, &arguments.keep)
-        .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
     let progress = Progress::new();
-    progress.show("reading logs");
-    let read = logs::read(arguments, &robot, &model)?;
-    let options = arguments.options(&model, read.position_noise.clone());
-    progress.show("estimating");
-    let request = Request {
-        model: &model,
-        train: &read.train,
-        validate: &read.validate,
-        instruments: &read.instruments,
-        options: &options,
-    };
-    let found =
-        identify(request).map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
+    let answered = Answered::new(arguments, &progress)?;
     progress.clear();
+    let Answered { robot, source, model, found, .. } = &answered;
     if let Some(path) = &arguments.svg {
         let picture = TorquePicture {
             title: &model.model.replace('_', " "),
@@ -214,10 +255,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(path, torque_picture(&picture).as_bytes())?;
     }
     if let Some(path) = &arguments.output {
-        let text = identified_model(&robot, &model, &found, &source)?;
+        let text = identified_model(robot, model, found, source)?;
         write_whole(path, text.as_bytes())?;
     }
-    let shown = Shown { robot: &robot, model: &model, found: &found, remarks: &read.remarks };
+    let shown = answered.shown();
     if let Some(path) = &arguments.html {
         write_whole(path, page::of(arguments, &shown)?.as_bytes())?;
     }

@@ -13,7 +13,7 @@ use denavit::plants::{Plant, plant_of};
 use std::path::Path;
 
 /// How logs are conditioned.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct Conditions {
     /// Cutoff of the zero-phase Butterworth filter [Hz], with the order of one pass if it is not 4;
     /// or none. A tenth of the rate of sampling if nothing is said
@@ -67,6 +67,12 @@ fn averaging(text: &str) -> Result<Averaging, String> {
 }
 
 impl Conditions {
+    /// A zero-phase filter of fourth order, all else as it is if nothing is said.
+    pub(super) fn filtered(cutoff_hz: f64) -> Self {
+        let filter = Some(FilterChoice::Some(Filter { order: 4, cutoff_hz }));
+        Self { filter, ..Self::default() }
+    }
+
     fn of(&self, step_s: f64) -> Conditioning {
         let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s };
         let filter = match self.filter {

@@ -7,7 +7,7 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{Input, on_stdout, read_input, write_whole};
+use super::files::{Input, check_outputs, on_stdout, read_input, write_whole};
 use super::options::{Term, terms};
 use clap::{Args, ValueEnum};
 use denavit::emit::latex::base_document;
@@ -204,7 +204,9 @@ impl<'a> Found<'a> {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let files = [&arguments.certificate, &arguments.latex, &arguments.markdown];
-    let is_answered = on_stdout(&files.map(Option::as_ref), arguments.json)?;
+    let files = files.map(Option::as_ref);
+    let is_answered = on_stdout(&files, arguments.json)?;
+    check_outputs(&files)?;
     let mut robot = match read_input(&arguments.model)? {
         Input::Model(robot) => robot,
         Input::Equations(equations) => return given::run(arguments, &equations, is_answered, out),

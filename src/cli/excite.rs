@@ -5,7 +5,7 @@ mod answer;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{load_beside, on_stdout, read_file, read_model, write_whole};
+use super::files::{check_outputs, load_beside, on_stdout, read_file, read_model, write_whole};
 use super::progress::Progress;
 use answer::Found;
 use clap::{Args, ValueEnum};
@@ -220,6 +220,7 @@ impl Arguments {
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let files = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&files, arguments.json)?;
+    check_outputs(&files)?;
     let robot = read_model(&arguments.model.model)?;
     let options = arguments.options(&robot)?;
     if let Some(path) = &arguments.check {

@@ -9,7 +9,7 @@ mod text;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{on_stdout, read_model_text, write_whole};
+use super::files::{check_outputs, on_stdout, read_model_text, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow};
@@ -238,6 +238,7 @@ pub(crate) fn of_log(
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
+    check_outputs(&outputs)?;
     let progress = Progress::new();
     let answered = Answered::new(arguments, &progress)?;
     progress.clear();

@@ -165,6 +165,10 @@ impl Conditioned {
         let mut edge = if logged { 0 } else { STENCIL };
         edge += filter.as_ref().map_or(0, Butterworth::settling);
         let decimation = how.decimation.max(1);
+        // before anything of the size of a decimator is made
+        if decimation >= samples {
+            return Err(ConditionError::TooShort(0));
+        }
         let reach = Decimator::new(decimation).reach();
         if samples < 2 * (edge + reach) + 8 * decimation {
             return Err(ConditionError::TooShort(samples.saturating_sub(2 * (edge + reach))));

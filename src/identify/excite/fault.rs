@@ -1,5 +1,6 @@
 //! Why no excitation is looked for: everything that is wrong with model and options, at once.
 
+use super::options::DURATIONS_S;
 use crate::plants::regression::RegressionError;
 use denavit_codegen::model::BakeError;
 use denavit_codegen::program::LowerError;
@@ -78,7 +79,7 @@ pub enum ExciteFault {
         /// Where [rad, m].
         position: f64,
     },
-    /// The duration is no positive number.
+    /// The duration is too short or too long.
     Duration(f64),
     /// The motion of starts has no size; holds what was asked for.
     Reach(f64),
@@ -123,7 +124,8 @@ impl fmt::Display for ExciteFault {
                 write!(f, "`{joint}` is held at {position}, outside its position limits")
             }
             Self::Duration(duration) => {
-                write!(f, "a duration of {duration} s is no positive number")
+                let (least, most) = (DURATIONS_S.start(), DURATIONS_S.end());
+                write!(f, "a duration of {duration} s is not from {least} s to {most} s")
             }
             Self::Reach(reach) => {
                 write!(f, "--reach: starts cannot use {reach} of a limit")

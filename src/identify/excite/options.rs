@@ -8,6 +8,10 @@ use crate::plants::regression::{RegressionJoint, RegressionModel};
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;
+use std::ops::RangeInclusive;
+
+/// Laps that are looked for: longer than a robot's shaking, and shorter than a day \[s\].
+pub(super) const DURATIONS_S: RangeInclusive<f64> = 0.01..=1e4;
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +94,7 @@ impl ExciteOptions {
     /// The space of trajectories, or nothing with what is wrong noted.
     pub(super) fn space(&self, faults: &mut Vec<ExciteFault>) -> Option<Space> {
         let before = faults.len();
-        if !(self.duration_s > 0.0 && self.duration_s.is_finite()) {
+        if !DURATIONS_S.contains(&self.duration_s) {
             faults.push(ExciteFault::Duration(self.duration_s));
         }
         let (what, least, count) = match self.family {

@@ -61,7 +61,7 @@ fn bad_input_is_told_all_at_once_and_exits_with_2() {
     let run = excite(&directory, &["planar_2r", "--duration-s", "-1", "--hold", "knee=0"]);
     assert_eq!(run.code, Some(2));
     for text in [
-        "planar_2r: a duration of -1 s is no positive number",
+        "planar_2r: a duration of -1 s is not from 0.01 s to 10000 s",
         "planar_2r: --hold: no joint is called `knee`",
         "planar_2r: `link1` has no position limit",
         "hint: add `\"limits\": {\"velocity\": 2}` to the link `link2` of the model",

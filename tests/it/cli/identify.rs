@@ -83,3 +83,19 @@ fn what_is_wrong_is_said_and_exits_with_2() {
         assert!(run.stdout.is_empty());
     }
 }
+
+#[test]
+fn filters_and_outputs_that_cannot_be_are_refused() {
+    let directory = Directory::new("identify-refused");
+    simulated(&directory);
+    for (more, expected) in [
+        (&["--filter", "1e-9"][..], "without its edges the log has 0 samples"),
+        (&["--html", "out", "--svg", "out"], "two outputs would be this file"),
+        (&["--html", "nowhere/page.html"], "no such file or directory"),
+    ] {
+        let words = [&["identify", "tulip_leg", "--train", "log.csv"], more].concat();
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(2), "{more:?}");
+        assert!(run.stderr.contains(expected), "{more:?}: {}", run.stderr);
+    }
+}

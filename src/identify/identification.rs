@@ -3,9 +3,9 @@
 use super::condition::Conditioned;
 use super::estimate::{
     Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, Options, Status,
-    Validation, consistent, convergence, estimate, parameters, validate,
+    Validation, consistent, convergence, estimate, noise_of_positions, parameters, validate,
 };
-use crate::plants::regression::{RegressionModel, StandardParameter};
+use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +33,9 @@ pub struct Identification {
     pub validate: Option<Validation>,
     /// What is left of these with the values that the model had; none if it lacks one.
     pub before: Option<f64>,
+    /// The joint of whose torque noise of the positions makes most by itself, and how much: a share
+    /// of its root of mean square. Parameters are biased if it is more than some percent.
+    pub position_noise: Option<(String, f64)>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
     /// The nearest bodies that exist.
@@ -41,7 +44,21 @@ pub struct Identification {
     pub estimate: Estimate,
 }
 
+/// The share of a torque from which on noise of the positions is said to bias parameters: its
+/// square, a thousandth, is what standard errors of a good log are.
+const BIASING: f64 = 0.03;
+
 impl Identification {
+    /// What is to be said if noise of the positions biases the parameters.
+    pub fn bias(&self) -> Option<String> {
+        let (joint, share) = self.position_noise.as_ref().filter(|(_, share)| *share > BIASING)?;
+        Some(format!(
+            "Noise of the positions alone makes {:.0} % of the torque of {joint}: parameters are \
+             biased, and their intervals too narrow. A filter with a lower cutoff has less of it.",
+            100.0 * share
+        ))
+    }
+
     /// The names of parameters that the motion does not show.
     pub fn not_excited(&self) -> Vec<&str> {
         let hidden = self.parameters.iter().filter(|one| one.status == Status::NotExcited);
@@ -59,9 +76,19 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let judged = |phi: &[f64]| (!held_out.is_empty()).then(|| validate(model, phi, held_out));
     let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
     let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
+    let left = validate(model, phi, train);
+    let torque_of = |joint: &RegressionJoint| {
+        let found = left.joints.iter().find(|one| one.name == joint.name);
+        found.map_or(0.0, |one| one.torque_rms)
+    };
+    let torques: Vec<f64> = model.joints.iter().map(torque_of).collect();
+    let noise = noise_of_positions(model, train, (phi, &options.position_noise), &torques);
+    let names = model.joints.iter().map(|joint| joint.name.clone());
+    let most = names.zip(noise).max_by(|a, b| a.1.total_cmp(&b.1));
     Ok(Identification {
         parameters: parameters(model, &found),
-        train: validate(model, phi, train),
+        train: left,
+        position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: judged(phi),
         before: given.and_then(|phi| judged(&phi)).map(|validation| validation.relative),
         convergence: convergence(model, &found),

@@ -55,6 +55,9 @@ impl IdentificationPage<'_> {
             text += &format!(", of which the model left {} before", percent(before));
         }
         text.push('.');
+        if let Some(bias) = found.bias() {
+            text = format!("{text} {bias}");
+        }
         if found.consistent.distance > 1.0 {
             text += &format!(
                 " The estimate belongs to no bodies that exist; the nearest ones are {} standard \

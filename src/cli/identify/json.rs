@@ -137,7 +137,11 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
                 .collect(),
         },
         convergence: convergence.collect(),
-        remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
+        remarks: remarks
+            .iter()
+            .map(|(file, remark)| format!("{file}: {remark}"))
+            .chain(found.bias())
+            .collect(),
     };
     write_json(out, &json)
 }

@@ -51,6 +51,9 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     }
     writeln!(out, "{}", table.without_empty_columns())?;
     write_residuals(out, shown)?;
+    if let Some(text) = found.bias() {
+        writeln!(out, "\n{}", paragraph("", "", &text))?;
+    }
     if found.consistent.distance > 1.0 {
         let text = format!(
             "The estimate belongs to no bodies that exist: the nearest ones are {} standard errors \

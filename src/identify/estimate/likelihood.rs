@@ -12,6 +12,9 @@ use crate::plants::regression::{RegressionModel, RegressionRows};
 /// Samples in a block.
 const BLOCK: usize = 512;
 
+/// Blocks of a log in which noise is looked at.
+const LOOKED_AT: usize = 4;
+
 /// The least share of the residual's variance that is taken for noise of the torque itself.
 const LEAST_TORQUE_SHARE: f64 = 0.05;
 
@@ -28,7 +31,7 @@ impl Variance {
         logs: &[Conditioned],
         (phi, deviations): (&[f64], &[f64]),
     ) -> Self {
-        let of_log = |log: &Conditioned| of_log(model, log, phi, deviations);
+        let of_log = |log: &Conditioned| of_log(model, (log, 1), phi, deviations);
         Self { of_positions: logs.iter().map(of_log).collect() }
     }
 
@@ -57,9 +60,35 @@ impl Variance {
     }
 }
 
+/// How much of each joint's torque noise of the positions makes up by itself, root of mean square
+/// over root of mean square, looked at in some blocks of each log. Columns of the regressor have as
+/// much noise, so that parameters are biased by about its square.
+pub(in crate::identify) fn noise_of_positions(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (phi, deviations): (&[f64], &[f64]),
+    torque_rms: &[f64],
+) -> Vec<f64> {
+    let mut sums = vec![0.0; model.joints.len()];
+    let mut count = 0;
+    for log in logs {
+        let every = log.samples().div_ceil(BLOCK * LOOKED_AT).max(1);
+        for (sum, row) in sums.iter_mut().zip(of_log(model, (log, every), phi, deviations)) {
+            *sum += row.iter().sum::<f64>();
+        }
+        count += (0..log.samples()).filter(|sample| (sample / BLOCK).is_multiple_of(every)).count();
+    }
+    let share = |(sum, torque): (f64, &f64)| match *torque > 0.0 {
+        true => (sum / count.max(1) as f64).sqrt() / torque,
+        false => 0.0,
+    };
+    sums.into_iter().zip(torque_rms).map(share).collect()
+}
+
+/// Of every so many blocks of a log one is looked at; the variances of others are 0.
 fn of_log(
     model: &RegressionModel,
-    log: &Conditioned,
+    (log, every): (&Conditioned, usize),
     phi: &[f64],
     deviations: &[f64],
 ) -> Vec<Vec<f64>> {
@@ -71,7 +100,7 @@ fn of_log(
     let (mut rows, mut motion) = (RegressionRows::default(), Vec::new());
     let own: Vec<Vec<f64>> =
         model.pattern().iter().map(|places| places.iter().map(|&at| phi[at]).collect()).collect();
-    for first in (0..samples).step_by(BLOCK) {
+    for first in (0..samples).step_by(BLOCK * every) {
         let count = BLOCK.min(samples - first);
         log.motion_at(first, count, &mut motion);
         for joint in 0..n {

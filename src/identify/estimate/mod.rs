@@ -24,6 +24,7 @@ pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
 pub use errors::{Errors, interval_factor};
 pub use least_squares::{Estimate, EstimateError, Method, Options, estimate};
+pub(in crate::identify) use likelihood::noise_of_positions;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};

@@ -99,3 +99,17 @@ fn filters_and_outputs_that_cannot_be_are_refused() {
         assert!(run.stderr.contains(expected), "{more:?}: {}", run.stderr);
     }
 }
+
+/// Steps of encoders are differentiated twice: below a high cutoff they drown the torque.
+#[test]
+fn noise_of_positions_that_biases_is_said() {
+    let directory = Directory::new("identify-bias");
+    let run = run_in(&directory.path, &["simulate", "tulip_leg_identification", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for (cutoff, is_said) in [("100", true), ("10", false)] {
+        let words = ["identify", "tulip_leg_table34", "--train", "log.csv", "--filter", cutoff];
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert_eq!(run.stdout.contains("parameters are biased"), is_said, "{}", run.stdout);
+    }
+}

@@ -28,7 +28,7 @@ impl RegressionRows {
     }
 
     /// The entries of one joint's rows in the `place`-th column of its
-    /// [pattern](RegressionModel::pattern), one for each sample.
+    /// [pattern](super::regression::RegressionModel::pattern), one for each sample.
     pub fn column(&self, joint: usize, place: usize) -> &[f64] {
         let at = (self.first[joint] + place) * self.samples;
         &self.values[at..at + self.samples]

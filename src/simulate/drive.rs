@@ -129,6 +129,18 @@ impl Drives {
         output.power = [power, lost];
     }
 
+    /// The torque that each joint needs: what a stiff drive gives, of which its friction takes a
+    /// part, and what the spring of an elastic one passes on.
+    pub(super) fn required<'a>(
+        &'a self,
+        command: &'a [f64],
+        torque: &'a [f64],
+    ) -> impl Iterator<Item = f64> + 'a {
+        command.iter().zip(torque).enumerate().map(|(joint, (command, torque))| {
+            if self.elastic.contains(&joint) { *torque } else { *command }
+        })
+    }
+
     /// Friction of each joint, then of each elastic motor, as a factor of its rate: the torque that
     /// friction takes is factor times rate. Coulomb friction has the slope of its secant, so that
     /// taken implicitly it stops a motion and never turns it round.

@@ -147,7 +147,7 @@ impl Recorder {
         for joint in 0..parts.q.len() {
             values.extend(motion.control.setpoint(joint, time).map(|setpoint| setpoint.position));
         }
-        values.extend(&motion.work.drive.torque);
+        values.extend(motion.drives.required(&motion.work.command, &motion.work.drive.torque));
         values.extend(&motion.work.command);
         values.extend(parts.motor);
         let points = motion.plant.model().contacts.len();

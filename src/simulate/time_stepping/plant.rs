@@ -146,6 +146,11 @@ impl<'a> ControlledPlant<'a> {
         torque.clone_from(&output.torque);
     }
 
+    /// The torque that each joint needs of its drive, friction included [N m, N].
+    pub(super) fn required_torque(&self) -> impl Iterator<Item = f64> + '_ {
+        self.drives.required(&self.step.command, &self.step.torque)
+    }
+
     /// Work that the drives put into a step of length `step_s`, and what their friction took \[J\].
     /// Completes commands and torques by what the step took implicitly.
     pub(super) fn finish_step(

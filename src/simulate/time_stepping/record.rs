@@ -221,7 +221,7 @@ impl StepRecorder {
         for joint in 0..parts.q.len() {
             values.extend(control.setpoint(joint, t_s).map(|setpoint| setpoint.position));
         }
-        values.extend(&system.step.torque);
+        values.extend(system.required_torque());
         values.extend(&system.step.command);
         values.extend(parts.motor);
         let undefined = self.interval.steps == 0;

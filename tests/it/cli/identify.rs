@@ -113,3 +113,19 @@ fn noise_of_positions_that_biases_is_said() {
         assert_eq!(run.stdout.contains("parameters are biased"), is_said, "{}", run.stdout);
     }
 }
+
+/// The torque in a log is what the joint needs, Coulomb friction of its drive among it.
+#[test]
+fn friction_is_found_in_a_simulated_log() {
+    let directory = Directory::new("identify-friction");
+    simulated(&directory);
+    let words = ["identify", "tulip_leg", "--train", "log.csv", "--filter", "20", "--json"];
+    let run = run_in(&directory.path, &words);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let json: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let parameters = json["parameters"].as_array().expect("a list");
+    let hip = parameters.iter().find(|one| one["name"] == "fc_hip_x").expect("it is a parameter");
+    let [value, truth] = ["value", "model_value"].map(|key| hip[key].as_f64().expect("a number"));
+    // the simulated friction is a steep line about rest, where the regressor has a sign
+    assert!((0.5 * truth..1.1 * truth).contains(&value), "{value} instead of {truth}");
+}

@@ -197,13 +197,7 @@ fn place(root: &Node, parameter: &ModelParameter) -> Option<Place> {
         Some(Role::Body(_, entry)) => body_entry(body(root, link?)?, entry),
         _ => {
             let drive = root.get("drives").and_then(|drives| drives.get(link?));
-            let key = match parameter.name.split('_').next()? {
-                "fv" => "viscous",
-                "fc" => "coulomb",
-                "Ia" => "rotor_inertia",
-                "off" => "offset",
-                _ => return None,
-            };
+            let key = drive_key(parameter)?;
             let joint = link_of(root, link?).and_then(|link| link.get("joint"));
             let damping = joint.and_then(|joint| joint.get("damping"));
             match damping.filter(|_| key == "viscous") {
@@ -247,6 +241,17 @@ fn body_entry(body: &Node, entry: BodyEntry) -> Option<Place> {
     }
 }
 
+/// The key that a drive has for a joint parameter.
+fn drive_key(parameter: &ModelParameter) -> Option<&'static str> {
+    Some(match parameter.name.split('_').next()? {
+        "fv" => "viscous",
+        "fc" => "coulomb",
+        "Ia" => "rotor_inertia",
+        "off" => "offset",
+        _ => return None,
+    })
+}
+
 /// A joint parameter of a joint without a drive of its own.
 fn missing_joint(
     root: &Node,
@@ -255,13 +260,7 @@ fn missing_joint(
     inserted: &mut Vec<(usize, String, String)>,
 ) -> Option<()> {
     let link = parameter.link.as_deref()?;
-    let key = match parameter.name.split('_').next()? {
-        "fv" => "viscous",
-        "fc" => "coulomb",
-        "Ia" => "rotor_inertia",
-        "off" => "offset",
-        _ => return None,
-    };
+    let key = drive_key(parameter)?;
     let (at, prefix) = match root.get("drives") {
         Some(drives) => (drives.span.start + 1, String::new()),
         None => (root.span.start + 1, "drives.".to_owned()),

@@ -9,7 +9,7 @@
 //!   so is, of any robot, a relation that does not settle: one of special terms or lengths.
 
 use super::base::BaseParameters;
-use super::coincidence::written_out;
+use super::coincidence::{self, written_out};
 use super::column::{Regressor, RegressorError, RegressorOptions, Unknowns};
 use super::rank::{PARAMETERS, rows_at};
 use super::settle::{settle, without_denominators};
@@ -39,9 +39,6 @@ const MULTIPLIED_OUT_JOINTS: usize = 6;
 
 /// Memory for it: three times what PUMA 560 takes.
 const MULTIPLIED_OUT_BYTES: usize = 48 << 20;
-
-/// Memory for relations that have no other proof.
-const COINCIDENCE_BYTES: usize = 320 << 20;
 
 /// A certificate, as it stands in its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -313,7 +310,7 @@ impl Certificate {
             is_small &= !amounts.iter().any(|&(_, amount)| divides_by_waves(&dag, amount));
             list.push(relation, sums(regressor, &mut dag, &amounts));
         }
-        match unsettled.first_not_zero(&mut dag, COINCIDENCE_BYTES) {
+        match unsettled.first_not_zero(&mut dag, coincidence::MEMORY_BYTES) {
             Some(None) => {}
             Some(Some(refuted)) => return Verdict::Relation(refuted.to_owned()),
             None => return Verdict::Relation(unsettled.names[0].clone()),

@@ -9,7 +9,7 @@ use crate::expr::{ClassSet, Dag, ExprId, SymbolId};
 use crate::fundamental::{Basis, Decomposition, Expansion, Matrix, decompose, echelon};
 
 /// Memory for it: twenty times what PUMA 560 takes, all terms in.
-const MEMORY_BYTES: usize = 320 << 20;
+pub(super) const MEMORY_BYTES: usize = 320 << 20;
 
 /// The relations among `columns`, which are to be kept in this order. None if they are too large to
 /// be written out.

@@ -55,7 +55,7 @@ pub enum LogFault {
 
 /// What looks wrong: it may be accepted by whoever knows better.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
+#[allow(missing_docs)] // the fields are what the messages name
 pub enum Suspicion {
     /// The time seems to count milliseconds or microseconds.
     TimeUnit { step: f64, factor: f64 },
@@ -75,7 +75,7 @@ pub enum Suspicion {
 
 /// What was found and needs no answer: repairs that were made, properties that matter.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
+#[allow(missing_docs)] // the fields are what the messages name
 pub enum LogRemark {
     /// Rows that said the same twice were dropped.
     DroppedRepeats { count: usize },

@@ -42,18 +42,9 @@ fn a_simulated_log_gives_parameters_and_a_model() {
     assert!(json["condition"].is_number());
     let again = run_in(&directory.path, &["inspect", "new.json"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
-    // The same input gives the same bytes.
-    let words = [
-        "identify",
-        "tulip_leg",
-        "--train",
-        "log.csv",
-        "--validate",
-        "log.csv",
-        "--filter",
-        "20",
-        "--json",
-    ];
+    // The same input gives the same bytes, of which the model is none.
+    let words: Vec<&str> =
+        words.into_iter().filter(|word| !matches!(*word, "-o" | "new.json")).collect();
     let first = run_in(&directory.path, &words).stdout;
     assert_eq!(first, run_in(&directory.path, &words).stdout);
 }

@@ -36,16 +36,21 @@ enum Format {
     /// What joints follow
     #[value(alias = denavit::simulate::scenario::TRAJECTORY_FORMAT)]
     Trajectory,
+    /// What drives a robot
+    #[value(alias = denavit::simulate::scenario::CONTROLLER_FORMAT)]
+    Controller,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let trajectory = denavit::simulate::scenario::trajectory_schema();
+    let controller = denavit::simulate::scenario::controller_schema();
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
         Format::Equations => denavit::model::equations::schema(),
         Format::Certificate => denavit::regressor::certificate::schema(),
         Format::Scenario => denavit::simulate::scenario::schema(),
         Format::Trajectory => &trajectory,
+        Format::Controller => &controller,
     };
     writeln!(out, "{}", schema.trim_end())?;
     Ok(Answer::Done)

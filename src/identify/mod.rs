@@ -6,6 +6,7 @@
 //! - [`add_contact_forces`]: what the ground does to each equation
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
+//! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
 //! - [`model_values`], [`updated_text`]: back into the model file
 //! - [`statics`]: what weighings and held postures say
@@ -15,6 +16,7 @@ pub mod condition;
 mod contact_forces;
 pub mod estimate;
 pub mod excite;
+pub mod forward;
 mod identification;
 pub mod knowledge;
 pub mod log;

@@ -27,9 +27,13 @@ pub struct RegressionJoint {
     pub acceleration_limit: Option<f64>,
     /// Lowest and highest torque of the drive, joint side.
     pub torque_limits: Option<[f64; 2]>,
-    /// What a torque of a log is multiplied with to be one along the joint axis: the gear ratio
-    /// where the model's `torque_side` is the motor's and the drive is stiff, else 1.
-    pub torque_factor: f64,
+    /// What a torque of its motor is multiplied with to be one along the joint axis: the gear ratio
+    /// of a stiff drive, else 1.
+    pub gear_ratio: f64,
+    /// Where logs that do not say it themselves have its torque, by the model.
+    pub torque_side: TorqueSide,
+    /// Whether a spring is between motor and joint, so that the motor's torque is not the joint's.
+    pub is_elastic: bool,
 }
 
 /// Why a robot has no regression model.
@@ -117,7 +121,7 @@ pub(super) fn with_joint_parameters(robot: &Robot, options: RegressorOptions) ->
         Base::PlanarFloating => 3,
     };
     let all = !options.only_modelled;
-    // The joint side throughout: `torque_factor` brings measurements there.
+    // The joint side throughout: `read_log` brings measurements there.
     robot.torque_side = TorqueSide::Joint;
     robot.terms.friction = options.friction && (robot.terms.friction || all);
     robot.terms.rotor = options.rotor && (robot.terms.rotor || all);
@@ -176,7 +180,9 @@ pub(super) fn described_joints(robot: &Robot, side: TorqueSide) -> Vec<Regressio
             velocity_limit: link.limits.velocity.and_then(value),
             acceleration_limit: link.limits.acceleration.and_then(value),
             torque_limits: link.limits.torque.and_then(range),
-            torque_factor: gear.filter(|_| side == TorqueSide::Motor).unwrap_or(1.0),
+            gear_ratio: gear.unwrap_or(1.0),
+            torque_side: side,
+            is_elastic: link.drive.is_some_and(|drive| drive.series_elastic.is_some()),
         }
     };
     robot.joints().map(|(link, _)| one(&robot.links[link])).collect()

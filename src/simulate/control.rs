@@ -12,11 +12,23 @@ pub struct JointControl {
     pub stiffness: f64,
     /// [N m s/rad, N s/m]; with computed torque [1/s].
     pub damping: f64,
+    /// What the damping acts on.
+    pub damped: Damped,
     /// Factor of both gains, a function of time: a leg that stands is held otherwise than one that
     /// swings; none is 1.
     pub gain_factor: Option<Reference>,
     /// Torque that is added, a function of time: feed-forward, or a log [N m, N].
     pub feed_forward: Option<Reference>,
+}
+
+/// What damping acts on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Damped {
+    /// The rate of the reference less that of the joint.
+    #[default]
+    Error,
+    /// The rate of the joint: a velocity loop in a position loop.
+    Rate,
 }
 
 /// What is added to the feedback of the joints.
@@ -144,9 +156,13 @@ impl Control {
                 let factor =
                     joint.gain_factor.as_ref().map_or(1.0, |factor| factor.at(t_s).position);
                 let gains = [joint.stiffness, joint.damping].map(|gain| factor * gain);
+                let wanted_rate = match joint.damped {
+                    Damped::Error => target.rate,
+                    Damped::Rate => 0.0,
+                };
                 forward
                     + gains[0] * (target.position - q[index])
-                    + gains[1] * (target.rate - qd[index])
+                    + gains[1] * (wanted_rate - qd[index])
             });
             scratch.wanted.push(feedback);
         }

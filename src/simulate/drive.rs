@@ -19,6 +19,9 @@ pub enum DriveModelling {
     Ideal,
     /// As the model says, with the motors of series elastic joints and with Coulomb friction.
     Model,
+    /// Commands are what joints need, as logs have it: friction of stiff drives is taken off, and
+    /// springs of elastic ones have passed them on.
+    Required,
 }
 
 /// Below this rate Coulomb friction is a steep line through 0 [rad/s, m/s], joint side.
@@ -105,7 +108,7 @@ impl Drives {
             power += *torque * rate;
             // what the plant's bias takes
             lost += (joint.viscous * rate + joint.offset) * rate;
-            if self.modelling == DriveModelling::Model && joint.coulomb > 0.0 {
+            if self.modelling != DriveModelling::Ideal && joint.coulomb > 0.0 {
                 let friction = joint.coulomb * (rate / STICTION_RATE).hyperbolic_tangent();
                 *torque -= friction;
                 lost += friction * rate;
@@ -151,7 +154,7 @@ impl Drives {
         factors: &mut Vec<f64>,
     ) {
         factors.clear();
-        let rubs = self.modelling == DriveModelling::Model;
+        let rubs = self.modelling != DriveModelling::Ideal;
         for (joint, rate) in model.joints.iter().zip(parts.qd) {
             let coulomb = if rubs { joint.coulomb } else { 0.0 };
             factors.push(joint.viscous + secant(coulomb, *rate, STICTION_RATE));

@@ -29,12 +29,12 @@ pub mod time_stepping;
 
 pub use audit::{Audit, Tolerances};
 pub use breakdown::{Breakdown, Stop};
-pub use control::{Compensation, Control, Feedback, JointControl};
+pub use control::{Compensation, Control, Damped, Feedback, JointControl};
 pub use drive::DriveModelling;
 pub use log::{Log, LogError, LogFault};
 pub use measure::{Measurement, Random};
 pub use measured_log::measured_log;
-pub use run::{Event, EventKind, Run, Simulation, simulate};
+pub use run::{Event, EventKind, Run, Simulation, simulate, simulate_believing};
 pub use settle::{Scuffing, Touching};
 pub use start::StartError;
 pub use state::State;

@@ -74,6 +74,8 @@ pub(super) fn slip_direction(velocity: &[f64], last: [f64; 2]) -> [f64; 2] {
 pub(super) struct Motion<'a> {
     pub(super) plant: &'a mut dyn Plant,
     pub(super) control: &'a Control,
+    /// The model that the controller computes with, if it is not the plant itself.
+    pub(super) believed: Option<&'a mut (dyn Plant + 'static)>,
     pub(super) drives: Drives,
     pub(super) ground: Ground,
     /// Law of each contact point.
@@ -148,6 +150,7 @@ impl<'a> Motion<'a> {
         Self {
             plant,
             control,
+            believed: None,
             drives,
             ground,
             friction,
@@ -173,7 +176,11 @@ impl<'a> Motion<'a> {
 
     /// Commanded torques at a time, from what is measured.
     pub(super) fn command(&mut self, t_s: f64, q: &[f64], qd: &[f64], command: &mut [f64]) {
-        self.control.command(self.plant, t_s, q, qd, &mut self.memory, command);
+        let plant: &mut dyn Plant = match &mut self.believed {
+            Some(believed) => &mut **believed,
+            None => &mut *self.plant,
+        };
+        self.control.command(plant, t_s, q, qd, &mut self.memory, command);
     }
 
     /// Accelerations without contact forces, into `work.acceleration`; factors the mass matrix.
@@ -186,7 +193,11 @@ impl<'a> Motion<'a> {
                 let [q, qd] = &mut self.measured;
                 self.drives.measured(self.plant.model(), self.control.feedback, parts, q, qd);
                 let command = &mut self.work.command;
-                self.control.command(self.plant, time, q, qd, &mut self.memory, command);
+                let plant: &mut dyn Plant = match &mut self.believed {
+                    Some(believed) => &mut **believed,
+                    None => &mut *self.plant,
+                };
+                self.control.command(plant, time, q, qd, &mut self.memory, command);
             }
         }
         let Work { mass, bias, acceleration, drive, command, .. } = &mut self.work;

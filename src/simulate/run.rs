@@ -129,6 +129,8 @@ const START_TOUCH_M: f64 = 1e-6;
 /// This many events within `ZENO_S` are without end.
 const ZENO_EVENTS: usize = 200;
 const ZENO_S: f64 = 1e-9;
+/// Times of the log, of samples and of references that are nearer are one: no step is shorter.
+const SAME_TIME_S: f64 = 1e-12;
 /// Steps are audited at this distance at least, besides rows of the log and the first step after
 /// every event \[s\].
 const AUDIT_S: f64 = 4e-3;
@@ -136,6 +138,18 @@ const AUDIT_S: f64 = 4e-3;
 /// Runs a plant under control from a state; deterministic.
 pub fn simulate(
     plant: &mut dyn Plant,
+    control: &Control,
+    initial: &State,
+    simulation: &Simulation,
+) -> Result<Run, StartError> {
+    simulate_believing(plant, None, control, initial, simulation)
+}
+
+/// As [`simulate`], with a controller that compensates by a model of its own, `believed`, which has
+/// the joints of the plant.
+pub fn simulate_believing(
+    plant: &mut dyn Plant,
+    believed: Option<&mut (dyn Plant + 'static)>,
     control: &Control,
     initial: &State,
     simulation: &Simulation,
@@ -151,6 +165,7 @@ pub fn simulate(
     let model = plant.model();
     let (points, links, falls) = (model.contacts.len(), model.links.len(), model.fall_points.len());
     let mut motion = Motion::new(plant, control, drives, friction, holding);
+    motion.believed = believed;
     let y = motion.layout.pack(&state);
     let mut run = Runner {
         watch: Watch::new(points, links, falls, y.len()),
@@ -432,10 +447,12 @@ impl Runner<'_> {
         let sample = self.motion.control.period_s.map(|p| self.start_s + self.sample as f64 * p);
         // held torques do not see the references move
         let jump = match sample {
-            None => self.motion.control.next_break(t_s),
+            None => self.motion.control.next_break(t_s + SAME_TIME_S),
             Some(_) => None,
         };
-        [sample, jump].into_iter().flatten().fold(self.simulation.end_s, f64::min)
+        let end_s = self.simulation.end_s;
+        let before = |stop_s: &f64| *stop_s < end_s - SAME_TIME_S;
+        [sample, jump].into_iter().flatten().filter(before).fold(end_s, f64::min)
     }
 
     /// The time of the log's next row.

@@ -5,6 +5,7 @@ mod base;
 mod decompose;
 mod errors;
 mod excite;
+mod gears;
 mod help;
 mod identify;
 mod readme;

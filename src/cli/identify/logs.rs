@@ -165,6 +165,7 @@ impl Reader<'_> {
         };
         let mut log: MeasuredLog =
             read_log(&file, open_log(path)?, of, &self.mapping).map_err(IdentifyFailure::Log)?;
+        log.require_joint_torques(of).map_err(IdentifyFailure::Log)?;
         let remarks = std::mem::take(&mut log.remarks);
         self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
         if let Some(plant) = &mut self.plant {

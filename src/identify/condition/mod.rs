@@ -70,8 +70,13 @@ pub enum ConditionError {
         /// Half the rate of sampling \[Hz\].
         nyquist_hz: f64,
     },
-    /// What is left without the edges is too short: samples left.
-    TooShort(usize),
+    /// Too few samples for this filter and decimation, whose edges are cut.
+    TooShort {
+        /// Samples of the log.
+        samples: usize,
+        /// The fewest that leave something.
+        needed: usize,
+    },
     /// The rates or accelerations of this joint were not logged.
     NoRates(String),
     /// A period is no whole number of samples.
@@ -98,9 +103,11 @@ impl fmt::Display for ConditionError {
                 "no filter of order 1 to 10 has its cutoff at {cutoff_hz} Hz: half the rate of \
                  sampling is {nyquist_hz} Hz"
             ),
-            Self::TooShort(samples) => {
-                write!(f, "without its edges the log has {samples} samples, too few")
-            }
+            Self::TooShort { samples, needed } => write!(
+                f,
+                "{samples} rows: this filter cuts the edges off, and at least {needed} rows are \
+                 needed\n  hint: --filter with a higher cutoff, or a lower --decimate, needs fewer"
+            ),
             Self::NoRates(joint) => {
                 write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
             }
@@ -167,11 +174,12 @@ impl Conditioned {
         let decimation = how.decimation.max(1);
         // before anything of the size of a decimator is made
         if decimation >= samples {
-            return Err(ConditionError::TooShort(0));
+            return Err(ConditionError::TooShort { samples, needed: decimation + 1 });
         }
         let reach = Decimator::new(decimation).reach();
-        if samples < 2 * (edge + reach) + 8 * decimation {
-            return Err(ConditionError::TooShort(samples.saturating_sub(2 * (edge + reach))));
+        let needed = 2 * (edge + reach) + 8 * decimation;
+        if samples < needed {
+            return Err(ConditionError::TooShort { samples, needed });
         }
         let mut found = Self {
             file,

@@ -1,5 +1,6 @@
 //! What is wrong with a log, or looks wrong.
 
+use super::repair::FEWEST_ROWS;
 use std::fmt;
 
 /// All that is wrong with a log.
@@ -29,6 +30,8 @@ pub enum LogFault {
     UnknownName { name: String, nearest: Option<String> },
     /// The log says that it is of another model.
     OtherModel { log: String, model: String },
+    /// The header names a side of the gears that there is not.
+    TorqueSide { found: String },
     /// The log has joints that the model does not have.
     OtherJoints { joints: Vec<String> },
     /// Fewer rows than anything can be made of.
@@ -69,6 +72,8 @@ pub enum Suspicion {
     Swapped { joint: String, other: String },
     /// A torque never changes while its joint moves.
     ConstantTorque { column: String },
+    /// The torque that was commanded to a motor is all that there is of a joint behind a spring.
+    CommandOfSpring { joint: String },
     /// A position is beyond its limits.
     BeyondLimits { column: String, value: f64, limits: [f64; 2] },
 }
@@ -93,6 +98,8 @@ pub enum LogRemark {
     Steps { column: String, step: f64 },
     /// The torque that was commanded is taken for the measured one.
     CommandedTorque { joint: String },
+    /// Torques of motors were multiplied by the gear ratios.
+    MotorTorques { joints: Vec<String> },
     /// A suspicion that was accepted.
     Accepted(Suspicion),
 }
@@ -158,12 +165,20 @@ impl fmt::Display for LogFault {
             Self::OtherModel { log, model } => {
                 write!(f, "is a log of `{log}`, and the model is `{model}`")
             }
+            Self::TorqueSide { found } => write!(
+                f,
+                "`# torque_side: {found}`: there are `joint` and `motor`\n  hint: write where the \
+                 torques were measured"
+            ),
             Self::OtherJoints { joints } => write!(
                 f,
                 "has joints that the model does not have: {}\n  hint: is it a log of this robot?",
                 joints.join(", ")
             ),
-            Self::TooShort { rows } => write!(f, "{rows} rows are too few"),
+            Self::TooShort { rows } => {
+                let rows = if *rows == 0 { "no rows".to_owned() } else { format!("{rows} rows") };
+                write!(f, "{rows}: at least {FEWEST_ROWS} are needed")
+            }
             Self::RowLength { expected, found, .. } => {
                 write!(f, "{found} cells, where there are {expected} columns")
             }
@@ -228,6 +243,12 @@ impl fmt::Display for Suspicion {
             Self::ConstantTorque { column } => {
                 write!(f, "`{column}` never changes while its joint moves")?;
             }
+            Self::CommandOfSpring { joint } => write!(
+                f,
+                "`{joint}` has a spring behind its motor, and the log has the torque of the motor, \
+                 `tau_cmd_{joint}`, alone: the joint gets another one\n  hint: --two-stage finds \
+                 the springs first; or give the joint's own torque as `tau_{joint}`"
+            )?,
             Self::BeyondLimits { column, value, limits: [low, high] } => write!(
                 f,
                 "`{column}` goes to {value:.4}, and the model's limits are {low:.4} to {high:.4}"
@@ -267,6 +288,9 @@ impl fmt::Display for LogRemark {
             }
             Self::CommandedTorque { joint } => {
                 write!(f, "`{joint}`: the commanded torque stands for the measured one")
+            }
+            Self::MotorTorques { joints } => {
+                write!(f, "torques of motors, multiplied by the gear ratios: {}", joints.join(", "))
             }
             Self::Accepted(suspicion) => {
                 let text = suspicion.to_string();

@@ -17,10 +17,16 @@ pub use mapping::{ColumnMapping, ColumnSource, MappingError};
 
 use crate::plants::regression::RegressionJoint;
 use denavit_codegen::expr::text::nearest;
+use denavit_codegen::model::TorqueSide;
 use reader::{Head, Lines, read_head, read_rows};
 use std::io::BufRead;
 
-/// What was measured of a joint, one entry for each sample. Torques are those along the joint axis.
+/// What was measured of a joint, one entry for each sample.
+///
+/// Torques are those that the joint needs, positive along its axis. A log has them so; or as those
+/// of the motors of stiff drives, if its header says `torque_side: motor`, or if it says nothing
+/// and the model's `torque_side` is the motor's. [`read_log`] is the one place where gear ratios
+/// count.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointSignals {
     /// Position [rad, m].
@@ -33,6 +39,10 @@ pub struct JointSignals {
     pub tau: Option<Vec<f64>>,
     /// Reference position [rad, m].
     pub reference: Option<Vec<f64>>,
+    /// Angle of the motor before a spring, before the gear \[rad\].
+    pub motor: Option<Vec<f64>>,
+    /// Torque of that motor, as if there were no spring [N m, N].
+    pub motor_torque: Option<Vec<f64>>,
     /// The step of the encoder, if the position has steps [rad, m].
     pub step: Option<f64>,
 }
@@ -63,6 +73,26 @@ impl MeasuredLog {
     }
 }
 
+impl MeasuredLog {
+    /// Sees to it that no joint behind a spring has the torque of its motor alone, which is not
+    /// what the joint gets: a fault, or, where suspicions are accepted, a remark, and the motor's
+    /// torque is taken for the joint's.
+    pub fn require_joint_torques(&mut self, robot: LogOf<'_>) -> Result<(), LogFaults> {
+        let mut faults = Vec::new();
+        for (own, joint) in self.joints.iter_mut().zip(robot.joints) {
+            let (None, Some(command)) = (&own.tau, &own.motor_torque) else { continue };
+            let suspicion = Suspicion::CommandOfSpring { joint: joint.name.clone() };
+            if robot.accepts_suspicious {
+                own.tau = Some(command.clone());
+                self.remarks.push(LogRemark::Accepted(suspicion));
+            } else {
+                faults.push(LogFault::Suspicion(suspicion));
+            }
+        }
+        if faults.is_empty() { Ok(()) } else { Err(LogFaults { file: self.file.clone(), faults }) }
+    }
+}
+
 /// Of which robot a log is to be.
 #[derive(Clone, Copy, Debug)]
 pub struct LogOf<'a> {
@@ -76,8 +106,11 @@ pub struct LogOf<'a> {
     pub accepts_suspicious: bool,
 }
 
+/// The line of a header that says where torques were measured: `joint` or `motor`.
+pub const TORQUE_SIDE: &str = "torque_side";
+
 /// Signals of a joint, by the beginning of their columns' names.
-const SIGNALS: [&str; 6] = ["q", "qd", "qdd", "tau", "tau_cmd", "ref"];
+const SIGNALS: [&str; 7] = ["q", "qd", "qdd", "tau", "tau_cmd", "ref", "motor"];
 
 /// Reads a log of a robot. `file` is its name, for messages alone.
 pub fn read_log(
@@ -146,13 +179,16 @@ enum Target {
 
 struct Wanted {
     columns: Vec<Column>,
+    /// Where its torques are measured, if the log says it.
+    torque_side: Option<TorqueSide>,
 }
 
 impl Wanted {
     fn new(head: &Head, robot: LogOf<'_>, mapping: &ColumnMapping) -> Result<Self, Vec<LogFault>> {
         let mut all = vec![("t".to_owned(), Target::Time, true)];
         for (joint, described) in robot.joints.iter().enumerate() {
-            for (signal, prefix) in SIGNALS.iter().enumerate() {
+            let signals = SIGNALS.len() - usize::from(!described.is_elastic);
+            for (signal, prefix) in SIGNALS[..signals].iter().enumerate() {
                 let name = format!("{prefix}_{}", described.name);
                 all.push((name, Target::Joint(joint, signal), signal == 0));
             }
@@ -186,21 +222,31 @@ impl Wanted {
             }
         }
         faults.extend(other_robot(head, robot));
-        if faults.is_empty() { Ok(Self { columns }) } else { Err(faults) }
+        let torque_side = torque_side(head).unwrap_or_else(|fault| {
+            faults.push(fault);
+            None
+        });
+        if faults.is_empty() { Ok(Self { columns, torque_side }) } else { Err(faults) }
     }
 
     fn hand_out(&self, log: &mut MeasuredLog, values: Vec<Vec<f64>>, robot: LogOf<'_>) {
         let mut forces: Vec<[Vec<f64>; 3]> = vec![Default::default(); robot.contacts.len()];
         let mut commanded = vec![None; robot.joints.len()];
+        let mut geared = Vec::new();
         let targets = self.columns.iter().filter(|c| !matches!(c.goes_to, Target::Time));
         for (column, mut values) in targets.zip(values) {
             match column.goes_to {
                 Target::Time => {}
                 Target::Contact(contact, axis) => forces[contact][axis] = values,
                 Target::Joint(joint, signal) => {
-                    let factor = robot.joints[joint].torque_factor;
-                    if matches!(signal, 3 | 4) && factor != 1.0 {
+                    let described = &robot.joints[joint];
+                    let side = self.torque_side.unwrap_or(described.torque_side);
+                    let factor = described.gear_ratio;
+                    if matches!(signal, 3 | 4) && side == TorqueSide::Motor && factor != 1.0 {
                         values.iter_mut().for_each(|value| *value *= factor);
+                        if !geared.contains(&described.name) {
+                            geared.push(described.name.clone());
+                        }
                     }
                     let own = &mut log.joints[joint];
                     match signal {
@@ -212,19 +258,37 @@ impl Wanted {
                         2 => own.qdd = Some(values),
                         3 => own.tau = Some(values),
                         4 => commanded[joint] = Some(values),
-                        _ => own.reference = Some(values),
+                        5 => own.reference = Some(values),
+                        _ => own.motor = Some(values),
                     }
                 }
             }
         }
         for ((own, command), joint) in log.joints.iter_mut().zip(commanded).zip(robot.joints) {
-            if own.tau.is_none() && command.is_some() {
+            if joint.is_elastic {
+                own.motor_torque = command;
+            } else if own.tau.is_none() && command.is_some() {
                 own.tau = command;
-                log.remarks.push(LogRemark::CommandedTorque { joint: joint.name.clone() });
+                let joint = joint.name.clone();
+                log.remarks.push(LogRemark::CommandedTorque { joint });
             }
+        }
+        if !geared.is_empty() {
+            log.remarks.push(LogRemark::MotorTorques { joints: geared });
         }
         let named = robot.contacts.iter().cloned().zip(forces);
         log.contacts = named.filter(|(_, axes)| axes.iter().any(|axis| !axis.is_empty())).collect();
+    }
+}
+
+/// Where the log says that its torques were measured.
+fn torque_side(head: &Head) -> Result<Option<TorqueSide>, LogFault> {
+    let said = head.header.iter().find(|(name, _)| name == TORQUE_SIDE);
+    match said.map(|(_, value)| value.as_str()) {
+        None => Ok(None),
+        Some("joint") => Ok(Some(TorqueSide::Joint)),
+        Some("motor") => Ok(Some(TorqueSide::Motor)),
+        Some(found) => Err(LogFault::TorqueSide { found: found.to_owned() }),
     }
 }
 

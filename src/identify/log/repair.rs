@@ -3,6 +3,9 @@
 use super::fault::{LogFault, LogRemark};
 use super::reader::Table;
 
+/// Fewer rows make no log.
+pub(super) const FEWEST_ROWS: usize = 4;
+
 /// The share of samples that may be missing.
 const MAX_MISSING: f64 = 0.02;
 
@@ -37,7 +40,7 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
         return Err(vec![LogFault::Undefined { column, count, line }]);
     }
     drop_repeats(&mut table, &mut faults, &mut remarks);
-    if table.rows() < 4 {
+    if table.rows() < FEWEST_ROWS {
         faults.push(LogFault::TooShort { rows: table.rows() });
     }
     if !faults.is_empty() {

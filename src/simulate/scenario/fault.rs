@@ -18,6 +18,8 @@ pub type ScenarioError = FileError<Cause>;
 pub enum Cause {
     /// A fault of form: of JSON, of keys, of kinds of values.
     Form(model::Cause),
+    /// The key `format` is missing; holds what it is to say.
+    NoFormat(&'static str),
     /// A number outside its range.
     OutsideRange(f64, Range),
     /// A number that must be even.
@@ -56,6 +58,8 @@ pub enum Cause {
     Model(String),
     /// The trajectory file is wrong; holds what its reader says.
     Trajectory(String),
+    /// The controller file is wrong; holds what its reader says.
+    Controller(String),
     /// A trajectory without joints.
     NoJoints,
     /// The robot cannot be put on the ground: it has no `base_z`, or no contact.
@@ -78,6 +82,7 @@ impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Form(cause) => write!(f, "{cause}"),
+            Self::NoFormat(_) => write!(f, "the key `format` is missing"),
             Self::OutsideRange(value, range) => {
                 write!(f, "the number must be {range}; it is {}", short(*value))
             }
@@ -109,6 +114,7 @@ impl fmt::Display for Cause {
             Self::Plant(error) => write!(f, "{error}"),
             Self::Model(said) => write!(f, "the model is wrong:\n{said}"),
             Self::Trajectory(said) => write!(f, "the trajectory is wrong:\n{said}"),
+            Self::Controller(said) => write!(f, "the controller is wrong:\n{said}"),
             Self::NoJoints => write!(f, "the trajectory moves no joint"),
             Self::NoPlacing => write!(f, "a robot is put on the ground by `base_z` and contacts"),
         }
@@ -121,9 +127,7 @@ impl Explained for Cause {
             Self::Form(model::Cause::WrongFormat { expected, .. }) => {
                 format!("this file has `\"format\": \"{expected}\"`")
             }
-            Self::Form(model::Cause::MissingKey("format")) => {
-                format!("a scenario has `\"format\": \"{}\"`", super::FORMAT)
-            }
+            Self::NoFormat(expected) => format!("add `\"format\": \"{expected}\"`"),
             Self::Form(model::Cause::MissingKey(key)) => format!("add `\"{key}\": ..`"),
             Self::Form(cause) => {
                 return cause.hint().or_else(|| Some("docs/scenario.md says what is right".into()));

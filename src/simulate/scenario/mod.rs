@@ -3,6 +3,7 @@
 //! `"format": "denavit-scenario/1"`, described in docs/scenario.md and by the schema that
 //! `denavit schema scenario` prints. All faults of a file are found in one run.
 
+mod controller;
 mod fault;
 mod gait;
 mod options;
@@ -14,6 +15,7 @@ mod start;
 mod stepping;
 mod trajectory;
 
+pub use controller::{CONTROLLER_FORMAT, Controller, controller_schema, read_controller};
 pub use fault::{Cause, ScenarioError};
 pub use ranges::Range;
 pub use read::{Loader, read};
@@ -130,6 +132,8 @@ impl Scenario {
             ("scenario", self.name.clone()),
             ("model", model.name.clone()),
             ("model_hash", format!("{:016x}", model.hash)),
+            // whatever the model says of the logs of its robot
+            ("torque_side", "joint".to_owned()),
             ("seed", self.simulation.seed.to_string()),
             ("scheme", self.scheme.word().to_owned()),
         ];

@@ -10,7 +10,6 @@ use crate::simulate::integrate::{Accuracy, Method};
 use crate::simulate::measure::Measurement;
 use crate::simulate::run::Simulation;
 use crate::simulate::settle::Scuffing;
-use denavit_codegen::model::json::Value;
 
 /// A log with more rows would not fit into memory.
 const MAX_ROWS: f64 = 1e6;
@@ -65,13 +64,6 @@ fn measurement(fields: &Fields<'_>, report: &mut Report) -> Measurement {
     let Some(given) = fields.get("measurement").and_then(|node| node.fields(known, report)) else {
         return Measurement::default();
     };
-    let is_sampled = match fields.get("control").map(|node| &node.0.value) {
-        Some(Value::Object(entries)) => entries.iter().any(|(key, _)| key == "period_s"),
-        _ => false,
-    };
-    if !is_sampled {
-        report.push(fields.place("measurement"), Cause::NoEffect("`period_s` in `control`"));
-    }
     Measurement {
         resolution: given.number("resolution", ranges::RESOLUTION, 0.0, report),
         position_noise: given.number("position_noise", ranges::NOISE, 0.0, report),

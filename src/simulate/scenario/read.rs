@@ -1,18 +1,18 @@
 //! From the bytes of a scenario file to a scenario.
 
+use super::controller::control;
 use super::fault::{Cause, ScenarioError};
 use super::gait::gait;
 use super::options;
 use super::ranges;
 use super::reader::{Fields, Node, Report};
-use super::reference::{self, Logs};
+use super::reference::Logs;
 use super::start::{Origin, find_start_faults};
 use super::stepping;
-use super::trajectory::read_trajectory;
 use super::{FORMAT, Scenario};
 use crate::plants::{Cradle, Override, Plant, PlantError, PlantModel, plant_of};
 use crate::simulate::audit::Tolerances;
-use crate::simulate::control::{Compensation, Control, Feedback, JointControl};
+use crate::simulate::control::{Control, Feedback};
 use crate::simulate::drive::DriveModelling;
 use crate::simulate::ground::Ground;
 use crate::simulate::run::Simulation;
@@ -88,8 +88,11 @@ pub(super) fn read_document<T>(
 
 /// Notes a tag that is missing or of another format.
 pub(super) fn check_format(fields: &Fields<'_>, expected: &'static str, report: &mut Report) {
-    if let Some(tag) = fields.require("format", report)
-        && let Some(found) = tag.text(report)
+    let Some(tag) = fields.get("format") else {
+        report.push(fields.at, Cause::NoFormat(expected));
+        return;
+    };
+    if let Some(found) = tag.text(report)
         && found != expected
     {
         let cause = model::Cause::WrongFormat { found: found.to_owned(), expected };
@@ -148,6 +151,9 @@ fn find_idle(
             report.push(place, Cause::NoEffect(missing));
         }
     };
+    if let Some(measurement) = fields.get("measurement") {
+        has(measurement.at(), control.period_s.is_some(), "`period_s` in `control`");
+    }
     let drives = || model.joints.iter().filter_map(|joint| joint.drive);
     if simulation.drives == DriveModelling::Model {
         has(fields.place("drives"), drives().next().is_some(), "drives in the model");
@@ -173,7 +179,8 @@ fn find_idle(
             continue;
         }
         let gains = own.entries().iter();
-        for (_, gain) in gains.filter(|(key, _)| ["kp", "kd", "gain_factor"].contains(&&**key)) {
+        let idle = ["kp", "kd", "damps", "gain_factor"];
+        for (_, gain) in gains.filter(|(key, _)| idle.contains(&&**key)) {
             has(gain.start, false, "a `reference`");
         }
     }
@@ -224,7 +231,12 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
 }
 
 /// The joint that a key names.
-fn joint(model: &PlantModel, name: &str, node: Node<'_>, report: &mut Report) -> Option<usize> {
+pub(super) fn joint(
+    model: &PlantModel,
+    name: &str,
+    node: Node<'_>,
+    report: &mut Report,
+) -> Option<usize> {
     let found = model.find_joint(name);
     if found.is_none() {
         let names = model.joints.iter().map(|joint| joint.name.as_str());
@@ -232,90 +244,6 @@ fn joint(model: &PlantModel, name: &str, node: Node<'_>, report: &mut Report) ->
         report.push(node.at(), Cause::UnknownJoint(name.to_owned(), meant));
     }
     found
-}
-
-fn control(
-    fields: &Fields<'_>,
-    model: &PlantModel,
-    logs: &mut Logs<'_>,
-    report: &mut Report,
-) -> Control {
-    let mut control = Control::passive(model.joints.len());
-    let known = &["compensation", "feedback", "saturates", "period_s", "trajectory", "joints"];
-    let Some(given) = fields.get("control").and_then(|node| node.fields(known, report)) else {
-        return control;
-    };
-    let words = &["none", "gravity", "computed_torque"];
-    let meanings = [Compensation::None, Compensation::Gravity, Compensation::ComputedTorque];
-    let word = given.get("compensation");
-    control.compensation =
-        word.and_then(|node| node.word(words, &meanings, report)).unwrap_or_default();
-    let word = given.get("feedback");
-    let meanings = [Feedback::Joint, Feedback::Motor];
-    control.feedback =
-        word.and_then(|node| node.word(&["joint", "motor"], &meanings, report)).unwrap_or_default();
-    control.saturates = given.flag("saturates", report);
-    if given.get("period_s").is_some() {
-        control.period_s = Some(given.number("period_s", ranges::SAMPLE_PERIOD_S, 1e-3, report));
-    }
-    if let Some(node) = given.get("trajectory") {
-        follow(&mut control, node, model, logs, report);
-    }
-    if let Some(joints) = given.get("joints").and_then(|node| node.members(report)) {
-        for (name, node) in joints.all() {
-            let Some(index) = joint(model, name, node, report) else { continue };
-            if !model.joints[index].drivable {
-                report.push(node.at(), Cause::Undrivable(name.to_owned()));
-            }
-            let known = &["kp", "kd", "reference", "feed_forward", "gain_factor"];
-            let Some(own) = node.fields(known, report) else { continue };
-            let mut follow =
-                |key: &str| own.get(key).and_then(|n| reference::read(n, logs, report));
-            let [reference, feed_forward, gain_factor] =
-                ["reference", "feed_forward", "gain_factor"].map(&mut follow);
-            control.joints[index] = JointControl {
-                reference: reference.or_else(|| control.joints[index].reference.take()),
-                stiffness: own.number("kp", ranges::GAIN, 0.0, report),
-                damping: own.number("kd", ranges::GAIN, 0.0, report),
-                gain_factor,
-                feed_forward,
-            };
-        }
-    }
-    control
-}
-
-/// Joints follow a trajectory file, unless they have references of their own.
-fn follow(
-    control: &mut Control,
-    node: Node<'_>,
-    model: &PlantModel,
-    logs: &Logs<'_>,
-    report: &mut Report,
-) {
-    let Some(file) = node.text(report) else { return };
-    let bytes = match logs.load(file) {
-        Ok(bytes) => bytes,
-        Err(reason) => {
-            report.push(node.at(), Cause::File(file.to_owned(), reason));
-            return;
-        }
-    };
-    let trajectory = match read_trajectory(file, &bytes, logs.loader()) {
-        Ok(trajectory) => trajectory,
-        Err(error) => {
-            report.push(node.at(), Cause::Trajectory(error.to_string()));
-            return;
-        }
-    };
-    for (name, reference) in &trajectory.joints {
-        if let Some(index) = joint(model, name, node, report) {
-            match model.joints[index].drivable {
-                true => control.joints[index].reference = Some(trajectory.repeated(reference)),
-                false => report.push(node.at(), Cause::Undrivable(name.clone())),
-            }
-        }
-    }
 }
 
 fn initial(

@@ -80,7 +80,7 @@ fn filters_and_outputs_that_cannot_be_are_refused() {
     let directory = Directory::new("identify-refused");
     simulated(&directory);
     for (more, expected) in [
-        (&["--filter", "1e-9"][..], "without its edges the log has 0 samples"),
+        (&["--filter", "1e-9"][..], "301 rows: this filter cuts the edges off"),
         (&["--html", "out", "--svg", "out"], "two outputs would be this file"),
         (&["--html", "nowhere/page.html"], "no such file or directory"),
     ] {

@@ -244,3 +244,44 @@ fn saturation_and_encoder_steps_are_remarked() {
     assert!((found / step - 1.0).abs() < 1e-6, "{found}");
     assert_eq!(log.joints[1].step, None);
 }
+
+/// A geared model whose file says that logs have torques of motors: 50 motor turns a joint turn.
+#[test]
+fn one_side_of_the_gears_is_decided_in_one_place() {
+    let shipped = denavit::shipped::find("planar_2r").expect("shipped");
+    let mut text: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
+    let names = joints().1;
+    text["torque_side"] = "motor".into();
+    text["drives"] = serde_json::json!({});
+    text["drives"][&names[0]] = serde_json::json!({"gear_ratio": 50, "viscous": 1e-4});
+    let robot = denavit::model::read("m", text.to_string().as_bytes()).expect("sound");
+    let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("a model");
+    let of = LogOf {
+        model: "planar_2r",
+        joints: &model.joints,
+        contacts: &[],
+        accepts_suspicious: false,
+    };
+    let read = |header: &str| {
+        let text = format!("{header}{}", Made::new().text());
+        read_log("log.csv", text.as_bytes(), of, &ColumnMapping::default())
+    };
+    let torque = |header: &str, joint: usize| {
+        read(header).expect("sound").joints[joint].tau.as_ref().expect("measured")[3]
+    };
+    let own = [5, 6].map(|column| Made::new().rows[3][column]);
+    for (header, factor) in
+        [("", 50.0), ("# torque_side: joint\n", 1.0), ("# torque_side: motor\n", 50.0)]
+    {
+        assert_eq!(torque(header, 0), factor * own[0], "{header}");
+        // no gear: both sides are one
+        assert_eq!(torque(header, 1), own[1], "{header}");
+        let remarks = read(header).expect("sound").remarks;
+        let said = remarks
+            .iter()
+            .any(|r| *r == LogRemark::MotorTorques { joints: vec![names[0].clone()] });
+        assert_eq!(said, factor != 1.0, "{remarks:?}");
+    }
+    let faults = read("# torque_side: load\n").unwrap_err();
+    assert!(faults.to_string().contains("`joint` and `motor`"), "{faults}");
+}

@@ -2,6 +2,7 @@
 
 mod emps;
 mod estimate;
+mod forward;
 mod leg;
 mod log;
 mod noise;

@@ -153,5 +153,5 @@ fn filters_that_cannot_be_are_refused() {
     };
     let of = |samples, how| Conditioned::new(log(1e-3, samples, 0.0, false), &names(), &how);
     assert!(matches!(of(2000, filter(500.0)), Err(ConditionError::Cutoff { .. })));
-    assert!(matches!(of(300, filter(20.0)), Err(ConditionError::TooShort(_))));
+    assert!(matches!(of(300, filter(20.0)), Err(ConditionError::TooShort { .. })));
 }

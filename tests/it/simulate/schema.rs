@@ -146,3 +146,70 @@ fn the_schema_states_the_tolerances() {
         }
     }
 }
+
+/// The control of a scenario by itself is a controller, and a file of it controls as it does.
+#[test]
+fn the_control_of_a_scenario_is_a_controller() {
+    let schema: Value = serde_json::from_str(&scenario::controller_schema()).expect("JSON");
+    jsonschema::draft202012::meta::validate(&schema).expect("the schema is one of draft 2020-12");
+    let alone = jsonschema::draft202012::new(&schema).expect("a schema");
+    let shipped = shipped::find_scenario("double_pendulum").expect("shipped");
+    let mut inner: Value = serde_json::from_str(shipped.text).expect("JSON");
+    inner["control"] = serde_json::json!({
+        "format": scenario::CONTROLLER_FORMAT,
+        "name": "holder",
+        "period_s": 0.01,
+        "joints": {"link1": {"kp": 5, "kd": 1, "damps": "rate", "reference": 0.3}},
+    });
+    inner["duration_s"] = 0.5.into();
+    inner["tolerances"] = serde_json::json!({"energy_j": 1e-3});
+    let text = inner["control"].to_string();
+    assert!(alone.is_valid(&inner["control"]), "{text}");
+    let mut outer = inner.clone();
+    outer["control"] = "holder.json".into();
+    for scenario in [&inner, &outer] {
+        assert!(validator().is_valid(scenario), "{scenario}");
+    }
+    let load = |name: &str| match name {
+        "holder.json" => Ok(text.clone().into_bytes()),
+        name => {
+            let model = shipped::find_referred(name).ok_or("no such model")?;
+            Ok(model.text.as_bytes().to_vec())
+        }
+    };
+    let logs = [inner, outer].map(|scenario| {
+        let read = scenario::read("scenario.json", scenario.to_string().as_bytes(), &load);
+        let mut scenario = read.unwrap_or_else(|error| panic!("{error}"));
+        scenario.run().unwrap_or_else(|error| panic!("{error}")).log.to_csv()
+    });
+    assert!(logs[0] == logs[1]);
+}
+
+#[test]
+fn faults_of_a_controller_have_their_place() {
+    let robot = shipped::find("double_pendulum").expect("shipped");
+    let robot = denavit::model::read("m", robot.text.as_bytes()).expect("sound");
+    let plant = denavit::plants::plant_of(&robot, &[]).expect("a plant");
+    let load = |_: &str| Err("no such file".to_owned());
+    let said = |text: &str| {
+        let read = scenario::read_controller("c.json", text.as_bytes(), plant.model(), &load);
+        read.map(|_| ()).unwrap_err().to_string()
+    };
+    let wrong = said("{\"joints\": {\"lin1\": {\"kp\": -1, \"damps\": \"speed\"}}, \"gain\": 1}");
+    for part in [
+        "the key `format` is missing",
+        "denavit-controller/1",
+        "no joint is called `lin1`",
+        "`link1` is meant",
+        "gain",
+        "c.json",
+    ] {
+        assert!(wrong.contains(part), "{part}: {wrong}");
+    }
+    let wrong = said(
+        "{\"format\": \"denavit-controller/1\",\n \"joints\": {\"link1\": {\"kp\": -1, \"damps\": \
+         \"speed\"}}}",
+    );
+    assert!(wrong.contains("c.json:2:") && wrong.contains("speed"), "{wrong}");
+    assert!(said("{\"format\": \"denavit-scenario/1\"}").contains("denavit-controller/1"));
+}

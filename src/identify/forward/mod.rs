@@ -1,0 +1,293 @@
+//! Forward comparison: a model moves by itself, and its motion is held against a log.
+//!
+//! - [`closed_loop`]: under the controller that the robot had
+//! - [`in_windows`]: driven by the measured torques, for short times from measured states: without
+//!   a controller a motion that is simulated runs away from the one that was measured
+//! - [`simulated_log`]: the log that a model would have given, to be used as instruments
+//!
+//! Robots on a fixed base alone: what the ground does to others is not known from their logs.
+
+mod closed_loop;
+mod windows;
+
+pub use closed_loop::{closed_loop, simulated_log};
+pub use windows::{Windows, in_windows};
+
+use super::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
+use super::log::{JointSignals, MeasuredLog};
+use crate::plants::PlantModel;
+use crate::simulate::scenario::Controller;
+use crate::simulate::{
+    DriveModelling, Log, Simulation, StartError, State, Stop, integrate::Accuracy,
+    integrate::Method,
+};
+use std::fmt;
+use std::ops::Range;
+
+/// A log as a simulation is compared with it: filtered, with rates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionLog {
+    /// The name of the log.
+    pub file: String,
+    /// The time of sample 0 \[s\].
+    pub start_s: f64,
+    /// The distance of samples \[s\].
+    pub step_s: f64,
+    /// Positions of every joint, filtered [rad, m].
+    pub q: Vec<Vec<f64>>,
+    /// Their rates; 0 outside `range` [rad/s, m/s].
+    pub qd: Vec<Vec<f64>>,
+    /// Required torques, filtered; none where they were not measured [N m, N].
+    pub torque: Vec<Option<Vec<f64>>>,
+    /// References, as they were logged [rad, m].
+    pub reference: Vec<Option<Vec<f64>>>,
+    /// Angles of motors before springs, as they were logged \[rad\].
+    pub motor: Vec<Option<Vec<f64>>>,
+    /// The samples that the filter leaves.
+    pub range: Range<usize>,
+    filter: Option<Butterworth>,
+}
+
+impl MotionLog {
+    /// Filters a log. `names` are those of its joints.
+    pub fn new(
+        log: &MeasuredLog,
+        names: &[String],
+        filter: Option<Filter>,
+    ) -> Result<Self, ConditionError> {
+        let how = Conditioning { filter, ..Conditioning::default() };
+        let kept = |joint: &JointSignals| {
+            let (q, tau) = (joint.q.clone(), joint.tau.clone());
+            JointSignals { q, tau, ..JointSignals::default() }
+        };
+        let measured = MeasuredLog {
+            file: log.file.clone(),
+            start_s: log.start_s,
+            step_s: log.step_s,
+            joints: log.joints.iter().map(kept).collect(),
+            ..MeasuredLog::default()
+        };
+        let conditioned = Conditioned::new(measured, names, &how)?;
+        let range = conditioned.range.clone();
+        let mut motion = Vec::new();
+        conditioned.motion(range.clone(), &mut motion);
+        let n = log.joints.len();
+        let rates = |joint: usize| {
+            let mut rates = vec![0.0; log.samples()];
+            rates[range.clone()].copy_from_slice(&motion[n + joint]);
+            rates
+        };
+        Ok(Self {
+            qd: (0..n).map(rates).collect(),
+            file: conditioned.file,
+            start_s: log.start_s,
+            step_s: log.step_s,
+            q: conditioned.q,
+            torque: conditioned.torque,
+            reference: log.joints.iter().map(|joint| joint.reference.clone()).collect(),
+            motor: log.joints.iter().map(|joint| joint.motor.clone()).collect(),
+            range,
+            filter: conditioned.filter,
+        })
+    }
+
+    /// The time of a sample \[s\].
+    pub fn time_s(&self, sample: usize) -> f64 {
+        self.start_s + self.step_s * sample as f64
+    }
+
+    fn samples(&self) -> usize {
+        self.q.first().map_or(0, Vec::len)
+    }
+
+    /// The state at a sample; motors as they were logged, or with the elongation of springs that
+    /// the torque makes, and turning with their joints.
+    fn state(&self, model: &PlantModel, sample: usize, has_motors: bool) -> State {
+        let at = sample.clamp(self.range.start, self.range.end - 1);
+        let mut state = State {
+            t_s: self.time_s(sample),
+            q: self.q.iter().map(|q| q[sample]).collect(),
+            qd: self.qd.iter().map(|qd| qd[at]).collect(),
+            ..State::default()
+        };
+        for (index, joint) in model.joints.iter().enumerate().filter(|_| has_motors) {
+            let Some(drive) = joint.drive.filter(|drive| drive.rotor_inertia > 0.0) else {
+                continue;
+            };
+            let Some(spring) = drive.series_elastic else { continue };
+            let ratio = drive.gear_ratio / spring.motor_radius;
+            let torque = self.torque[index].as_ref().map_or(0.0, |torque| torque[sample]);
+            let stretched = torque / (spring.stiffness * spring.load_radius);
+            let taut = ratio * (stretched + spring.load_radius * state.q[index]);
+            let logged = self.motor[index].as_ref().map(|motor| motor[sample]);
+            state.motor.push(logged.unwrap_or(taut));
+            state.motor_rate.push(ratio * spring.load_radius * state.qd[index]);
+        }
+        state
+    }
+}
+
+/// How a motion was simulated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ForwardKind {
+    /// Under a controller.
+    ClosedLoop,
+    /// From measured states, under measured torques.
+    Windows {
+        /// How many.
+        count: usize,
+        /// The length of each \[s\].
+        length_s: f64,
+    },
+}
+
+/// One signal of a joint, simulated and measured, sample by sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Compared {
+    /// As it was measured.
+    pub measured: Vec<f64>,
+    /// As it was simulated.
+    pub simulated: Vec<f64>,
+    /// Root of the mean square of the difference.
+    pub rms: f64,
+    /// That over the size of the signal: 1 is as wrong as a simulation in which nothing happens.
+    pub relative: f64,
+}
+
+impl Compared {
+    /// Compares; `size` is the root of the mean square of what there is to predict.
+    fn new(measured: Vec<f64>, simulated: Vec<f64>, size: f64) -> Self {
+        let rms = rms(measured.iter().zip(&simulated).map(|(a, b)| b - a));
+        let relative = if size > 0.0 { rms / size } else { 0.0 };
+        Self { measured, simulated, rms, relative }
+    }
+
+    /// Simulated less measured.
+    pub fn residual(&self) -> impl Iterator<Item = f64> + '_ {
+        self.simulated.iter().zip(&self.measured).map(|(simulated, measured)| simulated - measured)
+    }
+}
+
+/// A joint, simulated and measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ForwardJoint {
+    /// The joint.
+    pub name: String,
+    /// Positions [rad, m].
+    pub position: Compared,
+    /// Rates [rad/s, m/s].
+    pub rate: Compared,
+    /// Required torques [N m, N]; none where they were not measured, or were what was given.
+    pub torque: Option<Compared>,
+}
+
+/// A log, simulated again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forward {
+    /// The log.
+    pub file: String,
+    /// How.
+    pub kind: ForwardKind,
+    /// The time of each sample that is compared \[s\].
+    pub t_s: Vec<f64>,
+    /// The joints that moved, in the order of the model.
+    pub joints: Vec<ForwardJoint>,
+}
+
+impl Forward {
+    /// The simulation gap: sqrt(mean over joints of (rms error of position / its size)^2).
+    pub fn relative(&self) -> f64 {
+        rms(self.joints.iter().map(|joint| joint.position.relative))
+    }
+}
+
+/// Why a log is not simulated again.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ForwardError {
+    /// The robot does not stand on a fixed base.
+    FloatingBase,
+    /// The log cannot be filtered; holds its name.
+    Condition(String, ConditionError),
+    /// A joint that is controlled has no reference, neither of the controller's nor of the log's.
+    NoReference(String),
+    /// The reference of a joint has empty cells, or times that do not increase.
+    BadReference(String),
+    /// The torque of a joint was not measured.
+    NoTorque(String),
+    /// The log is shorter than a window; holds the length of a window \[s\].
+    TooShort(f64),
+    /// The run does not begin.
+    Start(StartError),
+    /// The run broke off.
+    Stopped {
+        /// When \[s\].
+        t_s: f64,
+        /// Why.
+        stop: Stop,
+    },
+}
+
+impl fmt::Display for ForwardError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FloatingBase => {
+                write!(f, "only robots on a fixed base are simulated against their logs")
+            }
+            Self::Condition(file, error) => write!(f, "{file}: {error}"),
+            Self::NoReference(joint) => write!(
+                f,
+                "`{joint}` is controlled and follows nothing\n  hint: give it a `reference`, or \
+                 the log a column `ref_{joint}`"
+            ),
+            Self::BadReference(joint) => write!(f, "`ref_{joint}` is no motion to follow"),
+            Self::NoTorque(joint) => write!(
+                f,
+                "the torque of `{joint}` was not measured\n  hint: --controller FILE simulates \
+                 without"
+            ),
+            Self::TooShort(length_s) => {
+                write!(f, "the log is shorter than a window of {length_s} s")
+            }
+            Self::Start(error) => write!(f, "{error}"),
+            Self::Stopped { t_s, stop } => {
+                write!(f, "the simulation broke off at {t_s:.3} s: {stop}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ForwardError {}
+
+/// Names of the joints of a plant on a fixed base.
+fn names(model: &PlantModel) -> Result<Vec<&str>, ForwardError> {
+    match model.joints.iter().all(|joint| joint.drivable) {
+        true => Ok(model.joints.iter().map(|joint| joint.name.as_str()).collect()),
+        false => Err(ForwardError::FloatingBase),
+    }
+}
+
+/// How a log is simulated again: rows at its samples.
+fn simulation(drives: DriveModelling, end_s: f64, step_s: f64) -> Simulation {
+    let accuracy = Accuracy { relative: 1e-6, absolute: 1e-8, ..Accuracy::default() };
+    Simulation {
+        end_s,
+        drives,
+        method: Method::DormandPrince(accuracy),
+        log_period_s: step_s,
+        ..Simulation::default()
+    }
+}
+
+/// So many rows of a column of a run; `prefix` is that of the column.
+fn column(log: &Log, prefix: &str, joint: &str, rows: usize) -> Vec<f64> {
+    let mut values = log.column(&format!("{prefix}_{joint}")).unwrap_or_default();
+    // a last row that rounding kept out of the run
+    values.resize(rows, values.last().copied().unwrap_or(0.0));
+    values
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) =
+        values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
+    (sum / count.max(1) as f64).sqrt()
+}

@@ -5,6 +5,7 @@ pub mod arena;
 pub mod build_script;
 pub mod derive;
 pub mod dynamics;
+pub mod effect;
 pub mod emit;
 pub mod expr;
 pub mod function;

@@ -6,12 +6,14 @@
 //! - [`InterpretedPlant`]: any model file, derived and interpreted
 //! - [`Cradle`]: balls that collide with each other
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
+//! - [`effect`]: laws of missing physics, with derivatives by their parameters
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
 //! Matrices are row-major slices, the shape in which emitted code returns them. All units are SI,
 //! all vectors and positions are those of the world frame.
 
 mod cradle;
+pub mod effect;
 mod generated;
 mod interpreted;
 mod model;

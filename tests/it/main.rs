@@ -2,6 +2,7 @@
 
 mod cli;
 mod contact;
+mod effect;
 mod emitted;
 mod excite;
 mod identify;

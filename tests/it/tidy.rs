@@ -8,12 +8,13 @@ const MAX_FUNCTION_LINES: usize = 70;
 const MAX_COLUMNS: usize = 100;
 
 /// The stages of the compiler, in pipeline order: a stage uses only itself and those before it.
-const STAGES: [&str; 15] = [
+const STAGES: [&str; 16] = [
     "arena",
     "number",
     "expr",
     "fundamental",
     "model",
+    "effect",
     "function",
     "spatial",
     "kinematics",

@@ -121,7 +121,7 @@ fn class_rank(class: SymbolClass) -> u8 {
         SymbolClass::Inertia => 0,
         SymbolClass::Drive => 1,
         SymbolClass::Geometry => 2,
-        SymbolClass::Time => 3,
+        SymbolClass::Time | SymbolClass::State => 3,
         SymbolClass::Configuration => 4,
         SymbolClass::Rate => 5,
         SymbolClass::Acceleration => 6,

@@ -13,6 +13,8 @@ pub enum SymbolClass {
     Effort,
     /// Time t \[s\].
     Time,
+    /// A state of its own that an effect has: the bristle of a friction law, a temperature.
+    State,
     /// Lengths, angles, gravity: known constants of the model.
     Geometry,
     /// Masses, first moments and inertias: what is identified.
@@ -23,10 +25,10 @@ pub enum SymbolClass {
 
 /// A set of symbol classes: which kinds of symbols an expression depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct ClassSet(u8);
+pub struct ClassSet(u16);
 
 impl ClassSet {
-    const RUN_TIME: u8 = 0b1_1111;
+    const RUN_TIME: u16 = 0b11_1111;
 
     /// The set without members: the expression is a constant.
     pub const EMPTY: Self = Self(0);

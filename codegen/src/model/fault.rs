@@ -231,4 +231,16 @@ pub enum Cause {
     Unphysical(Unphysical),
     /// A triangle inequality is accepted as violated, and holds.
     NothingToAccept,
+    /// A number that must be rational, and is not; holds its text.
+    NotRational(String),
+    /// A number outside the bounds of the parameter that it is of; holds both ends as text.
+    OutOfBounds(String, String),
+    /// An effect without a law of its kind; holds the kind and the key of the law.
+    NoLaw(&'static str, &'static str),
+    /// An effect with a law that its kind does not have; holds the kind and the key.
+    WrongLaw(&'static str, &'static str),
+    /// A law that is not nothing where its parameters have their nominal values.
+    NeverVanishes,
+    /// No effect has this name; holds it and the name that was meant, perhaps.
+    UnknownEffect(String, Option<String>),
 }

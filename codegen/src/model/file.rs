@@ -14,25 +14,25 @@ use std::borrow::Cow;
 
 /// A text with its place.
 #[derive(Clone, Debug)]
-pub(super) struct Name<'a> {
-    pub(super) text: Cow<'a, str>,
-    pub(super) at: usize,
+pub(crate) struct Name<'a> {
+    pub(crate) text: Cow<'a, str>,
+    pub(crate) at: usize,
 }
 
 /// A number or an expression, with its place.
 #[derive(Clone, Debug)]
-pub(super) struct Scalar<'a> {
-    pub(super) text: Cow<'a, str>,
-    pub(super) at: usize,
+pub(crate) struct Scalar<'a> {
+    pub(crate) text: Cow<'a, str>,
+    pub(crate) at: usize,
 }
 
 /// A parameter: its value and what the file says about it.
 #[derive(Clone, Debug)]
-pub(super) struct Entry<'a> {
-    pub(super) value: Option<Scalar<'a>>,
-    pub(super) std: Option<Scalar<'a>>,
-    pub(super) known: Option<bool>,
-    pub(super) at: usize,
+pub(crate) struct Entry<'a> {
+    pub(crate) value: Option<Scalar<'a>>,
+    pub(crate) std: Option<Scalar<'a>>,
+    pub(crate) known: Option<bool>,
+    pub(crate) at: usize,
 }
 
 /// A constant or an unknown.

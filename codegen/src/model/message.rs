@@ -147,6 +147,23 @@ impl Cause {
             Self::NothingToAccept => {
                 write!(f, "there is no violated triangle inequality to accept")
             }
+            _ => self.fmt_effect(f),
+        }
+    }
+
+    /// The sentence of a fault in an effect.
+    fn fmt_effect(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotRational(text) => write!(f, "\"{}\" is not a rational number", clip(text)),
+            Self::OutOfBounds(low, high) => write!(f, "the value is not in [{low}, {high}]"),
+            Self::NoLaw(kind, key) => write!(f, "an effect of the kind `{kind}` has `{key}`"),
+            Self::WrongLaw(kind, key) => {
+                write!(f, "an effect of the kind `{kind}` has no `{key}`")
+            }
+            Self::NeverVanishes => {
+                write!(f, "with all `nominal` values the effect does not vanish")
+            }
+            Self::UnknownEffect(name, _) => write!(f, "no effect is called `{}`", clip(name)),
             other => unreachable!("{other:?} has its sentence above"),
         }
     }
@@ -171,7 +188,8 @@ impl Explained for Cause {
             Self::Expression(_, error) => return error.hint.clone(),
             Self::UnknownSymbol { nearest: Some(name), .. }
             | Self::UnknownLink(_, Some(name))
-            | Self::UnknownContact(_, Some(name)) => format!("did you mean `{name}`?"),
+            | Self::UnknownContact(_, Some(name))
+            | Self::UnknownEffect(_, Some(name)) => format!("did you mean `{name}`?"),
             Self::UnknownSymbol { nearest: None, name, section, .. } => {
                 format!(
                     "declare it: \"{section}\": {{\"{}\": {{\"value\": .., \"unit\": ..}}}}",
@@ -199,6 +217,9 @@ impl Cause {
                 "a model file begins with \"format\": \"denavit-model/1\""
             }
             Self::DuplicateKey(_) => "only one of them could count: remove the other",
+            Self::WrongFormat { expected: "denavit-effect/1", .. } => {
+                "docs/effects.md describes the format"
+            }
             Self::WrongFormat { expected, .. } if *expected == super::equations::FORMAT => {
                 "docs/equations.md describes the format"
             }
@@ -267,6 +288,13 @@ impl Cause {
             Self::ZeroGearRatio => "leave it out for a direct drive; a reversing gear is negative",
             Self::ZeroNormal => "level ground has the normal [0, 0, 1]",
             Self::NothingToAccept => "remove the key: the inertia is that of a real body",
+            Self::NotRational(_) => "write the number as a decimal or a fraction",
+            Self::NeverVanishes => {
+                "give `nominal` to the parameters that switch it off, as 0 to a coefficient"
+            }
+            Self::UnknownEffect(..) => {
+                "effects are those of docs/effects.md, and the files of your own folder of effects"
+            }
             _ => return None,
         })
     }

@@ -9,19 +9,19 @@
 //! pointer, cause and hint. docs/model-file.md describes the format.
 
 mod bake;
-mod check;
+pub(crate) mod check;
 pub mod equations;
 mod fault;
-mod file;
+pub(crate) mod file;
 mod hash;
 mod inertia;
 pub mod json;
 mod message;
 mod parameter;
-mod reader;
+pub(crate) mod reader;
 mod report;
 mod robot;
-mod spelling;
+pub(crate) mod spelling;
 mod tree;
 mod unit;
 

@@ -8,18 +8,18 @@ use crate::expr::text::nearest;
 use std::borrow::Cow;
 
 /// The words that may stand in a place, each with its meaning.
-pub(super) struct Word<T: 'static> {
+pub(crate) struct Word<T: 'static> {
     /// What the word says.
-    pub(super) what: &'static str,
+    pub(crate) what: &'static str,
     /// The words.
-    pub(super) known: &'static [&'static str],
+    pub(crate) known: &'static [&'static str],
     /// Their meanings, in the same order.
-    pub(super) values: &'static [T],
+    pub(crate) values: &'static [T],
 }
 
 impl<T: Copy> Word<T> {
     /// The meaning of a word.
-    pub(super) fn read(&self, json: &Json, report: &mut Report) -> Option<T> {
+    pub(crate) fn read(&self, json: &Json, report: &mut Report) -> Option<T> {
         let found = text_of(json, report)?;
         match self.known.iter().position(|known| *known == found.text) {
             Some(index) => Some(self.values[index]),
@@ -38,14 +38,14 @@ impl<T: Copy> Word<T> {
 }
 
 /// The entries of an object, by key.
-pub(super) struct Fields<'j, 'a> {
+pub(crate) struct Fields<'j, 'a> {
     entries: &'j [(Cow<'a, str>, Json<'a>)],
     at: usize,
 }
 
 impl<'j, 'a> Fields<'j, 'a> {
     /// The entries of an object that may have the keys `known`; none if it is no object.
-    pub(super) fn of(
+    pub(crate) fn of(
         json: &'j Json<'a>,
         known: &'static [&'static str],
         report: &mut Report,
@@ -62,17 +62,17 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// Where the object begins.
-    pub(super) fn at(&self) -> usize {
+    pub(crate) fn at(&self) -> usize {
         self.at
     }
 
     /// The value of a key; of the first, if it is given twice.
-    pub(super) fn get(&self, key: &str) -> Option<&'j Json<'a>> {
+    pub(crate) fn get(&self, key: &str) -> Option<&'j Json<'a>> {
         self.entries.iter().find(|(known, _)| known == key).map(|(_, value)| value)
     }
 
     /// The value of a key that must be there.
-    pub(super) fn require(&self, key: &'static str, report: &mut Report) -> Option<&'j Json<'a>> {
+    pub(crate) fn require(&self, key: &'static str, report: &mut Report) -> Option<&'j Json<'a>> {
         let value = self.get(key);
         if value.is_none() {
             report.push(self.at, Cause::MissingKey(key));
@@ -81,7 +81,7 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// Checks the format tag.
-    pub(super) fn format(&self, expected: &'static str, report: &mut Report) {
+    pub(crate) fn format(&self, expected: &'static str, report: &mut Report) {
         let Some(json) = self.require("format", report) else { return };
         let Some(tag) = text_of(json, report) else { return };
         if tag.text != expected {
@@ -91,29 +91,29 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// A text that must be there.
-    pub(super) fn name(&self, key: &'static str, report: &mut Report) -> Name<'a> {
+    pub(crate) fn name(&self, key: &'static str, report: &mut Report) -> Name<'a> {
         self.require(key, report)
             .and_then(|json| text_of(json, report))
             .unwrap_or(Name { text: Cow::Borrowed(""), at: self.at })
     }
 
     /// A text.
-    pub(super) fn text(&self, key: &str, report: &mut Report) -> Option<Name<'a>> {
+    pub(crate) fn text(&self, key: &str, report: &mut Report) -> Option<Name<'a>> {
         self.get(key).and_then(|json| text_of(json, report))
     }
 
     /// A text; empty if it is not there.
-    pub(super) fn text_or_empty(&self, key: &str, report: &mut Report) -> String {
+    pub(crate) fn text_or_empty(&self, key: &str, report: &mut Report) -> String {
         self.text(key, report).map(|text| text.text.into_owned()).unwrap_or_default()
     }
 
     /// A list of texts.
-    pub(super) fn texts(&self, key: &str, report: &mut Report) -> Vec<String> {
+    pub(crate) fn texts(&self, key: &str, report: &mut Report) -> Vec<String> {
         self.items(key, report, |json, report| Some(text_of(json, report)?.text.into_owned()))
     }
 
     /// A word.
-    pub(super) fn word<T: Copy>(
+    pub(crate) fn word<T: Copy>(
         &self,
         key: &str,
         words: &Word<T>,
@@ -123,7 +123,7 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// A word that must be there; the first of the words stands in for a fault.
-    pub(super) fn required_word<T: Copy>(
+    pub(crate) fn required_word<T: Copy>(
         &self,
         key: &'static str,
         words: &Word<T>,
@@ -134,12 +134,12 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// A number or expression.
-    pub(super) fn scalar(&self, key: &str, report: &mut Report) -> Option<Scalar<'a>> {
+    pub(crate) fn scalar(&self, key: &str, report: &mut Report) -> Option<Scalar<'a>> {
         self.get(key).and_then(|json| Self::scalar_of(json, report))
     }
 
     /// Three numbers or expressions that must be there.
-    pub(super) fn required_triple(
+    pub(crate) fn required_triple(
         &self,
         key: &'static str,
         report: &mut Report,
@@ -148,12 +148,12 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// A parameter.
-    pub(super) fn entry(&self, key: &str, report: &mut Report) -> Option<Entry<'a>> {
+    pub(crate) fn entry(&self, key: &str, report: &mut Report) -> Option<Entry<'a>> {
         self.get(key).and_then(|json| entry_of(json, report))
     }
 
     /// A parameter that must be there.
-    pub(super) fn required_entry(
+    pub(crate) fn required_entry(
         &self,
         key: &'static str,
         report: &mut Report,
@@ -162,7 +162,7 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// The values of a list; those that are at fault are left out.
-    pub(super) fn items<T>(
+    pub(crate) fn items<T>(
         &self,
         key: &str,
         report: &mut Report,
@@ -172,7 +172,7 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// The values of a list that must be there.
-    pub(super) fn required_items<T>(
+    pub(crate) fn required_items<T>(
         &self,
         key: &'static str,
         report: &mut Report,
@@ -182,11 +182,11 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// The entries of an object whose keys are names; those that are at fault are left out.
-    pub(super) fn members<T>(
+    pub(crate) fn members<T>(
         &self,
         key: &str,
         report: &mut Report,
-        mut read: impl FnMut(Name<'a>, &Json<'a>, &mut Report) -> Option<T>,
+        mut read: impl FnMut(Name<'a>, &'j Json<'a>, &mut Report) -> Option<T>,
     ) -> Vec<T> {
         let entries = self.get(key).and_then(|json| entries_of(json, report)).unwrap_or_default();
         entries
@@ -198,17 +198,17 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// Whether a value is a text.
-    pub(super) fn is_text(json: &Json) -> bool {
+    pub(crate) fn is_text(json: &Json) -> bool {
         matches!(json.value, Value::Text(_))
     }
 
     /// Whether a value is a number or a text.
-    pub(super) fn is_scalar(json: &Json) -> bool {
+    pub(crate) fn is_scalar(json: &Json) -> bool {
         matches!(json.value, Value::Text(_) | Value::Number(_))
     }
 
     /// A value that should be a number or an expression.
-    pub(super) fn scalar_of(json: &Json<'a>, report: &mut Report) -> Option<Scalar<'a>> {
+    pub(crate) fn scalar_of(json: &Json<'a>, report: &mut Report) -> Option<Scalar<'a>> {
         let text = match &json.value {
             Value::Number(text) => Cow::Borrowed(*text),
             Value::Text(text) => text.clone(),
@@ -218,7 +218,7 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// A value that should be a list of N numbers or expressions.
-    pub(super) fn tuple_of<const N: usize>(
+    pub(crate) fn tuple_of<const N: usize>(
         json: &Json<'a>,
         report: &mut Report,
     ) -> Option<[Scalar<'a>; N]> {
@@ -226,7 +226,7 @@ impl<'j, 'a> Fields<'j, 'a> {
     }
 
     /// A value that should be a list of N parameters.
-    pub(super) fn entries_of<const N: usize>(
+    pub(crate) fn entries_of<const N: usize>(
         json: &Json<'a>,
         report: &mut Report,
     ) -> Option<[Entry<'a>; N]> {

@@ -1,7 +1,7 @@
 //! Names: which texts are identifiers, and which of them are taken.
 
 /// Longest name of a link, constant or contact.
-pub(super) const MAX_NAME_LENGTH: usize = 64;
+pub(crate) const MAX_NAME_LENGTH: usize = 64;
 
 /// Words that emitted Rust could not use as a field name.
 const RUST_WORDS: [&str; 39] = [
@@ -18,7 +18,7 @@ const EXPRESSION_WORDS: [&str; 16] = [
 ];
 
 /// Whether a text is a letter followed by letters, digits and underscores, not too long.
-pub(super) fn is_identifier(text: &str) -> bool {
+pub(crate) fn is_identifier(text: &str) -> bool {
     let mut bytes = text.bytes();
     text.len() <= MAX_NAME_LENGTH
         && bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic())
@@ -26,7 +26,7 @@ pub(super) fn is_identifier(text: &str) -> bool {
 }
 
 /// Who else needs the name, if somebody does.
-pub(super) fn reserved_by(name: &str) -> Option<&'static str> {
+pub(crate) fn reserved_by(name: &str) -> Option<&'static str> {
     if RUST_WORDS.contains(&name) {
         Some("the Rust language, in which emitted code is written")
     } else if EXPRESSION_WORDS.contains(&name) {

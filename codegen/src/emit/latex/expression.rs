@@ -142,7 +142,7 @@ impl<'a> Writer<'a> {
                     SymbolClass::Configuration => Place::Configuration,
                     SymbolClass::Rate => Place::Rate,
                     SymbolClass::Acceleration => Place::Acceleration,
-                    SymbolClass::Effort | SymbolClass::Time => Place::Other,
+                    SymbolClass::Effort | SymbolClass::Time | SymbolClass::State => Place::Other,
                 };
                 let text = self.notation.symbol(self.dag, id);
                 // In the order of their making: the file's.

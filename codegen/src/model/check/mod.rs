@@ -24,7 +24,7 @@ use crate::arena::PrimaryMap;
 use crate::expr::ExprId;
 use crate::expr::text::nearest;
 use rustc_hash::FxHashMap;
-pub(super) use scope::Scope;
+pub(crate) use scope::Scope;
 
 /// What is built up while a file is checked.
 struct Check<'r> {

@@ -16,8 +16,8 @@ use std::collections::BTreeSet;
 const MAX_TEXT_BYTES: usize = 1 << 20;
 
 /// The graph with the declared names.
-pub(in crate::model) struct Scope {
-    pub(in crate::model) dag: Dag,
+pub(crate) struct Scope {
+    pub(crate) dag: Dag,
     facts: Facts,
     declared: FxHashMap<String, ExprId>,
     /// Every name that the file declares, now or later.
@@ -29,7 +29,7 @@ pub(in crate::model) struct Scope {
 impl Scope {
     /// A scope in which nothing is declared yet; `names` are those that the file will declare.
     /// `section` is the key of the file under which a known quantity is declared.
-    pub(in crate::model) fn new(names: BTreeSet<String>, section: &'static str) -> Self {
+    pub(crate) fn new(names: BTreeSet<String>, section: &'static str) -> Self {
         Self {
             dag: Dag::new(),
             facts: Facts::default(),
@@ -41,7 +41,7 @@ impl Scope {
     }
 
     /// Declares a symbol that expressions may use from here on.
-    pub(in crate::model) fn declare(
+    pub(crate) fn declare(
         &mut self,
         name: &str,
         class: SymbolClass,
@@ -56,28 +56,28 @@ impl Scope {
     }
 
     /// Lets expressions use a name that was refused, so that one fault does not become many.
-    pub(in crate::model) fn tolerate(&mut self, name: &str) {
+    pub(crate) fn tolerate(&mut self, name: &str) {
         let one = self.dag.one();
         self.declared.insert(name.to_owned(), one);
     }
 
     /// Whether expressions may use the name.
-    pub(in crate::model) fn is_declared(&self, name: &str) -> bool {
+    pub(crate) fn is_declared(&self, name: &str) -> bool {
         self.declared.contains_key(name)
     }
 
     /// Makes a symbol that no expression of the file can name.
-    pub(in crate::model) fn generate(&mut self, name: &str, class: SymbolClass) -> ExprId {
+    pub(crate) fn generate(&mut self, name: &str, class: SymbolClass) -> ExprId {
         self.dag.symbol(name, class)
     }
 
     /// Reads an expression; 0 stands in for one that is at fault.
-    pub(in crate::model) fn expression(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
+    pub(crate) fn expression(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
         self.read(scalar, false, report).unwrap_or(self.dag.zero())
     }
 
     /// Reads an expression; none if it is at fault.
-    pub(in crate::model) fn try_expression(
+    pub(crate) fn try_expression(
         &mut self,
         scalar: &Scalar,
         report: &mut Report,
@@ -86,13 +86,13 @@ impl Scope {
     }
 
     /// Reads an entry of a row, which is the constant part of a joint.
-    pub(in crate::model) fn row_entry(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
+    pub(crate) fn row_entry(&mut self, scalar: &Scalar, report: &mut Report) -> ExprId {
         self.read(scalar, true, report).unwrap_or(self.dag.zero())
     }
 
     /// Reads an expression that must have a value, of the given dimension if one is given, and
     /// returns the value, free of symbols.
-    pub(in crate::model) fn value(
+    pub(crate) fn value(
         &mut self,
         scalar: &Scalar,
         expected: Option<(&str, Dimension)>,
@@ -110,11 +110,7 @@ impl Scope {
     }
 
     /// Reads an expression without symbols.
-    pub(in crate::model) fn number(
-        &mut self,
-        scalar: &Scalar,
-        report: &mut Report,
-    ) -> Option<ExprId> {
+    pub(crate) fn number(&mut self, scalar: &Scalar, report: &mut Report) -> Option<ExprId> {
         let expr = self.read(scalar, false, report)?;
         if !self.has_symbols(expr) {
             return Some(expr);
@@ -124,7 +120,7 @@ impl Scope {
     }
 
     /// Checks that an expression has the dimension that its place asks for.
-    pub(in crate::model) fn expect(
+    pub(crate) fn expect(
         &mut self,
         expr: ExprId,
         what: &str,
@@ -142,23 +138,18 @@ impl Scope {
     }
 
     /// The value of an expression as the file gives it: exact, but for pi.
-    pub(in crate::model) fn approximate(&mut self, expr: ExprId) -> Option<Rational> {
+    pub(crate) fn approximate(&mut self, expr: ExprId) -> Option<Rational> {
         self.facts.update(&mut self.dag);
         approximate(&self.dag, self.facts.value(expr)?)
     }
 
     /// Whether an expression depends on a symbol.
-    pub(in crate::model) fn has_symbols(&self, expr: ExprId) -> bool {
+    pub(crate) fn has_symbols(&self, expr: ExprId) -> bool {
         !self.dag.classes(expr).is_empty()
     }
 
     /// Notes that an expression depends on a symbol where it may not.
-    pub(in crate::model) fn refuse_symbols(
-        &self,
-        scalar: &Scalar,
-        expr: ExprId,
-        report: &mut Report,
-    ) {
+    pub(crate) fn refuse_symbols(&self, scalar: &Scalar, expr: ExprId, report: &mut Report) {
         let symbols = if report.wants_hints() { free_symbols(&self.dag, &[expr]) } else { vec![] };
         let name = symbols.first().map(|&symbol| self.dag.symbols()[symbol].name.clone());
         let text = scalar.text.clone().into_owned();

@@ -1,0 +1,248 @@
+//! The law of an effect: its keys in the file, and their expressions.
+
+use super::{Channel, EffectKind, EffectSite, Law, Measured, ModelTerm, Property};
+use crate::expr::{ExprId, SymbolClass};
+use crate::model::check::Scope;
+use crate::model::file::Scalar;
+use crate::model::json::Json;
+use crate::model::reader::{Fields, Word};
+use crate::model::{Cause, Dimension, JointKind, Report};
+
+const CHANNELS: Word<Channel> = Word {
+    what: "channel",
+    known: &["tau", "q", "qd"],
+    values: &[Channel::Torque, Channel::Position, Channel::Rate],
+};
+
+const TERMS: Word<ModelTerm> = Word {
+    what: "term",
+    known: &["coriolis", "gravity", "rotor", "friction", "spring", "coupling_inertia"],
+    values: &ModelTerm::ALL,
+};
+
+/// The law as it is written.
+pub(super) enum LawFile<'a> {
+    Torque(Scalar<'a>),
+    Measured { channel: Channel, parts: [Option<Scalar<'a>>; 5] },
+    Moves(Vec<(Property, Scalar<'a>)>),
+    Term(ModelTerm),
+}
+
+impl<'a> LawFile<'a> {
+    /// Reads the law that an effect of this kind has, and refuses others.
+    pub(super) fn read(
+        fields: &Fields<'_, 'a>,
+        kind: EffectKind,
+        report: &mut Report,
+    ) -> Option<Self> {
+        let keys: &[&'static str] = match kind {
+            EffectKind::Torque | EffectKind::State => &["torque"],
+            EffectKind::Measurement => &["measured"],
+            EffectKind::Parameter => &["moves"],
+            EffectKind::Term => &["term"],
+            EffectKind::Mode => &["torque", "measured"],
+        };
+        for key in ["torque", "measured", "moves", "term"] {
+            if let Some(json) = fields.get(key).filter(|_| !keys.contains(&key)) {
+                report.push(json.start, Cause::WrongLaw(kind.as_str(), key));
+            }
+        }
+        if kind == EffectKind::State && fields.get("states").is_none_or(|s| s.entries().is_empty())
+        {
+            report.push(fields.at(), Cause::NoLaw(kind.as_str(), "states"));
+        }
+        let Some((key, json)) = keys.iter().find_map(|key| Some((*key, fields.get(key)?))) else {
+            report.push(fields.at(), Cause::NoLaw(kind.as_str(), keys[0]));
+            return None;
+        };
+        match key {
+            "torque" => Fields::scalar_of(json, report).map(Self::Torque),
+            "measured" => read_measured(json, report),
+            "moves" => read_moves(json, report).map(Self::Moves),
+            _ => TERMS.read(json, report).map(Self::Term),
+        }
+    }
+}
+
+fn read_measured<'a>(json: &Json<'a>, report: &mut Report) -> Option<LawFile<'a>> {
+    const KEYS: &[&str] = &["channel", "value", "gain", "offset", "delay_s", "lag_s"];
+    let fields = Fields::of(json, KEYS, report)?;
+    let channel = fields.required_word("channel", &CHANNELS, report);
+    let parts = std::array::from_fn(|part| fields.scalar(KEYS[part + 1], report));
+    Some(LawFile::Measured { channel, parts })
+}
+
+fn read_moves<'a>(json: &Json<'a>, report: &mut Report) -> Option<Vec<(Property, Scalar<'a>)>> {
+    const KEYS: &[&str] = &[
+        "mass",
+        "first_moment",
+        "inertia",
+        "gravity",
+        "zero",
+        "rotor_inertia",
+        "series_stiffness",
+    ];
+    let fields = Fields::of(json, KEYS, report)?;
+    let mut moves = Vec::new();
+    for (key, property) in [
+        ("mass", Property::Mass),
+        ("zero", Property::Zero),
+        ("rotor_inertia", Property::RotorInertia),
+        ("series_stiffness", Property::SeriesStiffness),
+    ] {
+        moves.extend(fields.scalar(key, report).map(|by| (property, by)));
+    }
+    let mut list = |key: &str, length: usize, property: fn(usize) -> Property| {
+        let Some(json) = fields.get(key) else { return };
+        let found = fields.items(key, report, |json, report| Fields::scalar_of(json, report));
+        if found.len() != length {
+            report.push(json.start, Cause::WrongLength { expected: length, found: found.len() });
+        }
+        moves.extend(found.into_iter().take(length).enumerate().map(|(i, by)| (property(i), by)));
+    };
+    list("first_moment", 3, Property::FirstMoment);
+    list("inertia", 6, Property::Inertia);
+    list("gravity", 3, Property::Gravity);
+    Some(moves)
+}
+
+/// Reads expressions of laws: the symbols of the motion are those that the place has.
+pub(super) struct LawReader {
+    pub(super) scope: Scope,
+    pub(super) joint: JointKind,
+    torque: Dimension,
+    position: Dimension,
+}
+
+impl LawReader {
+    pub(super) fn new(mut scope: Scope, joint: JointKind, at: EffectSite) -> Self {
+        let (torque, position) = match joint {
+            JointKind::Prismatic => (Dimension::FORCE, Dimension::LENGTH),
+            _ => (Dimension::TORQUE, Dimension::NONE),
+        };
+        let per_second = |dimension: Dimension| dimension.times(Dimension::RATE);
+        let rate = per_second(position);
+        let (acceleration, torque_rate) = (rate.and_then(per_second), per_second(torque));
+        let second = Dimension::NONE.per(Dimension::RATE);
+        let mut declare = |name: &str, class, dimension| {
+            scope.declare(name, class, dimension, None);
+        };
+        use SymbolClass::{Acceleration, Configuration, Effort, Geometry, Rate, Time};
+        declare("t", Time, second);
+        if matches!(at, EffectSite::Joint | EffectSite::JointPair) {
+            declare("q", Configuration, Some(position));
+            declare("qd", Rate, rate);
+            declare("qdd", Acceleration, acceleration);
+            declare("tau_load", Effort, Some(torque));
+            declare("tau_load_rate", Effort, torque_rate);
+        }
+        if at == EffectSite::JointPair {
+            declare("q_2", Configuration, Some(position));
+            declare("qd_2", Rate, rate);
+            declare("qdd_2", Acceleration, acceleration);
+            declare("tau_load_2", Effort, Some(torque));
+        }
+        if at == EffectSite::Model {
+            for name in ["g_x", "g_y", "g_z"] {
+                declare(name, Geometry, Some(Dimension::ACCELERATION));
+            }
+        }
+        Self { scope, joint, torque, position }
+    }
+
+    /// An expression of this dimension; 0 where there is none.
+    pub(super) fn quantity(
+        &mut self,
+        scalar: Option<Scalar>,
+        what: &str,
+        dimension: Dimension,
+        report: &mut Report,
+    ) -> ExprId {
+        let Some(scalar) = scalar else { return self.scope.dag.zero() };
+        let expr = self.scope.expression(&scalar, report);
+        self.scope.expect(expr, what, dimension, scalar.at, report);
+        expr
+    }
+
+    /// The law with its expressions.
+    pub(super) fn law(&mut self, file: &LawFile, report: &mut Report) -> Option<Law> {
+        Some(match file {
+            LawFile::Torque(torque) => {
+                let torque = self.quantity(Some(torque.clone()), "a torque", self.torque, report);
+                Law::Torque(torque)
+            }
+            LawFile::Measured { channel, parts } => {
+                Law::Measured(self.measured(*channel, parts, report))
+            }
+            LawFile::Moves(moves) => Law::Moves(
+                moves
+                    .iter()
+                    .map(|(property, by)| (*property, self.moved(*property, by, report)))
+                    .collect(),
+            ),
+            LawFile::Term(term) => Law::Term(*term),
+        })
+    }
+
+    fn measured(
+        &mut self,
+        channel: Channel,
+        parts: &[Option<Scalar<'_>>; 5],
+        report: &mut Report,
+    ) -> Measured {
+        // only here: a law that adds to the torque cannot answer to the sum
+        self.scope.declare("tau", SymbolClass::Effort, Some(self.torque), None);
+        let dimension = match channel {
+            Channel::Torque => self.torque,
+            Channel::Position => self.position,
+            Channel::Rate => self.position.times(Dimension::RATE).unwrap_or(self.position),
+        };
+        let [value, gain, offset, delay, lag] = parts;
+        let true_value = match channel {
+            Channel::Torque => "tau",
+            Channel::Position => "q",
+            Channel::Rate => "qd",
+        };
+        let mut logged = match value {
+            Some(value) => self.quantity(Some(value.clone()), "what is logged", dimension, report),
+            None => self.symbol(true_value),
+        };
+        if let Some(gain) = gain {
+            let gain = self.quantity(Some(gain.clone()), "a gain", Dimension::NONE, report);
+            logged = self.scope.dag.mul(gain, logged);
+        }
+        let offset = self.quantity(offset.clone(), "an offset", dimension, report);
+        let value = self.scope.dag.add(logged, offset);
+        let second = Dimension::NONE.per(Dimension::RATE).unwrap_or(Dimension::NONE);
+        let delay_s = self.quantity(delay.clone(), "a delay", second, report);
+        let lag_s = self.quantity(lag.clone(), "a lag", second, report);
+        Measured { channel, value, delay_s, lag_s }
+    }
+
+    fn symbol(&mut self, name: &str) -> ExprId {
+        match self.scope.dag.find_symbol(name) {
+            Some(id) => self.scope.dag.symbol_expr(id),
+            None => self.scope.dag.zero(),
+        }
+    }
+
+    fn moved(&mut self, property: Property, by: &Scalar<'_>, report: &mut Report) -> ExprId {
+        let inertia = match self.joint {
+            JointKind::Prismatic => Dimension::MASS,
+            _ => Dimension::INERTIA,
+        };
+        let (what, dimension) = match property {
+            Property::Mass => ("a mass", Dimension::MASS),
+            Property::FirstMoment(_) => ("a first moment", Dimension::FIRST_MOMENT),
+            Property::Inertia(_) => ("a moment of inertia", Dimension::INERTIA),
+            Property::Gravity(_) => ("gravity", Dimension::ACCELERATION),
+            Property::Zero => ("a position", self.position),
+            Property::RotorInertia => ("the inertia of a rotor", inertia),
+            Property::SeriesStiffness => {
+                let stiffness = Dimension::FORCE.per(Dimension::LENGTH);
+                ("a stiffness", stiffness.unwrap_or(Dimension::FORCE))
+            }
+        };
+        self.quantity(Some(by.clone()), what, dimension, report)
+    }
+}

@@ -1,0 +1,305 @@
+//! Effects as data: physics that a rigid-body model lacks, one law to a file.
+//!
+//! An effect is a file `denavit-effect/1`: its law in the expression language, parameters with
+//! units and bounds, states, and what it is taken for. docs/effects.md lists the catalogue.
+//!
+//! 1. `read`: text to an [`Effect`], all faults at once
+//! 2. `spelling`: units that depend on the joint, as `torque/rate`
+//! 3. `linear`: which parameters a law is linear in, decided on expressions
+//! 4. [`catalogue`]: the shipped effects
+
+mod catalogue;
+mod law;
+mod linear;
+mod read;
+mod spelling;
+
+pub use catalogue::{SHIPPED, catalogue, find};
+pub use read::read;
+pub use spelling::JointUnit;
+
+use crate::expr::{Dag, ExprId};
+use crate::number::Rational;
+
+/// The tag of a file of an effect.
+pub const FORMAT: &str = "denavit-effect/1";
+
+/// The JSON Schema (draft 2020-12) of a file of an effect: its form, not its content.
+pub fn schema() -> &'static str {
+    include_str!("schema.json")
+}
+
+/// What an effect is to the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EffectKind {
+    /// Adds to the torque that a joint needs.
+    Torque,
+    /// The same, with states of its own.
+    State,
+    /// Stands between a true quantity and what is logged of it.
+    Measurement,
+    /// Moves what the model says of a place.
+    Parameter,
+    /// A term of the model that was left out.
+    Term,
+    /// Changes its law with the state of motion: stick, stop, saturation.
+    Mode,
+}
+
+impl EffectKind {
+    /// The kinds, in the order of listings.
+    pub const ALL: [Self; 6] =
+        [Self::Torque, Self::State, Self::Measurement, Self::Parameter, Self::Term, Self::Mode];
+
+    /// The word in files.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Torque => "torque",
+            Self::State => "state",
+            Self::Measurement => "measurement",
+            Self::Parameter => "parameter",
+            Self::Term => "term",
+            Self::Mode => "mode",
+        }
+    }
+}
+
+/// Where an effect can act.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EffectSite {
+    /// On one joint.
+    Joint,
+    /// On one joint, depending on another one.
+    JointPair,
+    /// On one link.
+    Link,
+    /// At one contact point.
+    Contact,
+    /// On the whole model.
+    Model,
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectParameter {
+    /// The name, an identifier.
+    pub name: String,
+    /// The symbol in [`Effect::dag`].
+    pub symbol: ExprId,
+    /// Its unit, which may depend on whether the joint turns or slides.
+    pub unit: JointUnit,
+    /// What it is.
+    pub description: String,
+    /// The value that switches the effect off; none for those that only shape it.
+    pub nominal: Option<Rational>,
+    /// Lowest and highest value; none where there is no end.
+    pub bounds: [Option<Rational>; 2],
+    /// Values to start a search from; for a parameter that shapes the law at least one.
+    pub start: Vec<Rational>,
+    /// Whether the law is affine in it, jointly with the other linear ones: decided on the
+    /// expressions. Never where a state answers to it.
+    pub linear: bool,
+}
+
+/// A state of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectState {
+    /// The name, an identifier.
+    pub name: String,
+    /// The symbol in [`Effect::dag`].
+    pub symbol: ExprId,
+    /// Its unit.
+    pub unit: JointUnit,
+    /// Its derivative with respect to time.
+    pub rate: ExprId,
+    /// Its value at the beginning, of the motion and parameters there.
+    pub initial: ExprId,
+}
+
+/// A quantity that is logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Channel {
+    /// The joint's torque, whose symbol is `tau`.
+    Torque,
+    /// The joint's position, `q`.
+    Position,
+    /// The joint's rate, `qd`.
+    Rate,
+}
+
+impl Channel {
+    /// The name in files and laws.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Torque => "tau",
+            Self::Position => "q",
+            Self::Rate => "qd",
+        }
+    }
+}
+
+/// What is logged of a true quantity: value(t - delay), then a first-order lag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measured {
+    /// Which quantity.
+    pub channel: Channel,
+    /// What would be logged without delay and lag: the channel's symbol if nothing changes it.
+    pub value: ExprId,
+    /// Delay \[s\]; negative if the channel runs ahead of the others.
+    pub delay_s: ExprId,
+    /// Time constant of the lag \[s\].
+    pub lag_s: ExprId,
+}
+
+/// A property of a place that an effect can move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Property {
+    /// Mass of a link \[kg\].
+    Mass,
+    /// First moment of a link about the origin of its frame \[kg m\], along one axis.
+    FirstMoment(usize),
+    /// Moment of inertia about that origin \[kg m^2\]: xx, yy, zz, xy, xz, yz.
+    Inertia(usize),
+    /// Acceleration of free fall in frame 0 \[m/s^2\], along one axis.
+    Gravity(usize),
+    /// The position that the model takes for the joint's: q becomes q + this.
+    Zero,
+    /// Inertia of the rotor on the joint side.
+    RotorInertia,
+    /// Stiffness of the joint's series spring \[N/m\].
+    SeriesStiffness,
+}
+
+/// A term of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ModelTerm {
+    /// `C qd`.
+    Coriolis,
+    /// `G`.
+    Gravity,
+    /// Reflected rotor inertia.
+    Rotor,
+    /// Friction of the drives.
+    Friction,
+    /// Springs across joints.
+    Spring,
+    /// Entries of D beside its diagonal.
+    CouplingInertia,
+}
+
+impl ModelTerm {
+    /// The terms, in the order of listings.
+    pub const ALL: [Self; 6] = [
+        Self::Coriolis,
+        Self::Gravity,
+        Self::Rotor,
+        Self::Friction,
+        Self::Spring,
+        Self::CouplingInertia,
+    ];
+
+    /// The word in files.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Coriolis => "coriolis",
+            Self::Gravity => "gravity",
+            Self::Rotor => "rotor",
+            Self::Friction => "friction",
+            Self::Spring => "spring",
+            Self::CouplingInertia => "coupling_inertia",
+        }
+    }
+}
+
+/// What an effect does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// The torque that its joint needs besides [N m, N].
+    Torque(ExprId),
+    /// What is logged.
+    Measured(Measured),
+    /// What is added to properties of the place.
+    Moves(Vec<(Property, ExprId)>),
+    /// A term, with the coefficient 1.
+    Term(ModelTerm),
+}
+
+impl Law {
+    /// The expressions of the law.
+    pub fn expressions(&self) -> Vec<ExprId> {
+        match self {
+            Self::Torque(torque) => vec![*torque],
+            Self::Measured(measured) => vec![measured.value, measured.delay_s, measured.lag_s],
+            Self::Moves(moves) => moves.iter().map(|(_, by)| *by).collect(),
+            Self::Term(_) => Vec::new(),
+        }
+    }
+}
+
+/// Another effect that this one is taken for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Confusion {
+    /// Its name.
+    pub effect: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// A checked effect.
+#[derive(Clone, Debug)]
+pub struct Effect {
+    /// The name, an identifier.
+    pub name: String,
+    /// A few words for listings.
+    pub title: String,
+    /// What it is, in a sentence or more.
+    pub description: String,
+    /// Where the law comes from.
+    pub source: String,
+    /// What it is to the equations.
+    pub kind: EffectKind,
+    /// Where it can act.
+    pub at: EffectSite,
+    /// Its parameters, in file order.
+    pub parameters: Vec<EffectParameter>,
+    /// Its states, in file order.
+    pub states: Vec<EffectState>,
+    /// Its law.
+    pub law: Law,
+    /// What it is taken for.
+    pub confused_with: Vec<Confusion>,
+    /// Holds the expressions; the symbols of the motion are those of [`VARIABLES`].
+    pub dag: Dag,
+}
+
+/// The symbols that laws may use beside their own: motion of the joint, of the other joint of a
+/// pair, torques.
+pub const VARIABLES: [&str; 14] = [
+    "t",
+    "q",
+    "qd",
+    "qdd",
+    "tau_load",
+    "tau_load_rate",
+    "tau",
+    "q_2",
+    "qd_2",
+    "qdd_2",
+    "tau_load_2",
+    "g_x",
+    "g_y",
+    "g_z",
+];
+
+impl Effect {
+    /// The parameter of that name.
+    pub fn parameter(&self, name: &str) -> Option<&EffectParameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// The expression of a symbol of [`VARIABLES`] or of a parameter, if a law uses it.
+    pub fn symbol(&mut self, name: &str) -> Option<ExprId> {
+        let id = self.dag.find_symbol(name)?;
+        Some(self.dag.symbol_expr(id))
+    }
+}

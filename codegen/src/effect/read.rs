@@ -1,0 +1,319 @@
+//! From the text of a file to an [`Effect`].
+
+use super::law::{LawFile, LawReader};
+use super::linear::{depends, linear};
+use super::spelling::JointUnit;
+use super::{Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law};
+use crate::expr::{Dag, ExprId, SymbolClass, substitute};
+use crate::model::check::Scope;
+use crate::model::file::{Name, Scalar};
+use crate::model::json::{self, Json, JsonError, Value};
+use crate::model::reader::{self, Fields, Word};
+use crate::model::spelling::{is_identifier, reserved_by};
+use crate::model::{Cause, Dimension, JointKind, ModelError, Report};
+use crate::number::Rational;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
+
+const KEYS: &[&str] = &[
+    "format",
+    "name",
+    "title",
+    "description",
+    "source",
+    "kind",
+    "at",
+    "parameters",
+    "states",
+    "torque",
+    "measured",
+    "moves",
+    "term",
+    "confused_with",
+];
+
+const KINDS: Word<EffectKind> = Word {
+    what: "kind of effect",
+    known: &["torque", "state", "measurement", "parameter", "term", "mode"],
+    values: &EffectKind::ALL,
+};
+
+const SITES: Word<EffectSite> = Word {
+    what: "place",
+    known: &["joint", "joint_pair", "link", "contact", "model"],
+    values: &[
+        EffectSite::Joint,
+        EffectSite::JointPair,
+        EffectSite::Link,
+        EffectSite::Contact,
+        EffectSite::Model,
+    ],
+};
+
+/// Reads a file of an effect from its bytes. `file` is its name, for messages alone. Names of
+/// `confused_with` are checked where all effects are known.
+pub fn read(file: &str, source: &[u8]) -> Result<Effect, ModelError> {
+    let mut report = Report::default();
+    let root = match json::parse(source) {
+        Ok(root) => root,
+        Err(JsonError { at, cause }) => {
+            report.push(at, Cause::from(cause));
+            return Err(report.into_error(file, source, None));
+        }
+    };
+    reader::find_duplicate_keys(&root, &mut report);
+    let effect = read_root(&root, JointKind::Revolute, &mut report);
+    if report.is_empty() {
+        // units of a joint that turns are not those of one that slides: laws must fit both
+        read_root(&root, JointKind::Prismatic, &mut report);
+    }
+    match effect {
+        Some(effect) if report.is_empty() => Ok(effect),
+        _ => Err(report.into_error(file, source, Some(&root))),
+    }
+}
+
+fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effect> {
+    let fields = Fields::of(root, KEYS, report)?;
+    fields.format(FORMAT, report);
+    let name = fields.name("name", report);
+    if !name.text.is_empty() && !is_identifier(&name.text) {
+        report.push(name.at, Cause::NotIdentifier(name.text.clone().into_owned()));
+    }
+    let kind = fields.required_word("kind", &KINDS, report);
+    let at = fields.required_word("at", &SITES, report);
+    let names = ["parameters", "states"].iter().filter_map(|key| fields.get(key));
+    let names: BTreeSet<String> =
+        names.flat_map(Json::entries).map(|(name, _)| name.clone().into_owned()).collect();
+    let scope = Scope::new(names, "parameters");
+    let mut reading = Reading { law: LawReader::new(scope, joint, at), report };
+    let mut parameters = reading.parameters(&fields);
+    let states = reading.states(&fields);
+    let law = LawFile::read(&fields, kind, reading.report);
+    let law = law.and_then(|law| reading.law.law(&law, reading.report));
+    let confused_with = reading.confused_with(&fields);
+    let texts = ["title", "description", "source"]
+        .map(|key| fields.name(key, reading.report).text.into_owned());
+    let mut dag = reading.law.scope.dag;
+    let law = law?;
+    note_linear(&mut dag, &mut parameters, &states, &law);
+    if !vanishes(&mut dag, &parameters, &law) {
+        report.push(fields.at(), Cause::NeverVanishes);
+    }
+    let [title, description, source] = texts;
+    let name = name.text.into_owned();
+    Some(Effect {
+        name,
+        title,
+        description,
+        source,
+        kind,
+        at,
+        parameters,
+        states,
+        law,
+        confused_with,
+        dag,
+    })
+}
+
+fn note_linear(
+    dag: &mut Dag,
+    parameters: &mut [EffectParameter],
+    states: &[EffectState],
+    law: &Law,
+) {
+    let symbols: Vec<ExprId> = parameters.iter().map(|parameter| parameter.symbol).collect();
+    // a state answers to its parameters in a way that no expression says
+    let hidden: Vec<ExprId> = states.iter().flat_map(|state| [state.rate, state.initial]).collect();
+    let is_linear = linear(dag, &law.expressions(), &symbols);
+    for (parameter, is_linear) in parameters.iter_mut().zip(is_linear) {
+        parameter.linear = is_linear && !depends(dag, &hidden, parameter.symbol);
+    }
+}
+
+/// Whether nothing is left of the law where the parameters have their nominal values.
+fn vanishes(dag: &mut Dag, parameters: &[EffectParameter], law: &Law) -> bool {
+    let mut nominal: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+    for parameter in parameters {
+        if let Some(value) = &parameter.nominal {
+            nominal.insert(parameter.symbol, dag.constant(value.clone()));
+        }
+    }
+    let left = substitute(dag, &law.expressions(), &nominal);
+    let nothing = match law {
+        Law::Measured(measured) => {
+            let symbol = dag.find_symbol(measured.channel.as_str());
+            vec![symbol.map(|symbol| dag.symbol_expr(symbol)), Some(dag.zero()), Some(dag.zero())]
+        }
+        _ => vec![Some(dag.zero()); left.len()],
+    };
+    left.iter().zip(nothing).all(|(&left, nothing)| Some(left) == nothing)
+}
+
+struct Reading<'r> {
+    law: LawReader,
+    report: &'r mut Report,
+}
+
+impl Reading<'_> {
+    fn parameters(&mut self, fields: &Fields<'_, '_>) -> Vec<EffectParameter> {
+        const KEYS: &[&str] = &["unit", "description", "nominal", "bounds", "start"];
+        let declared = fields.members("parameters", self.report, |name, json, report| {
+            Some((name, Fields::of(json, KEYS, report)?))
+        });
+        declared.iter().filter_map(|(name, fields)| self.parameter(name, fields)).collect()
+    }
+
+    fn parameter(&mut self, name: &Name, fields: &Fields<'_, '_>) -> Option<EffectParameter> {
+        let unit = self.unit(fields);
+        let description = fields.name("description", self.report).text.into_owned();
+        let nominal = fields.scalar("nominal", self.report);
+        let nominal = nominal.and_then(|nominal| self.rational(&nominal));
+        let bounds = self.bounds(fields);
+        let starts = fields.items("start", self.report, |json, report| {
+            Some((Fields::scalar_of(json, report)?, json.start))
+        });
+        let mut start = Vec::new();
+        for (scalar, at) in starts {
+            start.extend(self.rational(&scalar).inspect(|value| self.inside(value, &bounds, at)));
+        }
+        if let (Some(value), Some(json)) = (&nominal, fields.get("nominal")) {
+            self.inside(value, &bounds, json.start);
+        }
+        if nominal.is_none() && start.is_empty() {
+            self.report.push(fields.at(), Cause::MissingKey("start"));
+        }
+        let unit = unit?;
+        let symbol = self.declare(name, SymbolClass::Drive, &unit)?;
+        let name = name.text.clone().into_owned();
+        let linear = false;
+        Some(EffectParameter { name, symbol, unit, description, nominal, bounds, start, linear })
+    }
+
+    fn inside(&mut self, value: &Rational, bounds: &[Option<Rational>; 2], at: usize) {
+        let [low, high] = bounds;
+        let below = low.as_ref().is_some_and(|low| value < low);
+        if below || high.as_ref().is_some_and(|high| value > high) {
+            let end = |end: &Option<Rational>| {
+                end.as_ref().map_or_else(|| "null".to_owned(), ToString::to_string)
+            };
+            self.report.push(at, Cause::OutOfBounds(end(low), end(high)));
+        }
+    }
+
+    /// Both ends; `null` is no end.
+    fn bounds(&mut self, fields: &Fields<'_, '_>) -> [Option<Rational>; 2] {
+        let Some(json) = fields.require("bounds", self.report) else { return [None, None] };
+        let ends = match &json.value {
+            Value::List(ends) if ends.len() == 2 => ends,
+            Value::List(ends) => {
+                let cause = Cause::WrongLength { expected: 2, found: ends.len() };
+                self.report.push(json.start, cause);
+                return [None, None];
+            }
+            other => {
+                let (expected, found) = ("a list", other.kind());
+                self.report.push(json.start, Cause::WrongKind { expected, found });
+                return [None, None];
+            }
+        };
+        let bounds = [0, 1].map(|end| {
+            let end = &ends[end];
+            if matches!(end.value, Value::Null) {
+                return None;
+            }
+            let scalar = Fields::scalar_of(end, self.report)?;
+            self.rational(&scalar)
+        });
+        if let [Some(low), Some(high)] = &bounds
+            && low > high
+        {
+            let cause = Cause::ReversedRange(low.to_string(), high.to_string());
+            self.report.push(json.start, cause);
+        }
+        bounds
+    }
+
+    fn states(&mut self, fields: &Fields<'_, '_>) -> Vec<EffectState> {
+        let declared = fields.members("states", self.report, |name, json, report| {
+            Some((name, Fields::of(json, &["unit", "rate", "initial"], report)?))
+        });
+        let mut states = Vec::new();
+        // rates may name every state: all are declared before one is read
+        for (name, fields) in declared {
+            let Some(unit) = self.unit(&fields) else { continue };
+            let symbol = self.declare(&name, SymbolClass::State, &unit);
+            states.extend(symbol.map(|symbol| (name.text.into_owned(), unit, symbol, fields)));
+        }
+        let seconds = Dimension::NONE.per(Dimension::RATE).unwrap_or(Dimension::NONE);
+        states
+            .into_iter()
+            .map(|(name, unit, symbol, fields)| {
+                let dimension = unit.of(self.law.joint).dimension();
+                let per_second = dimension.per(seconds).unwrap_or(Dimension::NONE);
+                let rate = fields.require("rate", self.report);
+                let rate = rate.and_then(|json| Fields::scalar_of(json, self.report));
+                let rate = self.law.quantity(rate, "the rate", per_second, self.report);
+                let initial = fields.scalar("initial", self.report);
+                let initial =
+                    self.law.quantity(initial, "the initial value", dimension, self.report);
+                EffectState { name, symbol, unit, rate, initial }
+            })
+            .collect()
+    }
+
+    fn unit(&mut self, fields: &Fields<'_, '_>) -> Option<JointUnit> {
+        let json = fields.require("unit", self.report)?;
+        let unit = fields.text("unit", self.report)?;
+        let parsed = JointUnit::parse(&unit.text);
+        if let Err(error) = &parsed {
+            let text = unit.text.into_owned();
+            self.report.push(json.start, Cause::Unit(text, error.clone()));
+        }
+        parsed.ok()
+    }
+
+    fn declare(&mut self, name: &Name, class: SymbolClass, unit: &JointUnit) -> Option<ExprId> {
+        let text = name.text.clone().into_owned();
+        let scope = &mut self.law.scope;
+        let fault = if !is_identifier(&text) {
+            Some(Cause::NotIdentifier(text.clone()))
+        } else if let Some(by) = reserved_by(&text) {
+            Some(Cause::ReservedName(text.clone(), by))
+        } else {
+            let taken = scope.is_declared(&text) || super::VARIABLES.contains(&&*text);
+            taken.then(|| Cause::DuplicateName(text.clone(), "another quantity"))
+        };
+        if let Some(cause) = fault {
+            self.report.push(name.at, cause);
+            if !scope.is_declared(&text) {
+                scope.tolerate(&text);
+            }
+            return None;
+        }
+        let dimension = unit.of(self.law.joint).dimension();
+        Some(scope.declare(&text, class, Some(dimension), None))
+    }
+
+    fn rational(&mut self, scalar: &Scalar) -> Option<Rational> {
+        let number = self.law.scope.number(scalar, self.report)?;
+        let value = self.law.scope.dag.as_constant(number).cloned();
+        if value.is_none() {
+            let text = scalar.text.clone().into_owned();
+            self.report.push(scalar.at, Cause::NotRational(text));
+        }
+        value
+    }
+
+    fn confused_with(&mut self, fields: &Fields<'_, '_>) -> Vec<Confusion> {
+        let own = fields.text("name", &mut Report::default());
+        fields.members("confused_with", self.report, |name, json, report| {
+            if own.as_ref().is_some_and(|own| own.text == name.text) {
+                report.push(name.at, Cause::DuplicateName(name.text.to_string(), "this effect"));
+            }
+            let reason = Fields::scalar_of(json, report)?.text.into_owned();
+            Some(Confusion { effect: name.text.into_owned(), reason })
+        })
+    }
+}

@@ -1,0 +1,207 @@
+//! What is logged of a true quantity, and the true quantity behind what is logged.
+//!
+//! Delays are taken from a cubic through four samples around the delayed time, lags are exact for a
+//! quantity that is linear between samples; beyond the ends the quantity rests.
+
+use super::program::LawProgram;
+use super::{EffectError, EffectLaw, JointSamples, columns, gradient, inputs};
+use denavit_codegen::effect::{Channel, Effect, Measured};
+use denavit_codegen::expr::{Dag, ExprId};
+
+/// The law of a logged channel.
+#[derive(Clone, Debug)]
+pub(super) struct ChannelLaw {
+    pub(super) channel: Channel,
+    /// Delay, lag, then their derivatives by the parameters.
+    timing: LawProgram,
+    /// The columns of `slope`.
+    columns: Vec<usize>,
+    /// The derivative of the logged value by the true one.
+    slope: LawProgram,
+}
+
+impl ChannelLaw {
+    pub(super) fn new(
+        dag: &mut Dag,
+        effect: &Effect,
+        measured: &Measured,
+    ) -> Result<Self, EffectError> {
+        let parameters: Vec<ExprId> = effect.parameters.iter().map(|p| p.symbol).collect();
+        let timing = [measured.delay_s, measured.lag_s];
+        let mut entries = timing.to_vec();
+        entries.extend(gradient(dag, &timing, &parameters).concat());
+        let timing = LawProgram::new(dag, effect, Vec::new(), entries)?;
+        let id = dag.find_symbol(measured.channel.as_str());
+        let channel = dag.symbol_expr(id.expect("the channel is a symbol of its law"));
+        let slope = gradient(dag, &[measured.value], &[channel]).concat();
+        let columns = columns(dag, &slope);
+        let inputs = inputs(dag, &columns, &[]);
+        let slope = LawProgram::new(dag, effect, inputs, slope)?;
+        Ok(Self { channel: measured.channel, timing, columns, slope })
+    }
+}
+
+/// Rounds of the fixed point in [`EffectLaw::corrected`]: laws are small, each round gains digits.
+const ROUNDS: usize = 60;
+
+impl EffectLaw {
+    /// What is logged where the samples are the truth; the channel itself for effects that change
+    /// no channel of the log. Delay and lag need the times of the samples.
+    pub fn logged(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
+        let Some(law) = &self.channel else { return samples.tau.to_vec() };
+        let value = self.value(samples, values).swap_remove(0);
+        let [delay, lag] = self.timing(law, values);
+        lagged(samples.t, &shifted(samples.t, &value, delay), lag)
+    }
+
+    /// The true channel where the samples are what is logged, the other columns being true.
+    pub fn corrected(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
+        let Some(law) = &self.channel else { return samples.tau.to_vec() };
+        let [delay, lag] = self.timing(law, values);
+        let logged = match law.channel {
+            Channel::Torque => samples.tau,
+            Channel::Position => samples.q,
+            Channel::Rate => samples.qd,
+        };
+        // before the lag: y + lag dy/dt; before the delay: ahead
+        let mut wanted = logged.to_vec();
+        if lag != 0.0 {
+            let rate = rate(samples.t, logged);
+            wanted.iter_mut().zip(rate).for_each(|(y, rate)| *y += lag * rate);
+        }
+        let wanted = shifted(samples.t, &wanted, -delay);
+        let mut truth = wanted.clone();
+        for _ in 0..ROUNDS {
+            let mut trial = *samples;
+            match law.channel {
+                Channel::Torque => trial.tau = &truth,
+                Channel::Position => trial.q = &truth,
+                Channel::Rate => trial.qd = &truth,
+            }
+            let found = self.value(&trial, values).swap_remove(0);
+            let columns: Vec<&[f64]> = law.columns.iter().map(|&at| trial.column(at)).collect();
+            let slope = law.slope.run(&columns, values, truth.len()).swap_remove(0);
+            let mut largest = 0.0_f64;
+            let next: Vec<f64> = (0..truth.len())
+                .map(|k| {
+                    let slope = if slope[k].abs() > 1e-3 { slope[k] } else { 1.0 };
+                    let step = (wanted[k] - found[k]) / slope;
+                    largest = largest.max(step.abs() / (1.0 + truth[k].abs()));
+                    truth[k] + step
+                })
+                .collect();
+            truth = next;
+            if largest < 1e-15 {
+                break;
+            }
+        }
+        truth
+    }
+
+    /// The derivative of [`logged`](Self::logged) by each parameter.
+    pub(super) fn logged_gradient(
+        &self,
+        samples: &JointSamples<'_>,
+        values: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let Some(law) = &self.channel else { return Vec::new() };
+        let mut columns = self.value(samples, values);
+        let count = self.parameters.len();
+        let timing = law.timing.run(&[], values, 1);
+        let [delay, lag] = [timing[0][0], timing[1][0]];
+        let through = |column: &[f64]| lagged(samples.t, &shifted(samples.t, column, delay), lag);
+        let value = shifted(samples.t, &columns[0], delay);
+        let by_delay = lagged(samples.t, &rate(samples.t, &value), lag);
+        let by_lag = lag_sensitivity(samples.t, &value, lag);
+        columns
+            .split_off(1)
+            .iter()
+            .enumerate()
+            .map(|(parameter, column)| {
+                let by = |row: usize| timing[2 + row * count + parameter][0];
+                let mut moved = through(column);
+                for (k, moved) in moved.iter_mut().enumerate() {
+                    *moved += by(1) * by_lag[k] - by(0) * by_delay[k];
+                }
+                moved
+            })
+            .collect()
+    }
+
+    fn timing(&self, law: &ChannelLaw, values: &[f64]) -> [f64; 2] {
+        let timing = law.timing.run(&[], values, 1);
+        [timing[0][0], timing[1][0]]
+    }
+}
+
+/// y(t - delay), from the cubic through the four samples around that time.
+fn shifted(t: &[f64], y: &[f64], delay: f64) -> Vec<f64> {
+    if delay == 0.0 || t.len() < 4 {
+        return y.to_vec();
+    }
+    let last = t.len() - 1;
+    t.iter()
+        .map(|&now| {
+            let at = now - delay;
+            if at <= t[0] || at >= t[last] {
+                return if at <= t[0] { y[0] } else { y[last] };
+            }
+            let after = t.partition_point(|&time| time < at).clamp(1, last);
+            let first = after.saturating_sub(2).min(last - 3);
+            lagrange(&t[first..first + 4], &y[first..first + 4], at)
+        })
+        .collect()
+}
+
+/// The polynomial through points, at one place.
+fn lagrange(t: &[f64], y: &[f64], at: f64) -> f64 {
+    let weight = |i: usize| -> f64 {
+        let others = (0..t.len()).filter(|&j| j != i);
+        others.map(|j| (at - t[j]) / (t[i] - t[j])).product()
+    };
+    (0..t.len()).map(|i| weight(i) * y[i]).sum()
+}
+
+/// dy/dt by central differences, one-sided at the ends.
+fn rate(t: &[f64], y: &[f64]) -> Vec<f64> {
+    let last = t.len().saturating_sub(1);
+    (0..t.len())
+        .map(|k| {
+            let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
+            if from == to { 0.0 } else { (y[to] - y[from]) / (t[to] - t[from]) }
+        })
+        .collect()
+}
+
+/// x of lag dx/dt = y - x, which starts at rest; y itself without lag.
+fn lagged(t: &[f64], y: &[f64], lag: f64) -> Vec<f64> {
+    if lag <= 0.0 || y.is_empty() {
+        return y.to_vec();
+    }
+    let mut x = vec![y[0]];
+    for k in 1..y.len() {
+        let (h, before) = (t[k] - t[k - 1], x[k - 1]);
+        let decay = (-h / lag).exp();
+        // y is linear on the way: x follows it by the lag once the start has decayed
+        let slope = (y[k] - y[k - 1]) / h;
+        x.push(y[k] - lag * slope + decay * (before - y[k - 1] + lag * slope));
+    }
+    x
+}
+
+/// The derivative of [`lagged`] by the lag: of its steps, and -dy/dt where there is no lag.
+fn lag_sensitivity(t: &[f64], y: &[f64], lag: f64) -> Vec<f64> {
+    if lag <= 0.0 || y.is_empty() {
+        return rate(t, y).iter().map(|rate| -rate).collect();
+    }
+    let x = lagged(t, y, lag);
+    let mut moved = vec![0.0];
+    for k in 1..y.len() {
+        let h = t[k] - t[k - 1];
+        let decay = (-h / lag).exp();
+        let slope = (y[k] - y[k - 1]) / h;
+        let by_decay = decay * h / (lag * lag) * (x[k - 1] - y[k - 1] + lag * slope);
+        moved.push(-slope + by_decay + decay * (moved[k - 1] + slope));
+    }
+    moved
+}

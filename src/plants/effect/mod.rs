@@ -1,0 +1,282 @@
+//! Effects as numbers: what a law adds to the torque of its joint, and its derivatives by the
+//! parameters, over many samples at once.
+//!
+//! - [`EffectLaw`]: laws of one joint, with their states integrated along the samples
+//! - [`logged`](EffectLaw::logged), [`corrected`](EffectLaw::corrected): laws of a logged channel
+//!
+//! Samples are columns; columns that a law does not use may be empty.
+
+mod channel;
+mod program;
+mod states;
+
+use denavit_codegen::effect::{Channel, Effect, EffectKind, EffectParameter, Law};
+use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};
+use denavit_codegen::model::JointKind;
+use denavit_codegen::number::to_f64;
+use denavit_codegen::program::LowerError;
+use program::LawProgram;
+use rustc_hash::FxHashMap;
+use states::StateLaw;
+use std::fmt;
+
+/// Why an effect has no law of one joint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EffectError {
+    /// It changes the model, and with it the torques of all joints; holds its name.
+    WholeRobot(String),
+    /// A constant of the law is no finite number.
+    Lower(LowerError),
+}
+
+impl fmt::Display for EffectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WholeRobot(name) => write!(f, "`{name}` acts on the whole robot, not on a joint"),
+            Self::Lower(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for EffectError {}
+
+/// A parameter of a law, for a joint of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawParameter {
+    /// The name.
+    pub name: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// The value that switches the effect off; none for those that only shape it.
+    pub nominal: Option<f64>,
+    /// Lowest and highest value; infinite where there is no end.
+    pub bounds: [f64; 2],
+    /// Values to start a search from.
+    pub start: Vec<f64>,
+    /// Whether the law is linear in it, jointly with the other linear ones.
+    pub linear: bool,
+}
+
+impl LawParameter {
+    fn new(parameter: &EffectParameter, joint: JointKind) -> Self {
+        let end = |end: usize, open: f64| parameter.bounds[end].as_ref().map_or(open, to_f64);
+        Self {
+            name: parameter.name.clone(),
+            unit: parameter.unit.of(joint).text().to_owned(),
+            nominal: parameter.nominal.as_ref().map(to_f64),
+            bounds: [end(0, f64::NEG_INFINITY), end(1, f64::INFINITY)],
+            start: parameter.start.iter().map(to_f64).collect(),
+            linear: parameter.linear,
+        }
+    }
+}
+
+/// Samples of one joint, and of the other joint of a pair. All columns that a law uses have the
+/// same length; the others may be empty.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct JointSamples<'a> {
+    /// Time \[s\].
+    pub t: &'a [f64],
+    /// Position [rad, m].
+    pub q: &'a [f64],
+    /// Rate [rad/s, m/s].
+    pub qd: &'a [f64],
+    /// Acceleration [rad/s^2, m/s^2].
+    pub qdd: &'a [f64],
+    /// Rigid-body torque without friction [N m, N].
+    pub tau_load: &'a [f64],
+    /// Its derivative with respect to time [N m/s, N/s].
+    pub tau_load_rate: &'a [f64],
+    /// The whole torque of the joint, for laws of what is logged [N m, N].
+    pub tau: &'a [f64],
+    /// Position of the other joint.
+    pub q_2: &'a [f64],
+    /// Rate of the other joint.
+    pub qd_2: &'a [f64],
+    /// Acceleration of the other joint.
+    pub qdd_2: &'a [f64],
+    /// Rigid-body torque of the other joint.
+    pub tau_load_2: &'a [f64],
+}
+
+/// The names of the columns of [`JointSamples`], which are those of the symbols of laws.
+const COLUMNS: [&str; 11] = [
+    "t",
+    "q",
+    "qd",
+    "qdd",
+    "tau_load",
+    "tau_load_rate",
+    "tau",
+    "q_2",
+    "qd_2",
+    "qdd_2",
+    "tau_load_2",
+];
+
+impl<'a> JointSamples<'a> {
+    fn column(&self, column: usize) -> &'a [f64] {
+        [
+            self.t,
+            self.q,
+            self.qd,
+            self.qdd,
+            self.tau_load,
+            self.tau_load_rate,
+            self.tau,
+            self.q_2,
+            self.qd_2,
+            self.qdd_2,
+            self.tau_load_2,
+        ][column]
+    }
+
+    /// Number of samples: of the longest column.
+    pub fn len(&self) -> usize {
+        (0..COLUMNS.len()).map(|column| self.column(column).len()).max().unwrap_or(0)
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The law of an effect on a joint of one kind.
+#[derive(Clone, Debug)]
+pub struct EffectLaw {
+    /// The effect's name.
+    pub name: String,
+    /// What the effect is to the equations.
+    pub kind: EffectKind,
+    /// Its parameters, in the order of the values that the functions take.
+    pub parameters: Vec<LawParameter>,
+    /// The columns that the law uses.
+    columns: Vec<usize>,
+    /// Value and derivatives by parameters, then by states: functions of columns and states.
+    program: LawProgram,
+    states: Option<StateLaw>,
+    channel: Option<channel::ChannelLaw>,
+}
+
+impl EffectLaw {
+    /// The law of `effect` on a joint of this kind.
+    pub fn new(effect: &Effect, joint: JointKind) -> Result<Self, EffectError> {
+        let mut dag = effect.dag.clone();
+        let (value, timing) = match &effect.law {
+            Law::Torque(torque) => (*torque, None),
+            Law::Measured(measured) => (measured.value, Some(measured)),
+            Law::Moves(_) | Law::Term(_) => {
+                return Err(EffectError::WholeRobot(effect.name.clone()));
+            }
+        };
+        let parameters: Vec<ExprId> = effect.parameters.iter().map(|p| p.symbol).collect();
+        let states: Vec<ExprId> = effect.states.iter().map(|state| state.symbol).collect();
+        let by: Vec<ExprId> = parameters.iter().chain(&states).copied().collect();
+        let mut entries = vec![value];
+        entries.extend(gradient(&mut dag, &[value], &by).concat());
+        let mut used = entries.clone();
+        used.extend(effect.states.iter().flat_map(|state| [state.rate, state.initial]));
+        let columns = columns(&dag, &used);
+        let inputs = inputs(&mut dag, &columns, &states);
+        let program = LawProgram::new(&dag, effect, inputs.clone(), entries)?;
+        let state_law =
+            if states.is_empty() { None } else { Some(StateLaw::new(&mut dag, effect, inputs)?) };
+        let channel = match timing {
+            Some(measured) => Some(channel::ChannelLaw::new(&mut dag, effect, measured)?),
+            None => None,
+        };
+        Ok(Self {
+            name: effect.name.clone(),
+            kind: effect.kind,
+            parameters: effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect(),
+            columns,
+            program,
+            states: state_law,
+            channel,
+        })
+    }
+
+    /// The channel that the effect changes, if it is one of what is logged.
+    pub fn channel(&self) -> Option<Channel> {
+        self.channel.as_ref().map(|law| law.channel)
+    }
+
+    /// What the effect adds to the torque that is logged of its joint [N m, N], sample by sample:
+    /// 0 for an effect on another channel.
+    pub fn torque(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
+        match self.channel() {
+            None => self.value(samples, values).swap_remove(0),
+            Some(Channel::Torque) => {
+                let logged = self.logged(samples, values);
+                logged.iter().zip(samples.tau).map(|(logged, tau)| logged - tau).collect()
+            }
+            Some(_) => vec![0.0; samples.len()],
+        }
+    }
+
+    /// The derivative of [`torque`](Self::torque) by each parameter: one column for each.
+    pub fn gradient(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<Vec<f64>> {
+        match self.channel() {
+            None => self.value(samples, values).split_off(1),
+            Some(Channel::Torque) => self.logged_gradient(samples, values),
+            Some(_) => vec![vec![0.0; samples.len()]; self.parameters.len()],
+        }
+    }
+
+    /// Value and derivatives by parameters, along the states that the samples lead to.
+    fn value(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<Vec<f64>> {
+        let count = self.parameters.len();
+        let columns: Vec<&[f64]> = self.columns.iter().map(|&at| samples.column(at)).collect();
+        let mut path = Vec::new();
+        let mut sensitivities = Vec::new();
+        if let Some(law) = &self.states {
+            let t = samples.t;
+            (path, sensitivities) = law.integrate(t, &columns, values);
+        }
+        let mut inputs = columns;
+        inputs.extend(path.iter().map(Vec::as_slice));
+        let mut outputs = self.program.run(&inputs, values, samples.len());
+        // by parameters also through the states
+        let by_states = outputs.split_off(1 + count);
+        for (state, slope) in by_states.iter().enumerate() {
+            for (parameter, column) in outputs[1..].iter_mut().enumerate() {
+                let moved: &[f64] = &sensitivities[state * count + parameter];
+                for ((sum, slope), moved) in column.iter_mut().zip(slope).zip(moved) {
+                    *sum += slope * moved;
+                }
+            }
+        }
+        outputs
+    }
+}
+
+/// The derivatives of expressions by symbols: for each expression, in the order of the symbols.
+fn gradient(dag: &mut Dag, exprs: &[ExprId], by: &[ExprId]) -> Vec<Vec<ExprId>> {
+    let columns: Vec<Vec<ExprId>> = by
+        .iter()
+        .map(|&symbol| {
+            let seeds: FxHashMap<ExprId, ExprId> = [(symbol, dag.one())].into_iter().collect();
+            derivative(dag, exprs, &seeds)
+        })
+        .collect();
+    (0..exprs.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+}
+
+/// The columns that expressions use.
+fn columns(dag: &Dag, exprs: &[ExprId]) -> Vec<usize> {
+    let symbols = free_symbols(dag, exprs);
+    let names: Vec<&str> = symbols.iter().map(|&id| dag.symbols()[id].name.as_str()).collect();
+    (0..COLUMNS.len()).filter(|&column| names.contains(&COLUMNS[column])).collect()
+}
+
+/// The symbols of columns, then those of states.
+fn inputs(dag: &mut Dag, columns: &[usize], states: &[ExprId]) -> Vec<ExprId> {
+    let mut inputs = Vec::with_capacity(columns.len() + states.len());
+    for &column in columns {
+        let id = dag.find_symbol(COLUMNS[column]).expect("a column is a symbol that is used");
+        inputs.push(dag.symbol_expr(id));
+    }
+    inputs.extend(states);
+    inputs
+}

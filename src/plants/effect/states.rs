@@ -1,0 +1,209 @@
+//! States of a law, integrated along samples together with their derivatives by the parameters.
+//!
+//! From sample to sample the motion is held at the mean of both, and the state takes one step of
+//! the exponential Rosenbrock method: x + h phi_1(h J) f, with the symbolic J = df/dx. It is exact
+//! where f is affine in x and the motion rests between samples, as for Dahl's and LuGre's bristles
+//! at constant rate, and stable however fast a bristle settles. The sensitivities are the exact
+//! derivative of these steps, not of the differential equation, so that they agree with differences
+//! of two integrations.
+
+use super::program::LawProgram;
+use super::{EffectError, gradient};
+use denavit_codegen::effect::Effect;
+use denavit_codegen::expr::{Dag, ExprId};
+use nalgebra::DMatrix;
+
+/// The rates of the states of one effect.
+#[derive(Clone, Debug)]
+pub(super) struct StateLaw {
+    states: usize,
+    parameters: usize,
+    /// f, df/dx, df/dp, then for each x and each p the derivative of df/dx.
+    rates: LawProgram,
+    /// Initial values and their derivatives by the parameters.
+    initial: LawProgram,
+}
+
+/// One step of a matrix of rates: the rates with their derivatives, at one sample.
+struct Rates<'a> {
+    states: usize,
+    parameters: usize,
+    entries: &'a [f64],
+}
+
+impl Rates<'_> {
+    fn rate(&self, i: usize) -> f64 {
+        self.entries[i]
+    }
+
+    fn by_state(&self, i: usize, j: usize) -> f64 {
+        self.entries[self.states + i * self.states + j]
+    }
+
+    fn by_parameter(&self, i: usize, p: usize) -> f64 {
+        let s = self.states;
+        self.entries[s + s * s + i * self.parameters + p]
+    }
+
+    /// The derivative of df_i/dx_j by the m-th of states and parameters.
+    fn second(&self, i: usize, j: usize, m: usize) -> f64 {
+        let (s, by) = (self.states, self.states + self.parameters);
+        self.entries[s + s * by + (i * s + j) * by + m]
+    }
+}
+
+impl StateLaw {
+    /// The rates of `effect`, as functions of `inputs`: columns, then states.
+    pub(super) fn new(
+        dag: &mut Dag,
+        effect: &Effect,
+        inputs: Vec<ExprId>,
+    ) -> Result<Self, EffectError> {
+        let states: Vec<ExprId> = effect.states.iter().map(|state| state.symbol).collect();
+        let parameters: Vec<ExprId> = effect.parameters.iter().map(|p| p.symbol).collect();
+        let by: Vec<ExprId> = states.iter().chain(&parameters).copied().collect();
+        let rates: Vec<ExprId> = effect.states.iter().map(|state| state.rate).collect();
+        let slopes = gradient(dag, &rates, &states).concat();
+        let mut entries = rates.clone();
+        entries.extend(&slopes);
+        entries.extend(gradient(dag, &rates, &parameters).concat());
+        entries.extend(gradient(dag, &slopes, &by).concat());
+        let rates = LawProgram::new(dag, effect, inputs.clone(), entries)?;
+        let mut initial: Vec<ExprId> = effect.states.iter().map(|state| state.initial).collect();
+        initial.extend(gradient(dag, &initial.clone(), &parameters).concat());
+        let initial = LawProgram::new(dag, effect, inputs, initial)?;
+        Ok(Self { states: states.len(), parameters: parameters.len(), rates, initial })
+    }
+
+    /// The states at each sample, one column for each, and their derivatives: one column for each
+    /// parameter of each state. `t` are the times of the samples \[s\].
+    pub(super) fn integrate(
+        &self,
+        t: &[f64],
+        columns: &[&[f64]],
+        values: &[f64],
+    ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let (s, p) = (self.states, self.parameters);
+        let mut path = vec![Vec::with_capacity(t.len()); s];
+        let mut sensitivities = vec![Vec::with_capacity(t.len()); s * p];
+        let mut state = vec![0.0; s * (1 + p)];
+        let mut inputs = vec![0.0; columns.len() + s];
+        let mut entries = vec![0.0; s + s * (s + p) + s * s * (s + p)];
+        let mut rates = self.rates.evaluator(values);
+        for k in 0..t.len() {
+            if k == 0 {
+                for (input, column) in inputs.iter_mut().zip(columns) {
+                    *input = column[0];
+                }
+                let mut first = self.initial.evaluator(values);
+                first.evaluate(&[&inputs], &mut state).expect("the shapes are those of the law");
+            } else {
+                for (input, column) in inputs.iter_mut().zip(columns) {
+                    *input = 0.5 * (column[k - 1] + column[k]);
+                }
+                inputs[columns.len()..].copy_from_slice(&state[..s]);
+                rates.evaluate(&[&inputs], &mut entries).expect("the shapes are those of the law");
+                let rates = Rates { states: s, parameters: p, entries: &entries };
+                step(&rates, t[k] - t[k - 1], &mut state);
+            }
+            path.iter_mut().zip(&state).for_each(|(path, x)| path.push(*x));
+            sensitivities.iter_mut().zip(&state[s..]).for_each(|(path, x)| path.push(*x));
+        }
+        (path, sensitivities)
+    }
+}
+
+/// One step of the states and, behind them, their sensitivities.
+fn step(rates: &Rates<'_>, h: f64, state: &mut [f64]) {
+    let (s, p) = (rates.states, rates.parameters);
+    let moved =
+        |parameter: usize| -> Vec<f64> { (0..s).map(|i| state[s + i * p + parameter]).collect() };
+    let sensitivities: Vec<Vec<f64>> = (0..p).map(moved).collect();
+    // along one parameter: how f and df/dx move
+    let along = |parameter: usize, i: usize| -> f64 {
+        let through: f64 = (0..s).map(|j| rates.by_state(i, j) * sensitivities[parameter][j]).sum();
+        rates.by_parameter(i, parameter) + through
+    };
+    let slope_along = |parameter: usize, i: usize, j: usize| -> f64 {
+        let through: f64 =
+            (0..s).map(|m| rates.second(i, j, m) * sensitivities[parameter][m]).sum();
+        rates.second(i, j, s + parameter) + through
+    };
+    let mut steps = vec![0.0; s * (1 + p)];
+    if s == 1 {
+        let z = h * rates.by_state(0, 0);
+        let (phi, slope) = phi_1(z);
+        steps[0] = h * phi * rates.rate(0);
+        for parameter in 0..p {
+            let turned = h * slope * slope_along(parameter, 0, 0) * rates.rate(0);
+            steps[1 + parameter] = h * (phi * along(parameter, 0) + turned);
+        }
+    } else {
+        // the exponential of [[h J, h f], [0, 0]] has h phi_1(h J) f in its last column
+        let generator = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
+            (true, true) => h * rates.by_state(i, j),
+            (true, false) => h * rates.rate(i),
+            _ => 0.0,
+        });
+        let exponential = generator.exp();
+        (0..s).for_each(|i| steps[i] = exponential[(i, s)]);
+        for parameter in 0..p {
+            let change = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
+                (true, true) => h * slope_along(parameter, i, j),
+                (true, false) => h * along(parameter, i),
+                _ => 0.0,
+            });
+            let moved = derivative_of_exponential(&generator, &change);
+            (0..s).for_each(|i| steps[s + i * p + parameter] = moved[(i, s)]);
+        }
+    }
+    state.iter_mut().zip(&steps).for_each(|(x, step)| *x += step);
+}
+
+/// The derivative of exp(A) in the direction E: the corner of the exponential of [[A, E], [0, A]].
+fn derivative_of_exponential(a: &DMatrix<f64>, e: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = a.nrows();
+    let mut block = DMatrix::zeros(2 * n, 2 * n);
+    block.view_mut((0, 0), (n, n)).copy_from(a);
+    block.view_mut((n, n), (n, n)).copy_from(a);
+    block.view_mut((0, n), (n, n)).copy_from(e);
+    block.exp().view((0, n), (n, n)).into_owned()
+}
+
+/// phi_1(z) = (exp z - 1)/z and its derivative.
+fn phi_1(z: f64) -> (f64, f64) {
+    if z.abs() < 0.5 {
+        // sums of z^n/(n+1)! and (n+1) z^n/(n+2)!
+        let (mut term, mut value, mut slope) = (1.0, 0.0, 0.0);
+        for n in 0..18 {
+            let n = f64::from(n);
+            value += term / (n + 1.0);
+            slope += term / (n + 2.0);
+            term *= z / (n + 1.0);
+        }
+        return (value, slope);
+    }
+    let value = z.exp_m1() / z;
+    (value, (z.exp() - value) / z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::phi_1;
+
+    #[test]
+    fn phi_and_its_slope_agree_with_their_integrals() {
+        // phi_1(z) is the mean of exp(z u) over u in [0, 1], its slope that of u exp(z u)
+        for z in [-40.0, -3.0, -0.51, -0.49, -1e-9, 0.0, 0.3, 2.0] {
+            let (count, mut sums) = (20_000, [0.0; 2]);
+            for k in 0..count {
+                let u = (f64::from(k) + 0.5) / f64::from(count);
+                sums[0] += (z * u).exp() / f64::from(count);
+                sums[1] += u * (z * u).exp() / f64::from(count);
+            }
+            let (value, slope) = phi_1(z);
+            assert!((value - sums[0]).abs() < 1e-6 * sums[0], "{z}: {value}, {sums:?}");
+            assert!((slope - sums[1]).abs() < 1e-6 * sums[1], "{z}: {slope}, {sums:?}");
+        }
+    }
+}

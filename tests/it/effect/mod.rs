@@ -1,0 +1,5 @@
+//! Effects: the catalogue, its laws as numbers.
+
+mod catalogue;
+mod laws;
+mod states;

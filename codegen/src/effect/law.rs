@@ -94,7 +94,7 @@ fn read_moves<'a>(json: &Json<'a>, report: &mut Report) -> Option<Vec<(Property,
     }
     let mut list = |key: &str, length: usize, property: fn(usize) -> Property| {
         let Some(json) = fields.get(key) else { return };
-        let found = fields.items(key, report, |json, report| Fields::scalar_of(json, report));
+        let found = fields.items(key, report, Fields::scalar_of);
         if found.len() != length {
             report.push(json.start, Cause::WrongLength { expected: length, found: found.len() });
         }

@@ -184,7 +184,11 @@ impl Reading<'_> {
         if nominal.is_none() && start.is_empty() {
             self.report.push(fields.at(), Cause::MissingKey("start"));
         }
-        let unit = unit?;
+        let Some(unit) = unit else {
+            // what depends on it is not at fault, too
+            self.law.scope.tolerate(&name.text);
+            return None;
+        };
         let symbol = self.declare(name, SymbolClass::Drive, &unit)?;
         let name = name.text.clone().into_owned();
         let linear = false;
@@ -231,6 +235,7 @@ impl Reading<'_> {
         {
             let cause = Cause::ReversedRange(low.to_string(), high.to_string());
             self.report.push(json.start, cause);
+            return [None, None];
         }
         bounds
     }
@@ -242,7 +247,10 @@ impl Reading<'_> {
         let mut states = Vec::new();
         // rates may name every state: all are declared before one is read
         for (name, fields) in declared {
-            let Some(unit) = self.unit(&fields) else { continue };
+            let Some(unit) = self.unit(&fields) else {
+                self.law.scope.tolerate(&name.text);
+                continue;
+            };
             let symbol = self.declare(&name, SymbolClass::State, &unit);
             states.extend(symbol.map(|symbol| (name.text.into_owned(), unit, symbol, fields)));
         }

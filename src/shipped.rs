@@ -3,8 +3,8 @@
 /// A model file, or a file of equations, that is part of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShippedModel {
-    /// The name; the file is `models/NAME.json`, or in `equations`, `bodies`, `trajectories`
-    /// or `scenarios` there.
+    /// The name; the file is `models/NAME.json`, or in `equations`, `bodies`, `trajectories`,
+    /// `controllers` or `scenarios` there.
     pub name: &'static str,
     /// The content of the file.
     pub text: &'static str,
@@ -59,6 +59,9 @@ pub const TRAJECTORIES: &[ShippedModel] = &shipped!["models/trajectories":
     "tulip_leg_excitation",
 ];
 
+/// Every shipped controller, by name.
+pub const CONTROLLERS: &[ShippedModel] = &shipped!["models/controllers": "emps", "tulip_leg"];
+
 /// Every shipped scenario, by name.
 pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "bouncing_ball",
@@ -94,6 +97,11 @@ pub fn find_body(name: &str) -> Option<&'static ShippedModel> {
 /// The shipped trajectory of that name.
 pub fn find_trajectory(name: &str) -> Option<&'static ShippedModel> {
     TRAJECTORIES.iter().find(|trajectory| trajectory.name == name)
+}
+
+/// The shipped controller of that name.
+pub fn find_controller(name: &str) -> Option<&'static ShippedModel> {
+    CONTROLLERS.iter().find(|controller| controller.name == name)
 }
 
 /// What a scenario can refer to by a name: a model, a body, a trajectory.
@@ -133,6 +141,7 @@ mod tests {
         assert_eq!(names(BODIES), stems("models/bodies"));
         assert_eq!(names(SCENARIOS), stems("models/scenarios"));
         assert_eq!(names(TRAJECTORIES), stems("models/trajectories"));
+        assert_eq!(names(CONTROLLERS), stems("models/controllers"));
         assert!(names(MODELS).is_disjoint(&names(EQUATIONS)));
         assert!(names(MODELS).is_disjoint(&names(BODIES)));
         assert!(names(TRAJECTORIES).is_disjoint(&names(BODIES)));

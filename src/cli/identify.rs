@@ -1,6 +1,7 @@
 //! `denavit identify`: parameters from logs.
 
 mod failure;
+mod forward;
 mod json;
 mod logs;
 mod page;
@@ -15,12 +16,13 @@ use clap::{Args, ValueEnum};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow};
 use denavit::identify::log::LogRemark;
 use denavit::identify::{
-    Identification, NewValue, Request, identify, model_values, updated_text, with_effect,
+    Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
 };
-use denavit::model::{self, About, Robot};
+use denavit::model::Robot;
 use denavit::plants::regression::RegressionModel;
 use denavit::report::{TorquePicture, torque_picture};
 pub(crate) use failure::IdentifyFailure;
+use forward::{Controlled, SimulationGap};
 use logs::Conditions;
 use std::io::Write;
 use std::path::PathBuf;
@@ -37,6 +39,7 @@ Examples:
   denavit simulate tulip_leg_tracking -o tracking.csv
   denavit identify tulip_leg --train tracking.csv --filter 20 --svg torques.svg
   denavit identify tulip_leg --train tracking.csv --filter 20 --html tulip_leg.html
+  denavit identify tulip_leg --train tracking.csv --filter 20 --controller tulip_leg
   denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json")]
 pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
@@ -48,9 +51,18 @@ pub(crate) struct Arguments {
     /// Logs to judge the estimate with
     #[arg(long, value_name = "LOG", num_args = 1..)]
     validate: Vec<PathBuf>,
-    /// Logs of the same motion without its noise, for --method iv: simulated, sample by sample
-    #[arg(long, value_name = "LOG", num_args = 1.., required_if_eq("method", "iv"))]
+    /// Logs of the same motion without its noise, for --method iv: simulated, sample by sample.
+    /// With --controller they are simulated with what least squares finds
+    #[arg(long, value_name = "LOG", num_args = 1..)]
     instruments: Vec<PathBuf>,
+    /// What drove the robot, as a controller file or the name of a shipped one: simulate the logs
+    /// for validation (or, without any, those of the estimate) again in closed loop
+    #[arg(long, value_name = "FILE")]
+    controller: Option<PathBuf>,
+    /// Without a controller, logs for validation are simulated again in windows of this length
+    #[arg(long, value_name = "SECONDS", default_value = "0.2", value_parser = window,
+        conflicts_with = "controller")]
+    window: f64,
     /// How parameters are estimated
     #[arg(long, value_enum, default_value_t)]
     method: MethodName,
@@ -92,12 +104,20 @@ pub(crate) struct Arguments {
     /// Draw measured and computed torques; - is standard output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// Draw measured and simulated positions; - is standard output
+    #[arg(long, value_name = "FILE")]
+    motion_svg: Option<PathBuf>,
     /// Write all of it as one page of HTML; - is standard output
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
+}
+
+fn window(text: &str) -> Result<f64, String> {
+    let length = text.parse::<f64>().ok().filter(|length| (1e-4..=100.0).contains(length));
+    length.ok_or_else(|| "a time from 0.0001 to 100 s".to_owned())
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -177,15 +197,18 @@ struct Shown<'a> {
     model: &'a RegressionModel,
     found: &'a Identification,
     remarks: &'a [(String, LogRemark)],
+    simulated: Option<&'a SimulationGap>,
 }
 
 /// All that the arguments lead to.
 struct Answered {
     robot: Robot,
-    source: String,
     model: RegressionModel,
     found: Identification,
+    /// The model with what was found.
+    updated: Result<UpdatedModel, UpdateError>,
     remarks: Vec<(String, LogRemark)>,
+    simulated: Option<SimulationGap>,
 }
 
 impl Answered {
@@ -195,24 +218,52 @@ impl Answered {
         let model = RegressionModel::new(&robot, options, &arguments.keep)
             .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
         progress.show("reading logs");
-        let read = logs::read(arguments, &robot, &model)?;
+        let mut read = logs::read(arguments, &robot, &model)?;
+        let controller = arguments.controller.as_deref();
+        let controller = controller.map(|path| Controlled::read(path, &robot)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone());
         progress.show("estimating");
-        let request = Request {
-            model: &model,
-            train: &read.train,
-            validate: &read.validate,
-            instruments: &read.instruments,
-            options: &options,
+        let estimated = |read: &logs::Read, options: &Options| {
+            let request = Request {
+                model: &model,
+                train: &read.train,
+                validate: &read.validate,
+                instruments: &read.instruments,
+                options,
+            };
+            let found = identify(request)
+                .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
+            let both = (&found.consistent, &found.parameters[..]);
+            let updated = updated_model(&robot, &model, both, &source);
+            Ok::<_, Failure>((found, updated))
         };
-        let found = identify(request)
-            .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
-        Ok(Self { robot, source, model, found, remarks: read.remarks })
+        if options.method == Method::Instrumental && read.instruments.is_empty() {
+            let controller = controller.as_ref().ok_or(IdentifyFailure::NoInstruments)?;
+            let first = Options { method: Method::Weighted, ..options.clone() };
+            let updated = estimated(&read, &first)?.1.map_err(IdentifyFailure::Update)?;
+            progress.show("simulating instruments");
+            read.instruments = controller.instruments(&updated.robot, &read, arguments)?;
+        }
+        let (found, updated) = estimated(&read, &options)?;
+        progress.show("simulating the logs again");
+        let simulated = match (&controller, read.motions.is_empty()) {
+            (_, true) => None,
+            (controller, false) => Some(SimulationGap::new(
+                (&robot, &updated),
+                controller.as_ref(),
+                (&read.motions, arguments.window),
+            )),
+        };
+        if let (Some(gap), true) = (&simulated, controller.is_some()) {
+            gap.check()?;
+        }
+        let remarks = read.remarks;
+        Ok(Self { robot, model, found, updated, remarks, simulated })
     }
 
     fn shown(&self) -> Shown<'_> {
-        let Self { robot, model, found, remarks, .. } = self;
-        Shown { robot, model, found, remarks }
+        let Self { robot, model, found, remarks, simulated, .. } = self;
+        Shown { robot, model, found, remarks, simulated: simulated.as_ref() }
     }
 }
 
@@ -236,13 +287,18 @@ pub(crate) fn of_log(
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
+    let outputs = [
+        arguments.output.as_ref(),
+        arguments.svg.as_ref(),
+        arguments.motion_svg.as_ref(),
+        arguments.html.as_ref(),
+    ];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     check_outputs(&outputs)?;
     let progress = Progress::new();
     let answered = Answered::new(arguments, &progress)?;
     progress.clear();
-    let Answered { robot, source, model, found, .. } = &answered;
+    let Answered { model, found, updated, .. } = &answered;
     if let Some(path) = &arguments.svg {
         let picture = TorquePicture {
             title: &model.model.replace('_', " "),
@@ -256,10 +312,15 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(path, torque_picture(&picture).as_bytes())?;
     }
     if let Some(path) = &arguments.output {
-        let text = identified_model(robot, model, found, source)?;
-        write_whole(path, text.as_bytes())?;
+        let updated = updated.as_ref().map_err(|error| IdentifyFailure::Update(error.clone()))?;
+        write_whole(path, updated.text.as_bytes())?;
     }
     let shown = answered.shown();
+    if let Some(path) = &arguments.motion_svg {
+        let drawn = shown.simulated.and_then(|gap| forward::picture(&model.model, gap));
+        let drawn = drawn.ok_or(IdentifyFailure::NotSimulated)?;
+        write_whole(path, drawn.as_bytes())?;
+    }
     if let Some(path) = &arguments.html {
         write_whole(path, page::of(arguments, &shown)?.as_bytes())?;
     }
@@ -270,43 +331,4 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     let judged = found.validate.as_ref().unwrap_or(&found.train);
     Ok(if judged.relative < 1.0 { Answer::Done } else { Answer::Negative })
-}
-
-/// The model's text with the identified values, read again to be sure of it.
-fn identified_model(
-    robot: &Robot,
-    model: &RegressionModel,
-    found: &Identification,
-    source: &str,
-) -> Result<String, Failure> {
-    let is_about_com = |link: &str| {
-        let body = robot.find_link(link).and_then(|link| robot.links[link].body);
-        body.is_some_and(|body| body.about == About::Com)
-    };
-    let values = model_values(model, &found.consistent, &is_about_com);
-    let std_of = |name: &str| {
-        let place = model.listed.iter().position(|one| one.is_alone && one.name == name)?;
-        found.parameters[place].std.filter(|std| *std > 0.0 && std.is_finite())
-    };
-    let effects = with_effect(model, &values);
-    let text = |is_written: &dyn Fn(usize) -> bool| {
-        let all = model.parameters.iter().zip(&values).enumerate();
-        let new: Vec<NewValue<'_>> = all
-            .filter(|(place, _)| is_written(*place))
-            .map(|(_, (parameter, &value))| NewValue {
-                parameter,
-                value,
-                std: std_of(&parameter.name),
-            })
-            .collect();
-        updated_text(source, &new).ok_or_else(|| IdentifyFailure::NotUpdated(model.model.clone()))
-    };
-    let read = |text: &str| model::read("the identified model", text.as_bytes());
-    // What moves nothing stays as it is written, unless no body has it beside the rest.
-    let mut written = text(&|place| effects[place])?;
-    if read(&written).is_err() {
-        written = text(&|_| true)?;
-    }
-    read(&written).map_err(Failure::Model)?;
-    Ok(written)
 }

@@ -31,7 +31,8 @@ pub struct Identification {
     pub train: Validation,
     /// What is left of those of other logs; none without any.
     pub validate: Option<Validation>,
-    /// What is left of these with the values that the model had; none if it lacks one.
+    /// What is left with the values that the model had of the logs that were not used, or, without
+    /// any, of those that were; none if the model lacks a value.
     pub before: Option<f64>,
     /// The joint of whose torque noise of the positions makes most by itself, and how much: a share
     /// of its root of mean square. Parameters are biased if it is more than some percent.
@@ -90,7 +91,10 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         train: left,
         position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: judged(phi),
-        before: given.and_then(|phi| judged(&phi)).map(|validation| validation.relative),
+        before: given.map(|phi| {
+            let logs = if held_out.is_empty() { train } else { held_out };
+            validate(model, &phi, logs).relative
+        }),
         convergence: convergence(model, &found),
         consistent: consistent(model, &found, &standard),
         estimate: found,

@@ -8,7 +8,7 @@
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
-//! - [`model_values`], [`updated_text`]: back into the model file
+//! - [`updated_model`], [`model_values`], [`updated_text`]: back into the model file
 //! - [`statics`]: what weighings and held postures say
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 
@@ -24,8 +24,10 @@ mod model_text;
 mod model_values;
 pub mod statics;
 pub mod two_stage;
+mod updated_model;
 
 pub use contact_forces::add_contact_forces;
 pub use identification::{Identification, Request, identify};
 pub use model_text::{NewValue, updated as updated_text};
 pub use model_values::{model_values, with_effect};
+pub use updated_model::{UpdateError, UpdatedModel, updated_model};

@@ -1,9 +1,10 @@
 //! What was identified, as a page.
 
 use super::html::{Cell, Fact, FormulaError, Heading, HtmlTable, Page, Part, Row, Section};
-use super::{TorquePicture, convergence_picture, short, torque_picture};
+use super::{TorquePicture, convergence_picture, motion_picture, short, torque_picture};
 use crate::identify::Identification;
 use crate::identify::estimate::{IdentifiedParameter, JointResidual, Status, Validation};
+use crate::identify::forward::{Compared, Forward, ForwardJoint};
 
 /// What a page about an identification says.
 #[derive(Clone, Copy, Debug)]
@@ -16,12 +17,28 @@ pub struct IdentificationPage<'a> {
     pub remarks: &'a [String],
     /// The parameters and what they leave.
     pub found: &'a Identification,
+    /// Logs that were simulated again, if any were.
+    pub simulation: Option<SimulationPart<'a>>,
+}
+
+/// What a page says of logs that were simulated again.
+#[derive(Clone, Copy, Debug)]
+pub struct SimulationPart<'a> {
+    /// How, as part of a sentence.
+    pub method: &'a str,
+    /// With the values that the model had.
+    pub before: Option<&'a Forward>,
+    /// With those that were found.
+    pub after: Option<&'a Forward>,
+    /// What kept a model from being simulated.
+    pub reasons: &'a [String],
 }
 
 impl IdentificationPage<'_> {
     /// The page.
     pub fn page(&self) -> Result<Page, FormulaError> {
         let mut sections = vec![self.parameters()?, self.residuals(), self.torques()];
+        sections.extend(self.simulation.map(|simulation| simulation.section(self.model)));
         sections.push(self.convergence());
         if !self.remarks.is_empty() {
             let paragraph = |text: &String| Part::Paragraph { text: text.clone() };
@@ -52,7 +69,7 @@ impl IdentificationPage<'_> {
             text += &format!(", and {} of those of other logs", percent(held_out.relative));
         }
         if let Some(before) = found.before {
-            text += &format!(", of which the model left {} before", percent(before));
+            text += &format!("; the model left {} before", percent(before));
         }
         text.push('.');
         if let Some(bias) = found.bias() {
@@ -136,6 +153,52 @@ impl IdentificationPage<'_> {
                        condition of the regressor.";
         let caption = caption.to_owned();
         Section { heading: "Convergence".to_owned(), parts: vec![Part::Figure { svg, caption }] }
+    }
+}
+
+impl SimulationPart<'_> {
+    fn section(&self, model: &str) -> Section {
+        let columns = headings(&[
+            ("joint", false),
+            ("position before", true),
+            ("position", true),
+            ("rate before", true),
+            ("rate", true),
+            ("torque before", true),
+            ("torque", true),
+        ]);
+        let joints = self.after.or(self.before).map_or(&[][..], |made| &made.joints);
+        let rows = joints.iter().map(|joint| {
+            let of = |forward: Option<&Forward>| {
+                let joints = forward.map_or(&[][..], |made| &made.joints);
+                joints.iter().find(|other| other.name == joint.name).cloned()
+            };
+            let both = [of(self.before), of(self.after)];
+            let mut cells = vec![Cell::text(&joint.name)];
+            let signals: [fn(&ForwardJoint) -> Option<&Compared>; 3] =
+                [|one| Some(&one.position), |one| Some(&one.rate), |one| one.torque.as_ref()];
+            for signal in signals {
+                for made in &both {
+                    let compared = made.as_ref().and_then(signal);
+                    cells.push(compared.map_or_else(|| Cell::text(""), |one| share(one.relative)));
+                }
+            }
+            Row { cells, is_marked: false }
+        });
+        let caption = format!(
+            "Logs {}: rms of simulated less measured, over the size of what there is to predict.",
+            self.method
+        );
+        let table = HtmlTable { caption, columns, rows: rows.collect() };
+        let mut parts = vec![Part::Table(table)];
+        let paragraph = |text: &String| Part::Paragraph { text: text.clone() };
+        parts.extend(self.reasons.iter().map(paragraph));
+        if let Some(after) = self.after {
+            let svg = motion_picture(&model.replace('_', " "), self.method, after);
+            let caption = "Measured and simulated, with the values that were found.".to_owned();
+            parts.push(Part::Figure { svg, caption });
+        }
+        Section { heading: "Simulation".to_owned(), parts }
     }
 }
 

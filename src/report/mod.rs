@@ -6,7 +6,8 @@
 //! - [`excitation_picture`]: a trajectory with its limits, and how it was found
 //! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
 //! - [`html`]: reports as one page that needs nothing from elsewhere
-//! - [`torque_picture`]: measured torques beside those of a model; [`convergence_picture`]: how an
+//! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
+//!   [`convergence_picture`]: how an
 //!   estimate came about; [`IdentificationPage`]: all of it
 //!
 //! Nothing here prints; text is handed to whoever does.
@@ -26,13 +27,13 @@ mod svg;
 mod table;
 mod values;
 
-pub use identification::IdentificationPage;
+pub use identification::{IdentificationPage, SimulationPart};
 pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
 pub use run::{
     ExcitationPicture, RunPicture, TorquePicture, convergence_picture, excitation_picture,
-    run_picture, torque_picture,
+    motion_picture, run_picture, torque_picture,
 };
 pub use table::{Align, Table};
 pub use values::{Values, short};

@@ -24,13 +24,16 @@ pub enum DriveModelling {
     Required,
 }
 
-/// Below this rate Coulomb friction is a steep line through 0 [rad/s, m/s], joint side.
-const STICTION_RATE: f64 = 1e-2;
+/// Below this rate Coulomb friction is a steep line through 0 [rad/s, m/s], joint side, if nothing
+/// else is said.
+pub const STICTION_RATE: f64 = 1e-2;
 
 /// The drives of a plant.
 #[derive(Clone, Debug)]
 pub(super) struct Drives {
     modelling: DriveModelling,
+    /// Below this rate of a joint Coulomb friction is a steep line through 0 [rad/s, m/s].
+    pub(super) stiction_rate: f64,
     /// Joint number of each series elastic motor.
     pub(super) elastic: Vec<usize>,
 }
@@ -54,7 +57,7 @@ impl Drives {
                 && drive.is_some_and(|d| d.series_elastic.is_some() && d.rotor_inertia > 0.0)
         };
         let elastic = (0..model.joints.len()).filter(is_elastic).collect();
-        Self { modelling, elastic }
+        Self { modelling, stiction_rate: STICTION_RATE, elastic }
     }
 
     /// The motor angle at which the spring of elastic joint number `index` is relaxed \[rad\].
@@ -109,7 +112,7 @@ impl Drives {
             // what the plant's bias takes
             lost += (joint.viscous * rate + joint.offset) * rate;
             if self.modelling != DriveModelling::Ideal && joint.coulomb > 0.0 {
-                let friction = joint.coulomb * (rate / STICTION_RATE).hyperbolic_tangent();
+                let friction = joint.coulomb * (rate / self.stiction_rate).hyperbolic_tangent();
                 *torque -= friction;
                 lost += friction * rate;
             }
@@ -120,7 +123,7 @@ impl Drives {
             let force = spring_force(gear, elastic, parts.motor[index], parts.q[joint]);
             power -= command[joint] * parts.qd[joint];
             let motor = command[joint] * elastic.motor_radius / (elastic.load_radius * gear);
-            let reference = STICTION_RATE * gear.abs();
+            let reference = self.stiction_rate * gear.abs();
             let friction =
                 drive.viscous * rate + drive.coulomb * (rate / reference).hyperbolic_tangent();
             power += motor * rate;
@@ -157,12 +160,12 @@ impl Drives {
         let rubs = self.modelling != DriveModelling::Ideal;
         for (joint, rate) in model.joints.iter().zip(parts.qd) {
             let coulomb = if rubs { joint.coulomb } else { 0.0 };
-            factors.push(joint.viscous + secant(coulomb, *rate, STICTION_RATE));
+            factors.push(joint.viscous + secant(coulomb, *rate, self.stiction_rate));
         }
         for (index, &joint) in self.elastic.iter().enumerate() {
             let drive = model.joints[joint].drive;
             factors.push(drive.map_or(0.0, |drive| {
-                let reference = STICTION_RATE * drive.gear_ratio.abs();
+                let reference = self.stiction_rate * drive.gear_ratio.abs();
                 drive.viscous + secant(drive.coulomb, parts.motor_rate[index], reference)
             }));
         }

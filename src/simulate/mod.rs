@@ -30,7 +30,7 @@ pub mod time_stepping;
 pub use audit::{Audit, Tolerances};
 pub use breakdown::{Breakdown, Stop};
 pub use control::{Compensation, Control, Damped, Feedback, JointControl};
-pub use drive::DriveModelling;
+pub use drive::{DriveModelling, STICTION_RATE};
 pub use log::{Log, LogError, LogFault};
 pub use measure::{Measurement, Random};
 pub use measured_log::measured_log;

@@ -4,7 +4,7 @@ use super::audit::Audit;
 use super::breakdown::{Breakdown, Stop};
 use super::contact::{Friction, Tolerance};
 use super::control::Control;
-use super::drive::{DriveModelling, Drives};
+use super::drive::{DriveModelling, Drives, STICTION_RATE};
 use super::event::{Fired, Watch, Watched, look_ahead};
 use super::integrate::{Method, Statistics, Stepper};
 use super::log::Log;
@@ -25,6 +25,8 @@ pub struct Simulation {
     pub method: Method,
     /// How drives are modelled.
     pub drives: DriveModelling,
+    /// Below this rate of a joint Coulomb friction is a steep line through 0 [rad/s, m/s].
+    pub stiction_rate: f64,
     /// What a sampled controller sees.
     pub measurement: Measurement,
     /// Seed of the measurement's noise.
@@ -50,6 +52,7 @@ impl Default for Simulation {
             end_s: 1.0,
             method: Method::default(),
             drives: DriveModelling::default(),
+            stiction_rate: STICTION_RATE,
             measurement: Measurement::default(),
             seed: 0,
             friction: Friction::NoSlip,
@@ -155,7 +158,8 @@ pub fn simulate_believing(
     simulation: &Simulation,
 ) -> Result<Run, StartError> {
     let mut state = initial.clone();
-    let drives = Drives::new(plant.model(), simulation.drives);
+    let mut drives = Drives::new(plant.model(), simulation.drives);
+    drives.stiction_rate = simulation.stiction_rate;
     check(plant, control, &mut state, simulation, &drives)?;
     let friction = vec![simulation.friction; plant.model().contacts.len()];
     let holding = Holding {

@@ -10,6 +10,7 @@ mod help;
 mod identify;
 mod readme;
 mod simulate;
+mod simulated_again;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -1,8 +1,10 @@
 //! Why nothing is identified.
 
 use crate::cli::failure::Failure;
+use denavit::identify::UpdateError;
 use denavit::identify::condition::ConditionError;
 use denavit::identify::estimate::EstimateError;
+use denavit::identify::forward::ForwardError;
 use denavit::identify::log::{LogFaults, MappingError};
 use denavit::plants::PlantError;
 use denavit::plants::regression::RegressionError;
@@ -24,8 +26,14 @@ pub(crate) enum IdentifyFailure {
     Plant(String, PlantError),
     /// Nothing can be estimated; holds the model's name.
     Estimate(String, EstimateError),
-    /// Values have no place in the model's file; holds the model's name.
-    NotUpdated(String),
+    /// What was found makes no model.
+    Update(UpdateError),
+    /// A log cannot be simulated again; holds its name.
+    Forward(String, ForwardError),
+    /// Instrumental variables without instruments, and nothing to simulate them with.
+    NoInstruments,
+    /// A picture of a simulation that was not made.
+    NotSimulated,
     /// A formula is not shown in a page.
     Formula(FormulaError),
 }
@@ -40,9 +48,17 @@ impl fmt::Display for IdentifyFailure {
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
             Self::Estimate(model, error) => write!(f, "{model}: {error}"),
             Self::Formula(error) => write!(f, "{error}"),
-            Self::NotUpdated(model) => {
-                write!(f, "{model}: the identified values have no place in its file")
-            }
+            Self::Update(error) => write!(f, "{error}"),
+            Self::Forward(file, error) => write!(f, "{file}: {error}"),
+            Self::NoInstruments => write!(
+                f,
+                "--method iv needs --instruments LOG.., or --controller FILE to simulate them"
+            ),
+            Self::NotSimulated => write!(
+                f,
+                "--motion-svg: no log was simulated again\n  hint: --validate or --controller \
+                 does that, for robots on a fixed base"
+            ),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! What was identified, as JSON.
 
-use super::Shown;
+use super::{Shown, SimulationGap};
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
 use denavit::identify::estimate::{JointResidual, Status};
+use denavit::identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
 use serde::Serialize;
 use std::io::Write;
 
@@ -21,6 +22,8 @@ struct IdentifyJson<'a> {
     /// theta0 of the nearest bodies that exist, and how far they are.
     consistent: ConsistentJson<'a>,
     convergence: Vec<ConvergenceJson<'a>>,
+    /// Logs simulated again.
+    simulation: Option<SimulationJson<'a>>,
     remarks: Vec<String>,
 }
 
@@ -42,7 +45,7 @@ struct ParameterJson<'a> {
 struct ResidualJson<'a> {
     train: f64,
     validate: Option<f64>,
-    /// On the logs for validation, with the values that the model had.
+    /// With the values that the model had, on the logs for validation; without any, the others.
     before: Option<f64>,
     per_joint: Vec<JointJson<'a>>,
 }
@@ -77,13 +80,90 @@ struct ConvergenceJson<'a> {
     condition: Option<f64>,
 }
 
+#[derive(Serialize)]
+struct SimulationJson<'a> {
+    kind: Option<&'static str>,
+    window_s: Option<f64>,
+    windows: Option<usize>,
+    /// sqrt(mean over joints of (rms error of position / its size)^2).
+    before: Option<f64>,
+    after: Option<f64>,
+    per_joint: Vec<MotionJson<'a>>,
+    reasons: Vec<String>,
+}
+
+/// Relative errors of a joint with the model's values and with those that were found.
+#[derive(Serialize)]
+struct MotionJson<'a> {
+    joint: &'a str,
+    position: GapJson,
+    rate: GapJson,
+    torque: Option<GapJson>,
+}
+
+#[derive(Serialize)]
+struct GapJson {
+    before: Option<f64>,
+    after: Option<f64>,
+    /// Root of the mean square of the error, after [rad, m; per s; N m, N].
+    rms: Option<f64>,
+}
+
+impl<'a> SimulationJson<'a> {
+    fn new(gap: &'a SimulationGap) -> Self {
+        let [before, after] = [&gap.before, &gap.after].map(|made| made.as_ref().ok());
+        let (window_s, windows) = match gap.kind() {
+            Some(ForwardKind::Windows { count, length_s }) => (Some(length_s), Some(count)),
+            _ => (None, None),
+        };
+        let joint = |joint: &'a ForwardJoint| {
+            let of = |made: Option<&'a Forward>| {
+                made?.joints.iter().find(|other| other.name == joint.name)
+            };
+            let (before, after) = (of(before), of(after));
+            let compared = |signal: fn(&ForwardJoint) -> Option<&Compared>| {
+                let [before, after] = [before, after].map(|joint| joint.and_then(signal));
+                (before.is_some() || after.is_some()).then(|| GapJson {
+                    before: before.map(|one| one.relative),
+                    after: after.map(|one| one.relative),
+                    rms: after.map(|one| one.rms),
+                })
+            };
+            let none = || GapJson { before: None, after: None, rms: None };
+            MotionJson {
+                joint: &joint.name,
+                position: compared(|one| Some(&one.position)).unwrap_or_else(none),
+                rate: compared(|one| Some(&one.rate)).unwrap_or_else(none),
+                torque: compared(|one| one.torque.as_ref()),
+            }
+        };
+        Self {
+            kind: gap.kind().map(|kind| match kind {
+                ForwardKind::ClosedLoop => "closed_loop",
+                ForwardKind::Windows { .. } => "windows",
+            }),
+            window_s,
+            windows,
+            before: before.map(Forward::relative),
+            after: after.map(Forward::relative),
+            per_joint: after
+                .or(before)
+                .map_or(&[][..], |made| &made.joints)
+                .iter()
+                .map(joint)
+                .collect(),
+            reasons: gap.reasons(),
+        }
+    }
+}
+
 /// JSON has no infinity.
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
 }
 
 pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let Shown { robot, model, found, remarks } = shown;
+    let Shown { robot, model, found, remarks, simulated } = shown;
     let parameters = found.parameters.iter().map(|one| ParameterJson {
         name: &one.name,
         expression: &one.expression,
@@ -137,6 +217,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
                 .collect(),
         },
         convergence: convergence.collect(),
+        simulation: simulated.map(SimulationJson::new),
         remarks: remarks
             .iter()
             .map(|(file, remark)| format!("{file}: {remark}"))

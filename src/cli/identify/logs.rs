@@ -1,16 +1,17 @@
 //! Logs read, checked and conditioned as the options say.
 
-use super::{Arguments, IdentifyFailure};
+use super::{Arguments, IdentifyFailure, MethodName};
 use crate::cli::failure::Failure;
 use crate::cli::files::{open_log, read_file};
 use clap::{Args, ValueEnum};
 use denavit::identify::add_contact_forces;
 use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
+use denavit::identify::forward::{LONGEST_S, MotionLog};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::regression::RegressionModel;
 use denavit::plants::{Plant, plant_of};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How logs are conditioned.
 #[derive(Debug, Default, Args)]
@@ -73,7 +74,7 @@ impl Conditions {
         Self { filter, ..Self::default() }
     }
 
-    fn of(&self, step_s: f64) -> Conditioning {
+    pub(super) fn of(&self, step_s: f64) -> Conditioning {
         let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s };
         let filter = match self.filter {
             Some(FilterChoice::None) => None,
@@ -100,6 +101,10 @@ pub(super) struct Read {
     pub(super) train: Vec<Conditioned>,
     pub(super) validate: Vec<Conditioned>,
     pub(super) instruments: Vec<Conditioned>,
+    /// The logs that are simulated again.
+    pub(super) motions: Vec<MotionLog>,
+    /// Whole logs for the estimate, where instruments are to be simulated.
+    pub(super) whole: Vec<MotionLog>,
     /// What was found, by log.
     pub(super) remarks: Vec<(String, LogRemark)>,
     /// Deviation of each measured position [rad, m].
@@ -131,12 +136,24 @@ pub(super) fn read(
         names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
         remarks: Vec::new(),
         noise: vec![0.0; model.joints.len()],
+        motions: None,
     };
-    let train = reader.all(&arguments.train)?;
-    let validate = reader.all(&arguments.validate)?;
-    let instruments = reader.all(&arguments.instruments)?;
+    // Logs for validation are simulated again; with a controller, if there are none, the others.
+    let is_fixed = model.joints.iter().all(|joint| !joint.is_base);
+    let controlled = arguments.controller.is_some();
+    let needs_instruments = arguments.method == MethodName::Iv && arguments.instruments.is_empty();
+    let simulates_train = controlled && (arguments.validate.is_empty() || needs_instruments);
+    let train = reader.kept(&arguments.train, simulates_train.then_some(f64::INFINITY))?;
+    let whole = reader.motions.take().unwrap_or_default();
+    let simulates = is_fixed || controlled;
+    let validate = reader.kept(&arguments.validate, simulates.then_some(LONGEST_S))?;
+    let mut motions = reader.motions.take().unwrap_or_default();
+    if arguments.validate.is_empty() {
+        motions.clone_from(&whole);
+    }
+    let instruments = reader.kept(&arguments.instruments, None)?;
     let Reader { remarks, noise, .. } = reader;
-    Ok(Read { train, validate, instruments, remarks, position_noise: noise })
+    Ok(Read { train, validate, instruments, motions, whole, remarks, position_noise: noise })
 }
 
 struct Reader<'a> {
@@ -148,14 +165,22 @@ struct Reader<'a> {
     names: Vec<String>,
     remarks: Vec<(String, LogRemark)>,
     noise: Vec<f64>,
+    /// Logs to be simulated again, if any are wanted.
+    motions: Option<Vec<MotionLog>>,
 }
 
 impl Reader<'_> {
-    fn all(&mut self, paths: &[std::path::PathBuf]) -> Result<Vec<Conditioned>, Failure> {
-        paths.iter().map(|path| self.one(path)).collect()
+    /// Reads logs, and keeps their motion for so long \[s\].
+    fn kept(
+        &mut self,
+        paths: &[PathBuf],
+        longest_s: Option<f64>,
+    ) -> Result<Vec<Conditioned>, Failure> {
+        self.motions = longest_s.map(|_| Vec::new());
+        paths.iter().map(|path| self.one(path, longest_s)).collect()
     }
 
-    fn one(&mut self, path: &Path) -> Result<Conditioned, Failure> {
+    fn one(&mut self, path: &Path, longest_s: Option<f64>) -> Result<Conditioned, Failure> {
         let file = path.display().to_string();
         let of = LogOf {
             model: &self.model.model,
@@ -178,6 +203,12 @@ impl Reader<'_> {
             *noise = noise.max(step / 12.0_f64.sqrt());
         }
         let how = self.arguments.conditions.of(log.step_s);
+        if let (Some(motions), Some(longest_s)) = (&mut self.motions, longest_s) {
+            let head = log.head((longest_s / log.step_s).min(1e15) as usize + 1);
+            let motion = MotionLog::new(&head, &self.names, how.filter);
+            let failed = |error| IdentifyFailure::Condition(file.clone(), error);
+            motions.push(motion.map_err(failed)?);
+        }
         let conditioned = Conditioned::new(log, &self.names, &how);
         Ok(conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?)
     }

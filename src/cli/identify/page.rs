@@ -3,8 +3,8 @@
 use super::{Arguments, IdentifyFailure, Shown};
 use crate::cli::failure::Failure;
 use clap::ValueEnum;
-use denavit::report::IdentificationPage;
 use denavit::report::html::Fact;
+use denavit::report::{IdentificationPage, SimulationPart};
 use std::path::PathBuf;
 
 pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Failure> {
@@ -28,11 +28,19 @@ pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Fai
         .collect();
     let remarks: Vec<String> =
         shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
+    let told = shown.simulated.map(|gap| (gap, gap.method(), gap.reasons()));
+    let simulation = told.as_ref().map(|(gap, method, reasons)| SimulationPart {
+        method,
+        before: gap.before.as_ref().ok(),
+        after: gap.after.as_ref().ok(),
+        reasons,
+    });
     let page = IdentificationPage {
         model: &shown.robot.name,
         facts: &facts,
         remarks: &remarks,
         found: shown.found,
+        simulation,
     };
     Ok(page.page().map_err(IdentifyFailure::Formula)?.render())
 }

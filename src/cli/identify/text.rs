@@ -1,13 +1,14 @@
 //! What was identified, as a table.
 
-use super::Shown;
+use super::{Shown, SimulationGap};
 use crate::cli::failure::Failure;
 use denavit::identify::estimate::{JointResidual, Status};
+use denavit::identify::forward::Forward;
 use denavit::report::{Align, Table, paragraph, short};
 use std::io::Write;
 
 pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let Shown { robot, model, found, remarks } = shown;
+    let Shown { robot, model, found, remarks, .. } = shown;
     let solution = &found.estimate.solution;
     for (file, remark) in *remarks {
         writeln!(out, "{file}: {remark}")?;
@@ -51,6 +52,9 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     }
     writeln!(out, "{}", table.without_empty_columns())?;
     write_residuals(out, shown)?;
+    if let Some(gap) = shown.simulated {
+        write_simulation(out, gap)?;
+    }
     if let Some(text) = found.bias() {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
@@ -104,6 +108,48 @@ fn write_residuals(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure
     write!(out, "{}", table.without_empty_columns())?;
     if let Some(before) = found.before {
         writeln!(out, "\nbefore, with the model's values: {} of the torque left", percent(before))?;
+    }
+    Ok(())
+}
+
+fn write_simulation(out: &mut dyn Write, gap: &SimulationGap) -> Result<(), Failure> {
+    let [before, after] = [&gap.before, &gap.after].map(|made| made.as_ref().ok());
+    if gap.kind().is_some() {
+        writeln!(out, "\n{}", paragraph("", "", &format!("Logs {}:", gap.method())))?;
+        let names =
+            ["joint", "position before", "after", "rate before", "after", "torque before", "after"];
+        let align = |at: usize| if at == 0 { Align::Left } else { Align::Right };
+        let columns: Vec<(&str, Align)> =
+            names.into_iter().enumerate().map(|(at, name)| (name, align(at))).collect();
+        let mut table = Table::new(&columns);
+        let percent = |share: Option<f64>| {
+            share.map_or(String::new(), |share| format!("{:.3} %", 100.0 * share))
+        };
+        for joint in after.or(before).map_or(&[][..], |made| &made.joints) {
+            let of = |made: Option<&Forward>| {
+                made?.joints.iter().find(|other| other.name == joint.name).cloned()
+            };
+            let both = [of(before), of(after)];
+            let mut row = vec![joint.name.clone()];
+            for made in &both {
+                row.push(percent(made.as_ref().map(|one| one.position.relative)));
+            }
+            for made in &both {
+                row.push(percent(made.as_ref().map(|one| one.rate.relative)));
+            }
+            for made in &both {
+                let torque = made.as_ref().and_then(|one| one.torque.as_ref());
+                row.push(percent(torque.map(|one| one.relative)));
+            }
+            table.push(row);
+        }
+        let mut all = vec!["all".to_owned()];
+        all.extend([before, after].map(|made| percent(made.map(Forward::relative))));
+        table.push(all);
+        write!(out, "{}", table.without_empty_columns())?;
+    }
+    for reason in gap.reasons() {
+        writeln!(out, "\n{}", paragraph("", "", &reason))?;
     }
     Ok(())
 }

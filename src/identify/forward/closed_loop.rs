@@ -1,16 +1,13 @@
 //! The whole log again, under the controller that the robot had.
 
 use super::{
-    Compared, Controller, Forward, ForwardError, ForwardJoint, ForwardKind, MotionLog, column,
-    names, rms, simulation,
+    Compared, Controller, Forward, ForwardError, ForwardJoint, ForwardKind, LONGEST_S, MotionLog,
+    column, names, rms, simulation,
 };
 use crate::identify::log::{JointSignals, MeasuredLog};
 use crate::plants::Plant;
 use crate::simulate::{Control, DriveModelling, Log, Stop, simulate_believing};
 use crate::trajectory::{CubicSpline, EndCondition, Reference};
-
-/// The longest motion that is simulated again \[s\]: what a run costs grows with it.
-const LONGEST_S: f64 = 60.0;
 
 /// Simulates a log again under a controller and compares, for its first minute at most. What is
 /// simulated passes the filter of the log. A controller that compensates does so with `believed`,
@@ -99,7 +96,7 @@ fn run(
     let control = following(plant, controller, log)?;
     let initial = log.state(plant.model(), from, true);
     let end_s = log.time_s(from + rows - 1);
-    let how = simulation(DriveModelling::Model, end_s, log.step_s);
+    let how = simulation(DriveModelling::Model, end_s, log);
     let run = simulate_believing(plant, believed, &control, &initial, &how);
     let run = run.map_err(ForwardError::Start)?;
     match run.stop {

@@ -18,11 +18,14 @@ use super::log::{JointSignals, MeasuredLog};
 use crate::plants::PlantModel;
 use crate::simulate::scenario::Controller;
 use crate::simulate::{
-    DriveModelling, Log, Simulation, StartError, State, Stop, integrate::Accuracy,
+    DriveModelling, Log, STICTION_RATE, Simulation, StartError, State, Stop, integrate::Accuracy,
     integrate::Method,
 };
 use std::fmt;
 use std::ops::Range;
+
+/// The longest motion that is compared \[s\]: what a run costs grows with it.
+pub const LONGEST_S: f64 = 60.0;
 
 /// A log as a simulation is compared with it: filtered, with rates.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +48,8 @@ pub struct MotionLog {
     pub motor: Vec<Option<Vec<f64>>>,
     /// The samples that the filter leaves.
     pub range: Range<usize>,
+    /// Below this rate Coulomb friction is a steep line where the log is simulated [rad/s, m/s].
+    pub stiction_rate: f64,
     filter: Option<Butterworth>,
 }
 
@@ -87,6 +92,7 @@ impl MotionLog {
             reference: log.joints.iter().map(|joint| joint.reference.clone()).collect(),
             motor: log.joints.iter().map(|joint| joint.motor.clone()).collect(),
             range,
+            stiction_rate: STICTION_RATE,
             filter: conditioned.filter,
         })
     }
@@ -148,6 +154,8 @@ pub struct Compared {
     pub measured: Vec<f64>,
     /// As it was simulated.
     pub simulated: Vec<f64>,
+    /// Root of the mean square of what there is to predict.
+    pub size: f64,
     /// Root of the mean square of the difference.
     pub rms: f64,
     /// That over the size of the signal: 1 is as wrong as a simulation in which nothing happens.
@@ -159,7 +167,20 @@ impl Compared {
     fn new(measured: Vec<f64>, simulated: Vec<f64>, size: f64) -> Self {
         let rms = rms(measured.iter().zip(&simulated).map(|(a, b)| b - a));
         let relative = if size > 0.0 { rms / size } else { 0.0 };
-        Self { measured, simulated, rms, relative }
+        Self { measured, simulated, size, rms, relative }
+    }
+
+    /// Appends the same signal of another log.
+    fn append(&mut self, mut other: Self) {
+        let lengths = [self.measured.len() as f64, other.measured.len() as f64];
+        let both = |a: f64, b: f64| {
+            let all = lengths[0] * a * a + lengths[1] * b * b;
+            (all / (lengths[0] + lengths[1]).max(1.0)).sqrt()
+        };
+        (self.size, self.rms) = (both(self.size, other.size), both(self.rms, other.rms));
+        self.relative = if self.size > 0.0 { self.rms / self.size } else { 0.0 };
+        self.measured.append(&mut other.measured);
+        self.simulated.append(&mut other.simulated);
     }
 
     /// Simulated less measured.
@@ -184,7 +205,7 @@ pub struct ForwardJoint {
 /// A log, simulated again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forward {
-    /// The log.
+    /// The log; the first of several.
     pub file: String,
     /// How.
     pub kind: ForwardKind,
@@ -195,6 +216,28 @@ pub struct Forward {
 }
 
 impl Forward {
+    /// Appends another log, of the same joints in the same order: times go on from there.
+    pub fn append(&mut self, mut other: Self) {
+        if let (ForwardKind::Windows { count, .. }, ForwardKind::Windows { count: more, .. }) =
+            (&mut self.kind, other.kind)
+        {
+            *count += more;
+        }
+        self.t_s.append(&mut other.t_s);
+        for joint in other.joints {
+            let Some(own) = self.joints.iter_mut().find(|own| own.name == joint.name) else {
+                self.joints.push(joint);
+                continue;
+            };
+            own.position.append(joint.position);
+            own.rate.append(joint.rate);
+            match (&mut own.torque, joint.torque) {
+                (Some(own), Some(torque)) => own.append(torque),
+                (own, _) => *own = None,
+            }
+        }
+    }
+
     /// The simulation gap: sqrt(mean over joints of (rms error of position / its size)^2).
     pub fn relative(&self) -> f64 {
         rms(self.joints.iter().map(|joint| joint.position.relative))
@@ -267,13 +310,14 @@ fn names(model: &PlantModel) -> Result<Vec<&str>, ForwardError> {
 }
 
 /// How a log is simulated again: rows at its samples.
-fn simulation(drives: DriveModelling, end_s: f64, step_s: f64) -> Simulation {
+fn simulation(drives: DriveModelling, end_s: f64, log: &MotionLog) -> Simulation {
     let accuracy = Accuracy { relative: 1e-6, absolute: 1e-8, ..Accuracy::default() };
     Simulation {
         end_s,
         drives,
         method: Method::DormandPrince(accuracy),
-        log_period_s: step_s,
+        log_period_s: log.step_s,
+        stiction_rate: log.stiction_rate,
         ..Simulation::default()
     }
 }

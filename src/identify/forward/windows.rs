@@ -49,7 +49,7 @@ pub fn in_windows(
     let mut t_s = Vec::new();
     for from in (0..count).map(begin) {
         let initial = log.state(&model, from, false);
-        let how = simulation(DriveModelling::Required, log.time_s(from + steps), log.step_s);
+        let how = simulation(DriveModelling::Required, log.time_s(from + steps), log);
         let run = simulate(plant, &torques, &initial, &how).map_err(ForwardError::Start)?;
         if run.stop != Stop::End {
             return Err(ForwardError::Stopped { t_s: run.end.t_s, stop: run.stop });

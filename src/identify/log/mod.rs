@@ -74,6 +74,34 @@ impl MeasuredLog {
 }
 
 impl MeasuredLog {
+    /// The first samples alone.
+    pub fn head(&self, samples: usize) -> Self {
+        let head = |values: &Vec<f64>| values[..values.len().min(samples)].to_vec();
+        let some = |values: &Option<Vec<f64>>| values.as_ref().map(head);
+        let joint = |own: &JointSignals| JointSignals {
+            q: head(&own.q),
+            qd: some(&own.qd),
+            qdd: some(&own.qdd),
+            tau: some(&own.tau),
+            reference: some(&own.reference),
+            motor: some(&own.motor),
+            motor_torque: some(&own.motor_torque),
+            step: own.step,
+        };
+        let contacts = self.contacts.iter();
+        Self {
+            file: self.file.clone(),
+            header: self.header.clone(),
+            start_s: self.start_s,
+            step_s: self.step_s,
+            joints: self.joints.iter().map(joint).collect(),
+            contacts: contacts
+                .map(|(name, axes)| (name.clone(), axes.each_ref().map(head)))
+                .collect(),
+            remarks: self.remarks.clone(),
+        }
+    }
+
     /// Sees to it that no joint behind a spring has the torque of its motor alone, which is not
     /// what the joint gets: a fault, or, where suspicions are accepted, a remark, and the motor's
     /// torque is taken for the joint's.

@@ -8,7 +8,7 @@ mod figures;
 mod torques;
 
 pub use convergence::convergence_picture;
-pub use torques::{TorquePicture, torque_picture};
+pub use torques::{TorquePicture, motion_picture, torque_picture};
 
 pub use excitation::{ExcitationPicture, excitation_picture};
 

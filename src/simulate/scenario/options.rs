@@ -27,6 +27,8 @@ pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation
         let meanings = [DriveModelling::Ideal, DriveModelling::Model];
         simulation.drives = drives.word(&["ideal", "model"], &meanings, report).unwrap_or_default();
     }
+    let (range, absent) = (ranges::STICTION_RATE, simulation.stiction_rate);
+    simulation.stiction_rate = fields.number("stiction_rate", range, absent, report);
     simulation.measurement = measurement(fields, report);
     simulation.method = method(fields, report);
     contact(fields, &mut simulation, report);

@@ -46,6 +46,9 @@ pub(super) const COORDINATE: Range = Range::new(-1e9, 1e9);
 pub(super) const CRADLE_BALLS: Range = Range::new(2.0, 8.0);
 pub(super) const GAIN: Range = Range::new(0.0, 1e12);
 
+/// Of drives.
+pub(super) const STICTION_RATE: Range = Range::new(1e-9, 1e3);
+
 /// Of the measurement.
 pub(super) const RESOLUTION: Range = Range::new(0.0, 1e3);
 pub(super) const NOISE: Range = Range::new(0.0, 1e6);

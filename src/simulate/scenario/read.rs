@@ -38,6 +38,7 @@ const KEYS: &[&str] = &[
     "initial",
     "control",
     "drives",
+    "stiction_rate",
     "measurement",
     "seed",
     "gait",
@@ -155,6 +156,9 @@ fn find_idle(
         has(measurement.at(), control.period_s.is_some(), "`period_s` in `control`");
     }
     let drives = || model.joints.iter().filter_map(|joint| joint.drive);
+    if let Some(rate) = fields.get("stiction_rate") {
+        has(rate.at(), simulation.drives == DriveModelling::Model, "`\"drives\": \"model\"`");
+    }
     if simulation.drives == DriveModelling::Model {
         has(fields.place("drives"), drives().next().is_some(), "drives in the model");
     }

@@ -42,6 +42,7 @@ pub fn simulate_by_steps(
     let laws = vec![law; plant.model().contacts.len()];
     let ground = Ground::new(plant.model());
     let mut system = ControlledPlant::with_drives(plant, control, simulation.drives);
+    system.set_stiction_rate(simulation.stiction_rate);
     let stepper = TimeStepper::new(*stepping, laws.clone(), &system);
     let q = [&state.q[..], &state.motor].concat();
     let qd = [&state.qd[..], &state.motor_rate].concat();

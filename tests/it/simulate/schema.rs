@@ -72,6 +72,8 @@ fn ranges(node: &Value, path: &mut Vec<String>, found: &mut Vec<(Vec<String>, [f
             let shared = inner["$ref"].as_str() == Some("#/$defs/tolerances");
             let tolerances: Value = serde_json::from_str(scenario::schema()).expect("JSON");
             let inner = if shared { &tolerances["$defs"]["tolerances"] } else { inner };
+            let control = key == "control";
+            let inner = if control { &tolerances["$defs"]["control"] } else { inner };
             ranges(inner, path, found);
             path.pop();
         }

@@ -1,0 +1,186 @@
+//! Logs simulated again, with the model as it was and with what was found.
+
+use super::logs::Read;
+use super::{Arguments, IdentifyFailure};
+use crate::cli::failure::Failure;
+use crate::cli::files::{load_beside, read_file};
+use denavit::identify::condition::Conditioned;
+use denavit::identify::forward::{
+    Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
+};
+use denavit::identify::{UpdateError, UpdatedModel};
+use denavit::model::Robot;
+use denavit::plants::{Plant, PlantError, plant_of};
+use denavit::report::motion_picture;
+use denavit::shipped;
+use denavit::simulate::scenario::{Controller, read_controller};
+use std::fmt;
+use std::path::Path;
+
+/// The controller of a robot, with the model that it had.
+pub(super) struct Controlled {
+    controller: Controller,
+    robot: Robot,
+}
+
+impl Controlled {
+    pub(super) fn read(path: &Path, robot: &Robot) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        let shipped = shipped::find_controller(&name).filter(|_| !path.is_file());
+        let bytes = match shipped {
+            Some(shipped) => shipped.text.as_bytes().to_vec(),
+            None => read_file(path)?,
+        };
+        let plant = plant_of(robot, &[])
+            .map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
+        let load = |file: &str| load_beside(path, file);
+        let controller = read_controller(&name, &bytes, plant.model(), &load);
+        let controller = controller.map_err(Failure::Scenario)?;
+        Ok(Self { controller, robot: robot.clone() })
+    }
+
+    /// The logs of the estimate as a model would have given them, conditioned as they are.
+    pub(super) fn instruments(
+        &self,
+        found: &Robot,
+        read: &Read,
+        arguments: &Arguments,
+    ) -> Result<Vec<Conditioned>, Failure> {
+        let plant = |robot: &Robot| {
+            let failed = |error| IdentifyFailure::Plant(robot.name.clone(), error);
+            plant_of(robot, &[]).map_err(failed)
+        };
+        let (mut plant, mut believed) = (plant(found)?, plant(&self.robot)?);
+        let names: Vec<String> =
+            plant.model().joints.iter().map(|joint| joint.name.clone()).collect();
+        let mut one = |log: &MotionLog| {
+            let failed = |error| IdentifyFailure::Forward(log.file.clone(), error);
+            let believed = Some(believed.as_mut());
+            let simulated = simulated_log(plant.as_mut(), believed, &self.controller, log);
+            let simulated = simulated.map_err(failed)?;
+            let how = arguments.conditions.of(log.step_s);
+            let failed = |error| IdentifyFailure::Condition(log.file.clone(), error);
+            Ok(Conditioned::new(simulated, &names, &how).map_err(failed)?)
+        };
+        read.whole.iter().map(&mut one).collect()
+    }
+}
+
+/// Why a model was not moved.
+#[derive(Clone, Debug)]
+pub(super) enum NotMoved {
+    Update(UpdateError),
+    Plant(PlantError),
+    Forward(String, ForwardError),
+}
+
+impl fmt::Display for NotMoved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Update(error) => write!(f, "{error}"),
+            Self::Plant(error) => write!(f, "{error}"),
+            Self::Forward(file, error) => write!(f, "{file}: {error}"),
+        }
+    }
+}
+
+/// Logs simulated with the values that the model had, and with those that were found.
+pub(super) struct SimulationGap {
+    pub(super) before: Result<Forward, NotMoved>,
+    pub(super) after: Result<Forward, NotMoved>,
+}
+
+impl SimulationGap {
+    pub(super) fn new(
+        (robot, updated): (&Robot, &Result<UpdatedModel, UpdateError>),
+        controlled: Option<&Controlled>,
+        (logs, window_s): (&[MotionLog], f64),
+    ) -> Self {
+        let moved = |robot: &Robot, believed: Option<&Robot>| {
+            let plant = |robot: &Robot| plant_of(robot, &[]).map_err(NotMoved::Plant);
+            let mut plants = (plant(robot)?, believed.map(plant).transpose()?);
+            all(&mut plants, controlled, (logs, window_s))
+        };
+        let before = moved(robot, None);
+        let after = match updated {
+            Ok(updated) => moved(&updated.robot, Some(robot)),
+            Err(error) => Err(NotMoved::Update(error.clone())),
+        };
+        Self { before, after }
+    }
+
+    /// A controller that does not fit its log is the user's fault, and no result.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        match &self.after {
+            Err(NotMoved::Forward(_, ForwardError::Stopped { .. })) | Ok(_) => Ok(()),
+            Err(NotMoved::Forward(file, error)) => {
+                Err(IdentifyFailure::Forward(file.clone(), error.clone()).into())
+            }
+            Err(NotMoved::Plant(_) | NotMoved::Update(_)) => Ok(()),
+        }
+    }
+
+    /// What was made, if anything.
+    pub(super) fn kind(&self) -> Option<ForwardKind> {
+        let made = self.after.as_ref().or(self.before.as_ref());
+        made.ok().map(|forward| forward.kind)
+    }
+
+    /// How logs were simulated, as part of a sentence.
+    pub(super) fn method(&self) -> String {
+        match self.kind() {
+            None => "not simulated again".to_owned(),
+            Some(ForwardKind::ClosedLoop) => {
+                "simulated again under the controller, from the first state".to_owned()
+            }
+            Some(ForwardKind::Windows { count, length_s }) => format!(
+                "simulated again in {count} windows of {length_s} s, from measured states under \
+                 measured torques"
+            ),
+        }
+    }
+
+    /// What kept models from being simulated.
+    pub(super) fn reasons(&self) -> Vec<String> {
+        let [before, after] =
+            [("before", &self.before), ("after", &self.after)].map(|(when, made)| {
+                made.as_ref().err().map(|reason| format!("simulation, {when}: {reason}"))
+            });
+        before.into_iter().chain(after).collect()
+    }
+}
+
+type Plants = (Box<dyn Plant>, Option<Box<dyn Plant>>);
+
+/// All logs, one after the other.
+fn all(
+    (plant, believed): &mut Plants,
+    controlled: Option<&Controlled>,
+    (logs, window_s): (&[MotionLog], f64),
+) -> Result<Forward, NotMoved> {
+    let mut joined: Option<Forward> = None;
+    for log in logs {
+        let made = match controlled {
+            Some(Controlled { controller, .. }) => {
+                closed_loop(plant.as_mut(), believed.as_deref_mut(), controller, log)
+            }
+            None => {
+                let windows = Windows { length_s: window_s, ..Windows::default() };
+                in_windows(plant.as_mut(), log, windows)
+            }
+        };
+        let made = made.map_err(|error| NotMoved::Forward(log.file.clone(), error))?;
+        match &mut joined {
+            Some(joined) => joined.append(made),
+            None => joined = Some(made),
+        }
+    }
+    Ok(joined.expect("there is a log"))
+}
+
+/// Positions, measured and simulated.
+pub(super) fn picture(model: &str, gap: &SimulationGap) -> Option<String> {
+    let forward = gap.after.as_ref().ok()?;
+    let title = model.replace('_', " ");
+    Some(motion_picture(&title, &gap.method(), forward))
+}

@@ -1,5 +1,8 @@
 //! Tests of the whole: the command, and the code that it emits.
 
+#[path = "../blind/mod.rs"]
+mod blind;
+mod blind_battery;
 mod cli;
 mod contact;
 mod effect;

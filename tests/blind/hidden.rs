@@ -1,0 +1,238 @@
+//! Hidden effects: what each is called, what answers name the same physics, and its size.
+
+/// A law that may be hidden in a plant, its sensors or its drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Law {
+    Coulomb,
+    Viscous,
+    SmoothedCoulomb,
+    AsymmetricCoulomb,
+    AsymmetricViscous,
+    Stribeck,
+    Stiction,
+    Dahl,
+    LuGre,
+    MaxwellSlip,
+    LoadFriction,
+    Capstan,
+    GearEfficiency,
+    QuadraticDrag,
+    SublinearViscous,
+    RotorInertia,
+    JointElasticity,
+    HystereticSpring,
+    HardeningSpring,
+    ReturnSpring,
+    TorqueGain,
+    TorqueOffset,
+    JointZero,
+    Cogging,
+    TransmissionError,
+    Damper,
+    Backlash,
+    Payload,
+    LinkInertia,
+    Coriolis,
+    CouplingInertia,
+    BaseTilt,
+    TorqueDelay,
+    ActuatorLag,
+    Saturation,
+    HardStop,
+    ThermalFriction,
+    CoupledFriction,
+    ExternalForce,
+    // outside the catalogue
+    ProductCoupling,
+    SineRate,
+    Waveform,
+    Chaos,
+    Magnet,
+    PostureDrag,
+}
+
+/// Where an effect acts, for the answer's joint to be right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Site {
+    /// One joint.
+    Joint,
+    /// A joint and another that it is coupled with: either is right.
+    Pair,
+    /// A link: joints before it feel its inertia, so its joint or the one before is right.
+    Link,
+    /// The robot: no joint is asked for.
+    Model,
+}
+
+/// What the battery knows of a law.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    pub(crate) law: Law,
+    /// The catalogue's name; empty for what no catalogue has.
+    pub(crate) name: &'static str,
+    /// Other names of the same physics, or names that these data cannot tell from it.
+    pub(crate) same: &'static [&'static str],
+    pub(crate) site: Site,
+    /// Name of the parameter that is the size, if law 0 has it in the catalogue's form.
+    pub(crate) parameter: &'static str,
+    /// How many laws of this physics are implemented.
+    pub(crate) variants: usize,
+}
+
+const fn entry(
+    law: Law,
+    name: &'static str,
+    same: &'static [&'static str],
+    site: Site,
+    parameter: &'static str,
+    variants: usize,
+) -> Entry {
+    Entry { law, name, same, site, parameter, variants }
+}
+
+/// The one table of names.
+///
+/// Same physics: laws of dry friction with memory stand for each other (each reduces to the others
+/// where data do not show the shape of a loop), so do one-sided springs (a stop is a stiff one),
+/// delay and lag (equal to first order), friction of load and of a cable (equal where the wrap
+/// does not change). Aliases: offset and asymmetric Coulomb while a joint moves; the inertia of a
+/// rotor and of the first link; payload and last link; a zero error and a tilt or a displaced mass.
+pub(crate) const TABLE: [Entry; 45] = [
+    entry(Law::Coulomb, "coulomb", &["smoothed_coulomb"], Site::Joint, "fc", 2),
+    entry(Law::Viscous, "viscous", &["sublinear_viscous"], Site::Joint, "fv", 2),
+    entry(Law::SmoothedCoulomb, "smoothed_coulomb", &["coulomb"], Site::Joint, "fc", 3),
+    entry(Law::AsymmetricCoulomb, "asymmetric_coulomb", &["torque_offset"], Site::Joint, "d", 1),
+    entry(Law::AsymmetricViscous, "asymmetric_viscous", &[], Site::Joint, "d", 2),
+    entry(Law::Stribeck, "stribeck", &["lugre"], Site::Joint, "fs", 3),
+    entry(Law::Stiction, "stiction", &["stribeck", "lugre"], Site::Joint, "fs", 2),
+    entry(Law::Dahl, "dahl", &["lugre", "maxwell_slip", "hysteretic_spring"], Site::Joint, "fc", 2),
+    entry(Law::LuGre, "lugre", &["dahl", "maxwell_slip"], Site::Joint, "fc", 2),
+    entry(
+        Law::MaxwellSlip,
+        "maxwell_slip",
+        &["dahl", "lugre", "hysteretic_spring"],
+        Site::Joint,
+        "",
+        2,
+    ),
+    entry(
+        Law::LoadFriction,
+        "load_friction",
+        &["capstan", "gear_efficiency"],
+        Site::Joint,
+        "mu",
+        2,
+    ),
+    entry(Law::Capstan, "capstan", &["load_friction"], Site::Joint, "mu", 2),
+    entry(
+        Law::GearEfficiency,
+        "gear_efficiency",
+        &["load_friction", "capstan"],
+        Site::Joint,
+        "",
+        2,
+    ),
+    entry(Law::QuadraticDrag, "quadratic_drag", &[], Site::Joint, "c", 2),
+    entry(
+        Law::SublinearViscous,
+        "sublinear_viscous",
+        &["smoothed_coulomb", "coulomb"],
+        Site::Joint,
+        "c",
+        2,
+    ),
+    entry(Law::RotorInertia, "rotor_inertia", &["link_inertia"], Site::Joint, "Ia", 1),
+    entry(Law::JointElasticity, "joint_elasticity", &[], Site::Joint, "", 2),
+    entry(
+        Law::HystereticSpring,
+        "hysteretic_spring",
+        &["maxwell_slip", "dahl"],
+        Site::Joint,
+        "",
+        2,
+    ),
+    entry(Law::HardeningSpring, "hardening_spring", &[], Site::Joint, "", 2),
+    entry(Law::ReturnSpring, "return_spring", &["hard_stop"], Site::Joint, "k", 2),
+    entry(Law::TorqueGain, "torque_gain", &[], Site::Joint, "g", 1),
+    entry(Law::TorqueOffset, "torque_offset", &["asymmetric_coulomb"], Site::Joint, "c", 1),
+    entry(Law::JointZero, "joint_zero", &["base_tilt", "link_inertia"], Site::Joint, "dq0", 1),
+    entry(Law::Cogging, "cogging", &["transmission_error"], Site::Joint, "", 2),
+    entry(Law::TransmissionError, "transmission_error", &["cogging"], Site::Joint, "a", 2),
+    entry(Law::Damper, "damper", &["viscous"], Site::Joint, "d", 1),
+    entry(Law::Backlash, "backlash", &[], Site::Joint, "b", 2),
+    entry(Law::Payload, "payload", &["link_inertia"], Site::Model, "m", 2),
+    entry(Law::LinkInertia, "link_inertia", &["payload", "rotor_inertia"], Site::Link, "", 2),
+    entry(Law::Coriolis, "coriolis", &[], Site::Model, "", 1),
+    entry(Law::CouplingInertia, "coupling_inertia", &[], Site::Pair, "m", 1),
+    entry(Law::BaseTilt, "base_tilt", &["joint_zero"], Site::Model, "", 1),
+    entry(Law::TorqueDelay, "torque_delay", &["actuator_lag"], Site::Joint, "T", 2),
+    entry(Law::ActuatorLag, "actuator_lag", &["torque_delay"], Site::Joint, "T", 2),
+    entry(Law::Saturation, "saturation", &[], Site::Joint, "", 2),
+    entry(Law::HardStop, "hard_stop", &["return_spring"], Site::Joint, "k", 2),
+    entry(Law::ThermalFriction, "thermal_friction", &[], Site::Joint, "c", 2),
+    entry(Law::CoupledFriction, "coupled_friction", &[], Site::Pair, "", 2),
+    entry(Law::ExternalForce, "external_force", &[], Site::Model, "", 2),
+    entry(Law::ProductCoupling, "", &[], Site::Pair, "", 1),
+    entry(Law::SineRate, "", &[], Site::Joint, "", 1),
+    entry(Law::Waveform, "", &[], Site::Joint, "", 1),
+    entry(Law::Chaos, "", &[], Site::Joint, "", 1),
+    entry(Law::Magnet, "", &[], Site::Joint, "", 1),
+    entry(Law::PostureDrag, "", &[], Site::Pair, "", 1),
+];
+
+impl Law {
+    /// Its entry in the table.
+    pub(crate) fn entry(self) -> &'static Entry {
+        TABLE.iter().find(|entry| entry.law == self).expect("the table has every law")
+    }
+
+    /// Whether it is a term that the nominal model lacks: it has no size to scale.
+    pub(crate) fn is_lacking(self) -> bool {
+        matches!(self, Self::Coriolis | Self::RotorInertia)
+    }
+
+    /// Whether the nominal model keeps its Coulomb friction at the joint.
+    pub(crate) fn keeps_coulomb(self) -> bool {
+        !matches!(
+            self,
+            Self::Coulomb | Self::SmoothedCoulomb | Self::Dahl | Self::LuGre | Self::MaxwellSlip
+        )
+    }
+}
+
+/// An effect in a plant.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Hidden {
+    pub(crate) law: Law,
+    /// Which law of its physics: 0 is the one that the catalogue prints.
+    pub(crate) variant: usize,
+    pub(crate) joint: usize,
+    /// The other joint of a coupling.
+    pub(crate) other: usize,
+    /// What is scaled to reach a strength, in the unit of the law.
+    pub(crate) size: f64,
+    /// Widths, places and phases, drawn once.
+    pub(crate) shape: Shape,
+}
+
+/// What a law needs beside its size.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Shape {
+    /// Middle of the joint's motion \[rad\] and its reach \[rad\].
+    pub(crate) middle: f64,
+    pub(crate) reach: f64,
+    /// The same of the other joint.
+    pub(crate) other_middle: f64,
+    pub(crate) other_reach: f64,
+    /// Typical rate [rad/s] and torque [N m] of the joint.
+    pub(crate) rate: f64,
+    pub(crate) torque: f64,
+    /// Largest torque [N m].
+    pub(crate) peak: f64,
+    /// Numbers in [0, 1) and a phase \[rad\], drawn.
+    pub(crate) first: f64,
+    pub(crate) second: f64,
+    pub(crate) phase: f64,
+    /// One lap of the reference \[s\].
+    pub(crate) lap_s: f64,
+}

@@ -1,0 +1,208 @@
+//! The nominal model: what the diagnosis is told of a robot, as numbers and as a model file.
+
+use super::random::Random;
+use super::rigid::{MOST, Posture};
+use super::robots::{Joint, Robot};
+use nalgebra::{Matrix3, Vector3};
+use serde_json::{Map, Value, json};
+
+/// A robot as its file has it.
+#[derive(Clone, Debug)]
+pub(crate) struct Nominal {
+    pub(crate) robot: Robot,
+    /// Standard deviation that the file states for every number, relative.
+    pub(crate) relative_std: f64,
+    /// Whether the model has Coriolis and centrifugal terms.
+    pub(crate) coriolis: bool,
+}
+
+/// Motion of one sample: joint angles and their derivatives, those of the drives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<'a> {
+    pub(crate) q: &'a [f64],
+    pub(crate) qd: &'a [f64],
+    pub(crate) qdd: &'a [f64],
+    pub(crate) motor_rate: &'a [f64],
+    pub(crate) motor_acceleration: &'a [f64],
+}
+
+impl Robot {
+    /// Rotor inertia, viscous and Coulomb friction of a drive on the side of its joint.
+    pub(crate) fn joint_side(&self, joint: usize) -> [f64; 3] {
+        let drive = &self.joints[joint].drive;
+        let squared = drive.gear * drive.gear;
+        [drive.rotor * squared, drive.viscous * squared, drive.coulomb * drive.gear.abs()]
+    }
+}
+
+impl Nominal {
+    /// The robot itself with a standard deviation of 1 %, or every mass, centre of mass, inertia
+    /// and friction off by up to 5 %, and 5 % stated.
+    ///
+    /// Masses, centres of mass and tensors are off by 5 % exactly, up or down; a tensor as a whole,
+    /// so that it stays that of a body. Friction is off by anything up to that.
+    pub(crate) fn draw(robot: &Robot, exact: bool, random: &mut Random) -> Self {
+        let mut robot = robot.clone();
+        if exact {
+            return Self { robot, relative_std: 0.01, coriolis: true };
+        }
+        let std = 0.05;
+        for joint in &mut robot.joints {
+            let body = &mut joint.row.body;
+            body.mass *= 1.0 + std * random.sign();
+            body.com *= 1.0 + std * random.sign();
+            body.inertia *= 1.0 + std * random.sign();
+            joint.drive.viscous *= 1.0 + std * random.between(-1.0, 1.0);
+            joint.drive.coulomb *= 1.0 + std * random.between(-1.0, 1.0);
+        }
+        Self { robot, relative_std: std, coriolis: true }
+    }
+
+    /// Torques that the model says a motion needs, friction left out \[N m\].
+    pub(crate) fn smooth_torques(&self, motion: &Motion<'_>, torques: &mut [f64]) {
+        let posture = Posture::new(&self.robot.rows(), motion.q);
+        let rest = [0.0; MOST];
+        let rates = if self.coriolis { motion.qd } else { &rest[..motion.q.len()] };
+        posture.torques(rates, motion.qdd, &self.robot.fall, torques);
+        for (joint, torque) in torques.iter_mut().enumerate() {
+            let [rotor, viscous, _] = self.robot.joint_side(joint);
+            *torque += rotor * motion.motor_acceleration[joint];
+            *torque += viscous * motion.motor_rate[joint];
+        }
+    }
+
+    /// Every number that the file states a standard deviation for, as a change of the robot by it.
+    pub(crate) fn deviations(&self) -> Vec<Robot> {
+        let mut changed = Vec::new();
+        let std = self.relative_std;
+        let mut push = |change: &dyn Fn(&mut Joint) -> &mut f64, joint: usize| {
+            let mut robot = self.robot.clone();
+            let number = change(&mut robot.joints[joint]);
+            if *number != 0.0 {
+                *number *= 1.0 + std;
+                changed.push(robot);
+            }
+        };
+        for joint in 0..self.robot.joints.len() {
+            push(&|one| &mut one.row.body.mass, joint);
+            for axis in 0..3 {
+                push(&|one| &mut one.row.body.com[axis], joint);
+                push(&|one| &mut one.row.body.inertia[(axis, axis)], joint);
+            }
+            push(&|one| &mut one.drive.rotor, joint);
+            push(&|one| &mut one.drive.viscous, joint);
+        }
+        changed
+    }
+
+    /// The model file.
+    pub(crate) fn file(&self) -> Value {
+        let robot = &self.robot;
+        let mut drives = Map::new();
+        for joint in &robot.joints {
+            drives.insert(joint.name.to_owned(), self.drive(joint));
+        }
+        let mut file = json!({
+            "format": "denavit-model/1",
+            "name": robot.name,
+            "description": "A robot with its drives, as its maker describes it.",
+            "convention": "standard",
+            "gravity": <[f64; 3]>::from(robot.fall),
+            "links": robot.joints.iter().map(|joint| self.link(joint)).collect::<Vec<_>>(),
+            "drives": drives,
+        });
+        if !self.coriolis {
+            file["terms"] = json!(["inertia", "gravity", "friction", "rotor", "spring"]);
+        }
+        file
+    }
+
+    fn number(&self, value: f64) -> Value {
+        if value == 0.0 {
+            json!({"value": 0, "known": true})
+        } else {
+            json!({"value": value, "std": value.abs() * self.relative_std})
+        }
+    }
+
+    fn link(&self, joint: &Joint) -> Value {
+        let quarters = |turns: i32| match turns {
+            0 => json!(0),
+            _ => json!(format!("{turns}*pi/2")),
+        };
+        let row = &joint.row;
+        let moments = ["xx", "yy", "zz"].iter().enumerate();
+        let products = [("xy", (0, 1)), ("xz", (0, 2)), ("yz", (1, 2))];
+        let mut inertia: Map<String, Value> = moments
+            .map(|(axis, name)| ((*name).to_owned(), self.number(row.body.inertia[(axis, axis)])))
+            .collect();
+        for (name, at) in products {
+            inertia.insert(name.to_owned(), self.number(row.body.inertia[at]));
+        }
+        let com: Vec<Value> = row.body.com.iter().map(|value| self.number(*value)).collect();
+        let mut body = json!({
+            "mass": self.number(row.body.mass),
+            "com": com,
+            "inertia": inertia,
+            "about": "com",
+        });
+        if row.body.mass == 0.0 {
+            // of a link on a fixed axis only the moment about it is known
+            let known: Map<String, Value> = inertia_of(&body)
+                .into_iter()
+                .filter(|(_, entry)| entry["std"].is_number())
+                .collect();
+            body = json!({"inertia": known, "about": "com"});
+        } else if breaks_triangle(&row.body.inertia) {
+            body["accept_triangle_violation"] = json!("As its maker prints it.");
+        }
+        json!({
+            "name": joint.name,
+            "joint": {
+                "type": "revolute",
+                "a": row.a,
+                "alpha": quarters(row.alpha),
+                "d": row.d,
+                "theta": quarters(row.theta),
+            },
+            "body": body,
+        })
+    }
+
+    fn drive(&self, joint: &Joint) -> Value {
+        let drive = &joint.drive;
+        let mut file = json!({"gear_ratio": drive.gear});
+        let entries = [
+            ("rotor_inertia", drive.rotor),
+            ("viscous", drive.viscous),
+            ("coulomb", drive.coulomb),
+        ];
+        for (name, value) in entries.into_iter().filter(|(_, value)| *value != 0.0) {
+            file[name] = self.number(value);
+        }
+        if let Some(spring) = drive.spring {
+            file["series_elastic"] = json!({
+                "stiffness": self.number(spring.stiffness),
+                "motor_radius": spring.radius,
+                "load_radius": spring.radius,
+            });
+        }
+        file
+    }
+}
+
+fn inertia_of(body: &Value) -> Map<String, Value> {
+    body["inertia"].as_object().cloned().unwrap_or_default()
+}
+
+/// Whether no body has this tensor: second moments, tr(I)/2 - I, below 0.
+fn breaks_triangle(inertia: &Matrix3<f64>) -> bool {
+    let second = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
+    second.symmetric_eigenvalues().min() < -1e-9 * inertia.trace()
+}
+
+/// A vector turned by an angle about an axis of length 1 (Rodrigues).
+pub(crate) fn turned(vector: &Vector3<f64>, axis: &Vector3<f64>, angle: f64) -> Vector3<f64> {
+    let (sin, cos) = angle.sin_cos();
+    vector * cos + axis.cross(vector) * sin + axis * (axis.dot(vector) * (1.0 - cos))
+}

@@ -1,0 +1,240 @@
+//! Scores of answers: names and joints, false discoveries, refusals, gaps, intervals, confusion.
+
+use super::case::Case;
+use super::design::Kind;
+use super::generate::Generated;
+use super::hidden::{Hidden, Site};
+use super::robots::Robot;
+use std::collections::BTreeMap;
+
+/// One effect that a diagnosis names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Named {
+    /// Name in the catalogue; empty for a structure that was left unnamed.
+    pub(crate) name: String,
+    /// Joint, or none for an effect of the whole model.
+    pub(crate) joint: Option<String>,
+    /// Names that the data cannot tell apart, with `name` itself; empty for an unambiguous answer.
+    pub(crate) family: Vec<String>,
+    /// Parameters with their standard deviations.
+    pub(crate) parameters: BTreeMap<String, [f64; 2]>,
+}
+
+/// What a diagnosis says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Answer {
+    /// As in the command's JSON: `nothing_missing`, `explained`, ...
+    pub(crate) verdict: String,
+    pub(crate) effects: Vec<Named>,
+    /// Held-out gap before and after, and its floor.
+    pub(crate) gap: Option<[f64; 3]>,
+}
+
+/// How a case went.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Score {
+    pub(crate) number: u64,
+    pub(crate) kind: Kind,
+    /// `strong`, `medium`, `weak`, or `hidden` below what can be seen.
+    pub(crate) level: &'static str,
+    /// What was hidden, by catalogue name (or law, outside the catalogue).
+    pub(crate) truth: Vec<String>,
+    pub(crate) said: Vec<String>,
+    /// Effects whose name and joint were found, counting stated families of at most three.
+    pub(crate) found: usize,
+    /// The same, by unambiguous answers alone.
+    pub(crate) unambiguous: usize,
+    /// Effects that were named and were not there.
+    pub(crate) false_names: usize,
+    /// Whether the answer is what was expected.
+    pub(crate) right: bool,
+    /// Share of the explainable held-out gap that was closed.
+    pub(crate) closed: Option<f64>,
+    /// Parameters within two standard deviations, of those that can be compared.
+    pub(crate) within: [usize; 2],
+}
+
+const LARGEST_FAMILY: usize = 3;
+/// Of an effect's strength, by what was reached and not by what was aimed at.
+const LEVELS: [(&str, f64); 3] = [("strong", 12.0), ("medium", 3.5), ("weak", 1.4)];
+
+fn level(strength: f64) -> &'static str {
+    LEVELS.iter().find(|(_, least)| strength >= *least).map_or("hidden", |(name, _)| name)
+}
+
+impl Named {
+    /// Whether this names the physics of a hidden effect, at its joint.
+    fn is(&self, hidden: &Hidden, robot: &Robot, family: bool) -> bool {
+        let entry = hidden.law.entry();
+        let same = |name: &str| name == entry.name || entry.same.contains(&name);
+        let by_family = family
+            && self.family.len() <= LARGEST_FAMILY
+            && self.family.iter().any(|name| same(name));
+        let alone = self.family.len() <= 1;
+        if !(same(&self.name) && (alone || family)) && !by_family {
+            return false;
+        }
+        let Some(joint) = &self.joint else { return entry.site == Site::Model };
+        let at = |index: usize| robot.joints[index].name == joint;
+        match entry.site {
+            Site::Joint => at(hidden.joint),
+            Site::Pair => at(hidden.joint) || at(hidden.other),
+            Site::Link => at(hidden.joint) || at(hidden.joint.saturating_sub(1)),
+            Site::Model => true,
+        }
+    }
+}
+
+/// Compares an answer with what was hidden.
+pub(crate) fn score(generated: &Generated, answer: &Answer) -> Score {
+    let case: &Case = &generated.case;
+    let robot = &case.truth;
+    let named: Vec<&Named> = answer.effects.iter().filter(|one| !one.name.is_empty()).collect();
+    let count = |family: bool| {
+        let is_found = |one: &&Hidden| named.iter().any(|named| named.is(one, robot, family));
+        case.hidden.iter().filter(is_found).count()
+    };
+    let found = count(true);
+    let known = |one: &&&Named| case.hidden.iter().any(|hidden| one.is(hidden, robot, true));
+    let false_names = named.len() - named.iter().filter(known).count();
+    let refused = matches!(answer.verdict.as_str(), "cannot_tell" | "unexplained");
+    let right = match case.plan.kind {
+        Kind::Nothing => named.is_empty() && answer.verdict != "explained",
+        Kind::Outside => refused || named.is_empty(),
+        Kind::CannotTell => refused || (case.plan.still && named.is_empty()),
+        Kind::Single | Kind::Pair | Kind::Thesis => found == case.hidden.len() && false_names == 0,
+    };
+    let weakest = generated.strengths.iter().copied().fold(f64::INFINITY, f64::min);
+    let strength = if case.hidden.is_empty() { 0.0 } else { weakest };
+    let closed = answer.gap.and_then(|[before, after, floor]| {
+        (before > floor).then(|| (before - after) / (before - floor))
+    });
+    let label = |hidden: &Hidden| match hidden.law.entry().name {
+        "" => format!("{:?}", hidden.law),
+        name => name.to_owned(),
+    };
+    let said = |one: &&Named| one.name.clone();
+    Score {
+        number: case.number,
+        kind: case.plan.kind,
+        level: level(strength),
+        truth: case.hidden.iter().map(label).collect(),
+        said: named.iter().map(said).collect(),
+        found,
+        unambiguous: count(false),
+        false_names,
+        right,
+        closed,
+        within: intervals(case, &named),
+    }
+}
+
+/// Parameters within two standard deviations of the truth, and all that can be compared.
+fn intervals(case: &Case, named: &[&Named]) -> [usize; 2] {
+    let mut within = [0, 0];
+    for hidden in case.hidden.iter().filter(|hidden| hidden.variant == 0) {
+        let entry = hidden.law.entry();
+        let answer =
+            named.iter().find(|one| one.name == entry.name && one.is(hidden, &case.truth, true));
+        let Some([value, std]) = answer.and_then(|one| one.parameters.get(entry.parameter)) else {
+            continue;
+        };
+        within[1] += 1;
+        within[0] += usize::from((value - hidden.size).abs() <= 1.96 * std);
+    }
+    within
+}
+
+/// Exact interval of 95 % of a probability, after `hits` of `count` (Clopper, Pearson 1934): at its
+/// ends the tails of the binomial distribution have 2.5 % each.
+pub(crate) fn binomial_interval(hits: usize, count: usize) -> [f64; 2] {
+    // probability of at most k
+    let at_most = |k: usize, p: f64| {
+        let mut term = (count as f64 * (-p).ln_1p()).exp();
+        let mut sum = term;
+        for i in 0..k {
+            term *= (count - i) as f64 / (i + 1) as f64 * p / (1.0 - p);
+            sum += term;
+        }
+        sum
+    };
+    let bisect = |is_low: &dyn Fn(f64) -> bool| {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if is_low(middle) { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    };
+    let lower = if hits == 0 { 0.0 } else { bisect(&|p| 1.0 - at_most(hits - 1, p) < 0.025) };
+    let upper = if hits == count { 1.0 } else { bisect(&|p| at_most(hits, p) > 0.025) };
+    [lower, upper]
+}
+
+/// Figures of many cases, as lines of a table.
+pub(crate) fn table(scores: &[Score]) -> String {
+    let mut text =
+        String::from("| | right | of | share | 95 % interval |\n|---|---:|---:|---:|---|\n");
+    let mut line = |name: &str, hits: usize, count: usize| {
+        if count > 0 {
+            let [low, high] = binomial_interval(hits, count).map(|p| 100.0 * p);
+            let share = 100.0 * hits as f64 / count as f64;
+            text += &format!(
+                "| {name} | {hits} | {count} | {share:.1} % | {low:.1} .. {high:.1} % |\n"
+            );
+        }
+    };
+    let of = |kind: Kind| scores.iter().filter(move |score| score.kind == kind);
+    for (level, _) in LEVELS {
+        let these: Vec<&Score> = of(Kind::Single).filter(|score| score.level == level).collect();
+        let found = these.iter().filter(|score| score.found > 0).count();
+        line(&format!("{level}: name and joint"), found, these.len());
+        let clear = these.iter().filter(|score| score.unambiguous > 0).count();
+        line(&format!("{level}: unambiguously"), clear, these.len());
+        let clean = these.iter().filter(|score| score.right).count();
+        line(&format!("{level}: and nothing else"), clean, these.len());
+    }
+    let rights = |kind: Kind| of(kind).filter(|score| score.right).count();
+    let both = of(Kind::Pair).filter(|score| score.found == 2).count();
+    line("pairs: both named", both, of(Kind::Pair).count());
+    let false_discoveries = of(Kind::Nothing).filter(|score| !score.right).count();
+    line("nothing hidden: false discoveries", false_discoveries, of(Kind::Nothing).count());
+    line(
+        "outside the catalogue: refused or unnamed",
+        rights(Kind::Outside),
+        of(Kind::Outside).count(),
+    );
+    line("cannot be told: refused", rights(Kind::CannotTell), of(Kind::CannotTell).count());
+    line("the thesis's own", rights(Kind::Thesis), of(Kind::Thesis).count());
+    let sums =
+        scores.iter().fold([0, 0], |[a, b], score| [a + score.within[0], b + score.within[1]]);
+    line("parameters within their intervals", sums[0], sums[1]);
+    let named = |score: &&Score| !score.truth.is_empty() && score.found > 0;
+    let mut closed: Vec<f64> =
+        scores.iter().filter(named).filter_map(|score| score.closed).collect();
+    closed.sort_by(f64::total_cmp);
+    if let Some(median) = closed.get(closed.len() / 2) {
+        text += &format!("\nMedian share of the explainable gap closed: {:.1} %\n", 100.0 * median);
+    }
+    text
+}
+
+/// What was said for what was hidden, in single cases: `hidden`, `said`, how often.
+pub(crate) fn confusion(scores: &[Score]) -> String {
+    let mut counts: BTreeMap<(String, String), usize> = BTreeMap::new();
+    for score in scores.iter().filter(|score| {
+        score.truth.len() <= 1 && score.level != "hidden" || score.kind == Kind::Nothing
+    }) {
+        let truth = score.truth.first().map_or("nothing", String::as_str);
+        let mut said = score.said.clone();
+        said.sort();
+        said.dedup();
+        let said = if said.is_empty() { "-".to_owned() } else { said.join(" + ") };
+        *counts.entry((truth.to_owned(), said)).or_default() += 1;
+    }
+    let mut text = String::from("| hidden | said | times |\n|---|---|---:|\n");
+    for ((truth, said), count) in counts {
+        text += &format!("| {truth} | {said} | {count} |\n");
+    }
+    text
+}

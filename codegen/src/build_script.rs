@@ -15,9 +15,10 @@
 //! ```
 
 use crate::derive::{Flavour, derive};
+use crate::effect::{self, Effect};
 use crate::emit::rust::{EmitError, module};
 use crate::function::FunctionName;
-use crate::model::{self, BakeError, ModelError, Robot};
+use crate::model::{BakeError, ModelError, Robot};
 use crate::program::{LowerError, lower};
 use std::fmt;
 use std::io;
@@ -118,12 +119,27 @@ pub fn emit_with(model: impl AsRef<Path>, request: &Request) {
 pub fn generate(model: &Path, out_dir: &Path, request: &Request) -> Result<PathBuf, BuildError> {
     let bytes =
         std::fs::read(model).map_err(|error| BuildError::Read { path: model.to_owned(), error })?;
-    let robot = model::read(&model.to_string_lossy(), &bytes).map_err(BuildError::Model)?;
+    let own = own_effects(model)?;
+    let robot =
+        effect::read_model(&model.to_string_lossy(), &bytes, &own).map_err(BuildError::Model)?;
     let text = source(&robot, request)?;
     let stem = model.file_stem().unwrap_or_default().to_string_lossy();
     let path = out_dir.join(format!("{stem}_dynamics.rs"));
     write_whole(&path, &text).map_err(|error| BuildError::Write { path: path.clone(), error })?;
     Ok(path)
+}
+
+/// The effects of the folder `effects` beside a model, by file name.
+fn own_effects(model: &Path) -> Result<Vec<Effect>, BuildError> {
+    let folder = model.parent().unwrap_or(Path::new("")).join("effects");
+    let files =
+        effect::files(&folder).map_err(|error| BuildError::Read { path: folder.clone(), error })?;
+    let read = |path: &PathBuf| {
+        let bytes =
+            std::fs::read(path).map_err(|error| BuildError::Read { path: path.clone(), error })?;
+        effect::read(&path.to_string_lossy(), &bytes).map_err(BuildError::Model)
+    };
+    files.iter().map(read).collect()
 }
 
 /// The text of the module of a robot.

@@ -48,6 +48,8 @@ pub enum FunctionName {
     KineticEnergy,
     /// Potential energy.
     PotentialEnergy,
+    /// Rates of the states of added effects.
+    StateRates,
     /// R0 of zeta = R0 theta0: one column for each unknown parameter.
     Regressor,
     /// R of zeta = R theta: one column for each base parameter.
@@ -58,7 +60,7 @@ pub enum FunctionName {
 
 impl FunctionName {
     /// Every function of run-time use, in the order of listings.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::InverseDynamics,
         Self::MassMatrix,
         Self::CoriolisMatrix,
@@ -79,6 +81,7 @@ impl FunctionName {
         Self::Momentum,
         Self::KineticEnergy,
         Self::PotentialEnergy,
+        Self::StateRates,
     ];
 
     /// The functions for identification, which are derived where they are asked for by name.
@@ -107,6 +110,7 @@ impl FunctionName {
             Self::Momentum => "momentum",
             Self::KineticEnergy => "kinetic_energy",
             Self::PotentialEnergy => "potential_energy",
+            Self::StateRates => "state_rates",
             Self::Regressor => "regressor",
             Self::BaseRegressor => "base_regressor",
             Self::BaseParameters => "base_parameters",
@@ -136,10 +140,11 @@ pub enum Form {
     Explicit,
 }
 
-/// An argument: a vector with one symbol for each joint variable.
+/// An argument: a vector with one symbol for each joint variable, or for each state of added
+/// effects (`states`), or with the time alone (`t`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Argument {
-    /// `q`, `qd`, `qdd`, `tau` or `b`.
+    /// `q`, `qd`, `qdd`, `tau`, `b`, `t` or `states`.
     pub name: &'static str,
     /// The symbols, in the order of the joints.
     pub symbols: Vec<ExprId>,

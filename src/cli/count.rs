@@ -2,9 +2,9 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::read_model;
+use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
-use super::options::{FlavourOption, FunctionList, ModelArgument, Term, terms};
+use super::options::{EffectsOption, FlavourOption, FunctionList, ModelArgument, Term, terms};
 use clap::Args;
 use denavit::derive::{Flavour, derive};
 use denavit::function::FunctionName;
@@ -27,6 +27,8 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
+    #[command(flatten)]
+    effects: EffectsOption,
     #[command(flatten)]
     functions: FunctionList,
     #[command(flatten)]
@@ -83,7 +85,8 @@ impl From<&Counts> for CountsJson {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let mut robot = read_model(&arguments.model.model)?;
+    let mut robot =
+        read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())?;
     if let Some(list) = &arguments.terms {
         robot.terms = terms(list);
     }

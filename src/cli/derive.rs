@@ -4,14 +4,15 @@ mod equations;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{on_stdout, read_model, write_whole};
+use super::files::{on_stdout, read_model_with_effects, write_whole};
 use super::json::{Ordered, write_json};
-use super::options::ModelArgument;
+use super::options::{EffectsOption, ModelArgument};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::dynamics::methods::Method;
-use denavit::expr::text::print_with_intermediates;
+use denavit::expr::text::{print, print_with_intermediates};
 use denavit::expr::{ExprId, Operations};
+use denavit::model::{JointLaw, Robot};
 use denavit::report::{Align, Table};
 use equations::{Equations, Part};
 use serde::Serialize;
@@ -48,6 +49,8 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
+    #[command(flatten)]
+    effects: EffectsOption,
     /// How: by the recursions that emitted code uses, or in one of the thesis's four ways
     #[arg(long, value_enum, value_name = "METHOD", default_value = "recursive")]
     method: MethodName,
@@ -94,6 +97,17 @@ struct DeriveJson<'a> {
     joints: &'a [String],
     functions: Ordered<PartJson<'a>>,
     intermediates: Vec<IntermediateJson<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    effects: Vec<LawJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct LawJson<'a> {
+    effect: &'a str,
+    title: &'a str,
+    joint: &'a str,
+    torque: String,
+    states: Ordered<String>,
 }
 
 #[derive(Serialize)]
@@ -111,9 +125,13 @@ struct IntermediateJson<'a> {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[arguments.latex.as_ref()], arguments.json)?;
-    let robot = read_model(&arguments.model.model)?;
+    let robot =
+        read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())?;
     let progress = Progress::new();
     progress.show(&format!("deriving {}", robot.name));
+    if let (Some(law), Some(_)) = (robot.laws.first(), arguments.method.method()) {
+        return Err(Failure::Effect(robot.name.clone(), law.effect.clone()));
+    }
     let mut equations = match arguments.method.method() {
         None => Equations::recursive(&robot),
         Some(method) => Equations::by_method(&robot, method),
@@ -127,9 +145,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return Ok(Answer::Done);
     }
     if arguments.json {
-        write_answer(out, &equations)?;
+        write_answer(out, &robot, &equations)?;
     } else {
         write_for_people(out, &mut equations)?;
+        write_effects(out, &robot)?;
         if let Some(file) = &arguments.latex {
             writeln!(out, "\nwrote {}", file.display())?;
         }
@@ -161,7 +180,7 @@ fn numbered(joints: &[String]) -> String {
     named.collect::<Vec<_>>().join(", ")
 }
 
-fn write_answer(out: &mut dyn Write, equations: &Equations) -> Result<(), Failure> {
+fn write_answer(out: &mut dyn Write, robot: &Robot, equations: &Equations) -> Result<(), Failure> {
     let entries: Vec<_> =
         equations.parts.iter().flat_map(|part| part.entries.iter().copied()).collect();
     let printed = print_with_intermediates(&equations.dag, &entries, PLAIN_NODES);
@@ -182,8 +201,38 @@ fn write_answer(out: &mut dyn Write, equations: &Equations) -> Result<(), Failur
         intermediates: bindings
             .map(|(name, expression)| IntermediateJson { name, expression })
             .collect(),
+        effects: robot.laws.iter().map(|law| law_json(robot, law)).collect(),
     };
     write_json(out, &json)
+}
+
+fn law_json<'a>(robot: &'a Robot, law: &'a JointLaw) -> LawJson<'a> {
+    let rates = law.states.iter();
+    LawJson {
+        effect: &law.effect,
+        title: &law.title,
+        joint: &robot.links[law.joint].name,
+        torque: print(&robot.dag, law.torque),
+        states: Ordered(
+            rates.map(|state| (state.name.clone(), print(&robot.dag, state.rate))).collect(),
+        ),
+    }
+}
+
+/// The laws of added effects, which are part of the joints' own torques.
+fn write_effects(out: &mut dyn Write, robot: &Robot) -> Result<(), Failure> {
+    if !robot.laws.is_empty() {
+        writeln!(out, "\nadded effects, part of the joints' own torques:")?;
+    }
+    for law in &robot.laws {
+        let row = robot.joints().position(|(link, _)| link == law.joint).map_or(0, |row| row + 1);
+        let torque = print(&robot.dag, law.torque);
+        writeln!(out, "tau[{row}] += {torque}    ({})", law.title)?;
+        for state in &law.states {
+            writeln!(out, "  d/dt {} = {}", state.name, print(&robot.dag, state.rate))?;
+        }
+    }
+    Ok(())
 }
 
 /// D, C, G and the drives' torque; tau is what they add up to. `entries` are those of the terms;

@@ -2,12 +2,13 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{on_stdout, read_model, write_whole};
+use super::files::{on_stdout, read_model_with_effects, write_whole};
 use super::json::write_json;
-use super::options::{FlavourOption, FunctionList, ModelArgument};
+use super::options::{EffectsOption, FlavourOption, FunctionList, ModelArgument};
 use super::progress::Progress;
 use clap::Args;
 use denavit::derive::{Derivation, Flavour, derive};
+use denavit::dynamics::implicit_effects;
 use denavit::emit::rust::module;
 use denavit::function::FunctionName;
 use denavit::model::Robot;
@@ -30,6 +31,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     #[command(flatten)]
+    effects: EffectsOption,
+    #[command(flatten)]
     functions: FunctionList,
     #[command(flatten)]
     flavour: FlavourOption,
@@ -49,11 +52,15 @@ struct EmitJson<'a> {
     bytes: usize,
     lines: usize,
     functions: Vec<String>,
+    /// Effects that keep functions from being written in closed form.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    implicit_effects: Vec<String>,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[Some(&arguments.output)], arguments.json)?;
-    let robot = read_model(&arguments.model.model)?;
+    let robot =
+        read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())?;
     let flavour = arguments.flavour.flavour();
     let progress = Progress::new();
     progress.show(&format!("deriving and emitting {}", robot.name));
@@ -67,13 +74,22 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let (file, lines) = (arguments.output.display().to_string(), text.lines().count());
     let functions: Vec<String> =
         emitted.program.routines.iter().map(|routine| routine.full_name()).collect();
+    let implicit_effects = implicit_effects(&robot);
     if arguments.json {
         let (flavour, bytes) = (flavour.to_string(), text.len());
-        let json = EmitJson { model: &robot.name, flavour, file, bytes, lines, functions };
+        let model = &robot.name;
+        let json = EmitJson { model, flavour, file, bytes, lines, functions, implicit_effects };
         write_json(out, &json)?;
     } else {
         let count = functions.len();
         writeln!(out, "wrote {file}: {count} functions, {lines} lines, {flavour} parameters")?;
+        for effect in &implicit_effects {
+            writeln!(
+                out,
+                "left out: bias, forward dynamics and derivatives, because the effect `{effect}` \
+                 depends on what they would have to find"
+            )?;
+        }
     }
     Ok(Answer::Done)
 }

@@ -119,7 +119,7 @@ impl Failure {
             }
             Self::ModelledAndMore => "the others add those of all joints".to_owned(),
             Self::TwoDocuments => "give all but one of them a file".to_owned(),
-            Self::Effect(..) => "take \"effects\" out of the model".to_owned(),
+            Self::Effect(..) => "see \"effects\" in docs/model-file.md".to_owned(),
             Self::Write { error, .. } => match error.kind() {
                 io::ErrorKind::NotFound => "make the directory first".to_owned(),
                 io::ErrorKind::IsADirectory => "give the path of a file in it".to_owned(),
@@ -214,7 +214,7 @@ impl fmt::Display for Failure {
             Self::ModelledAndMore => write!(f, "--with modelled stands alone")?,
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::Effect(model, effect) => {
-                write!(f, "{model}: the equations do not have the effect `{effect}` yet")?;
+                write!(f, "{model}: this has no place for the effect `{effect}`")?;
             }
             Self::Lower(model, error) => write!(f, "{model}: {error}")?,
             Self::Emit(model, error) => write!(f, "{model}: {error}")?,

@@ -1,6 +1,7 @@
 //! Files in and out: models by path or by name, outputs that are whole or not there.
 
 use super::failure::{Failure, reason};
+use denavit::effect::{self, Effect};
 use denavit::model::equations::{self, Equations};
 use denavit::model::{self, Robot};
 use denavit::shipped::{self, ShippedModel};
@@ -22,6 +23,34 @@ static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 pub(crate) fn read_model(place: &Path) -> Result<Robot, Failure> {
     let (name, bytes) = read_named(place, &[shipped::MODELS])?;
     complete(model::read(&name, &bytes).map_err(Failure::Model)?)
+}
+
+/// The robot of a path with the effects that its file names: those of `folder`, or of the folder
+/// `effects` beside the file, then the shipped ones.
+pub(crate) fn read_model_with_effects(
+    place: &Path,
+    folder: Option<&Path>,
+) -> Result<Robot, Failure> {
+    let (name, bytes) = read_named(place, &[shipped::MODELS])?;
+    let beside = place.parent().filter(|_| place.is_file()).map(|parent| parent.join("effects"));
+    let own = match folder {
+        Some(folder) if !folder.is_dir() => {
+            let (file, error) = (folder.display().to_string(), io::ErrorKind::NotADirectory);
+            return Err(Failure::Read { file, error: error.into() });
+        }
+        Some(folder) => own_effects(folder)?,
+        None => beside.map_or_else(|| Ok(Vec::new()), |folder| own_effects(&folder))?,
+    };
+    effect::read_model(&name, &bytes, &own).map_err(Failure::Model)
+}
+
+fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
+    let files = effect::files(folder)
+        .map_err(|error| Failure::Read { file: folder.display().to_string(), error })?;
+    let read = |path: &PathBuf| {
+        effect::read(&path.display().to_string(), &read_file(path)?).map_err(Failure::Model)
+    };
+    files.iter().map(read).collect()
 }
 
 /// A robot all of whose parts the equations have.

@@ -5,9 +5,9 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{on_stdout, read_model, write_whole};
+use super::files::{on_stdout, read_model_with_effects, write_whole};
 use super::json::write_json;
-use super::options::ModelArgument;
+use super::options::{EffectsOption, ModelArgument};
 use clap::Args;
 use denavit::report::{Pose, Values, picture};
 use std::io::Write;
@@ -26,6 +26,8 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
+    #[command(flatten)]
+    effects: EffectsOption,
     /// Draw the robot at its zero pose, with the frames of its links; - is standard output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
@@ -36,15 +38,17 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[arguments.svg.as_ref()], arguments.json)?;
-    let robot = match read_model(&arguments.model.model) {
-        Ok(robot) => robot,
-        Err(Failure::Model(error)) if arguments.json => {
-            write_json(out, &json::faults(&error))?;
-            out.flush()?;
-            return Err(Failure::Model(error));
-        }
-        Err(failure) => return Err(failure),
-    };
+    let robot =
+        match read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())
+        {
+            Ok(robot) => robot,
+            Err(Failure::Model(error)) if arguments.json => {
+                write_json(out, &json::faults(&error))?;
+                out.flush()?;
+                return Err(Failure::Model(error));
+            }
+            Err(failure) => return Err(failure),
+        };
     if let Some(file) = &arguments.svg {
         let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(robot.name.clone(), e))?;
         write_whole(file, picture(&robot, &pose).as_bytes())?;

@@ -15,6 +15,14 @@ pub(crate) struct ModelArgument {
     pub(crate) model: PathBuf,
 }
 
+/// Where the definitions of added effects are.
+#[derive(Debug, Args)]
+pub(crate) struct EffectsOption {
+    /// Folder of your own effects; without it the folder `effects` beside the model
+    #[arg(long, value_name = "DIR")]
+    pub(crate) effects: Option<PathBuf>,
+}
+
 /// Functions, given as a list of names.
 #[derive(Debug, Args)]
 pub(crate) struct FunctionList {

@@ -24,6 +24,9 @@ enum Format {
     /// A robot
     #[value(alias = denavit::model::FORMAT)]
     Model,
+    /// Missing physics
+    #[value(alias = denavit::effect::FORMAT)]
+    Effect,
     /// Equations as text
     #[value(alias = denavit::model::equations::FORMAT)]
     Equations,
@@ -46,6 +49,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let controller = denavit::simulate::scenario::controller_schema();
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
+        Format::Effect => denavit::effect::schema(),
         Format::Equations => denavit::model::equations::schema(),
         Format::Certificate => denavit::regressor::certificate::schema(),
         Format::Scenario => denavit::simulate::scenario::schema(),

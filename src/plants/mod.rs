@@ -67,6 +67,13 @@ pub trait Plant {
     /// For each link the upper three rows of its homogeneous transform, 12 entries a link.
     fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]);
 
+    /// Power that laws of added effects take out of the joints \[W\]; their torque is part of the
+    /// bias.
+    fn law_power(&mut self, q: &[f64], qd: &[f64]) -> f64 {
+        let _ = (q, qd);
+        0.0
+    }
+
     /// Number of guards: events of its own that a plant written by hand may have, beside those of
     /// its contacts (a knee that locks, a heel strike in a limit of vanishing masses).
     fn guards(&self) -> usize {

@@ -157,6 +157,8 @@ pub enum PlantError {
     Bake(BakeError),
     /// A number that no computer arithmetic holds.
     Lower(LowerError),
+    /// An added effect that a simulation cannot follow; holds its name and what it depends on.
+    Effect(String, &'static str),
 }
 
 impl fmt::Display for PlantError {
@@ -174,6 +176,11 @@ impl fmt::Display for PlantError {
             }
             Self::Bake(error) => write!(f, "{error}"),
             Self::Lower(error) => write!(f, "{error}"),
+            Self::Effect(name, what) => write!(
+                f,
+                "the effect `{name}` depends on {what}, which simulations do not follow\n  hint: \
+                 they follow laws of q and qd, and laws proportional to qdd"
+            ),
         }
     }
 }

@@ -403,7 +403,7 @@ fn parameters(robot: &Robot, base: &BaseParameters, theta0: &Program) -> Vec<Mod
         }
         let link = match parameter.role {
             Role::Body(link, _) | Role::Joint(link, _) => Some(robot.links[link].name.clone()),
-            Role::Constant | Role::Unknown => None,
+            Role::Constant | Role::Unknown | Role::Effect(_) => None,
         };
         found.push(ModelParameter {
             name: parameter.name.clone(),

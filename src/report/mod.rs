@@ -5,6 +5,7 @@
 //! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
 //! - [`excitation_picture`]: a trajectory with its limits, and how it was found
 //! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
+//! - [`effects_page`]: the catalogue of effects
 //! - [`html`]: reports as one page that needs nothing from elsewhere
 //! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
 //!   [`convergence_picture`]: how an
@@ -13,6 +14,7 @@
 //! Nothing here prints; text is handed to whoever does.
 
 mod camera;
+mod effects;
 pub mod html;
 mod identification;
 mod label;
@@ -27,6 +29,7 @@ mod svg;
 mod table;
 mod values;
 
+pub use effects::effects_page;
 pub use identification::{IdentificationPage, SimulationPart};
 pub use paragraph::paragraph;
 pub use picture::picture;

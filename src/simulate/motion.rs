@@ -454,7 +454,9 @@ impl Rates for Motion<'_> {
         }
         let [put_in, lost] = self.work.drive.power;
         dy[2 * positions] = put_in;
-        dy[2 * positions + 1] = lost + rubbed;
+        let parts = self.layout.parts(y);
+        let by_laws = self.plant.law_power(parts.q, parts.qd);
+        dy[2 * positions + 1] = lost + rubbed + by_laws;
         match dy.iter().all(|entry| entry.is_finite()) {
             true => Ok(()),
             false => Err(Breakdown::NotFinite),

@@ -3,6 +3,7 @@
 mod answers;
 mod base;
 mod decompose;
+mod effects;
 mod errors;
 mod excite;
 mod gears;

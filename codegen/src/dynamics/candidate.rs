@@ -8,10 +8,11 @@ use super::forward::Factors;
 use super::inverse::inverse_dynamics;
 use super::joint_torque::{JointTerms, slope};
 use super::motion::{Terms, motion, multiply};
-use crate::expr::{Dag, ExprId};
+use crate::expr::{Dag, ExprId, substitute};
 use crate::kinematics::{Frames, Mechanism, World, center_of_mass_column};
 use crate::model::{LinkId, Robot};
 use crate::spatial::add;
+use rustc_hash::FxHashMap;
 
 /// One formulation of a robot: everything that its functions are made of.
 pub(super) struct Candidate<'a> {
@@ -37,14 +38,34 @@ impl Candidate<'_> {
     }
 
     pub(super) fn inverse_dynamics(&self, dag: &mut Dag) -> Vec<ExprId> {
-        let mut torques = inverse_dynamics(dag, self.frames, self.terms());
+        let rigid = inverse_dynamics(dag, self.frames, self.terms());
+        let mut torques = rigid.clone();
         for (i, joint) in self.joints.iter().enumerate() {
             let qdd = self.frames.frames[i].variables.qdd;
             let rotor = dag.mul(joint.rotor, qdd);
             let own = dag.add(torques[i], rotor);
             torques[i] = dag.add(own, joint.torque);
         }
-        torques
+        let implicit: Vec<ExprId> = self.joints.iter().map(|joint| joint.implicit).collect();
+        let implicit = self.with_loads(dag, &implicit, &rigid);
+        torques.iter().zip(implicit).map(|(&torque, implicit)| dag.add(torque, implicit)).collect()
+    }
+
+    /// Rates of the states of added effects.
+    pub(super) fn state_rates(&self, dag: &mut Dag) -> Vec<ExprId> {
+        let rates: Vec<ExprId> = self.robot.law_states().map(|state| state.rate).collect();
+        let rigid = inverse_dynamics(dag, self.frames, self.terms());
+        self.with_loads(dag, &rates, &rigid)
+    }
+
+    /// Expressions of laws with the rigid-body torques in place of the symbols of loads.
+    fn with_loads(&self, dag: &mut Dag, exprs: &[ExprId], rigid: &[ExprId]) -> Vec<ExprId> {
+        let mut loads = FxHashMap::default();
+        for &(joint, symbol) in self.robot.laws.iter().flat_map(|law| &law.loads) {
+            let row = self.robot.joints().position(|(link, _)| link == joint);
+            loads.insert(symbol, rigid[row.expect("loads are those of moving joints")]);
+        }
+        if loads.is_empty() { exprs.to_vec() } else { substitute(dag, exprs, &loads) }
     }
 
     /// Everything but D qdd.
@@ -137,6 +158,17 @@ impl Candidate<'_> {
             by_position[i][i] = dag.add(by_position[i][i], stiffness);
             let damping = slope(dag, joint.torque, variables.qd);
             by_rate[i][i] = dag.add(by_rate[i][i], damping);
+            if self.robot.laws.is_empty() {
+                continue;
+            }
+            // a law of a pair of joints
+            for k in (0..self.frames.len()).filter(|&k| k != i) {
+                let variables = self.frames.frames[k].variables;
+                let stiffness = slope(dag, joint.torque, variables.q);
+                by_position[i][k] = dag.add(by_position[i][k], stiffness);
+                let damping = slope(dag, joint.torque, variables.qd);
+                by_rate[i][k] = dag.add(by_rate[i][k], damping);
+            }
         }
         [by_position, by_rate]
     }

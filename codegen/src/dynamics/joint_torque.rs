@@ -3,9 +3,10 @@
 //! All on the joint side. With a gear ratio N, rotor inertia and viscous friction of the motor
 //! shaft count N^2 fold and Coulomb friction |N| fold (thesis 3.14-3.17). A series-elastic joint
 //! feels its spring instead: rotor and motor friction are then the motor's own equation (3.22).
+//! Laws of added effects join them.
 
-use crate::expr::{Dag, ExprId, Relation, UnaryFunction};
-use crate::model::{LinkId, Robot, Side};
+use crate::expr::{Dag, ExprId, Relation, SymbolClass, UnaryFunction, substitute};
+use crate::model::{JointLaw, LinkId, Robot, Side};
 use rustc_hash::FxHashMap;
 
 /// The terms of one joint.
@@ -17,6 +18,9 @@ pub(super) struct JointTerms {
     pub(super) torque: ExprId,
     /// Elastic energy of the joint's springs \[J\].
     pub(super) energy: ExprId,
+    /// Laws of added effects that depend on the load or, in other ways than a rotor, on
+    /// accelerations: inverse dynamics alone can have them [N m, N].
+    pub(super) implicit: ExprId,
 }
 
 /// The terms of every joint, in joint order.
@@ -57,7 +61,51 @@ fn terms_of(dag: &mut Dag, robot: &Robot, id: LinkId) -> JointTerms {
     if let Some(offset) = drive.offset {
         torque = dag.add(torque, offset);
     }
-    JointTerms { rotor, torque, energy }
+    let implicit = dag.zero();
+    add_laws(dag, robot, id, JointTerms { rotor, torque, energy, implicit })
+}
+
+/// The terms with the laws of added effects, each where it belongs.
+fn add_laws(dag: &mut Dag, robot: &Robot, id: LinkId, mut terms: JointTerms) -> JointTerms {
+    for law in robot.laws.iter().filter(|law| law.joint == id) {
+        match explicit_parts(dag, robot, law) {
+            Some([inertia, rest]) => {
+                terms.rotor = dag.add(terms.rotor, inertia);
+                terms.torque = dag.add(terms.torque, rest);
+            }
+            None => terms.implicit = dag.add(terms.implicit, law.torque),
+        }
+    }
+    terms
+}
+
+/// Inertia and rest of a law that is inertia(q) qdd + rest(q, qd, t, states); none of one that is
+/// not, so that accelerations cannot be solved for.
+fn explicit_parts(dag: &mut Dag, robot: &Robot, law: &JointLaw) -> Option<[ExprId; 2]> {
+    use SymbolClass::{Acceleration, Effort, Rate, State, Time};
+    if !law.loads.is_empty() {
+        return None;
+    }
+    let has = |dag: &Dag, expr, class| dag.classes(expr).contains(class);
+    if !has(dag, law.torque, Acceleration) {
+        return Some([dag.zero(), law.torque]);
+    }
+    let qdd = robot.links[law.joint].joint.variables?.qdd;
+    let inertia = slope(dag, law.torque, qdd);
+    let rest: FxHashMap<ExprId, ExprId> = [(qdd, dag.zero())].into_iter().collect();
+    let rest = substitute(dag, &[law.torque], &rest)[0];
+    let of_position =
+        [Acceleration, Effort, Rate, State, Time].iter().all(|&class| !has(dag, inertia, class));
+    (of_position && !has(dag, rest, Acceleration)).then_some([inertia, rest])
+}
+
+/// The added effects whose laws only inverse dynamics can have: those that depend on loads, or on
+/// accelerations in other ways than a rotor. Bias, forward dynamics and derivatives are not derived
+/// for a robot with one of them.
+pub fn implicit_effects(robot: &Robot) -> Vec<String> {
+    let mut dag = robot.dag.clone();
+    let implicit = robot.laws.iter().filter(|law| explicit_parts(&mut dag, robot, law).is_none());
+    implicit.map(|law| law.effect.clone()).collect()
 }
 
 /// Torque and elastic energy of the springs across one moving joint [N m, N; J].

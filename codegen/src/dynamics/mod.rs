@@ -28,4 +28,5 @@ mod outputs;
 pub mod portfolio;
 
 pub(crate) use explicit::explicit;
+pub use joint_torque::implicit_effects;
 pub(crate) use joint_torque::spring_torque;

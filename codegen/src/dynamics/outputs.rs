@@ -60,8 +60,17 @@ pub(super) fn outputs(
         F::InverseDynamicsDerivatives | F::ForwardDynamicsDerivatives => {
             derivatives(dag, candidate, name, route)
         }
+        F::StateRates => vec![state_rates(dag, candidate)],
         _ => kinematics_and_energy(dag, candidate, name),
     }
+}
+
+fn state_rates(dag: &mut Dag, candidate: &Candidate<'_>) -> Output {
+    let rates = candidate.state_rates(dag);
+    let doc = "Rates of the states of added effects, each per second.";
+    let mut rates = output("state_rates", &[rates.len()], rates, doc);
+    rates.details = candidate.robot.law_states().map(|state| state.name.clone()).collect();
+    rates
 }
 
 fn dynamics_terms(

@@ -46,6 +46,15 @@ impl<'a> Portfolio<'a> {
             ContactPositions | ContactJacobian | ContactBias if robot.contacts.is_empty() => {
                 Vec::new()
             }
+            FunctionName::StateRates if robot.law_states().next().is_none() => Vec::new(),
+            FunctionName::Bias
+            | ForwardDynamics
+            | FunctionName::InverseDynamicsDerivatives
+            | ForwardDynamicsDerivatives
+                if self.is_implicit(dag) =>
+            {
+                Vec::new()
+            }
             ForwardDynamics | MassMatrixSolve | ForwardDynamicsDerivatives
                 if self.is_singular(dag) =>
             {
@@ -72,6 +81,12 @@ impl<'a> Portfolio<'a> {
                 vec![self.cheapest(dag, (name, None), &build)]
             }
         }
+    }
+
+    /// Whether a law of an added effect is no function of q, qd and states alone, so that
+    /// accelerations cannot be solved for.
+    fn is_implicit(&self, dag: &Dag) -> bool {
+        self.joints.iter().any(|joint| joint.implicit != dag.zero())
     }
 
     /// Whether D is singular at random points modulo p: at one where it is not, it has an inverse.
@@ -187,9 +202,11 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
     use FunctionName as F;
     let names: &[&'static str] = match name {
         F::BaseParameters => &[],
-        F::InverseDynamics | F::InverseDynamicsDerivatives | F::Regressor | F::BaseRegressor => {
-            &["q", "qd", "qdd"]
-        }
+        F::InverseDynamics
+        | F::InverseDynamicsDerivatives
+        | F::StateRates
+        | F::Regressor
+        | F::BaseRegressor => &["q", "qd", "qdd"],
         F::ForwardDynamics | F::ForwardDynamicsDerivatives => &["q", "qd", "tau"],
         F::CoriolisMatrix
         | F::Bias
@@ -208,7 +225,7 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         | F::CenterOfMassJacobian
         | F::PotentialEnergy => &["q"],
     };
-    names
+    let mut arguments: Vec<Argument> = names
         .iter()
         .map(|&argument| {
             let symbols = robot.joints().map(|(link, variables)| match argument {
@@ -220,5 +237,22 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
             });
             Argument { name: argument, symbols: symbols.collect() }
         })
-        .collect()
+        .collect();
+    let has_laws = matches!(
+        name,
+        F::InverseDynamics
+            | F::InverseDynamicsDerivatives
+            | F::ForwardDynamics
+            | F::ForwardDynamicsDerivatives
+            | F::Bias
+            | F::StateRates
+    );
+    if has_laws {
+        let states: Vec<ExprId> = robot.law_states().map(|state| state.symbol).collect();
+        let time: Vec<ExprId> = robot.time().into_iter().collect();
+        let more = [("t", time), ("states", states)].into_iter();
+        let more = more.filter(|(_, symbols)| !symbols.is_empty());
+        arguments.extend(more.map(|(name, symbols)| Argument { name, symbols }));
+    }
+    arguments
 }

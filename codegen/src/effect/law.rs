@@ -16,7 +16,7 @@ const CHANNELS: Word<Channel> = Word {
 
 const TERMS: Word<ModelTerm> = Word {
     what: "term",
-    known: &["coriolis", "gravity", "rotor", "friction", "spring", "coupling_inertia"],
+    known: &["coriolis", "gravity", "rotor", "friction", "spring", "inertia"],
     values: &ModelTerm::ALL,
 };
 
@@ -73,21 +73,13 @@ fn read_measured<'a>(json: &Json<'a>, report: &mut Report) -> Option<LawFile<'a>
 }
 
 fn read_moves<'a>(json: &Json<'a>, report: &mut Report) -> Option<Vec<(Property, Scalar<'a>)>> {
-    const KEYS: &[&str] = &[
-        "mass",
-        "first_moment",
-        "inertia",
-        "gravity",
-        "zero",
-        "rotor_inertia",
-        "series_stiffness",
-    ];
+    const KEYS: &[&str] =
+        &["mass", "first_moment", "inertia", "gravity", "zero", "series_stiffness"];
     let fields = Fields::of(json, KEYS, report)?;
     let mut moves = Vec::new();
     for (key, property) in [
         ("mass", Property::Mass),
         ("zero", Property::Zero),
-        ("rotor_inertia", Property::RotorInertia),
         ("series_stiffness", Property::SeriesStiffness),
     ] {
         moves.extend(fields.scalar(key, report).map(|by| (property, by)));
@@ -227,17 +219,12 @@ impl LawReader {
     }
 
     fn moved(&mut self, property: Property, by: &Scalar<'_>, report: &mut Report) -> ExprId {
-        let inertia = match self.joint {
-            JointKind::Prismatic => Dimension::MASS,
-            _ => Dimension::INERTIA,
-        };
         let (what, dimension) = match property {
             Property::Mass => ("a mass", Dimension::MASS),
             Property::FirstMoment(_) => ("a first moment", Dimension::FIRST_MOMENT),
             Property::Inertia(_) => ("a moment of inertia", Dimension::INERTIA),
             Property::Gravity(_) => ("gravity", Dimension::ACCELERATION),
             Property::Zero => ("a position", self.position),
-            Property::RotorInertia => ("the inertia of a rotor", inertia),
             Property::SeriesStiffness => {
                 let stiffness = Dimension::FORCE.per(Dimension::LENGTH);
                 ("a stiffness", stiffness.unwrap_or(Dimension::FORCE))

@@ -7,14 +7,17 @@
 //! 2. `spelling`: units that depend on the joint, as `torque/rate`
 //! 3. `linear`: which parameters a law is linear in, decided on expressions
 //! 4. [`catalogue`]: the shipped effects
+//! 5. [`read_model`], [`attach`]: a robot with the effects that its file names
 
+mod attach;
 mod catalogue;
 mod law;
 mod linear;
 mod read;
 mod spelling;
 
-pub use catalogue::{SHIPPED, catalogue, find};
+pub use attach::{attach, place_name, read_model, with_term};
+pub use catalogue::{SHIPPED, catalogue, files, find};
 pub use read::read;
 pub use spelling::JointUnit;
 
@@ -164,8 +167,6 @@ pub enum Property {
     Gravity(usize),
     /// The position that the model takes for the joint's: q becomes q + this.
     Zero,
-    /// Inertia of the rotor on the joint side.
-    RotorInertia,
     /// Stiffness of the joint's series spring \[N/m\].
     SeriesStiffness,
 }
@@ -183,20 +184,14 @@ pub enum ModelTerm {
     Friction,
     /// Springs across joints.
     Spring,
-    /// Entries of D beside its diagonal.
-    CouplingInertia,
+    /// `D qdd`.
+    Inertia,
 }
 
 impl ModelTerm {
     /// The terms, in the order of listings.
-    pub const ALL: [Self; 6] = [
-        Self::Coriolis,
-        Self::Gravity,
-        Self::Rotor,
-        Self::Friction,
-        Self::Spring,
-        Self::CouplingInertia,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Coriolis, Self::Gravity, Self::Rotor, Self::Friction, Self::Spring, Self::Inertia];
 
     /// The word in files.
     pub const fn as_str(self) -> &'static str {
@@ -206,7 +201,7 @@ impl ModelTerm {
             Self::Rotor => "rotor",
             Self::Friction => "friction",
             Self::Spring => "spring",
-            Self::CouplingInertia => "coupling_inertia",
+            Self::Inertia => "inertia",
         }
     }
 }

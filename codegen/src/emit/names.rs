@@ -12,8 +12,21 @@ const KEYWORDS: [&str; 54] = [
 ];
 
 /// Names that emitted functions give to arguments and to the parameters.
-const LOCALS: [&str; 11] =
-    ["q", "qd", "qdd", "tau", "b", "p", "live", "parameters", "model", "link", "contact"];
+const LOCALS: [&str; 13] = [
+    "q",
+    "qd",
+    "qdd",
+    "tau",
+    "b",
+    "t",
+    "states",
+    "p",
+    "live",
+    "parameters",
+    "model",
+    "link",
+    "contact",
+];
 
 /// A set of names of which each is given once.
 #[derive(Clone, Debug)]

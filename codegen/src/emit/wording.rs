@@ -43,6 +43,7 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         }
         FunctionName::KineticEnergy => "Kinetic energy.",
         FunctionName::PotentialEnergy => "Potential energy.",
+        FunctionName::StateRates => "Rates of the states of the added effects.",
         FunctionName::Regressor => "Regressor R0: torques per unit of each unknown parameter.",
         FunctionName::BaseRegressor => "Regressor R: torques per unit of each base parameter.",
         FunctionName::BaseParameters => {
@@ -58,6 +59,8 @@ pub(super) fn argument(argument: &ArgumentShape) -> &'static str {
         "qd" => "joint rates (rad/s, m/s)",
         "qdd" => "joint accelerations (rad/s^2, m/s^2)",
         "tau" => "joint torques (N m, N)",
+        "t" => "time (s)",
+        "states" => "states of the added effects",
         "b" => "a right-hand side, one entry for each joint",
         _ => "one entry for each joint",
     }
@@ -71,6 +74,9 @@ pub(super) fn parameter(robot: &Robot, parameter: &Parameter) -> String {
     match parameter.role {
         Role::Constant => format!("Constant `{}`", parameter.name),
         Role::Unknown => format!("Unknown `{}`", parameter.name),
+        Role::Effect(place) => {
+            format!("`{}` of the effect `{}`", parameter.name, robot.effects[place].effect)
+        }
         Role::Body(link, entry) => {
             let about = robot.links[link].body.map(|body| body.about);
             format!("{} of `{}`{}", body_entry(entry), robot.links[link].name, place(entry, about))
@@ -142,6 +148,7 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         FunctionName::Regressor | FunctionName::BaseRegressor => (true, false),
         FunctionName::BaseParameters
         | FunctionName::LinkTransforms
+        | FunctionName::StateRates
         | FunctionName::ContactPositions
         | FunctionName::ContactBias
         | FunctionName::CenterOfMass

@@ -39,5 +39,5 @@ pub use operations::Operations;
 pub use order::Order;
 pub use rings::{Floats, Rationals, Residues};
 pub(crate) use substitute::rebuild;
-pub use substitute::{free_symbols, substitute};
+pub use substitute::{free_symbols, import, substitute};
 pub use symbol::{ClassSet, Symbol, SymbolClass};

@@ -1,6 +1,7 @@
 //! Substitution and free symbols.
 
 use super::dag::{Dag, ExprId, Node, SymbolId};
+use super::symbol::Symbol;
 use crate::arena::Handle;
 use rustc_hash::FxHashMap;
 
@@ -26,6 +27,29 @@ pub fn substitute(
 pub(crate) fn rebuild(dag: &mut Dag, expr: ExprId, image: impl Fn(ExprId) -> ExprId) -> ExprId {
     let node = dag.node(expr).map_operands(image);
     dag.make(node)
+}
+
+/// The outputs of another graph, made again in `dag`; `symbol_of` gives what stands for each of its
+/// symbols.
+pub fn import(
+    dag: &mut Dag,
+    from: &Dag,
+    outputs: &[ExprId],
+    mut symbol_of: impl FnMut(&mut Dag, &Symbol) -> ExprId,
+) -> Vec<ExprId> {
+    let mut image: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+    for expr in from.topological(outputs) {
+        let new = match from.node(expr) {
+            Node::Constant(id) => dag.constant(from.constant_value(id).clone()),
+            Node::Symbol(id) => symbol_of(dag, &from.symbols()[id]),
+            node => {
+                let node = node.map_operands(|operand| image[&operand]);
+                dag.make(node)
+            }
+        };
+        image.insert(expr, new);
+    }
+    outputs.iter().map(|output| image[output]).collect()
 }
 
 /// The symbols that the outputs depend on, in the order of their making.

@@ -80,6 +80,10 @@ fn for_each_expression(robot: &mut Robot, visit: &mut dyn FnMut(&mut ExprId)) {
     for contact in robot.contacts.values_mut().chain(&mut robot.bodies_that_must_not_touch) {
         contact.position.iter_mut().for_each(&mut *visit);
     }
+    for law in &mut robot.laws {
+        visit(&mut law.torque);
+        law.states.iter_mut().flat_map(|s| [&mut s.rate, &mut s.initial]).for_each(&mut *visit);
+    }
     let ground = &mut robot.ground;
     ground.point.iter_mut().chain(&mut ground.normal).for_each(&mut *visit);
 }

@@ -241,6 +241,14 @@ pub enum Cause {
     WrongLaw(&'static str, &'static str),
     /// A law that is not nothing where its parameters have their nominal values.
     NeverVanishes,
+    /// An effect that cannot act there; holds its name and where it acts.
+    WrongPlace(String, &'static str),
+    /// An effect has no parameter of this name; holds both and the name that was meant, perhaps.
+    NotOfEffect(String, String, Option<String>),
+    /// An effect that is added twice in one place.
+    AddedTwice(String),
+    /// What an effect would change is not there; holds its name and what is missing.
+    NothingToChange(String, &'static str),
     /// No effect has this name; holds it and the name that was meant, perhaps.
     UnknownEffect(String, Option<String>),
 }

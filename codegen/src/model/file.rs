@@ -137,6 +137,7 @@ pub(super) struct GroundFile<'a> {
 #[derive(Clone, Debug)]
 pub(super) enum PlaceFile<'a> {
     Link(Name<'a>),
+    Pair(Name<'a>, Name<'a>),
     Contact(Name<'a>),
     Model,
 }
@@ -144,6 +145,7 @@ pub(super) enum PlaceFile<'a> {
 /// An added effect.
 #[derive(Clone, Debug)]
 pub(super) struct EffectFile<'a> {
+    pub(super) place: usize,
     pub(super) effect: String,
     pub(super) at: PlaceFile<'a>,
     pub(super) parameters: Vec<(String, Scalar<'a>)>,
@@ -449,22 +451,30 @@ fn read_ground<'a>(json: &Json<'a>, report: &mut Report) -> GroundFile<'a> {
 
 fn read_effect<'a>(json: &Json<'a>, report: &mut Report) -> Option<EffectFile<'a>> {
     let fields = Fields::of(json, &["effect", "at", "parameters"], report)?;
+    let place = json.start;
     let at = fields.require("at", report).map_or(PlaceFile::Model, |json| {
         if Fields::is_text(json) {
             let _ = MODEL.read(json, report);
             return PlaceFile::Model;
         }
-        let place = Fields::of(json, &["link", "contact"], report);
+        let place = Fields::of(json, &["link", "second", "contact"], report);
         let Some(place) = place else { return PlaceFile::Model };
         if place.get("link").is_some() && place.get("contact").is_some() {
             report.push(json.start, Cause::TwoPlaces);
         }
         match place.text("contact", report) {
             Some(contact) => PlaceFile::Contact(contact),
-            None => PlaceFile::Link(place.name("link", report)),
+            None => {
+                let link = place.name("link", report);
+                match place.text("second", report) {
+                    Some(second) => PlaceFile::Pair(link, second),
+                    None => PlaceFile::Link(link),
+                }
+            }
         }
     });
     Some(EffectFile {
+        place,
         effect: fields.name("effect", report).text.into_owned(),
         at,
         parameters: fields.members("parameters", report, |name, json, report| {

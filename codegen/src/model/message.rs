@@ -163,6 +163,14 @@ impl Cause {
             Self::NeverVanishes => {
                 write!(f, "with all `nominal` values the effect does not vanish")
             }
+            Self::WrongPlace(name, place) => write!(f, "`{name}` acts on {place}, not here"),
+            Self::NotOfEffect(effect, name, _) => {
+                write!(f, "`{effect}` has no parameter `{}`", clip(name))
+            }
+            Self::AddedTwice(name) => write!(f, "`{name}` is added twice in this place"),
+            Self::NothingToChange(name, what) => {
+                write!(f, "there is nothing that `{name}` could change: {what}")
+            }
             Self::UnknownEffect(name, _) => write!(f, "no effect is called `{}`", clip(name)),
             other => unreachable!("{other:?} has its sentence above"),
         }
@@ -189,6 +197,7 @@ impl Explained for Cause {
             Self::UnknownSymbol { nearest: Some(name), .. }
             | Self::UnknownLink(_, Some(name))
             | Self::UnknownContact(_, Some(name))
+            | Self::NotOfEffect(_, _, Some(name))
             | Self::UnknownEffect(_, Some(name)) => format!("did you mean `{name}`?"),
             Self::UnknownSymbol { nearest: None, name, section, .. } => {
                 format!(
@@ -292,6 +301,8 @@ impl Cause {
             Self::NeverVanishes => {
                 "give `nominal` to the parameters that switch it off, as 0 to a coefficient"
             }
+            Self::WrongPlace(..) => "docs/effects.md says where each effect acts",
+            Self::AddedTwice(_) => "add it once, with the sum of both",
             Self::UnknownEffect(..) => {
                 "effects are those of docs/effects.md, and the files of your own folder of effects"
             }

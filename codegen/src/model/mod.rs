@@ -33,8 +33,8 @@ pub use reader::find_duplicate_keys;
 pub use report::Report;
 pub use robot::{
     About, AddedEffect, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace, Ground,
-    Joint, JointKind, JointSpring, JointVariables, Limits, Link, LinkId, ReturnSpring, Robot,
-    SeriesElastic, Side, Terms, TorqueSide,
+    Joint, JointKind, JointLaw, JointSpring, JointVariables, LawState, Limits, Link, LinkId,
+    ReturnSpring, Robot, SeriesElastic, Side, Terms, TorqueSide,
 };
 pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};

@@ -123,6 +123,8 @@ pub enum Role {
     Body(LinkId, BodyEntry),
     /// An entry of a joint or its drive.
     Joint(LinkId, JointEntry),
+    /// Of an added effect, by its place in the file's list.
+    Effect(usize),
 }
 
 /// A symbol whose value a user may set.

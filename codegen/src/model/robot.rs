@@ -263,6 +263,8 @@ pub struct Ground {
 pub enum EffectPlace {
     /// On one joint or link.
     Link(LinkId),
+    /// On one joint, depending on a second one.
+    Pair(LinkId, LinkId),
     /// At one contact point.
     Contact(ContactId),
     /// On the whole model.
@@ -278,6 +280,41 @@ pub struct AddedEffect {
     pub at: EffectPlace,
     /// Its parameters, by name; symbol-free values.
     pub parameters: Vec<(String, ExprId)>,
+    /// Where the file says so: byte offset.
+    pub place: usize,
+}
+
+/// A state of a law.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LawState {
+    /// The symbol's name, `z_dahl_knee`.
+    pub name: String,
+    /// The symbol.
+    pub symbol: ExprId,
+    /// Its derivative with respect to time.
+    pub rate: ExprId,
+    /// Its value at the beginning, of the motion there.
+    pub initial: ExprId,
+}
+
+/// The law of an effect that adds to the torque of a joint, in the symbols of the robot. The stage
+/// `effect` makes it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct JointLaw {
+    /// The effect's name.
+    pub effect: String,
+    /// The effect in a few words.
+    pub title: String,
+    /// The joint.
+    pub joint: LinkId,
+    /// The torque that the joint needs besides [N m, N].
+    pub torque: ExprId,
+    /// Its states.
+    pub states: Vec<LawState>,
+    /// Joints whose rigid-body torque the law depends on, with the symbols of these torques.
+    pub loads: Vec<(LinkId, ExprId)>,
+    /// The time, if the law depends on it.
+    pub time: Option<ExprId>,
 }
 
 /// A checked robot.
@@ -316,8 +353,10 @@ pub struct Robot {
     pub ground: Ground,
     /// Points whose touching the ground is a fall (thesis 4.1).
     pub bodies_that_must_not_touch: Vec<Contact>,
-    /// What was added to the rigid-body model.
+    /// What was added to the rigid-body model, as the file says it.
     pub effects: Vec<AddedEffect>,
+    /// Laws of those effects that add to the torque of a joint.
+    pub laws: Vec<JointLaw>,
     /// A number that changes when the content of the file changes, and not when only its
     /// whitespace, the order of keys or the writing of a number does.
     pub hash: u64,
@@ -339,6 +378,16 @@ impl Robot {
     /// The link of that name.
     pub fn find_link(&self, name: &str) -> Option<LinkId> {
         self.links.iter().find(|(_, link)| link.name == name).map(|(id, _)| id)
+    }
+
+    /// Every symbol of the time that a law has: one, if there is any.
+    pub fn time(&self) -> Option<ExprId> {
+        self.laws.iter().find_map(|law| law.time)
+    }
+
+    /// The states of all laws, in their order.
+    pub fn law_states(&self) -> impl Iterator<Item = &LawState> {
+        self.laws.iter().flat_map(|law| &law.states)
     }
 
     /// The parameter of that name.

@@ -13,7 +13,7 @@ pub struct Tree {
 
 impl Tree {
     /// The tree in which link i is carried by `parents[i]`; none stands for the ground.
-    pub(super) fn new(parents: &[Option<LinkId>]) -> Self {
+    pub(crate) fn new(parents: &[Option<LinkId>]) -> Self {
         let mut graph = DiGraph::with_capacity(parents.len() + 1, parents.len());
         graph.add_node(None);
         (0..parents.len()).for_each(|index| {

@@ -2,7 +2,7 @@
 
 use super::turn::Turn;
 use super::vector::{Matrix, Vector, add, scale};
-use crate::expr::{Dag, ExprId};
+use crate::expr::{Dag, ExprId, Node};
 use crate::number::ratio;
 
 /// The 4x4 pseudo-inertia `[[K, s], [s^T, m]]` about the origin of a frame: m the mass \[kg\],
@@ -34,7 +34,11 @@ impl PseudoInertia {
         tensor: [ExprId; 6],
         central: bool,
     ) -> Self {
-        let first = scale(dag, mass, com);
+        // a centre of mass that is written as s/m says its first moment s: exact also where m = 0
+        let first = com.map(|coordinate| match dag.node(coordinate) {
+            Node::Div(moment, by) if by == mass => moment,
+            _ => dag.mul(mass, coordinate),
+        });
         let [xx, yy, zz, xy, xz, yz] = tensor;
         let half = dag.constant(ratio(1, 2));
         let mut diagonal = |a, b, c| {

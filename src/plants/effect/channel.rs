@@ -4,7 +4,7 @@
 //! quantity that is linear between samples; beyond the ends the quantity rests.
 
 use super::program::LawProgram;
-use super::{EffectError, EffectLaw, JointSamples, columns, gradient, inputs};
+use super::{EffectError, EffectLaw, JointSamples, columns, gradient, inputs, names};
 use denavit_codegen::effect::{Channel, Effect, Measured};
 use denavit_codegen::expr::{Dag, ExprId};
 
@@ -30,13 +30,13 @@ impl ChannelLaw {
         let timing = [measured.delay_s, measured.lag_s];
         let mut entries = timing.to_vec();
         entries.extend(gradient(dag, &timing, &parameters).concat());
-        let timing = LawProgram::new(dag, effect, Vec::new(), entries)?;
+        let timing = LawProgram::new(dag, &names(effect), Vec::new(), entries)?;
         let id = dag.find_symbol(measured.channel.as_str());
         let channel = dag.symbol_expr(id.expect("the channel is a symbol of its law"));
         let slope = gradient(dag, &[measured.value], &[channel]).concat();
         let columns = columns(dag, &slope);
         let inputs = inputs(dag, &columns, &[]);
-        let slope = LawProgram::new(dag, effect, inputs, slope)?;
+        let slope = LawProgram::new(dag, &names(effect), inputs, slope)?;
         Ok(Self { channel: measured.channel, timing, columns, slope })
     }
 }

@@ -2,13 +2,17 @@
 //! parameters, over many samples at once.
 //!
 //! - [`EffectLaw`]: laws of one joint, with their states integrated along the samples
+//! - [`RobotEffect`]: effects that change the model, and with it the torques of all joints
 //! - [`logged`](EffectLaw::logged), [`corrected`](EffectLaw::corrected): laws of a logged channel
 //!
 //! Samples are columns; columns that a law does not use may be empty.
 
 mod channel;
 mod program;
+mod robot;
 mod states;
+
+pub use robot::{RobotEffect, RobotEffectError};
 
 use denavit_codegen::effect::{Channel, Effect, EffectKind, EffectParameter, Law};
 use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};
@@ -179,7 +183,7 @@ impl EffectLaw {
         used.extend(effect.states.iter().flat_map(|state| [state.rate, state.initial]));
         let columns = columns(&dag, &used);
         let inputs = inputs(&mut dag, &columns, &states);
-        let program = LawProgram::new(&dag, effect, inputs.clone(), entries)?;
+        let program = LawProgram::new(&dag, &names(effect), inputs.clone(), entries)?;
         let state_law =
             if states.is_empty() { None } else { Some(StateLaw::new(&mut dag, effect, inputs)?) };
         let channel = match timing {
@@ -249,6 +253,11 @@ impl EffectLaw {
         }
         outputs
     }
+}
+
+/// The names of an effect's parameters.
+fn names(effect: &Effect) -> Vec<String> {
+    effect.parameters.iter().map(|parameter| parameter.name.clone()).collect()
 }
 
 /// The derivatives of expressions by symbols: for each expression, in the order of the symbols.

@@ -1,7 +1,6 @@
 //! Expressions of a law as a program whose parameters stand in the order of the effect's.
 
 use super::EffectError;
-use denavit_codegen::effect::Effect;
 use denavit_codegen::expr::{Dag, ExprId};
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::program::{BatchEvaluator, Evaluator, Program, lower, prelude_values};
@@ -15,10 +14,10 @@ pub(super) struct LawProgram {
 }
 
 impl LawProgram {
-    /// The program from `inputs` and the effect's parameters to `entries`.
+    /// The program from `inputs` and parameters of these names to `entries`.
     pub(super) fn new(
         dag: &Dag,
-        effect: &Effect,
+        parameters: &[String],
         inputs: Vec<ExprId>,
         entries: Vec<ExprId>,
     ) -> Result<Self, EffectError> {
@@ -38,7 +37,7 @@ impl LawProgram {
         };
         let program = lower(dag, &[function]).map_err(EffectError::Lower)?;
         let place = |name: &String| {
-            let place = effect.parameters.iter().position(|known| known.name == *name);
+            let place = parameters.iter().position(|known| known == name);
             place.expect("a law depends on its own parameters alone")
         };
         let order = program.parameters.iter().map(place).collect();

@@ -8,7 +8,7 @@
 //! of two integrations.
 
 use super::program::LawProgram;
-use super::{EffectError, gradient};
+use super::{EffectError, gradient, names};
 use denavit_codegen::effect::Effect;
 use denavit_codegen::expr::{Dag, ExprId};
 use nalgebra::DMatrix;
@@ -68,10 +68,10 @@ impl StateLaw {
         entries.extend(&slopes);
         entries.extend(gradient(dag, &rates, &parameters).concat());
         entries.extend(gradient(dag, &slopes, &by).concat());
-        let rates = LawProgram::new(dag, effect, inputs.clone(), entries)?;
+        let rates = LawProgram::new(dag, &names(effect), inputs.clone(), entries)?;
         let mut initial: Vec<ExprId> = effect.states.iter().map(|state| state.initial).collect();
         initial.extend(gradient(dag, &initial.clone(), &parameters).concat());
-        let initial = LawProgram::new(dag, effect, inputs, initial)?;
+        let initial = LawProgram::new(dag, &names(effect), inputs, initial)?;
         Ok(Self { states: states.len(), parameters: parameters.len(), rates, initial })
     }
 

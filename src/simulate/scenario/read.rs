@@ -17,6 +17,7 @@ use crate::simulate::drive::DriveModelling;
 use crate::simulate::ground::Ground;
 use crate::simulate::run::Simulation;
 use crate::simulate::state::State;
+use denavit_codegen::effect;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::json::{self, Json, Value};
 use denavit_codegen::model::{self, Robot, find_duplicate_keys};
@@ -204,7 +205,7 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
     let node = fields.require("model", report)?;
     let name = node.text(report)?;
     let robot: Robot = match load(name) {
-        Ok(bytes) => match model::read(name, &bytes) {
+        Ok(bytes) => match effect::read_model(name, &bytes, &[]) {
             Ok(robot) => robot,
             Err(error) => {
                 report.push(node.at(), Cause::Model(error.to_string()));

@@ -46,6 +46,8 @@ pub(super) struct DriveTerms {
     output: DriveOutput,
     /// Torque on each joint from its drive, Coulomb friction taken off [N m, N].
     pub(super) torque: Vec<f64>,
+    /// Power that laws of added effects take \[W\].
+    law_power: f64,
 }
 
 impl<'a> ControlledPlant<'a> {
@@ -125,7 +127,8 @@ impl<'a> ControlledPlant<'a> {
     /// Commands, friction and forces of the drives; torques and accelerations of motors.
     pub(super) fn drive(&mut self, t_s: f64, q: &[f64], qd: &[f64]) {
         let parts = split(self.joints(), q, qd);
-        let DriveTerms { command, gain, friction, output, torque } = &mut self.step;
+        let DriveTerms { command, gain, friction, output, torque, law_power } = &mut self.step;
+        *law_power = self.plant.law_power(parts.q, parts.qd);
         gain.clear();
         if let Some(held) = &self.held {
             command.copy_from_slice(held);
@@ -166,10 +169,10 @@ impl<'a> ControlledPlant<'a> {
         implicitness: f64,
     ) -> [f64; 2] {
         let (n, model) = (self.joints(), self.plant.model());
-        let DriveTerms { command, gain, friction, torque, .. } = &mut self.step;
+        let DriveTerms { command, gain, friction, torque, law_power, .. } = &mut self.step;
         let change = |coordinate: usize| implicitness * (after[coordinate] - before[coordinate]);
         let middle = |coordinate: usize| 0.5 * (after[coordinate] + before[coordinate]);
-        let [mut put_in, mut lost] = [0.0; 2];
+        let [mut put_in, mut lost] = [0.0, *law_power];
         for joint in 0..n {
             let (own, ratio) = match self.motors[joint] {
                 Some((motor, ratio)) => (n + motor, ratio),

@@ -17,7 +17,7 @@ fn refused(directory: &Directory, arguments: &[&str]) -> String {
     stderr
 }
 
-fn assert_says(message: &str, parts: &[&str]) {
+pub(super) fn assert_says(message: &str, parts: &[&str]) {
     for part in parts {
         assert!(message.contains(part), "no `{part}` in:\n{message}");
     }

@@ -2,4 +2,6 @@
 
 mod catalogue;
 mod laws;
+mod page;
+mod robot;
 mod states;

@@ -53,7 +53,7 @@ macro_rules! call {
                 F::ContactPositions | F::ContactJacobian | F::ContactBias => {
                     contacts(p, function, [&q, &qd])
                 }
-                F::Regressor | F::BaseRegressor | F::BaseParameters => {
+                F::StateRates | F::Regressor | F::BaseRegressor | F::BaseParameters => {
                     unreachable!("{function} is emitted on request, not in these modules")
                 }
             }

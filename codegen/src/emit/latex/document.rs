@@ -1,6 +1,6 @@
 //! The equations of motion of a robot as a complete LaTeX document.
 
-use super::expression::{Extent, Written, width, write_expressions};
+use super::expression::{Extent, Written, width, write_expression, write_expressions};
 use super::nomenclature;
 use super::notation::{Notation, escape, with_subscript};
 use crate::emit::layout::{TemplateError, fill};
@@ -45,6 +45,7 @@ pub fn document(robot: &Robot, dag: &Dag, functions: &[Function]) -> Result<Stri
             sections.push_str(&section(function, output, own));
         }
     }
+    sections.push_str(&effects(robot, &dag, &notation));
     let description =
         nomenclature::description(&robot.description, &robot.source, &robot.assumptions);
     let table = nomenclature::nomenclature(robot, &dag, &notation);
@@ -62,6 +63,38 @@ pub fn document(robot: &Robot, dag: &Dag, functions: &[Function]) -> Result<Stri
             ("sections", &sections),
         ],
     )
+}
+
+/// The laws of added effects, each with its title: what they add to the torque of their joints.
+fn effects(robot: &Robot, dag: &Dag, notation: &Notation) -> String {
+    if robot.laws.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n\\subsection{Added effects}\nEach adds to the torque that its joint needs; \
+                    $\\tau_{\\mathrm{load}}$ is the torque of the rigid bodies alone.\\par\n\
+                    {\\small\\raggedright\n"
+        .to_owned();
+    for law in &robot.laws {
+        let left = format!(r"\tau_{{\mathrm{{{}}}}}", escape(&law.effect));
+        let mut rows = vec![(left, law.torque)];
+        rows.extend(law.states.iter().map(|state| {
+            (format!(r"\dot{{{}}}", write_expression(dag, state.symbol, notation)), state.rate)
+        }));
+        let joint = escape(&robot.links[law.joint].name);
+        text.push_str(&format!("{} at {joint}:\\par\n", escape(&capitalised(&law.title))));
+        for (left, right) in &rows {
+            let written = write_expressions(dag, &[*right], notation, Extent::FULL);
+            let terms = &written.outputs[0];
+            let formula = terms.join(" ");
+            if width(&formula) + 80 <= LINE {
+                text.push_str(&format!("\\formula{{{left} = {formula}}}\n"));
+            } else {
+                text.push_str(&broken(left, terms));
+            }
+        }
+    }
+    text.push_str("\\par}\n");
+    text
 }
 
 /// The table of intermediates.

@@ -109,7 +109,9 @@ fn parameters(robot: &Robot, dag: &Dag, notation: &Notation) -> String {
     let declared: Vec<_> = robot
         .parameters
         .values()
-        .filter(|parameter| matches!(parameter.role, Role::Constant | Role::Unknown))
+        .filter(|parameter| {
+            matches!(parameter.role, Role::Constant | Role::Unknown | Role::Effect(_))
+        })
         .collect();
     table(&declared, dag, notation)
 }

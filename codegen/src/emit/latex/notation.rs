@@ -86,7 +86,7 @@ impl Notation {
         }
         for parameter in robot.parameters.values() {
             let (prefix, link) = match parameter.role {
-                Role::Constant | Role::Unknown => continue,
+                Role::Constant | Role::Unknown | Role::Effect(_) => continue,
                 Role::Body(link, entry) => (entry.prefix(), link),
                 Role::Joint(link, entry) => (entry.prefix(), link),
             };

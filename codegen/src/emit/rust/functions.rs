@@ -93,9 +93,10 @@ fn frame(doc: &str, is_public: bool, signature: &str, lines: &[String]) -> Strin
 fn vocabulary(context: &Context<'_>, routine: &Routine) -> Vocabulary {
     let text = |leaf: &Leaf| match *leaf {
         Leaf::Prelude(row) => Some(format!("p.{}", context.prelude_fields[row])),
-        Leaf::Argument { argument, entry } => {
-            Some(format!("{}[{entry}]", routine.arguments[argument].name))
-        }
+        Leaf::Argument { argument, entry } => Some(match routine.arguments[argument].name {
+            "t" => "t".to_owned(),
+            name => format!("{name}[{entry}]"),
+        }),
         Leaf::Constant(_) | Leaf::Parameter(_) => None,
     };
     Vocabulary {
@@ -124,7 +125,11 @@ fn prologue(routine: &Routine) -> Vec<String> {
 
 /// The arguments with their types.
 fn arguments(routine: &Routine) -> Vec<String> {
-    let vectors = routine.arguments.iter().map(|shape| format!("{}: &[S; DOF]", shape.name));
+    let vectors = routine.arguments.iter().map(|shape| match shape.name {
+        "t" => "t: S".to_owned(),
+        "states" => format!("states: &[S; {}]", shape.len),
+        name => format!("{name}: &[S; DOF]"),
+    });
     std::iter::once("parameters: &Parameters<S>".to_owned()).chain(vectors).collect()
 }
 

@@ -77,6 +77,7 @@ pub(super) fn check(file: &ModelFile, hash: u64, report: &mut Report) -> Robot {
         ground,
         bodies_that_must_not_touch,
         effects,
+        laws: Vec::new(),
         hash,
     }
 }

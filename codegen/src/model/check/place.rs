@@ -73,7 +73,8 @@ impl Check<'_> {
                 parameters.extend(value.map(|value| (name.clone(), value)));
             }
             if let Some(at) = self.effect_place(&effect.at, &contacts) {
-                effects.push(AddedEffect { effect: effect.effect.clone(), at, parameters });
+                let place = effect.place;
+                effects.push(AddedEffect { effect: effect.effect.clone(), at, parameters, place });
             }
         }
         effects
@@ -87,6 +88,10 @@ impl Check<'_> {
         match at {
             PlaceFile::Model => Some(EffectPlace::Model),
             PlaceFile::Link(name) => Some(EffectPlace::Link(self.find_link(name)?)),
+            PlaceFile::Pair(name, second) => {
+                let (first, second) = (self.find_link(name), self.find_link(second));
+                Some(EffectPlace::Pair(first?, second?))
+            }
             PlaceFile::Contact(name) => {
                 if let Some(&index) = contacts.get(name.text.as_ref()) {
                     return Some(EffectPlace::Contact(ContactId::from_index(index)));

@@ -1,0 +1,181 @@
+//! Effects that change the model of a robot: the difference of inverse dynamics with and without.
+
+use super::program::LawProgram;
+use super::{EffectError, LawParameter, gradient};
+use denavit_codegen::derive::{Flavour, derive};
+use denavit_codegen::effect::{Effect, Law, attach, with_term};
+use denavit_codegen::expr::{ExprId, substitute};
+use denavit_codegen::function::FunctionName;
+use denavit_codegen::model::{
+    AddedEffect, BakeError, Cause, EffectPlace, JointKind, Robot, Terms, bake,
+};
+use rustc_hash::FxHashMap;
+use std::fmt;
+
+/// Why a robot cannot have an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RobotEffectError {
+    /// It adds a law to one joint; holds its name.
+    OneJoint(String),
+    /// The place or the robot lacks what it would change.
+    Place(Vec<Cause>),
+    /// The model lacks a value.
+    Bake(BakeError),
+    /// A constant is no finite number.
+    Lower(EffectError),
+}
+
+impl fmt::Display for RobotEffectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OneJoint(name) => write!(f, "`{name}` adds a law to one joint"),
+            Self::Place(causes) => {
+                let said: Vec<String> = causes.iter().map(ToString::to_string).collect();
+                write!(f, "{}", said.join("; "))
+            }
+            Self::Bake(error) => write!(f, "{error}"),
+            Self::Lower(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for RobotEffectError {}
+
+/// What an effect at one place adds to the torques of all joints of a robot.
+#[derive(Clone, Debug)]
+pub struct RobotEffect {
+    /// The effect's name.
+    pub name: String,
+    /// Its parameters, in the order of the values that the functions take; none for a term, whose
+    /// coefficient is 1.
+    pub parameters: Vec<LawParameter>,
+    joints: usize,
+    /// Torques, then their derivatives: for each parameter one row for each joint.
+    program: LawProgram,
+}
+
+impl RobotEffect {
+    /// The effect on a robot with the values of its model. A term is taken as left out of the
+    /// model, whether the model has it or not. Friction, rotors and effects that the robot has
+    /// already are no part of the difference.
+    pub fn new(robot: &Robot, effect: &Effect, at: EffectPlace) -> Result<Self, RobotEffectError> {
+        let mut rigid = bake(robot).map_err(RobotEffectError::Bake)?;
+        rigid.laws.clear();
+        rigid.terms = Terms { friction: false, rotor: false, ..rigid.terms };
+        match effect.law {
+            Law::Term(term) => {
+                let with = Robot { terms: with_term(rigid.terms, term, true), ..rigid.clone() };
+                rigid.terms = with_term(rigid.terms, term, false);
+                Self::of_term(effect, &with, &rigid)
+            }
+            Law::Moves(_) => {
+                let added = AddedEffect {
+                    effect: effect.name.clone(),
+                    at,
+                    parameters: Vec::new(),
+                    place: 0,
+                };
+                rigid.effects = vec![added];
+                attach(&mut rigid, effect, 0).map_err(RobotEffectError::Place)?;
+                Self::of_moved(effect, &rigid, at)
+            }
+            Law::Torque(_) | Law::Measured(_) => {
+                Err(RobotEffectError::OneJoint(effect.name.clone()))
+            }
+        }
+    }
+
+    fn of_term(effect: &Effect, with: &Robot, without: &Robot) -> Result<Self, RobotEffectError> {
+        // both from one graph: what they share is computed once
+        let first = derived(with)?;
+        let second = derived(&Robot { dag: first.dag.clone(), ..without.clone() })?;
+        let mut dag = second.dag;
+        let entries: Vec<ExprId> =
+            first.entries.iter().zip(&second.entries).map(|(&a, &b)| dag.sub(a, b)).collect();
+        let joints = entries.len();
+        let program =
+            LawProgram::new(&dag, &[], first.inputs, entries).map_err(RobotEffectError::Lower)?;
+        Ok(Self { name: effect.name.clone(), parameters: Vec::new(), joints, program })
+    }
+
+    fn of_moved(effect: &Effect, moved: &Robot, at: EffectPlace) -> Result<Self, RobotEffectError> {
+        let Derived { mut dag, entries, inputs } = derived(moved)?;
+        // the effect's own parameters were added last
+        let count = effect.parameters.len();
+        let own = moved.parameters.values().skip(moved.parameters.len() - count);
+        let (symbols, names): (Vec<ExprId>, Vec<String>) =
+            own.map(|parameter| (parameter.symbol, parameter.name.clone())).unzip();
+        let mut nominal: FxHashMap<ExprId, ExprId> = FxHashMap::default();
+        for (parameter, &symbol) in effect.parameters.iter().zip(&symbols) {
+            if let Some(value) = &parameter.nominal {
+                nominal.insert(symbol, dag.constant(value.clone()));
+            }
+        }
+        let without = substitute(&mut dag, &entries, &nominal);
+        let added: Vec<ExprId> =
+            entries.iter().zip(&without).map(|(&a, &b)| dag.sub(a, b)).collect();
+        let joints = added.len();
+        let slopes = gradient(&mut dag, &added, &symbols);
+        let mut all = added;
+        for parameter in 0..count {
+            all.extend(slopes.iter().map(|row| row[parameter]));
+        }
+        let program =
+            LawProgram::new(&dag, &names, inputs, all).map_err(RobotEffectError::Lower)?;
+        let joint = match at {
+            EffectPlace::Link(link) => moved.links[link].joint.kind,
+            _ => JointKind::Revolute,
+        };
+        let parameters = effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect();
+        Ok(Self { name: effect.name.clone(), parameters, joints, program })
+    }
+
+    /// What the effect adds to the torque of each joint [N m, N]: one column for each. `q`, `qd`
+    /// and `qdd` have one column of samples for each joint.
+    pub fn torque(
+        &self,
+        q: &[&[f64]],
+        qd: &[&[f64]],
+        qdd: &[&[f64]],
+        values: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut outputs = self.run(q, qd, qdd, values);
+        outputs.truncate(self.joints);
+        outputs
+    }
+
+    /// The derivative of [`torque`](Self::torque) by each parameter: for each parameter one column
+    /// for each joint.
+    pub fn gradient(
+        &self,
+        q: &[&[f64]],
+        qd: &[&[f64]],
+        qdd: &[&[f64]],
+        values: &[f64],
+    ) -> Vec<Vec<Vec<f64>>> {
+        let outputs = self.run(q, qd, qdd, values).split_off(self.joints);
+        outputs.chunks_exact(self.joints).map(<[Vec<f64>]>::to_vec).collect()
+    }
+
+    fn run(&self, q: &[&[f64]], qd: &[&[f64]], qdd: &[&[f64]], values: &[f64]) -> Vec<Vec<f64>> {
+        let inputs: Vec<&[f64]> = [q, qd, qdd].concat();
+        let samples = q.first().map_or(0, |column| column.len());
+        self.program.run(&inputs, values, samples)
+    }
+}
+
+/// Inverse dynamics of a robot.
+struct Derived {
+    dag: denavit_codegen::expr::Dag,
+    entries: Vec<ExprId>,
+    inputs: Vec<ExprId>,
+}
+
+fn derived(robot: &Robot) -> Result<Derived, RobotEffectError> {
+    let derivation = derive(robot, Flavour::Tunable, &[FunctionName::InverseDynamics])
+        .map_err(RobotEffectError::Bake)?;
+    let function = &derivation.functions[0];
+    let arguments = function.arguments.iter();
+    let inputs = arguments.flat_map(|argument| argument.symbols.clone()).collect();
+    Ok(Derived { entries: function.entries(), inputs, dag: derivation.dag })
+}

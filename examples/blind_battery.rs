@@ -1,34 +1,88 @@
-//! The blind battery: writes the files of a case, in which an effect is hidden.
-//! `cargo run --release --example blind_battery -- --case N --out DIR [--count K]` writes `DIR/N/model.json`,
-//! `train.csv`, `validate.csv` and, not to be looked at before the diagnosis has answered, `answer.json`.
-//! Numbers below 1000 are for tuning. See docs/blind-battery.md.
+//! The blind battery: cases in which an effect is hidden, and how a diagnosis does on them.
+//!
+//! `blind_battery --case N --out DIR [--count K]` writes `DIR/N/model.json`, `train.csv`,
+//! `validate.csv` and, not to be looked at before the diagnosis has answered, `answer.json`.
+//! With `--diagnose DENAVIT`, the path of the command, each case is diagnosed as soon as it is
+//! written, and `DIR/report.md` has the figures. `--case suite` takes the cases of the tests, `--case
+//! reported` those of the reported run. docs/blind-battery.md describes it.
 
 #[path = "../tests/blind/mod.rs"]
 mod blind;
 
+use blind::battery::{Files, answer, examine, report, reported, suite};
 use blind::case::Case;
+use blind::score::Answer;
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const USAGE: &str = "--case N|suite|reported --out DIR [--count K] [--diagnose DENAVIT]";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (mut case, mut count, mut out) = (None, 1, None);
+    let (mut case, mut count, mut out, mut command) = (None, 1, None, None);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let value = arguments.next().ok_or(format!("{argument}: a value is missing"))?;
         match argument.as_str() {
-            "--case" => case = Some(value.parse::<u64>()?),
+            "--case" => case = Some(value),
             "--count" => count = value.parse::<u64>()?,
             "--out" => out = Some(PathBuf::from(value)),
-            _ => return Err(format!("{argument}: --case N --out DIR [--count K]").into()),
+            "--diagnose" => command = Some(PathBuf::from(value)),
+            _ => return Err(format!("{argument}: {USAGE}").into()),
         }
     }
-    let (Some(first), Some(out)) = (case, out) else {
-        return Err("--case N --out DIR [--count K]".into());
+    let (Some(case), Some(out)) = (case, out) else { return Err(USAGE.into()) };
+    let numbers: Vec<u64> = match case.as_str() {
+        "suite" => suite(),
+        "reported" => reported().collect(),
+        number => {
+            let first = number.parse()?;
+            (first..first + count).collect()
+        }
     };
-    for number in first..first + count {
-        let folder = out.join(number.to_string());
-        Case::new(number).generate().write(&folder)?;
-        println!("{}", folder.display());
+    let mut scores = Vec::new();
+    for number in numbers {
+        if let Some(command) = &command {
+            let folder = out.join(number.to_string()).join("diagnosis");
+            let score = examine(number, &out, |files| run(command, files, &folder))?;
+            let verdict = if score.right { "right" } else { "wrong" };
+            let (truth, said) = (score.truth.join(" + "), score.said.join(" + "));
+            println!("{number} {}: {truth} -> {said}: {verdict}", score.level);
+            scores.push(score);
+            std::fs::write(out.join("report.md"), report(&scores))?;
+        } else {
+            let folder = out.join(number.to_string());
+            let generated = Case::new(number).generate();
+            generated.write_files(&folder)?;
+            generated.write_answer(&folder)?;
+            println!("{}", folder.display());
+        }
     }
     Ok(())
+}
+
+/// The command's answer; one that failed has none, which is wrong in every case.
+fn run(command: &Path, files: Files<'_>, folder: &Path) -> Answer {
+    let output = Command::new(command)
+        .arg("diagnose")
+        .arg(files.model)
+        .arg("--train")
+        .arg(files.train)
+        .arg("--validate")
+        .arg(files.validate)
+        .arg("--out")
+        .arg(folder)
+        .arg("--json")
+        .output();
+    let failed = |why: String| {
+        eprintln!("{}: {why}", files.model.display());
+        Answer { verdict: "failed".into(), ..Answer::default() }
+    };
+    match output {
+        Err(error) => failed(error.to_string()),
+        Ok(output) => serde_json::from_slice(&output.stdout).map_or_else(
+            |_| failed(String::from_utf8_lossy(&output.stderr).into_owned()),
+            |value| answer(&value),
+        ),
+    }
 }

@@ -185,13 +185,13 @@ fn joints_for(law: Law, robot: &Robot) -> Vec<usize> {
         | Law::LoadFriction
         | Law::Capstan
         | Law::GearEfficiency
-        | Law::TorqueGain
-        | Law::LinkInertia => bears_load,
+        | Law::TorqueGain => bears_load,
+        Law::LinkInertia if robot.name.starts_with("tulip") => vec![2],
+        Law::LinkInertia => bears_load,
         Law::Damper => all[robot.elastic().unwrap_or(0)..].to_vec(),
         Law::RotorInertia | Law::JointElasticity | Law::Backlash => {
             all[..robot.elastic().unwrap_or(count)].to_vec()
         }
-        Law::ThermalFriction => all,
         _ => all,
     }
 }

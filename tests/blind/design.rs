@@ -163,7 +163,7 @@ fn row_plan(row: usize) -> Plan {
             Plan { variants, ..plan(Kind::CannotTell, &law, index, index / 2 % 2, index) }
         }
         4 => {
-            let law = [Law::QuadraticDrag, Law::Cogging, Law::LinkInertia][index % 3];
+            let law = [Law::QuadraticDrag, Law::Cogging, Law::AsymmetricViscous][index % 3];
             Plan { still: true, ..plan(Kind::CannotTell, &[law], index - 5, 1, 0) }
         }
         _ if index < 2 => {
@@ -174,9 +174,4 @@ fn row_plan(row: usize) -> Plan {
             Plan { exact: index == 2, ..plan(Kind::Thesis, &[Law::Coriolis], 4 + index % 2, 0, 0) }
         }
     }
-}
-
-/// Numbers of the thesis's own cases below [`ROWS`].
-pub(crate) fn thesis_numbers() -> Vec<u64> {
-    (0..ROWS as u64).filter(|number| plan(*number).kind == Kind::Thesis).collect()
 }

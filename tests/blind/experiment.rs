@@ -32,8 +32,8 @@ impl Control {
     /// Draws a controller.
     pub(crate) fn draw(random: &mut Random) -> Self {
         Self {
-            steps: [4, 4, 8][random.below(3)],
-            loop_rate: random.between(28.0, 45.0),
+            steps: [2, 4, 4][random.below(3)],
+            loop_rate: random.between(32.0, 50.0),
             damping: random.between(0.7, 1.1),
             gravity: random.chance(0.6),
             friction: random.chance(0.85),
@@ -122,7 +122,7 @@ pub(crate) fn run(
 }
 
 /// Inertias that gains are laid out for [kg m^2]: of each drive while the others are free, in the
-/// middle of the motion; more where friction would hold a drive more than 8 mrad off.
+/// middle of the motion; more where friction would hold a drive more than 5 mrad off.
 fn inertias(nominal: &Nominal, control: &Control) -> Vec<f64> {
     let middle: Vec<f64> = nominal.robot.joints.iter().map(|joint| joint.range.middle).collect();
     let mut matrix = [[0.0; MOST]; MOST];
@@ -136,7 +136,7 @@ fn inertias(nominal: &Nominal, control: &Control) -> Vec<f64> {
     let inverse = inverse.expect("a mass matrix is definite");
     let held = |joint: usize| {
         let friction = nominal.robot.joint_side(joint)[2];
-        friction / (0.008 * control.loop_rate * control.loop_rate)
+        friction / (0.005 * control.loop_rate * control.loop_rate)
     };
     (0..count).map(|joint| (1.0 / inverse[(joint, joint)]).max(held(joint))).collect()
 }
@@ -244,7 +244,8 @@ impl Hidden {
     }
 
     fn ripple(&self, q: f64) -> f64 {
-        let waves = 1.0 + (3.0 * self.shape.first).floor();
+        let lowest = if self.variant == 0 { 1.0 } else { 5.0 };
+        let waves = lowest + (3.0 * self.shape.first).floor();
         (waves * q + self.shape.phase).sin()
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct Generated {
     /// What each effect alone leaves, against what noise leaves; largest over joints for effects
     /// that are not of one joint.
     pub(crate) strengths: Vec<f64>,
-    /// What noise leaves at each joint [N m].
+    /// What noise leaves at each joint, then at each spring [N m].
     pub(crate) floor: Vec<f64>,
 }
 
@@ -70,9 +70,14 @@ impl Case {
         let log = self.measured(&self.run(&alone, 0)?, &alone, 0);
         let left = self.left(&log, hidden.law.is_lacking());
         let ratio = |joint: usize| ((left[joint] / floor[joint]).powi(2) - 1.0).max(0.0).sqrt();
+        let joints = self.truth.joints.len();
         let largest = || (0..floor.len()).map(ratio).fold(0.0, f64::max);
         let strength = match hidden.law.entry().site {
-            Site::Joint => ratio(hidden.joint),
+            Site::Joint => {
+                let springs = self.nominal.elastic_joints();
+                let spring = springs.zip(joints..).find(|(joint, _)| *joint == hidden.joint);
+                ratio(hidden.joint).max(spring.map_or(0.0, |(_, equation)| ratio(equation)))
+            }
             _ => largest(),
         };
         strength.is_finite().then_some(strength)
@@ -140,7 +145,8 @@ impl Case {
         for index in 0..self.hidden.len() {
             let mut hidden = self.hidden[index].clone();
             if self.plan.still {
-                hidden.size = hidden.bounds(self.target * floor[hidden.joint], &[])[0];
+                // what would be seen if the robot moved as far as it can
+                hidden.size = 0.02 * hidden.bounds(self.target * floor[hidden.joint], &[])[0];
             }
             strengths.push(if self.plan.still || hidden.law.is_lacking() {
                 self.strength(&hidden, &floor).unwrap_or(0.0)
@@ -204,7 +210,7 @@ impl Hidden {
             Law::LoadFriction | Law::GearEfficiency => [1.5 * relative, 0.5],
             Law::Capstan => [0.5 * relative, 0.15],
             Law::CouplingInertia => [torque / acceleration, 0.5 * (own * other).sqrt()],
-            Law::JointElasticity => [torque / (own * usual * 60.0), 1.0 / (own * 38.0_f64.powi(2))],
+            Law::JointElasticity => [torque / (own * usual * 60.0), 1.0 / (own * 25.0_f64.powi(2))],
             Law::Backlash => [torque / (own * 100.0), 0.06],
             Law::ReturnSpring | Law::HardStop => {
                 [torque / (0.2 * shape.reach), 50.0 * usual / shape.reach]
@@ -212,11 +218,11 @@ impl Hidden {
             Law::TorqueGain => [2.0 * relative, 0.5],
             Law::JointZero | Law::BaseTilt => [2.0 * relative, 0.3],
             Law::TransmissionError if self.variant == 0 => [2.0 * relative, 0.5],
-            Law::TransmissionError => [relative, 0.2],
+            Law::TransmissionError => [relative, 0.05],
             Law::Payload => [torque / 4.0, 4.0],
             Law::LinkInertia => [4.0 * relative, 1.5],
             Law::TorqueDelay => [relative / 4.0, 0.03],
-            Law::ActuatorLag => [relative / 4.0, 0.012],
+            Law::ActuatorLag => [relative / 4.0, 0.02],
             Law::Saturation => [0.15, 0.5],
             Law::ThermalFriction => [0.3, 0.8],
             Law::ExternalForce => [2.0 * torque, 4.0 * usual],
@@ -226,15 +232,17 @@ impl Hidden {
 }
 
 impl Generated {
-    /// Writes `model.json`, `train.csv`, `validate.csv` and, for nobody to look at before the
-    /// diagnosis has answered, `answer.json`.
-    pub(crate) fn write(&self, folder: &Path) -> io::Result<()> {
+    /// Writes what a diagnosis sees: `model.json`, `train.csv`, `validate.csv`.
+    pub(crate) fn write_files(&self, folder: &Path) -> io::Result<()> {
         fs::create_dir_all(folder)?;
-        let pretty = |value: &Value| format!("{value:#}\n");
-        fs::write(folder.join("model.json"), pretty(&self.case.nominal.file()))?;
+        fs::write(folder.join("model.json"), format!("{:#}\n", self.case.nominal.file()))?;
         fs::write(folder.join("train.csv"), self.table(&self.train))?;
-        fs::write(folder.join("validate.csv"), self.table(&self.validate))?;
-        fs::write(folder.join("answer.json"), pretty(&self.answer()))
+        fs::write(folder.join("validate.csv"), self.table(&self.validate))
+    }
+
+    /// Writes `answer.json`, for nobody to look at before the diagnosis has answered.
+    pub(crate) fn write_answer(&self, folder: &Path) -> io::Result<()> {
+        fs::write(folder.join("answer.json"), format!("{:#}\n", self.answer()))
     }
 
     fn table(&self, log: &Log) -> String {
@@ -291,7 +299,7 @@ impl Generated {
             "expected": expected,
             "strength": STRENGTHS[case.plan.strength].0,
             "filter_hz": CUTOFF_HZ,
-            "floor_nm": self.floor,
+            "floor_nm": self.floor[..case.truth.joints.len()],
             "effects": effects,
             "laps_s": [case.references[0].lap_s, case.references[1].lap_s],
         })
@@ -306,13 +314,14 @@ impl Generated {
             Site::Link => vec![name(hidden.joint), name(hidden.joint.saturating_sub(1))],
             Site::Model => Vec::new(),
         };
+        let same = entry.same.iter().filter(|name| hidden.is_called(name, &self.case.truth));
         let mut parameters = Map::new();
         if hidden.variant == 0 && !entry.parameter.is_empty() {
             parameters.insert(entry.parameter.to_owned(), json!(hidden.size));
         }
         json!({
             "name": entry.name,
-            "same_physics": entry.same,
+            "same_physics": same.collect::<Vec<_>>(),
             "joints": joints,
             "law": format!("{:?}", hidden.law),
             "variant": hidden.variant,

@@ -1,5 +1,7 @@
 //! Hidden effects: what each is called, what answers name the same physics, and its size.
 
+use super::robots::Robot;
+
 /// A law that may be hidden in a plant, its sensors or its drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Law {
@@ -70,7 +72,8 @@ pub(crate) struct Entry {
     pub(crate) law: Law,
     /// The catalogue's name; empty for what no catalogue has.
     pub(crate) name: &'static str,
-    /// Other names of the same physics, or names that these data cannot tell from it.
+    /// Other names of the same physics, or names that no data can tell from it, at some joints
+    /// alone ([`Hidden::is_called`]).
     pub(crate) same: &'static [&'static str],
     pub(crate) site: Site,
     /// Name of the parameter that is the size, if law 0 has it in the catalogue's form.
@@ -158,7 +161,7 @@ pub(crate) const TABLE: [Entry; 45] = [
     entry(Law::JointZero, "joint_zero", &["base_tilt", "link_inertia"], Site::Joint, "dq0", 1),
     entry(Law::Cogging, "cogging", &["transmission_error"], Site::Joint, "", 2),
     entry(Law::TransmissionError, "transmission_error", &["cogging"], Site::Joint, "a", 2),
-    entry(Law::Damper, "damper", &["viscous"], Site::Joint, "d", 1),
+    entry(Law::Damper, "damper", &[], Site::Joint, "d", 1),
     entry(Law::Backlash, "backlash", &[], Site::Joint, "b", 2),
     entry(Law::Payload, "payload", &["link_inertia"], Site::Model, "m", 2),
     entry(Law::LinkInertia, "link_inertia", &["payload", "rotor_inertia"], Site::Link, "", 2),
@@ -213,6 +216,29 @@ pub(crate) struct Hidden {
     pub(crate) size: f64,
     /// Widths, places and phases, drawn once.
     pub(crate) shape: Shape,
+}
+
+impl Hidden {
+    /// Whether a name is its own or one of the same physics, for this effect on this robot: some
+    /// aliases hold at some joints alone.
+    pub(crate) fn is_called(&self, name: &str, robot: &Robot) -> bool {
+        let entry = self.law.entry();
+        if name == entry.name {
+            return !name.is_empty();
+        }
+        let last = self.joint + 1 == robot.joints.len();
+        let holds = match (self.law, name) {
+            (Law::RotorInertia, "link_inertia") | (Law::LinkInertia, "rotor_inertia") => {
+                self.joint == 0
+            }
+            (Law::JointZero, "base_tilt") => self.joint == 0 && robot.is_planar(),
+            (Law::BaseTilt, "joint_zero") => robot.is_planar(),
+            (Law::JointZero, "link_inertia") | (Law::LinkInertia, "payload") => last,
+            (Law::Viscous | Law::SublinearViscous, _) => self.variant > 0,
+            _ => true,
+        };
+        holds && entry.same.contains(&name)
+    }
 }
 
 /// What a law needs beside its size.

@@ -7,7 +7,7 @@
 use super::hidden::{Hidden, Law, Shape};
 use std::f64::consts::{FRAC_2_PI, TAU};
 
-/// What a law sees at one instant. Angles, rates and loads are those of joints; `motor` is the
+/// What a law sees at one instant. Angles, rates and loads are those of joints; motors are the
 /// drive's side of a transmission in the joint's units.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment<'a> {
@@ -15,7 +15,6 @@ pub(crate) struct Moment<'a> {
     pub(crate) q: &'a [f64],
     pub(crate) qd: &'a [f64],
     pub(crate) motor_rate: &'a [f64],
-    pub(crate) motor: &'a [f64],
     /// Rigid-body torque of each joint without friction and rotor [N m].
     pub(crate) load: &'a [f64],
     /// Coulomb and viscous friction of the plain drive at the joint.

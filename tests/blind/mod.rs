@@ -4,6 +4,7 @@
 // The tests and the example each use a part of it.
 #![allow(dead_code)]
 
+pub(crate) mod battery;
 pub(crate) mod case;
 pub(crate) mod design;
 pub(crate) mod experiment;

@@ -22,6 +22,7 @@ pub(crate) struct Motion<'a> {
     pub(crate) q: &'a [f64],
     pub(crate) qd: &'a [f64],
     pub(crate) qdd: &'a [f64],
+    pub(crate) motor: &'a [f64],
     pub(crate) motor_rate: &'a [f64],
     pub(crate) motor_acceleration: &'a [f64],
 }
@@ -58,12 +59,32 @@ impl Nominal {
         Self { robot, relative_std: std, coriolis: true }
     }
 
-    /// Torques that the model says a motion needs, friction left out \[N m\].
-    pub(crate) fn smooth_torques(&self, motion: &Motion<'_>, torques: &mut [f64]) {
+    /// Number of equations: one for each joint's torque, one for each spring.
+    pub(crate) fn equations(&self) -> usize {
+        self.robot.joints.len() + self.elastic_joints().count()
+    }
+
+    /// Joints with springs, in order.
+    pub(crate) fn elastic_joints(&self) -> impl Iterator<Item = usize> {
+        let joints = self.robot.joints.iter().enumerate();
+        joints.filter(|(_, joint)| joint.drive.spring.is_some()).map(|(index, _)| index)
+    }
+
+    /// Torques that the model says a motion needs, Coulomb friction left out; then, for each
+    /// spring, what its joint needs less what it gives, which is 0 if the model is right \[N m\].
+    pub(crate) fn smooth_torques(&self, motion: &Motion<'_>, equations: &mut [f64]) {
+        let joints = self.robot.joints.len();
+        let (torques, springs) = equations.split_at_mut(joints);
         let posture = Posture::new(&self.robot.rows(), motion.q);
         let rest = [0.0; MOST];
         let rates = if self.coriolis { motion.qd } else { &rest[..motion.q.len()] };
         posture.torques(rates, motion.qdd, &self.robot.fall, torques);
+        for (missed, joint) in springs.iter_mut().zip(self.elastic_joints()) {
+            let stretch = motion.motor[joint] - motion.q[joint];
+            let spring = self.robot.joints[joint].drive.spring;
+            let stiffness = spring.map_or(0.0, |one| one.stiffness * one.radius * one.radius);
+            *missed = torques[joint] - stiffness * stretch;
+        }
         for (joint, torque) in torques.iter_mut().enumerate() {
             let [rotor, viscous, _] = self.robot.joint_side(joint);
             *torque += rotor * motion.motor_acceleration[joint];
@@ -91,6 +112,13 @@ impl Nominal {
             }
             push(&|one| &mut one.drive.rotor, joint);
             push(&|one| &mut one.drive.viscous, joint);
+        }
+        for joint in self.elastic_joints() {
+            let mut robot = self.robot.clone();
+            if let Some(spring) = &mut robot.joints[joint].drive.spring {
+                spring.stiffness *= 1.0 + std;
+            }
+            changed.push(robot);
         }
         changed
     }

@@ -130,11 +130,12 @@ impl Plant {
         let mut from = 0;
         for hidden in &self.hidden {
             let until = from + hidden.states();
-            let bound = hidden.shape.peak * (1.0 - hidden.size);
+            let soft = if hidden.variant == 0 { 0.0 } else { 0.3 };
+            let bound = hidden.shape.peak * (1.0 + soft - hidden.size);
             given = match (hidden.law, hidden.variant) {
                 _ if hidden.joint != joint => given,
                 (Law::Saturation, 0) => given.clamp(-bound, bound),
-                (Law::Saturation, _) => given / (1.0 + (given / bound).powi(8)).powf(0.125),
+                (Law::Saturation, _) => given / (1.0 + (given / bound).powi(16)).powf(0.0625),
                 (Law::ActuatorLag, _) => states[until - 1],
                 _ => given,
             };
@@ -166,13 +167,12 @@ impl Plant {
         let (joints, freedoms) = (self.joints(), self.freedoms());
         let (q, rest) = y.split_at(freedoms);
         let (v, states) = rest.split_at(freedoms);
-        let (motor, motor_rate) = (self.motors(y), self.motor_rates(y));
+        let motor_rate = self.motor_rates(y);
         let at = Moment {
             t,
             q: &q[..joints],
             qd: &v[..joints],
             motor_rate: &motor_rate[..joints],
-            motor: &motor[..joints],
             load: &state.load,
             coulomb: &self.coulomb,
             viscous: &self.viscous,

@@ -4,6 +4,11 @@ use super::random::Random;
 use super::robots::Robot;
 
 const HARMONICS: usize = 5;
+/// Motions drawn for a joint; the one that lingers least where it turns around is taken, as one
+/// would who knows that a drive sticks there.
+const CANDIDATES: usize = 6;
+/// Points of a lap that are looked at.
+const SAMPLES: usize = 400;
 
 /// A periodic motion of all joints.
 #[derive(Clone, Debug)]
@@ -33,6 +38,32 @@ impl Series {
     }
 }
 
+impl Series {
+    fn draw(harmonics: usize, random: &mut Random) -> Self {
+        let mut series = Self { middle: 0.0, waves: [[0.0; 2]; HARMONICS] };
+        for (harmonic, wave) in series.waves[..harmonics].iter_mut().enumerate() {
+            let amplitude = random.between(0.3, 1.0) / (harmonic as f64 + 1.0).sqrt();
+            *wave = [amplitude, random.between(0.0, std::f64::consts::TAU)];
+        }
+        series
+    }
+
+    /// Positions and rates over a lap.
+    fn samples(&self, frequency: f64) -> impl Iterator<Item = [f64; 2]> {
+        let phases = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64 * std::f64::consts::TAU);
+        phases.map(move |phase| self.at(phase, frequency))
+    }
+
+    /// How fast the slowest reversal is, against the fastest change of rate.
+    fn sharpness(&self) -> f64 {
+        let rates: Vec<f64> = self.samples(1.0).map(|[_, rate]| rate).collect();
+        let changes = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let turns = rates.windows(2).filter(|pair| pair[0] * pair[1] <= 0.0);
+        let slowest = turns.map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+        slowest / changes.fold(0.0, f64::max)
+    }
+}
+
 impl Reference {
     /// Draws a motion that keeps to the ranges of the robot, times `reach` and `rate`.
     pub(crate) fn draw(
@@ -45,16 +76,13 @@ impl Reference {
         // the springs of an elastic robot resonate above 1.5 Hz
         let harmonics = if robot.elastic().is_some() { 3 } else { HARMONICS };
         let series = |joint: &super::robots::Joint| {
-            let mut series = Series { middle: 0.0, waves: [[0.0; 2]; HARMONICS] };
-            for (harmonic, wave) in series.waves[..harmonics].iter_mut().enumerate() {
-                let amplitude = random.between(0.3, 1.0) / (harmonic as f64 + 1.0).sqrt();
-                *wave = [amplitude, random.between(0.0, std::f64::consts::TAU)];
-            }
-            let samples = (0..400)
-                .map(|k| series.at(f64::from(k) * std::f64::consts::TAU / 400.0, frequency));
-            let farthest = samples.fold([0.0_f64; 2], |[position, speed], [p, v]| {
-                [position.max(p.abs()), speed.max(v.abs())]
-            });
+            let drawn = (0..CANDIDATES).map(|_| Series::draw(harmonics, random));
+            let best = drawn.max_by(|one, two| one.sharpness().total_cmp(&two.sharpness()));
+            let mut series = best.expect("candidates");
+            let farthest =
+                series.samples(frequency).fold([0.0_f64; 2], |[position, speed], [p, v]| {
+                    [position.max(p.abs()), speed.max(v.abs())]
+                });
             let range = joint.range;
             let scale = (range.reach * reach / farthest[0]).min(range.rate * rate / farthest[1]);
             series.waves.iter_mut().for_each(|wave| wave[0] *= scale);

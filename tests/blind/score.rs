@@ -66,7 +66,7 @@ impl Named {
     /// Whether this names the physics of a hidden effect, at its joint.
     fn is(&self, hidden: &Hidden, robot: &Robot, family: bool) -> bool {
         let entry = hidden.law.entry();
-        let same = |name: &str| name == entry.name || entry.same.contains(&name);
+        let same = |name: &str| hidden.is_called(name, robot);
         let by_family = family
             && self.family.len() <= LARGEST_FAMILY
             && self.family.iter().any(|name| same(name));
@@ -99,6 +99,7 @@ pub(crate) fn score(generated: &Generated, answer: &Answer) -> Score {
     let false_names = named.len() - named.iter().filter(known).count();
     let refused = matches!(answer.verdict.as_str(), "cannot_tell" | "unexplained");
     let right = match case.plan.kind {
+        _ if answer.verdict == "failed" => false,
         Kind::Nothing => named.is_empty() && answer.verdict != "explained",
         Kind::Outside => refused || named.is_empty(),
         Kind::CannotTell => refused || (case.plan.still && named.is_empty()),

@@ -32,33 +32,41 @@ fn by_sample(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rows.map(|row| columns.iter().map(|column| column[row]).collect()).collect()
 }
 
-/// Root mean square of what is left at each joint [N m]; `noise` is that of the measured torques.
+/// Root mean square of what is left of each equation of the model [N m]; `noise` is that of the
+/// measured torques.
 pub(crate) fn left(log: &Log, nominal: &Nominal, noise: &[f64]) -> Vec<f64> {
-    let joints = log.q.len();
+    let (joints, equations) = (log.q.len(), nominal.equations());
     let smooth = LowPass::new(POSITIONS_HZ, log.step_s);
     let low = LowPass::new(CUTOFF_HZ, log.step_s);
     let filtered = |columns: &[Vec<f64>]| columns.iter().map(|one| smooth.apply(one)).collect();
-    let series = Series { q: filtered(&log.q), motor: filtered(&log.motor) };
+    let mut series = Series { q: filtered(&log.q), motor: filtered(&log.motor) };
+    for joint in (0..joints).filter(|joint| nominal.elastic_joints().all(|one| one != *joint)) {
+        series.motor[joint] = series.q[joint].clone();
+    }
     let derived = |columns: &[Vec<f64>]| -> Vec<Vec<f64>> {
         columns.iter().map(|one| rate(one, log.step_s)).collect()
     };
     let (qd, motor_rate) = (derived(&series.q), derived(&series.motor));
     let (qdd, motor_acceleration) = (derived(&qd), derived(&motor_rate));
-    let signals = [&series.q, &qd, &qdd, &motor_rate, &motor_acceleration].map(|s| by_sample(s));
+    let signals = [&series.q, &qd, &qdd, &series.motor, &motor_rate, &motor_acceleration]
+        .map(|s| by_sample(s));
     let motion = |row: usize| {
-        let [q, qd, qdd, motor_rate, motor_acceleration] =
-            [0, 1, 2, 3, 4].map(|k| &signals[k][row]);
-        Motion { q, qd, qdd, motor_rate, motor_acceleration }
+        let [q, qd, qdd, motor, motor_rate, motor_acceleration] =
+            [0, 1, 2, 3, 4, 5].map(|k| &signals[k][row]);
+        Motion { q, qd, qdd, motor, motor_rate, motor_acceleration }
     };
     let rows = log.q[0].len();
     let directions: Vec<Vec<f64>> = motor_rate.iter().map(|rate| direction(rate)).collect();
-    let mut residual = vec![vec![0.0; rows]; joints];
-    let mut torques = vec![0.0; joints];
+    let mut residual = vec![vec![0.0; rows]; equations];
+    let mut torques = vec![0.0; equations];
     for row in 0..rows {
         nominal.smooth_torques(&motion(row), &mut torques);
         for joint in 0..joints {
             let dry = nominal.robot.joint_side(joint)[2] * directions[joint][row];
             residual[joint][row] = log.tau[joint][row] - torques[joint] - dry;
+        }
+        for spring in joints..equations {
+            residual[spring][row] = -torques[spring];
         }
     }
     let edge = (EDGE_S / log.step_s) as usize;
@@ -66,15 +74,17 @@ pub(crate) fn left(log: &Log, nominal: &Nominal, noise: &[f64]) -> Vec<f64> {
     let kept: Vec<usize> = (edge..rows - edge).step_by(stride).collect();
     let residual: Vec<Vec<f64>> = residual.iter().map(|one| low.apply(one)).collect();
     let share = (2.0 * CUTOFF_HZ * log.step_s).sqrt();
-    let weights: Vec<f64> = noise.iter().map(|noise| 1.0 / (noise * share)).collect();
-    let right: Vec<f64> = stacked(joints, &kept, &weights, |joint, row| residual[joint][row]);
+    let springs = nominal.elastic_joints().map(|joint| noise[joint]);
+    let noise = noise.iter().copied().chain(springs);
+    let weights: Vec<f64> = noise.map(|noise| 1.0 / (noise * share)).collect();
+    let right: Vec<f64> = stacked(equations, &kept, &weights, |joint, row| residual[joint][row]);
     let mut columns = smooth_columns(nominal, &kept, &weights, motion);
     for joint in 0..joints {
         let level = nominal.robot.joint_side(joint)[2] * nominal.relative_std;
         let signs: Vec<f64> = directions[joint].iter().map(|sign| level * sign).collect();
         let signs = low.apply(&signs);
         let of = |at: usize, row: usize| if at == joint { signs[row] } else { 0.0 };
-        columns.push(stacked(joints, &kept, &weights, of));
+        columns.push(stacked(equations, &kept, &weights, of));
     }
     let fitted = fit(&columns, &right);
     let per_joint = fitted.chunks(kept.len()).zip(&weights);
@@ -114,9 +124,9 @@ fn smooth_columns<'a>(
     weights: &[f64],
     motion: impl Fn(usize) -> Motion<'a>,
 ) -> Vec<Vec<f64>> {
-    let joints = weights.len();
+    let equations = weights.len();
     let all = |model: &Nominal| {
-        let mut table = vec![vec![0.0; joints]; kept.len()];
+        let mut table = vec![vec![0.0; equations]; kept.len()];
         for (row, torques) in kept.iter().zip(&mut table) {
             model.smooth_torques(&motion(*row), torques);
         }
@@ -126,7 +136,7 @@ fn smooth_columns<'a>(
     let index: Vec<usize> = (0..kept.len()).collect();
     let changed = nominal.deviations().into_iter().map(|robot| {
         let table = all(&Nominal { robot, ..nominal.clone() });
-        stacked(joints, &index, weights, |joint, row| table[row][joint] - plain[row][joint])
+        stacked(equations, &index, weights, |joint, row| table[row][joint] - plain[row][joint])
     });
     changed.collect()
 }

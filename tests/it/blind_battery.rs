@@ -1,10 +1,12 @@
 //! The blind battery's own physics, against another engine's numbers and laws of mechanics; its
 //! files, against the program that reads them.
 
+use crate::blind::battery::{answer, examine, report, reported, suite};
 use crate::blind::case::Case;
 use crate::blind::design::{Kind, ROWS, plan};
 use crate::blind::filter::LowPass;
 use crate::blind::hidden::{Hidden, Law, Shape, TABLE};
+use crate::blind::laws::Moment;
 use crate::blind::nominal::{Motion, Nominal};
 use crate::blind::plant::{Plant, Transmission};
 use crate::blind::random::Random;
@@ -86,10 +88,16 @@ fn files_say_what_the_plants_are_made_of() {
         let count = robot.joints.len();
         let mut draw = || (0..count).map(|_| random.normal()).collect::<Vec<_>>();
         let (q, qd) = (draw(), draw());
-        let mut expected = vec![0.0; count];
+        let mut expected = vec![0.0; nominal.equations()];
         let rest = vec![0.0; count];
-        let motion =
-            Motion { q: &q, qd: &qd, qdd: &rest, motor_rate: &qd, motor_acceleration: &rest };
+        let motion = Motion {
+            q: &q,
+            qd: &qd,
+            qdd: &rest,
+            motor: &q,
+            motor_rate: &qd,
+            motor_acceleration: &rest,
+        };
         nominal.smooth_torques(&motion, &mut expected);
         let mut found = vec![0.0; count];
         plant.bias(&q, &qd, &mut found);
@@ -299,4 +307,127 @@ fn scores_know_right_from_wrong() {
     vague.family = vec!["viscous".into(), "coulomb".into()];
     let vague = says(vec![vague.clone()]);
     assert!(vague.right && vague.unambiguous == 0);
+}
+
+/// Torque of a law with states after sliding at a rate for a distance.
+fn after_sliding(hidden: &Hidden, rate: f64, distance: f64) -> f64 {
+    let mut z = vec![0.0; hidden.states()];
+    let mut dz = z.clone();
+    let rates = [rate];
+    let at = Moment {
+        t: 0.0,
+        q: &[0.0],
+        qd: &rates,
+        motor_rate: &rates,
+        load: &[0.0],
+        coulomb: &[0.0],
+        viscous: &[0.0],
+    };
+    let steps = 20_000;
+    let step_s = distance / rate.abs() / f64::from(steps);
+    for _ in 0..steps {
+        hidden.rates(&at, &z, &mut dz);
+        z.iter_mut().zip(&dz).for_each(|(z, dz)| *z += step_s * dz);
+    }
+    hidden.rates(&at, &z, &mut dz);
+    hidden.smooth(&at, &z, &dz)
+}
+
+#[test]
+fn friction_with_memory_becomes_coulombs_in_steady_sliding() {
+    let shape = Shape { rate: 1.0, torque: 1.0, reach: 1.0, ..Shape::default() };
+    for (law, variant) in
+        [(Law::Dahl, 0), (Law::Dahl, 1), (Law::MaxwellSlip, 0), (Law::MaxwellSlip, 1)]
+    {
+        let hidden = Hidden { law, variant, joint: 0, other: 0, size: 0.7, shape };
+        for rate in [0.3, -0.3] {
+            let found = after_sliding(&hidden, rate, 1.0);
+            // with the exponent 2 the last of it comes slowly: 1 - 1 / (1 + distance / width)
+            let last = if (law, variant) == (Law::MaxwellSlip, 1) {
+                1.0 / (1.0 + 1.0 / 0.03)
+            } else {
+                0.0
+            };
+            let expected = 0.7 * f64::signum(rate) * (1.0 - last);
+            assert!((found - expected).abs() < 0.003, "{law:?}/{variant}: {found}");
+        }
+        // a hundredth of a millimetre of sliding is elastic
+        assert!(after_sliding(&hidden, 0.3, 1e-5).abs() < 1e-3);
+    }
+    // Stribeck's curve of LuGre: from 1.6 times at rest to once when fast
+    let hidden = Hidden { law: Law::LuGre, variant: 0, joint: 0, other: 0, size: 0.7, shape };
+    assert!((after_sliding(&hidden, 1e-3, 1.0) - 1.6 * 0.7).abs() < 0.01);
+    assert!((after_sliding(&hidden, 1.0, 2.0) - 0.7).abs() < 0.01);
+}
+
+#[test]
+fn a_cable_on_a_post_follows_eulers_belt() {
+    let shape = Shape { rate: 1.0, torque: 1.0, reach: 1.0, ..Shape::default() };
+    let cable = Hidden { law: Law::Capstan, variant: 0, joint: 0, other: 0, size: 0.1, shape };
+    let dry = |q: f64, direction: f64, load: f64| {
+        let at = Moment {
+            t: 0.0,
+            q: &[q],
+            qd: &[direction],
+            motor_rate: &[direction],
+            load: &[load],
+            coulomb: &[0.0],
+            viscous: &[0.0],
+        };
+        cable.dry(&at, direction, &[])[0]
+    };
+    // half a turn in the middle, 1.6 times that at the end of the reach
+    let (pulls, slackens) = (5.0 + dry(0.0, 1.0, 5.0), 5.0 - dry(0.0, -1.0, 5.0));
+    assert!((pulls / 5.0 - (0.1 * std::f64::consts::PI).exp()).abs() < 1e-12);
+    assert!((pulls * slackens / 25.0 - 1.0).abs() < 1e-12, "one way undoes the other");
+    let far = 5.0 + dry(1.0, 1.0, 5.0);
+    assert!((far / 5.0 - (0.16 * std::f64::consts::PI).exp()).abs() < 1e-12);
+}
+
+#[test]
+fn the_suite_has_every_kind_and_no_reported_case() {
+    let numbers = suite();
+    assert_eq!(numbers.iter().collect::<BTreeSet<_>>().len(), 31);
+    assert!(numbers.iter().all(|number| !reported().contains(number) && *number < 1000));
+    let kinds =
+        [Kind::Single, Kind::Pair, Kind::Nothing, Kind::Outside, Kind::CannotTell, Kind::Thesis];
+    for kind in kinds {
+        assert!(numbers.iter().any(|number| plan(*number).kind == kind), "{kind:?}");
+    }
+}
+
+#[test]
+fn a_diagnosis_gets_the_files_and_not_the_answer() {
+    let folder = std::env::temp_dir().join(format!("denavit-blind-{}", std::process::id()));
+    let nothing = (0..1000).find(|number| {
+        let plan = plan(*number);
+        plan.kind == Kind::Nothing && plan.robot == 0
+    });
+    let number = nothing.expect("a pendulum without an effect");
+    let says = |verdict: &str, effects: Value| {
+        let said = serde_json::json!({"verdict": verdict, "effects": effects});
+        examine(number, &folder, |files| {
+            for file in [files.model, files.train, files.validate] {
+                assert!(file.is_file(), "{}", file.display());
+            }
+            let sealed = files.model.with_file_name("answer.json");
+            let _ = std::fs::remove_file(&sealed);
+            answer(&said)
+        })
+        .expect("files")
+    };
+    let right = says("nothing_missing", serde_json::json!([]));
+    assert!(right.right);
+    let effects = serde_json::json!([{
+        "effect": "cogging",
+        "at": {"link": "rod"},
+        "parameters": {"a": {"value": 1.0, "std": 0.1}},
+        "indistinguishable": ["transmission_error"],
+    }]);
+    let wrong = says("explained", effects);
+    assert!(!wrong.right && wrong.false_names == 1 && wrong.said == ["cogging"]);
+    let text = report(&[right, wrong]);
+    assert!(text.contains("| nothing hidden: false discoveries | 1 | 2 | 50.0 %"), "{text}");
+    assert!(text.contains("| nothing | cogging | 1 |"), "{text}");
+    std::fs::remove_dir_all(&folder).expect("the folder was made");
 }

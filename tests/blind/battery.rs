@@ -1,0 +1,144 @@
+//! The battery as a whole: every case is written to files, diagnosed by somebody who gets the files
+//! alone, and scored.
+
+use super::case::Case;
+use super::design::{Kind, Plan, ROWS, plan};
+use super::hidden::Law;
+use super::score::{Answer, Named, Score, confusion, score, table};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+
+/// The files of a case that a diagnosis sees.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Files<'a> {
+    pub(crate) model: &'a Path,
+    pub(crate) train: &'a Path,
+    pub(crate) validate: &'a Path,
+}
+
+/// Numbers of the reported run.
+pub(crate) fn reported() -> std::ops::Range<u64> {
+    1000..1000 + ROWS as u64
+}
+
+/// Generates a case below `folder`, has it diagnosed and scores the answer. The sealed answer is
+/// written after the diagnosis.
+pub(crate) fn examine(
+    number: u64,
+    folder: &Path,
+    diagnose: impl FnOnce(Files<'_>) -> Answer,
+) -> io::Result<Score> {
+    let generated = Case::new(number).generate();
+    let folder = folder.join(number.to_string());
+    generated.write_files(&folder)?;
+    let [model, train, validate] =
+        ["model.json", "train.csv", "validate.csv"].map(|name| folder.join(name));
+    let answer = diagnose(Files { model: &model, train: &train, validate: &validate });
+    generated.write_answer(&folder)?;
+    Ok(score(&generated, &answer))
+}
+
+/// Tables of a run.
+pub(crate) fn report(scores: &[Score]) -> String {
+    let missed = scores.iter().filter(|score| !score.right).map(|score| {
+        let Score { number, kind, level, truth, said, found, false_names, .. } = score;
+        format!(
+            "| {number} | {kind:?} | {level} | {} | {} | {found} | {false_names} |\n",
+            truth.join(" + "),
+            said.join(" + ")
+        )
+    });
+    let heading = "| case | kind | strength | hidden | said | found | false |\n\
+                   |---:|---|---|---|---|---:|---:|\n";
+    let missed: String = missed.collect();
+    format!("{}\n{}\n{heading}{missed}", table(scores), confusion(scores))
+}
+
+/// An answer from the JSON that the command prints: effects without a name of the catalogue are
+/// called `unnamed` or have none.
+pub(crate) fn answer(value: &Value) -> Answer {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let effects = value["effects"].as_array().map_or(&[][..], Vec::as_slice);
+    let gap = &value["gap"]["validate"];
+    let of = |key: &str| gap[key].as_f64();
+    let numbers = |effect: &Value| -> BTreeMap<String, [f64; 2]> {
+        let entries = effect["parameters"].as_object().into_iter().flatten();
+        let pair = |entry: &Value| Some([entry["value"].as_f64()?, entry["std"].as_f64()?]);
+        entries.filter_map(|(name, entry)| Some((name.clone(), pair(entry)?))).collect()
+    };
+    let named = |effect: &Value| {
+        let name = text(&effect["effect"]);
+        let place = effect["at"].as_str().or_else(|| effect["at"]["link"].as_str());
+        let others = effect["indistinguishable"].as_array().map_or(&[][..], Vec::as_slice);
+        let member =
+            |one: &Value| one.as_str().or_else(|| one["effect"].as_str()).map(str::to_owned);
+        let mut family: Vec<String> = others.iter().filter_map(member).collect();
+        if !family.is_empty() && !family.contains(&name) {
+            family.push(name.clone());
+        }
+        Named {
+            name: if name == "unnamed" { String::new() } else { name },
+            joint: place.filter(|place| *place != "model").map(str::to_owned),
+            family,
+            parameters: numbers(effect),
+        }
+    };
+    Answer {
+        verdict: text(&value["verdict"]),
+        effects: effects.iter().map(named).collect(),
+        gap: match [of("before"), of("after"), of("floor")] {
+            [Some(before), Some(after), Some(floor)] => Some([before, after, floor]),
+            _ => None,
+        },
+    }
+}
+
+/// Effects that the test suite looks for, each once, on a small robot.
+const SUITE: [Law; 18] = [
+    Law::Coulomb,
+    Law::Viscous,
+    Law::TorqueOffset,
+    Law::AsymmetricViscous,
+    Law::Stribeck,
+    Law::Dahl,
+    Law::LoadFriction,
+    Law::QuadraticDrag,
+    Law::RotorInertia,
+    Law::ReturnSpring,
+    Law::HardeningSpring,
+    Law::Cogging,
+    Law::TorqueDelay,
+    Law::TorqueGain,
+    Law::JointZero,
+    Law::Payload,
+    Law::BaseTilt,
+    Law::Coriolis,
+];
+
+/// Numbers of the cases for the test suite, all for tuning: 31.
+pub(crate) fn suite() -> Vec<u64> {
+    let first = |fits: &dyn Fn(&Plan) -> bool| (0..1000).find(|number| fits(&plan(*number)));
+    let single = |law: Law| {
+        let one = move |plan: &Plan, robot: usize| {
+            plan.kind == Kind::Single && plan.laws == [law] && plan.robot <= robot
+        };
+        // seen without doubt if there is such a case; on a small robot if there is one
+        first(&|plan| one(plan, 2) && plan.strength < 2).or_else(|| first(&|plan| one(plan, 5)))
+    };
+    let nothing = |robot: usize| first(&|plan| plan.kind == Kind::Nothing && plan.robot == robot);
+    let other = |kind: Kind, laws: usize| {
+        first(&|plan| plan.kind == kind && plan.robot != 3 && plan.laws.len() == laws)
+    };
+    let mut numbers: Vec<Option<u64>> = SUITE.into_iter().map(single).collect();
+    numbers.extend((0..6).map(nothing));
+    numbers.push(other(Kind::Pair, 2));
+    numbers.push(first(&|plan| plan.laws == [Law::ProductCoupling]));
+    numbers.push(first(&|plan| plan.laws == [Law::Magnet]));
+    numbers.push(first(&|plan| plan.kind == Kind::CannotTell && plan.still));
+    numbers.push(first(&|plan| plan.kind == Kind::CannotTell && !plan.still && plan.robot < 3));
+    numbers.push(other(Kind::Thesis, 3));
+    numbers.push(other(Kind::Thesis, 1));
+    numbers.into_iter().flatten().collect()
+}

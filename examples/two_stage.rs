@@ -3,9 +3,10 @@
 //! `cargo run --release --example two_stage`
 
 use denavit::identify::condition::{Conditioning, Filter};
-use denavit::identify::two_stage::{Estimate, FrictionSign, two_stage};
+use denavit::identify::log::{ColumnMapping, LogOf, read_log};
+use denavit::identify::two_stage::{Estimate, two_stage};
 use denavit::model;
-use denavit::plants::regression::RegressionModel;
+use denavit::plants::regression::{CoulombLaw, RegressionModel};
 use denavit::regressor::RegressorOptions;
 use denavit::shipped;
 use denavit::simulate::scenario;
@@ -26,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let with =
         RegressorOptions { friction: true, only_modelled: true, ..RegressorOptions::default() };
     let keep: Vec<String> = KEEP.split(',').map(str::to_owned).collect();
-    let regression = RegressionModel::new(&robot, with, &keep)?;
+    let mut regression = RegressionModel::new(&robot, with, &keep)?;
     let name = "tulip_leg_elastic_identification";
     let shipped = shipped::find_scenario(name).ok_or("a shipped scenario")?;
     let load = |name: &str| {
@@ -35,6 +36,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut scenario = scenario::read(shipped.name, shipped.text.as_bytes(), &load)?;
     let run = scenario.run()?;
+    let of = LogOf {
+        model: &regression.model,
+        joints: &regression.joints,
+        contacts: &[],
+        // springs let the joints swing beyond the limits of the trajectory
+        accepts_suspicious: true,
+    };
+    let csv = run.log.to_csv();
+    let log = read_log("log.csv", csv.as_bytes(), of, &ColumnMapping::default())?;
     let plant = scenario.plant.model();
     let how = |cutoff_hz: f64, decimation: usize| Conditioning {
         filter: Some(Filter { order: 4, cutoff_hz }),
@@ -42,10 +52,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Conditioning::default()
     };
     let both = [how(100.0, 1), how(40.0, 5)];
-    // motors turn N times as fast as joints, where the simulation's steep line is 0.01 rad/s wide
-    for sign in [FrictionSign::Sign, FrictionSign::Tanh(1.0)] {
-        let found = two_stage(plant, &regression, &run.log, [&both[0], &both[1]], sign)?;
-        println!("{sign:?}");
+    // the simulation's steep line is 0.01 rad/s wide
+    for law in [CoulombLaw::Sign, CoulombLaw::Tanh(0.01)] {
+        regression.law = law;
+        let found = two_stage(plant, &regression, &log, [&both[0], &both[1]])?;
+        println!("{law:?}");
         let drives = plant
             .joints
             .iter()

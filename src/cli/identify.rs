@@ -5,7 +5,9 @@ mod forward;
 mod json;
 mod logs;
 mod page;
+mod statics;
 mod text;
+mod two_stage;
 
 use super::Answer;
 use super::base::{With, regressor_options};
@@ -19,8 +21,9 @@ use denavit::identify::{
     Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
 };
 use denavit::model::Robot;
-use denavit::plants::regression::RegressionModel;
+use denavit::plants::regression::{CoulombLaw, RegressionModel};
 use denavit::report::{TorquePicture, torque_picture};
+use denavit::simulate::STICTION_RATE;
 pub(crate) use failure::IdentifyFailure;
 use forward::{Controlled, SimulationGap};
 use logs::Conditions;
@@ -40,13 +43,14 @@ Examples:
   denavit identify tulip_leg --train tracking.csv --filter 20 --svg torques.svg
   denavit identify tulip_leg --train tracking.csv --filter 20 --html tulip_leg.html
   denavit identify tulip_leg --train tracking.csv --filter 20 --controller tulip_leg
+  denavit identify tulip_leg --train tracking.csv --filter 20 --two-stage --friction tanh
   denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json")]
 pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
     /// Logs to estimate from
-    #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
+    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "statics")]
     train: Vec<PathBuf>,
     /// Logs to judge the estimate with
     #[arg(long, value_name = "LOG", num_args = 1..)]
@@ -63,6 +67,24 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", default_value = "0.2", value_parser = window,
         conflicts_with = "controller")]
     window: f64,
+    /// Springs and motors of series elastic drives first, from one log with motor_JOINT and
+    /// tau_cmd_JOINT, then the load with what the springs pass on
+    #[arg(long, conflicts_with_all = ["validate", "method", "controller", "prior", "svg", "html",
+        "motion_svg", "statics"])]
+    two_stage: bool,
+    /// Weighings and held postures: say which parameters, or sums of them, follow from these,
+    /// joined with the logs for the estimate if there are any
+    #[arg(long = "static", value_name = "FILE", conflicts_with_all = ["svg", "html", "motion_svg",
+        "output"])]
+    statics: Option<PathBuf>,
+    /// Coulomb friction as the sign of the rate of a joint, or as tanh(rate / RATE), with which
+    /// logs are then simulated too [rad/s, m/s]; 0.01 if no RATE is given
+    #[arg(long, value_name = "sign|tanh[:RATE]", value_parser = friction, default_value = "sign")]
+    friction: CoulombLaw,
+    /// Leave out the rows of a joint while it is slower than this [rad/s, m/s] or turns round;
+    /// noise is three times what the steps of its encoder make of a rate
+    #[arg(long, value_name = "RATE|noise", value_parser = slow)]
+    skip_slow: Option<Slow>,
     /// How parameters are estimated
     #[arg(long, value_enum, default_value_t)]
     method: MethodName,
@@ -120,6 +142,35 @@ fn window(text: &str) -> Result<f64, String> {
     length.ok_or_else(|| "a time from 0.0001 to 100 s".to_owned())
 }
 
+/// Rates below which rows are left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Slow {
+    Noise,
+    Below(f64),
+}
+
+fn rate(text: &str) -> Option<f64> {
+    text.parse::<f64>().ok().filter(|rate| (1e-9..=1e3).contains(rate))
+}
+
+fn slow(text: &str) -> Result<Slow, String> {
+    match text {
+        "noise" => Ok(Slow::Noise),
+        text => rate(text).map(Slow::Below).ok_or_else(|| "a rate above 0, or `noise`".to_owned()),
+    }
+}
+
+fn friction(text: &str) -> Result<CoulombLaw, String> {
+    match text.split_once(':') {
+        None if text == "sign" => Ok(CoulombLaw::Sign),
+        None if text == "tanh" => Ok(CoulombLaw::Tanh(STICTION_RATE)),
+        Some(("tanh", width)) if rate(width).is_some() => {
+            Ok(CoulombLaw::Tanh(rate(width).unwrap_or(STICTION_RATE)))
+        }
+        _ => Err("`sign`, `tanh`, or `tanh:RATE` with a rate above 0".to_owned()),
+    }
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum MethodName {
     /// Least squares, all torques alike
@@ -171,24 +222,42 @@ impl Arguments {
     }
 }
 
-/// What the model's standard deviations say of base parameters all of whose members have one.
+/// What the model's standard deviations say of base parameters: those that depend on no number
+/// without one, to first order.
 fn prior(model: &RegressionModel) -> Vec<PriorRow> {
-    let std_of = |place: usize| {
-        let name = &model.standard[place].name;
-        model.parameters.iter().find(|one| one.name == *name).and_then(|one| one.std)
+    let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+    let listed = |values: &[f64]| -> Vec<f64> {
+        let standard = model.standard_values(values);
+        let sum = |one: &denavit::plants::regression::RegressionParameter| {
+            one.members.iter().map(|&(at, factor)| factor * standard[at]).sum()
+        };
+        model.listed.iter().map(sum).collect()
     };
-    let of = |(row, listed): (usize, &denavit::plants::regression::RegressionParameter)| {
-        let variances: Option<Vec<f64>> = listed
-            .members
-            .iter()
-            .map(|&(place, factor)| Some((factor * std_of(place)?).powi(2)))
-            .collect();
-        let std = variances?.iter().sum::<f64>().sqrt();
+    let here = listed(&values);
+    let mut variances = vec![Some(0.0); here.len()];
+    let mut moved = values.clone();
+    for (place, parameter) in model.parameters.iter().enumerate() {
+        let step = 1e-4 * parameter.value.abs().max(1e-2);
+        moved[place] = parameter.value + step;
+        let above = listed(&moved);
+        moved[place] = parameter.value - step;
+        let below = listed(&moved);
+        moved[place] = parameter.value;
+        for (variance, (above, below)) in variances.iter_mut().zip(above.iter().zip(&below)) {
+            let slope = (above - below) / (2.0 * step);
+            if slope.abs() > 1e-12 {
+                let own = parameter.std.map(|std| (slope * std).powi(2));
+                *variance = variance.and_then(|sum: f64| Some(sum + own?));
+            }
+        }
+    }
+    let of = |(row, variance): (usize, &Option<f64>)| {
+        let std = variance.filter(|variance| *variance > 0.0)?.sqrt();
+        let value = model.listed[row].value?;
         let factors = model.to_listed().row(row).iter().copied().collect();
-        let value = listed.value?;
-        (std > 0.0).then_some(PriorRow { factors, value, std })
+        Some(PriorRow { factors, value, std })
     };
-    model.listed.iter().enumerate().filter_map(of).collect()
+    variances.iter().enumerate().filter_map(of).collect()
 }
 
 /// Everything that is shown.
@@ -215,8 +284,9 @@ impl Answered {
     fn new(arguments: &Arguments, progress: &Progress) -> Result<Self, Failure> {
         let (robot, source) = read_model_text(&arguments.model)?;
         let options = regressor_options(&robot, &arguments.with)?;
-        let model = RegressionModel::new(&robot, options, &arguments.keep)
+        let mut model = RegressionModel::new(&robot, options, &arguments.keep)
             .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
+        model.law = arguments.friction;
         progress.show("reading logs");
         let mut read = logs::read(arguments, &robot, &model)?;
         let controller = arguments.controller.as_deref();
@@ -287,6 +357,12 @@ pub(crate) fn of_log(
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    if arguments.two_stage {
+        return two_stage::run(arguments, out);
+    }
+    if let Some(path) = &arguments.statics {
+        return statics::run(arguments, path, out);
+    }
     let outputs = [
         arguments.output.as_ref(),
         arguments.svg.as_ref(),

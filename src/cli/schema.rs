@@ -42,11 +42,15 @@ enum Format {
     /// What drives a robot
     #[value(alias = denavit::simulate::scenario::CONTROLLER_FORMAT)]
     Controller,
+    /// Weighings and held postures
+    #[value(alias = denavit::identify::STATICS_FORMAT)]
+    Statics,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let trajectory = denavit::simulate::scenario::trajectory_schema();
     let controller = denavit::simulate::scenario::controller_schema();
+    let statics = denavit::identify::statics_schema();
     let schema = match arguments.format {
         Format::Model => denavit::model::schema(),
         Format::Effect => denavit::effect::schema(),
@@ -55,6 +59,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Format::Scenario => denavit::simulate::scenario::schema(),
         Format::Trajectory => &trajectory,
         Format::Controller => &controller,
+        Format::Statics => &statics,
     };
     writeln!(out, "{}", schema.trim_end())?;
     Ok(Answer::Done)

@@ -8,6 +8,9 @@ use crate::plants::Plant;
 
 /// Adds W lambda to the torques of a log, and gives the virtual joints of a floating base their
 /// rows. `is_base` says which joints these are.
+///
+/// A log of time stepping has means of forces over the interval that a row ends, half an interval
+/// late: there the mean of a row and the next one counts.
 pub fn add_contact_forces(log: &mut MeasuredLog, plant: &mut dyn Plant, is_base: &[bool]) {
     let samples = log.samples();
     let n = log.joints.len();
@@ -25,6 +28,13 @@ pub fn add_contact_forces(log: &mut MeasuredLog, plant: &mut dyn Plant, is_base:
     if places.is_empty() {
         return;
     }
+    let is_late =
+        log.header.iter().any(|(name, value)| name == "scheme" && value == "time_stepping");
+    let at = |force: &[f64], sample: usize| {
+        let here = force.get(sample).copied().unwrap_or(0.0);
+        let next = force.get(sample + 1).copied().filter(|_| is_late);
+        next.map_or(here, |next| 0.5 * (here + next))
+    };
     let mut jacobian = vec![0.0; 3 * names.len() * n];
     let mut q = vec![0.0; n];
     for sample in 0..samples {
@@ -34,7 +44,7 @@ pub fn add_contact_forces(log: &mut MeasuredLog, plant: &mut dyn Plant, is_base:
         plant.contact_jacobian(&q, &mut jacobian);
         for ((_, force), &place) in log.contacts.iter().zip(&places) {
             for (axis, force) in force.iter().enumerate() {
-                let force = force.get(sample).copied().unwrap_or(0.0);
+                let force = at(force, sample);
                 let row = &jacobian[(3 * place + axis) * n..(3 * place + axis + 1) * n];
                 for (entry, joint) in row.iter().zip(&mut log.joints) {
                     if let Some(tau) = &mut joint.tau {

@@ -2,8 +2,9 @@
 
 use super::condition::Conditioned;
 use super::estimate::{
-    Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, Options, Status,
-    Validation, consistent, convergence, estimate, noise_of_positions, parameters, validate,
+    Consistent, Convergence, Estimate, EstimateError, FlippedTorque, IdentifiedParameter, Options,
+    Status, Validation, consistent, convergence, estimate, flipped_torques, noise_of_positions,
+    parameters, validate,
 };
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -37,6 +38,8 @@ pub struct Identification {
     /// The joint of whose torque noise of the positions makes most by itself, and how much: a share
     /// of its root of mean square. Parameters are biased if it is more than some percent.
     pub position_noise: Option<(String, f64)>,
+    /// Joints whose torques seem to have the wrong sign.
+    pub flipped: Vec<FlippedTorque>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
     /// The nearest bodies that exist.
@@ -58,6 +61,26 @@ impl Identification {
              biased, and their intervals too narrow. A filter with a lower cutoff has less of it.",
             100.0 * share
         ))
+    }
+
+    /// All that is to be said before anybody believes the parameters.
+    pub fn warnings(&self) -> Vec<String> {
+        let flipped = self.flipped.iter().map(|FlippedTorque { joint, left }| {
+            let seen = match left {
+                Some([before, after]) => format!(
+                    "what is left of all torques falls from {:.1} % to {:.1} %",
+                    100.0 * before,
+                    100.0 * after
+                ),
+                None => "its friction is not below 0".to_owned(),
+            };
+            format!(
+                "The torque of {joint} seems to have the wrong sign: with the other one {seen}. \
+                 Torques are positive along the joint axis; --columns with {{\"tau_{joint}\": \
+                 {{\"scale\": -1}}}} turns it round."
+            )
+        });
+        flipped.chain(self.bias()).collect()
     }
 
     /// The names of parameters that the motion does not show.
@@ -86,8 +109,10 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let noise = noise_of_positions(model, train, (phi, &options.position_noise), &torques);
     let names = model.joints.iter().map(|joint| joint.name.clone());
     let most = names.zip(noise).max_by(|a, b| a.1.total_cmp(&b.1));
+    let listed = parameters(model, &found);
     Ok(Identification {
-        parameters: parameters(model, &found),
+        flipped: flipped_torques(model, &found, &listed),
+        parameters: listed,
         train: left,
         position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: judged(phi),

@@ -9,7 +9,7 @@
 //! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
 //! - [`updated_model`], [`model_values`], [`updated_text`]: back into the model file
-//! - [`statics`]: what weighings and held postures say
+//! - [`statics`], [`read_statics`]: what weighings and held postures say
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 
 pub mod condition;
@@ -23,6 +23,7 @@ pub mod log;
 mod model_text;
 mod model_values;
 pub mod statics;
+mod statics_file;
 pub mod two_stage;
 mod updated_model;
 
@@ -30,4 +31,5 @@ pub use contact_forces::add_contact_forces;
 pub use identification::{Identification, Request, identify};
 pub use model_text::{NewValue, updated as updated_text};
 pub use model_values::{model_values, with_effect};
+pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdateError, UpdatedModel, updated_model};

@@ -26,6 +26,16 @@ impl Node {
         }
     }
 
+    /// Where another entry of an object goes: after its last one, or after its bracket.
+    fn end(&self) -> usize {
+        match &self.kind {
+            Kind::Object(entries) => {
+                entries.last().map_or(self.span.start + 1, |(_, last)| last.span.end)
+            }
+            _ => self.span.start + 1,
+        }
+    }
+
     fn items(&self) -> &[Self] {
         if let Kind::Array(items) = &self.kind { items } else { &[] }
     }
@@ -170,14 +180,14 @@ enum Place {
     Value(Range<usize>),
     /// The value in an object, and the place of its standard error.
     Parts(Range<usize>, Box<Place>),
-    /// After the bracket that opens an object, with a key.
+    /// A place within an object where another entry may stand, with its key.
     In(usize, String),
 }
 
 fn in_object(object: &Node, key: &str) -> Place {
     match object.get(key) {
         Some(node) => Place::Value(node.span.clone()),
-        None => Place::In(object.span.start + 1, key.to_owned()),
+        None => Place::In(object.end(), key.to_owned()),
     }
 }
 
@@ -197,6 +207,9 @@ fn place(root: &Node, parameter: &ModelParameter) -> Option<Place> {
         Some(Role::Body(_, entry)) => body_entry(body(root, link?)?, entry),
         _ => {
             let drive = root.get("drives").and_then(|drives| drives.get(link?));
+            if parameter.name.starts_with("k_") {
+                return Some(in_object(drive?.get("series_elastic")?, "stiffness"));
+            }
             let key = drive_key(parameter)?;
             let joint = link_of(root, link?).and_then(|link| link.get("joint"));
             let damping = joint.and_then(|joint| joint.get("damping"));
@@ -231,13 +244,13 @@ fn body_entry(body: &Node, entry: BodyEntry) -> Option<Place> {
             let key = &entry.prefix()[1..];
             return match body.get("inertia") {
                 Some(inertia) => Some(in_object(inertia, key)),
-                None => Some(Place::In(body.span.start + 1, format!("inertia.{key}"))),
+                None => Some(Place::In(body.end(), format!("inertia.{key}"))),
             };
         }
     };
     match body.get("com") {
         Some(com) => com.items().get(axis).map(|node| Place::Value(node.span.clone())),
-        None => Some(Place::In(body.span.start + 1, format!("com.{axis}"))),
+        None => Some(Place::In(body.end(), format!("com.{axis}"))),
     }
 }
 
@@ -262,8 +275,8 @@ fn missing_joint(
     let link = parameter.link.as_deref()?;
     let key = drive_key(parameter)?;
     let (at, prefix) = match root.get("drives") {
-        Some(drives) => (drives.span.start + 1, String::new()),
-        None => (root.span.start + 1, "drives.".to_owned()),
+        Some(drives) => (drives.end(), String::new()),
+        None => (root.end(), "drives.".to_owned()),
     };
     inserted.push((at, format!("{prefix}{link}.{key}"), written));
     Some(())
@@ -279,14 +292,34 @@ fn grouped(text: &str, inserted: Vec<(usize, String, String)>) -> Vec<(usize, St
         let own = inserted.iter().filter(|(own, ..)| *own == at);
         let own: Vec<(Vec<&str>, &str)> =
             own.map(|(_, key, value)| (key.split('.').collect(), value.as_str())).collect();
-        let mut new = entries(&own);
-        let is_empty = text[at..].trim_start().starts_with('}');
-        if !is_empty {
-            new.push_str(", ");
-        }
-        (at, new)
+        let new = entries(&own);
+        // the first entry of an object, one on the line of the others, or one on a line of its own
+        let before = &text[..at];
+        let separator = match indent(before) {
+            _ if before.ends_with('{') => String::new(),
+            Some(indent) => format!(",\n{indent}"),
+            None => ", ".to_owned(),
+        };
+        (at, separator + &new)
     };
     places.into_iter().map(at_place).collect()
+}
+
+/// The blanks before the entry of an object that ends here, if it has its line to itself.
+fn indent(before: &str) -> Option<&str> {
+    let mut depth = 0;
+    let open = before.char_indices().rev().find(|(_, letter)| {
+        depth += match letter {
+            '}' | ']' => 1,
+            '{' | '[' => -1,
+            _ => 0,
+        };
+        depth < 0
+    });
+    let inner = &before[open.map_or(0, |(at, _)| at + 1)..];
+    // entries on lines of their own begin with a line's end after the bracket
+    let line = inner.strip_prefix('\n').or_else(|| inner.strip_prefix("\r\n"))?;
+    Some(&line[..line.len() - line.trim_start_matches([' ', '\t']).len()])
 }
 
 fn entries(given: &[(Vec<&str>, &str)]) -> String {

@@ -15,32 +15,10 @@
 use super::condition::{ConditionError, Conditioned, Conditioning};
 use super::estimate::{self, EstimateError, estimate};
 use super::log::{JointSignals, MeasuredLog};
-use crate::plants::regression::RegressionModel;
+use crate::plants::regression::{CoulombLaw, RegressionModel};
 use crate::plants::{DriveModel, PlantModel, SeriesElasticModel};
-use crate::simulate::Log;
-use denavit_runtime::Transcendental;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
-
-/// How Coulomb friction depends on the rate of the motor.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum FrictionSign {
-    /// Its sign.
-    #[default]
-    Sign,
-    /// The hyperbolic tangent of the rate over this one [rad/s].
-    Tanh(f64),
-}
-
-impl FrictionSign {
-    fn of(self, rate: f64) -> f64 {
-        match self {
-            Self::Sign if rate == 0.0 => 0.0,
-            Self::Sign => rate.signum(),
-            Self::Tanh(width) => (rate / width).hyperbolic_tangent(),
-        }
-    }
-}
 
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,10 +53,9 @@ pub struct TwoStage {
     pub springs: Vec<Spring>,
     /// The base parameters of kept columns.
     pub listed: Vec<Estimate>,
-    /// Those on the joint axes.
-    pub axes: Vec<f64>,
-    /// Their covariance.
-    pub covariance: DMatrix<f64>,
+    /// The estimate of those on the joint axes, with the uncertainty of the springs in its
+    /// covariance.
+    pub load: estimate::Estimate,
     /// For each joint the deviation of what its equation misses, and the root mean square of its
     /// torque [N m, N].
     pub residuals: Vec<[f64; 2]>,
@@ -87,10 +64,10 @@ pub struct TwoStage {
 /// Why a log does not give the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TwoStageError {
+    /// No joint is behind a spring.
+    NoSprings,
     /// The log has no such column.
     MissingColumn(String),
-    /// The columns are not at equal distances of time.
-    UnevenTime,
     /// The log cannot be conditioned.
     Condition(ConditionError),
     /// The load cannot be estimated.
@@ -105,7 +82,7 @@ impl fmt::Display for TwoStageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::MissingColumn(column) => write!(f, "the log has no column `{column}`"),
-            Self::UnevenTime => write!(f, "the rows of the log are at unequal distances of time"),
+            Self::NoSprings => write!(f, "the model has no series elastic drive"),
             Self::Condition(error) => write!(f, "{error}"),
             Self::Estimate(error) => write!(f, "{error}"),
             Self::NotExcited(what) => {
@@ -121,19 +98,21 @@ impl std::error::Error for TwoStageError {}
 /// Blocks over which scores are summed.
 const BLOCKS: usize = 50;
 
-/// Identifies a robot whose plant says which joints are elastic. The log has `q_` and `motor_`
-/// angles, `tau_` of stiff joints (torque of their motors, joint side) and `tau_cmd_` of elastic
-/// ones (the same of theirs). The two stages have conditionings of their own: the first has no
-/// acceleration of a joint in it, and needs the reversals of friction. Rotor inertias, gear ratios
-/// and radii are known (thesis 3.3.1).
+/// Identifies a robot whose plant says which joints are elastic, with the law of Coulomb friction
+/// of `model` for joints and motors alike. The log has positions of joints, angles of the motors of
+/// elastic ones, torques of stiff joints and those of the motors of elastic ones. The two stages
+/// have conditionings of their own: the first has no acceleration of a joint in it, and needs the
+/// reversals of friction. Rotor inertias, gear ratios and radii are known (thesis 3.3.1).
 pub fn two_stage(
     plant: &PlantModel,
     model: &RegressionModel,
-    log: &Log,
+    log: &MeasuredLog,
     [of_springs, of_loads]: [&Conditioning; 2],
-    sign: FrictionSign,
 ) -> Result<TwoStage, TwoStageError> {
     let elastic = elastic_joints(plant)?;
+    if elastic.is_empty() {
+        return Err(TwoStageError::NoSprings);
+    }
     let measured = measured(plant, &elastic, log)?;
     let names: Vec<String> = plant
         .joints
@@ -147,7 +126,7 @@ pub fn two_stage(
     let motion = Motion::new(&conditioned(of_springs)?, plant.joints.len());
     let mut springs = Vec::new();
     for (place, one) in elastic.iter().enumerate() {
-        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, sign)?);
+        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, model.law)?);
     }
     let conditioned = conditioned(of_loads)?;
     let load = Load { plant, model, conditioned: &conditioned, elastic: &elastic };
@@ -179,40 +158,30 @@ fn elastic_joints(plant: &PlantModel) -> Result<Vec<Elastic>, TwoStageError> {
 fn measured(
     plant: &PlantModel,
     elastic: &[Elastic],
-    log: &Log,
+    log: &MeasuredLog,
 ) -> Result<MeasuredLog, TwoStageError> {
-    let column = |name: String| log.column(&name).ok_or(TwoStageError::MissingColumn(name));
-    let times = column("t".to_owned())?;
-    let step_s = match (times.first(), times.last()) {
-        (Some(first), Some(last)) if times.len() > 1 => (last - first) / (times.len() - 1) as f64,
-        _ => return Err(TwoStageError::UnevenTime),
+    let there = |values: &Option<Vec<f64>>, prefix: &str, joint: usize| {
+        let missing =
+            || TwoStageError::MissingColumn(format!("{prefix}_{}", plant.joints[joint].name));
+        values.clone().ok_or_else(missing)
     };
-    let start_s = times[0];
-    let is_even = times
-        .iter()
-        .enumerate()
-        .all(|(k, t)| (t - start_s - k as f64 * step_s).abs() < 1e-3 * step_s);
-    if !is_even {
-        return Err(TwoStageError::UnevenTime);
-    }
     let mut joints = Vec::new();
-    for (index, joint) in plant.joints.iter().enumerate() {
-        let q = column(format!("q_{}", joint.name))?;
+    for (index, own) in log.joints.iter().enumerate() {
         let is_elastic = elastic.iter().any(|one| one.joint == index);
         let tau = match is_elastic {
             true => None,
-            false => Some(column(format!("tau_{}", joint.name))?),
+            false => Some(there(&own.tau, "tau", index)?),
         };
-        joints.push(JointSignals { q, tau, ..JointSignals::default() });
+        joints.push(JointSignals { q: own.q.clone(), tau, ..JointSignals::default() });
     }
     for one in elastic {
-        let name = &plant.joints[one.joint].name;
-        let q = column(format!("motor_{name}"))?;
-        let mut tau = column(format!("tau_cmd_{name}"))?;
-        tau.iter_mut().for_each(|torque| *torque /= one.drive.gear_ratio);
-        joints.push(JointSignals { q, tau: Some(tau), ..JointSignals::default() });
+        let own = &log.joints[one.joint];
+        let q = there(&own.motor, "motor", one.joint)?;
+        let tau = Some(there(&own.motor_torque, "tau_cmd", one.joint)?);
+        joints.push(JointSignals { q, tau, ..JointSignals::default() });
     }
-    Ok(MeasuredLog { start_s, step_s, joints, ..MeasuredLog::default() })
+    let MeasuredLog { start_s, step_s, .. } = *log;
+    Ok(MeasuredLog { file: log.file.clone(), start_s, step_s, joints, ..MeasuredLog::default() })
 }
 
 /// What the first stage needs of the conditioned samples that count.
@@ -256,14 +225,16 @@ impl Elastic {
         name: &str,
         motion: &Motion,
         place: usize,
-        sign: FrictionSign,
+        law: CoulombLaw,
     ) -> Result<Spring, TwoStageError> {
         let [angles, rates, accelerations] = &motion.motors[place];
         let lever = self.spring.motor_radius / self.drive.gear_ratio;
+        // the law is that of joints: motors turn so many times as fast
+        let turns = self.drive.gear_ratio.abs();
         let pairs = angles.iter().zip(&motion.positions[self.joint]);
         let columns = [
             rates.clone(),
-            rates.iter().map(|rate| sign.of(*rate)).collect(),
+            rates.iter().map(|rate| law.of(rate / turns)).collect(),
             pairs.map(|(motor, q)| lever * self.elongation(*motor, *q)).collect::<Vec<f64>>(),
         ];
         let rows = columns[0].len();
@@ -301,7 +272,7 @@ struct Load<'a> {
 impl Load<'_> {
     fn identify(&self, springs: Vec<Spring>) -> Result<TwoStage, TwoStageError> {
         let stiffness: Vec<f64> = springs.iter().map(|spring| spring.stiffness.value).collect();
-        let found = self.estimate(&stiffness)?;
+        let mut found = self.estimate(&stiffness)?;
         let phi = found.solution.phi.clone();
         let mut covariance = found.covariance.clone();
         for (place, spring) in springs.iter().enumerate() {
@@ -319,8 +290,8 @@ impl Load<'_> {
         let size = |torque: &Option<Vec<f64>>| rms(torque.as_deref().unwrap_or_default());
         let residuals = found.noise.iter().zip(&torques).map(|(noise, t)| [*noise, size(t)]);
         let residuals = residuals.collect();
-        let axes = phi.as_slice().to_vec();
-        Ok(TwoStage { springs, listed, axes, covariance, residuals })
+        found.covariance = covariance;
+        Ok(TwoStage { springs, listed, load: found, residuals })
     }
 
     fn estimate(&self, stiffness: &[f64]) -> Result<estimate::Estimate, TwoStageError> {

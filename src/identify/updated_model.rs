@@ -67,8 +67,15 @@ pub fn updated_model(
     let text = |is_written: &dyn Fn(usize) -> bool| {
         let all = model.parameters.iter().zip(&values).enumerate();
         let new: Vec<NewValue<'_>> = all
-            .filter(|(place, _)| is_written(*place))
-            .map(|(_, (parameter, &value))| NewValue { parameter, value, std: std_of(parameter) })
+            .filter(|(place, (parameter, value))| {
+                is_written(*place)
+                    && (moved(parameter.value, **value) || std_of(parameter).is_some())
+            })
+            .map(|(_, (parameter, &value))| NewValue {
+                parameter,
+                value: snapped(value, std_of(parameter)),
+                std: std_of(parameter),
+            })
             .collect();
         updated(source, &new).ok_or_else(|| UpdateError::NoPlace(model.model.clone()))
     };
@@ -81,6 +88,17 @@ pub fn updated_model(
         Ok(updated) => Ok(updated),
         Err(_) => read(text(&|_| true)?).map_err(UpdateError::Unsound),
     }
+}
+
+/// A value without what is far below its error, or below what any number of a robot has.
+fn snapped(value: f64, std: Option<f64>) -> f64 {
+    let nothing = std.map_or(0.0, |std| 1e-6 * std).max(1e-15);
+    if value.abs() < nothing { 0.0 } else { value }
+}
+
+/// Whether a value is another one, and not the same after some rounding.
+fn moved(before: f64, after: f64) -> bool {
+    (after - before).abs() > 1e-12 * before.abs().max(after.abs()).max(1e-3)
 }
 
 /// Whether the file has a moment of inertia about another point than the estimate.

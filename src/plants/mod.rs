@@ -20,6 +20,7 @@ mod model;
 pub mod regression;
 mod regression_model;
 mod regression_rows;
+mod regression_values;
 
 pub use cradle::Cradle;
 pub use generated::{planar_biped, plant_of, puma560, tulip};

@@ -7,13 +7,14 @@
 //! floating base the generalized forces of its virtual joints come first.
 
 use super::regression_model::{described_joints, with_joint_parameters};
+use super::regression_values::{not_negative_program, theta0_program, values_of};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::emit::latex::{base_notation, base_sum};
 use denavit_codegen::expr::{Dag, ExprId, substitute};
 use denavit_codegen::function::{Form, Function, FunctionName, Output};
 use denavit_codegen::model::{Robot, Role, TorqueSide, bake_geometry};
 use denavit_codegen::program::{
-    BatchEvaluator, Evaluator, Program, constant_values, lower, parameter_defaults, prelude_values,
+    BatchEvaluator, Program, constant_values, lower, parameter_defaults, prelude_values,
 };
 use denavit_codegen::regressor::functions::modelled;
 use denavit_codegen::regressor::{
@@ -23,7 +24,7 @@ use nalgebra::DMatrix;
 use rustc_hash::FxHashMap;
 
 pub use super::regression_model::{MotionError, RegressionError, RegressionJoint};
-pub use super::regression_rows::{RegressionEvaluator, RegressionRows};
+pub use super::regression_rows::{CoulombLaw, RegressionEvaluator, RegressionRows};
 
 /// A base parameter as it is reported: a kept column's, or one on a joint axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +92,10 @@ pub struct RegressionModel {
     pub standard: Vec<StandardParameter>,
     /// The numbers of the model file that theta0 is made of.
     pub parameters: Vec<ModelParameter>,
+    /// How Coulomb friction depends on the rate: its sign if nothing else is said.
+    pub law: CoulombLaw,
+    /// Joint and place in its pattern of each column of Coulomb friction.
+    coulomb: Vec<(usize, usize)>,
     /// phi = T pi, row by row, square.
     to_axes: DMatrix<f64>,
     /// pi = T^-1 phi.
@@ -102,6 +107,7 @@ pub struct RegressionModel {
     program: Program,
     prelude: Vec<f64>,
     theta0: Program,
+    not_negative: Option<Program>,
 }
 
 impl RegressionModel {
@@ -159,19 +165,25 @@ impl RegressionModel {
         let to_listed = to_axes.clone().try_inverse().filter(|m| m.iter().all(|x| x.is_finite()));
         let to_listed = to_listed.ok_or_else(|| RegressionError::Singular(robot.name.clone()))?;
         let theta0 = theta0_program(&base, robot)?;
+        let joints = described_joints(robot, side);
+        let axes = on_axes(&mut numbers, robot, &base, &axes)?;
+        let standard = standard(&mut numbers, robot, &base);
         Ok(Self {
             model: robot.name.clone(),
-            joints: described_joints(robot, side),
             listed: listed(&mut numbers, robot, &base)?,
-            axes: on_axes(&mut numbers, robot, &base, &axes)?,
-            standard: standard(&mut numbers, robot, &base),
             parameters: parameters(robot, &base, &theta0),
+            law: CoulombLaw::Sign,
+            coulomb: coulomb_columns((&joints, &pattern), &axes, &standard),
+            joints,
+            axes,
+            standard,
             to_axes,
             to_listed,
             pattern,
             known,
             program,
             prelude,
+            not_negative: not_negative_program(&base, robot)?,
             theta0,
         })
     }
@@ -205,7 +217,8 @@ impl RegressionModel {
     pub fn evaluator(&self) -> RegressionEvaluator {
         let routine = &self.program.routines[0];
         let widths = self.pattern.iter().map(Vec::len).collect();
-        RegressionEvaluator::new(BatchEvaluator::new(routine, &self.prelude), widths, &self.known)
+        let batch = BatchEvaluator::new(routine, &self.prelude);
+        RegressionEvaluator::new(batch, widths, &self.known).with_law(self.law, &self.coulomb)
     }
 
     /// theta0 of values of [`RegressionModel::parameters`].
@@ -220,12 +233,21 @@ impl RegressionModel {
             .map(|p| p.name.as_str())
             .zip(parameters.iter().copied())
             .collect();
-        let given: Vec<f64> = self.theta0.parameters.iter().map(|n| of_name[n.as_str()]).collect();
-        let prelude = prelude_values(&self.theta0, &given).expect("one value for each parameter");
-        let mut evaluator = Evaluator::<f64>::new(&self.theta0.routines[0], &prelude);
-        let mut values = vec![0.0; self.standard.len()];
-        evaluator.evaluate(&[], &mut values).expect("one entry for each column");
-        values
+        let of_name = |name: &str| of_name.get(name).copied();
+        values_of(&self.theta0, &of_name)
+    }
+
+    /// Masses and moments of inertia of bodies that are written as expressions, of values of
+    /// [`RegressionModel::parameters`]: none of them may be negative.
+    ///
+    /// # Panics
+    /// If there is not one value for each of them.
+    pub fn masses_and_moments(&self, parameters: &[f64]) -> Vec<f64> {
+        assert_eq!(parameters.len(), self.parameters.len(), "one value for each parameter");
+        let of_name = |name: &str| {
+            self.parameters.iter().position(|p| p.name == name).map(|at| parameters[at])
+        };
+        self.not_negative.as_ref().map_or_else(Vec::new, |program| values_of(program, &of_name))
     }
 
     /// phi of theta0.
@@ -240,6 +262,26 @@ impl RegressionModel {
 /// The base parameters with the joint parameters that the robot has.
 fn reduced(robot: &Robot, keep: &[String]) -> Result<BaseParameters, RegressionError> {
     base_parameters(robot, modelled(robot), keep).map_err(RegressionError::base)
+}
+
+/// Where the columns of Coulomb friction stand: each is a parameter of its joint alone.
+fn coulomb_columns(
+    (joints, pattern): (&[RegressionJoint], &[Vec<usize>]),
+    axes: &[RegressionParameter],
+    standard: &[StandardParameter],
+) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    for (joint, (described, places)) in joints.iter().zip(pattern).enumerate() {
+        let is_coulomb = |phi: &usize| match &axes[*phi].members[..] {
+            [(at, _)] => standard[*at]
+                .owner
+                .as_ref()
+                .is_some_and(|(link, prefix)| *link == described.name && *prefix == "fc"),
+            _ => false,
+        };
+        found.extend(places.iter().position(is_coulomb).map(|place| (joint, place)));
+    }
+    found
 }
 
 /// The base regressor without the entries that are exactly 0, what is known after them.
@@ -374,23 +416,6 @@ fn standard(numbers: &mut Numbers, robot: &Robot, base: &BaseParameters) -> Vec<
         owner: column.owner.map(|(link, prefix)| (robot.links[link].name.clone(), prefix)),
     };
     columns.map(one).collect()
-}
-
-/// theta0 as a function of the numbers of the file, constants folded in.
-fn theta0_program(base: &BaseParameters, robot: &Robot) -> Result<Program, RegressionError> {
-    let mut dag = base.regressor.dag.clone();
-    let known = robot.parameters.values().filter(|parameter| parameter.known);
-    let known: FxHashMap<ExprId, ExprId> =
-        known.filter_map(|p| Some((p.symbol, p.default?))).collect();
-    let values: Vec<ExprId> = base.regressor.columns.iter().map(|column| column.value).collect();
-    let entries = substitute(&mut dag, &values, &known);
-    let name = FunctionName::BaseParameters;
-    let shape = vec![entries.len()];
-    let (doc, details) = (String::new(), Vec::new());
-    let output = Output { name: name.as_str(), shape, entries, doc, details };
-    let (arguments, outputs) = (Vec::new(), vec![output]);
-    let function = Function { name, link: None, arguments, outputs, form: Form::Plain };
-    lower(&dag, &[function]).map_err(RegressionError::Lower)
 }
 
 /// The numbers that theta0 depends on, in the order of the model.

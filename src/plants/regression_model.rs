@@ -27,11 +27,13 @@ pub struct RegressionJoint {
     pub acceleration_limit: Option<f64>,
     /// Lowest and highest torque of the drive, joint side.
     pub torque_limits: Option<[f64; 2]>,
-    /// What a torque of its motor is multiplied with to be one along the joint axis: the gear ratio
-    /// of a stiff drive, else 1.
+    /// What a torque of its motor is multiplied with to be one along the joint axis: the turns of
+    /// the motor for one of the joint, a spring between them being relaxed; 1 without a gear.
     pub gear_ratio: f64,
     /// Where logs that do not say it themselves have its torque, by the model.
     pub torque_side: TorqueSide,
+    /// Whether it has a drive: no torque is measured of one that has none.
+    pub is_driven: bool,
     /// Whether a spring is between motor and joint, so that the motor's torque is not the joint's.
     pub is_elastic: bool,
 }
@@ -167,10 +169,13 @@ pub(super) fn described_joints(robot: &Robot, side: TorqueSide) -> Vec<Regressio
     };
     let range = |range: [ExprId; 2]| Some([value(range[0])?, value(range[1])?]);
     let one = |link: &Link| {
-        let stiff = link.drive.filter(|drive| drive.series_elastic.is_none());
-        let gear = stiff.and_then(|drive| drive.gear_ratio).and_then(|ratio| {
-            let parameter = robot.parameters.values().find(|p| p.symbol == ratio);
-            value(parameter.and_then(|p| p.default).unwrap_or(ratio))
+        let of_symbol = |entry: ExprId| {
+            let parameter = robot.parameters.values().find(|p| p.symbol == entry);
+            value(parameter.and_then(|p| p.default).unwrap_or(entry))
+        };
+        let gear = link.drive.and_then(|drive| drive.gear_ratio).and_then(of_symbol);
+        let pulleys = link.drive.and_then(|drive| drive.series_elastic).and_then(|elastic| {
+            Some(of_symbol(elastic.load_radius)? / of_symbol(elastic.motor_radius)?)
         });
         RegressionJoint {
             name: link.name.clone(),
@@ -180,8 +185,9 @@ pub(super) fn described_joints(robot: &Robot, side: TorqueSide) -> Vec<Regressio
             velocity_limit: link.limits.velocity.and_then(value),
             acceleration_limit: link.limits.acceleration.and_then(value),
             torque_limits: link.limits.torque.and_then(range),
-            gear_ratio: gear.unwrap_or(1.0),
+            gear_ratio: gear.unwrap_or(1.0) * pulleys.unwrap_or(1.0),
             torque_side: side,
+            is_driven: link.drive.is_some(),
             is_elastic: link.drive.is_some_and(|drive| drive.series_elastic.is_some()),
         }
     };

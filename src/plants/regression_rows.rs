@@ -2,6 +2,29 @@
 
 use super::regression_model::MotionError;
 use denavit_codegen::program::BatchEvaluator;
+use denavit_runtime::Transcendental;
+
+/// How Coulomb friction depends on the rate of a joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum CoulombLaw {
+    /// Its sign.
+    #[default]
+    Sign,
+    /// The hyperbolic tangent of the rate over this one [rad/s, m/s]: the law of the simulation, a
+    /// steep line through 0.
+    Tanh(f64),
+}
+
+impl CoulombLaw {
+    /// Friction of size 1 at a rate.
+    pub fn of(self, rate: f64) -> f64 {
+        match self {
+            Self::Sign if rate == 0.0 => 0.0,
+            Self::Sign => rate.signum(),
+            Self::Tanh(width) => (rate / width).hyperbolic_tangent(),
+        }
+    }
+}
 
 /// Computes rows of tau - known = Y phi for many samples at once.
 #[derive(Clone, Debug)]
@@ -9,6 +32,9 @@ pub struct RegressionEvaluator {
     batch: BatchEvaluator<f64>,
     widths: Vec<usize>,
     known: Vec<usize>,
+    law: CoulombLaw,
+    /// Joint and place of each column that is a sign of the joint's rate.
+    coulomb: Vec<(usize, usize)>,
 }
 
 /// The entries of Y that can differ from 0, and what is known, for a block of samples.
@@ -64,7 +90,14 @@ impl RegressionRows {
 
 impl RegressionEvaluator {
     pub(super) fn new(batch: BatchEvaluator<f64>, widths: Vec<usize>, known: &[usize]) -> Self {
-        Self { batch, widths, known: known.to_vec() }
+        let (law, coulomb) = (CoulombLaw::Sign, Vec::new());
+        Self { batch, widths, known: known.to_vec(), law, coulomb }
+    }
+
+    /// With another law in the columns of Coulomb friction, each given by its joint and place.
+    pub(super) fn with_law(mut self, law: CoulombLaw, coulomb: &[(usize, usize)]) -> Self {
+        (self.law, self.coulomb) = (law, coulomb.to_vec());
+        self
     }
 
     /// The rows of samples. `motion` are 3 n columns, q of every joint, then qd, then qdd [rad, m;
@@ -95,6 +128,16 @@ impl RegressionEvaluator {
         }
         let mut columns: Vec<&mut [f64]> = rows.values.chunks_exact_mut(samples).collect();
         self.batch.evaluate(motion, &mut columns).expect("the shapes were compared before");
+        if self.law != CoulombLaw::Sign {
+            for &(joint, place) in &self.coulomb {
+                let rates = motion[self.widths.len() + joint];
+                let column = &mut columns[rows.first[joint] + place];
+                for (entry, rate) in column.iter_mut().zip(rates) {
+                    // a sign, times the factor that it has
+                    *entry *= self.law.of(rate.abs());
+                }
+            }
+        }
         Ok(())
     }
 }

@@ -72,8 +72,8 @@ impl IdentificationPage<'_> {
             text += &format!("; the model left {} before", percent(before));
         }
         text.push('.');
-        if let Some(bias) = found.bias() {
-            text = format!("{text} {bias}");
+        for warning in found.warnings() {
+            text = format!("{text} {warning}");
         }
         if found.consistent.distance > 1.0 {
             text += &format!(

@@ -9,6 +9,7 @@ mod excite;
 mod gears;
 mod help;
 mod identify;
+mod identify_procedures;
 mod readme;
 mod simulate;
 mod simulated_again;

@@ -6,6 +6,8 @@ use denavit::identify::condition::ConditionError;
 use denavit::identify::estimate::EstimateError;
 use denavit::identify::forward::ForwardError;
 use denavit::identify::log::{LogFaults, MappingError};
+use denavit::identify::statics::StaticFault;
+use denavit::identify::two_stage::TwoStageError;
 use denavit::plants::PlantError;
 use denavit::plants::regression::RegressionError;
 use denavit::report::html::FormulaError;
@@ -30,6 +32,12 @@ pub(crate) enum IdentifyFailure {
     Update(UpdateError),
     /// A log cannot be simulated again; holds its name.
     Forward(String, ForwardError),
+    /// Two stages need one log.
+    OneLog,
+    /// A log does not give springs and load; holds its name.
+    TwoStage(String, TwoStageError),
+    /// Measurements at rest do not fit the model; holds their file.
+    Statics(String, Vec<StaticFault>),
     /// Instrumental variables without instruments, and nothing to simulate them with.
     NoInstruments,
     /// A picture of a simulation that was not made.
@@ -50,6 +58,15 @@ impl fmt::Display for IdentifyFailure {
             Self::Formula(error) => write!(f, "{error}"),
             Self::Update(error) => write!(f, "{error}"),
             Self::Forward(file, error) => write!(f, "{file}: {error}"),
+            Self::OneLog => write!(f, "--two-stage takes one log: --train LOG"),
+            Self::TwoStage(file, error) => write!(f, "{file}: {error}"),
+            Self::Statics(file, faults) => {
+                for (index, fault) in faults.iter().enumerate() {
+                    let end = if index > 0 { "\n" } else { "" };
+                    write!(f, "{end}{file}: {fault}")?;
+                }
+                Ok(())
+            }
             Self::NoInstruments => write!(
                 f,
                 "--method iv needs --instruments LOG.., or --controller FILE to simulate them"

@@ -3,7 +3,7 @@
 use super::{Shown, SimulationGap};
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
-use denavit::identify::estimate::{JointResidual, Status};
+use denavit::identify::estimate::{IdentifiedParameter, JointResidual, Status};
 use denavit::identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
 use serde::Serialize;
 use std::io::Write;
@@ -28,7 +28,7 @@ struct IdentifyJson<'a> {
 }
 
 #[derive(Serialize)]
-struct ParameterJson<'a> {
+pub(super) struct ParameterJson<'a> {
     name: &'a str,
     expression: &'a str,
     latex: &'a str,
@@ -39,6 +39,23 @@ struct ParameterJson<'a> {
     identifiable: bool,
     status: &'static str,
     model_value: Option<f64>,
+}
+
+impl<'a> ParameterJson<'a> {
+    pub(super) fn new(one: &'a IdentifiedParameter) -> Self {
+        Self {
+            name: &one.name,
+            expression: &one.expression,
+            latex: &one.latex,
+            value: one.value,
+            std: one.std,
+            interval: one.interval.map(|half| [one.value - half, one.value + half]),
+            unit: &one.unit,
+            identifiable: one.status != Status::NotExcited,
+            status: one.status.word(),
+            model_value: one.model_value,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -164,18 +181,7 @@ fn finite(value: f64) -> Option<f64> {
 
 pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
     let Shown { robot, model, found, remarks, simulated } = shown;
-    let parameters = found.parameters.iter().map(|one| ParameterJson {
-        name: &one.name,
-        expression: &one.expression,
-        latex: &one.latex,
-        value: one.value,
-        std: one.std,
-        interval: one.interval.map(|half| [one.value - half, one.value + half]),
-        unit: &one.unit,
-        identifiable: one.status != Status::NotExcited,
-        status: one.status.word(),
-        model_value: one.model_value,
-    });
+    let parameters = found.parameters.iter().map(ParameterJson::new);
     let held_out = |joint: &JointResidual| {
         let joints = &found.validate.as_ref()?.joints;
         joints.iter().find(|other| other.name == joint.name).map(|other| other.relative)
@@ -221,7 +227,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         remarks: remarks
             .iter()
             .map(|(file, remark)| format!("{file}: {remark}"))
-            .chain(found.bias())
+            .chain(found.warnings())
             .collect(),
     };
     write_json(out, &json)

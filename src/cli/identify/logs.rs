@@ -1,6 +1,6 @@
 //! Logs read, checked and conditioned as the options say.
 
-use super::{Arguments, IdentifyFailure, MethodName};
+use super::{Arguments, IdentifyFailure, MethodName, Slow};
 use crate::cli::failure::Failure;
 use crate::cli::files::{open_log, read_file};
 use clap::{Args, ValueEnum};
@@ -9,7 +9,7 @@ use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivat
 use denavit::identify::forward::{LONGEST_S, MotionLog};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
-use denavit::plants::regression::RegressionModel;
+use denavit::plants::regression::{CoulombLaw, RegressionModel};
 use denavit::plants::{Plant, plant_of};
 use std::path::{Path, PathBuf};
 
@@ -116,13 +116,7 @@ pub(super) fn read(
     robot: &Robot,
     model: &RegressionModel,
 ) -> Result<Read, Failure> {
-    let mapping = match &arguments.columns {
-        None => ColumnMapping::default(),
-        Some(path) => {
-            let name = path.display().to_string();
-            ColumnMapping::from_json(&name, &read_file(path)?).map_err(IdentifyFailure::Mapping)?
-        }
-    };
+    let mapping = mapping(arguments)?;
     let needs_plant = model.joints.iter().any(|joint| joint.is_base);
     let plant = needs_plant.then(|| plant_of(robot, &[])).transpose();
     let plant = plant.map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
@@ -154,6 +148,33 @@ pub(super) fn read(
     let instruments = reader.kept(&arguments.instruments, None)?;
     let Reader { remarks, noise, .. } = reader;
     Ok(Read { train, validate, instruments, motions, whole, remarks, position_noise: noise })
+}
+
+/// A log as it was measured, without a look at torques of motors behind springs.
+pub(super) fn measured(
+    arguments: &Arguments,
+    robot: &Robot,
+    model: &RegressionModel,
+    path: &Path,
+) -> Result<MeasuredLog, Failure> {
+    let file = path.display().to_string();
+    let contacts: Vec<String> =
+        robot.contacts.values().map(|contact| contact.name.clone()).collect();
+    let of = LogOf {
+        model: &model.model,
+        joints: &model.joints,
+        contacts: &contacts,
+        accepts_suspicious: arguments.accept_suspicious,
+    };
+    let mapping = mapping(arguments)?;
+    Ok(read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::Log)?)
+}
+
+fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
+    let Some(path) = &arguments.columns else { return Ok(ColumnMapping::default()) };
+    let name = path.display().to_string();
+    let read = ColumnMapping::from_json(&name, &read_file(path)?);
+    Ok(read.map_err(IdentifyFailure::Mapping)?)
 }
 
 struct Reader<'a> {
@@ -207,9 +228,23 @@ impl Reader<'_> {
             let head = log.head((longest_s / log.step_s).min(1e15) as usize + 1);
             let motion = MotionLog::new(&head, &self.names, how.filter);
             let failed = |error| IdentifyFailure::Condition(file.clone(), error);
-            motions.push(motion.map_err(failed)?);
+            let mut motion = motion.map_err(failed)?;
+            if let CoulombLaw::Tanh(width) = self.arguments.friction {
+                motion.stiction_rate = width;
+            }
+            motions.push(motion);
         }
         let conditioned = Conditioned::new(log, &self.names, &how);
-        Ok(conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?)
+        let mut conditioned =
+            conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?;
+        let joints = self.names.len();
+        conditioned.slow = self.arguments.skip_slow.map(|slow| match slow {
+            Slow::Below(rate) => vec![rate; joints],
+            Slow::Noise => {
+                let of_rate = conditioned.noise_gains()[1][1].sqrt();
+                self.noise.iter().map(|noise| 3.0 * of_rate * noise).collect()
+            }
+        });
+        Ok(conditioned)
     }
 }

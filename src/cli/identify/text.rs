@@ -55,7 +55,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     if let Some(gap) = shown.simulated {
         write_simulation(out, gap)?;
     }
-    if let Some(text) = found.bias() {
+    for text in found.warnings() {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
     if found.consistent.distance > 1.0 {

@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use denavit::expr::ExprId;
 use denavit::model::{
-    Base, Contact, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms,
+    About, Base, Contact, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms,
 };
 use denavit::report::{Align, Table, Values, paragraph};
 use std::io::Write;
@@ -17,6 +17,8 @@ pub(super) fn write(
     writeln!(out, "\n{}", link_table(robot, values))?;
     totals(out, robot, values)?;
     for (title, table) in [
+        ("moments of inertia [kg m^2]", inertia_table(robot, values)),
+        ("standard deviations that the file states", deviation_table(robot, values)),
         ("limits", limit_table(robot, values)),
         ("drives, springs, damping", drive_table(robot, values)),
         ("contacts", point_table(robot, values, &mut robot.contacts.values())),
@@ -135,6 +137,35 @@ fn link_table(robot: &Robot, values: &mut Values) -> Table {
             cells.push(clip(body.com.map(|c| values.show(c)).join(", ")));
         }
         table.push(cells);
+    }
+    table
+}
+
+fn inertia_table(robot: &Robot, values: &mut Values) -> Table {
+    let names = ["xx", "yy", "zz", "xy", "xz", "yz"];
+    let mut columns = vec![("link", Align::Left), ("about", Align::Left)];
+    columns.extend(names.map(|name| (name, Align::Right)));
+    let mut table = Table::new(&columns);
+    for link in robot.links.values() {
+        let Some(body) = &link.body else { continue };
+        let about = match body.about {
+            About::Com => "centre of mass",
+            About::Origin => "origin",
+        };
+        let mut cells = vec![link.name.clone(), about.to_owned()];
+        cells.extend(body.inertia.map(|entry| clip(values.show(entry))));
+        table.push(cells);
+    }
+    table
+}
+
+fn deviation_table(robot: &Robot, values: &mut Values) -> Table {
+    let columns = [("parameter", Align::Left), ("value", Align::Right), ("std", Align::Right)];
+    let mut table = Table::new(&columns);
+    for parameter in robot.parameters.values() {
+        let Some(std) = parameter.std else { continue };
+        let value = parameter.default.map_or(String::new(), |value| values.show(value));
+        table.push(vec![parameter.name.clone(), value, values.show(std)]);
     }
     table
 }

@@ -148,6 +148,9 @@ pub struct Conditioned {
     pub decimation: usize,
     /// The filter that positions and torques went through.
     pub filter: Option<Butterworth>,
+    /// Rows of a joint count only while it is faster than this, and does not turn round [rad/s,
+    /// m/s]; none counts all.
+    pub slow: Option<Vec<f64>>,
     /// Standard deviation of the torque of each joint about the mean lap, where there are laps.
     pub lap_noise: Option<Vec<Option<f64>>>,
     /// The laps that were found in the log.

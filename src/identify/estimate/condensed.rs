@@ -104,7 +104,18 @@ impl Condensed {
             let end = if part + 1 == count { usize::MAX } else { (part + 1) * length };
             let to = block.samples.min(end.saturating_sub(block.first));
             let rows: Vec<&[f64]> = columns.iter().map(|column| &column[from..to]).collect();
-            self.parts[begin + part][joint].push(&rows);
+            let triangle = &mut self.parts[begin + part][joint];
+            match &block.counts[joint] {
+                None => triangle.push(&rows),
+                Some(counts) => {
+                    let counted = |column: &&[f64]| -> Vec<f64> {
+                        let pairs = column.iter().zip(&counts[from..to]);
+                        pairs.filter(|(_, counts)| **counts).map(|(entry, _)| *entry).collect()
+                    };
+                    let counted: Vec<Vec<f64>> = rows.iter().map(counted).collect();
+                    triangle.push(&counted.iter().map(Vec::as_slice).collect::<Vec<_>>());
+                }
+            }
             from = to;
         }
     }

@@ -5,6 +5,7 @@
 //! (log-Cholesky; Rucker, Wensing 2022), so that no step can leave the bodies that exist. What the
 //! estimate says nothing about stays near where it started.
 
+use super::bounds::Bounds;
 use super::least_squares::Estimate;
 use super::solve::stacked;
 use crate::plants::regression::RegressionModel;
@@ -16,6 +17,9 @@ const MAX_STEPS: usize = 200;
 /// What a unit of change of a body's coordinates costs, in squared standard errors of the estimate:
 /// little, so that it decides only what the data leave open.
 const STAY: f64 = 1e-8;
+
+/// Weights of what entries of bodies fall short of, one after the other until nothing does.
+const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
 
 /// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
 const LEAST_SHARE: f64 = 1e-4;
@@ -66,51 +70,23 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     let target = &w * &found.solution.phi;
     // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
     let scale = noise_scale(&r, &target, rank);
-    let problem = Problem { model, jacobian: (&w * b) / scale, target: target / scale };
+    let mut problem = Problem {
+        model,
+        jacobian: (&w * b) / scale,
+        target: target / scale,
+        bounds: Bounds::new(model),
+        weight: 0.0,
+    };
     let pieces = pieces(model);
-    let mut eta = coordinates(model, &pieces, start);
-    let first = eta.clone();
-    let mut damping = 1e-3;
-    let mut steps = 0;
-    let mut cost = problem.cost(&pieces, &eta, &first);
-    while steps < MAX_STEPS {
-        steps += 1;
-        let (theta, slope) = standard(model, &pieces, &eta);
-        let j = &problem.jacobian * slope;
-        let residual = &problem.target - &problem.jacobian * &theta;
-        let step = |damping: f64| -> Option<DVector<f64>> {
-            let (rows, columns) = j.shape();
-            let mut matrix = DMatrix::zeros(rows + columns, columns);
-            let mut right = DVector::zeros(rows + columns);
-            matrix.rows_mut(0, rows).copy_from(&j);
-            right.rows_mut(0, rows).copy_from(&residual);
-            let stay = (STAY + damping).sqrt();
-            for place in 0..columns {
-                matrix[(rows + place, place)] = stay;
-                right[rows + place] = STAY / stay * (first[place] - eta[place]);
-            }
-            let qr = matrix.qr();
-            let right = qr.q().tr_mul(&right);
-            qr.r().solve_upper_triangular(&right)
-        };
-        let next = step(damping).map(|step| {
-            let longest = step.amax();
-            let limited = if longest > 2.0 { step * (2.0 / longest) } else { step };
-            &eta + limited
-        });
-        let better = next.map(|next| (problem.cost(&pieces, &next, &first), next));
-        match better.filter(|(there, _)| *there < cost) {
-            Some((there, next)) => {
-                let gain = cost - there;
-                (cost, eta) = (there, next);
-                damping = (damping * 0.2).max(1e-14);
-                if gain < 1e-12 * cost.max(1e-12) {
-                    break;
-                }
-            }
-            None if damping > 1e12 => break,
-            None => damping = damping.max(1e-12) * 8.0,
+    let first = coordinates(model, &pieces, start);
+    let (mut eta, mut steps) = problem.search(&pieces, &first, &first);
+    for weight in BOUND_WEIGHTS {
+        if problem.bounds.hold(&file_values(model, &pieces, &eta)) {
+            break;
         }
+        problem.weight = weight;
+        let (next, more) = problem.search(&pieces, &eta, &first);
+        (eta, steps) = (next, steps + more);
     }
     let (theta, _) = standard(model, &pieces, &eta);
     let residual = &problem.target - &problem.jacobian * &theta;
@@ -126,14 +102,123 @@ struct Problem<'a> {
     /// Of theta0.
     jacobian: DMatrix<f64>,
     target: DVector<f64>,
+    bounds: Bounds<'a>,
+    /// Of what entries of bodies fall short of.
+    weight: f64,
 }
 
 impl Problem<'_> {
     fn cost(&self, pieces: &[Piece], eta: &DVector<f64>, first: &DVector<f64>) -> f64 {
         let (theta, _) = standard(self.model, pieces, eta);
         let residual = &self.target - &self.jacobian * theta;
-        residual.norm_squared() + STAY * (eta - first).norm_squared()
+        let short = self.short(pieces, eta).norm_squared();
+        residual.norm_squared() + short + STAY * (eta - first).norm_squared()
     }
+
+    /// What entries of bodies fall short of, weighted.
+    fn short(&self, pieces: &[Piece], eta: &DVector<f64>) -> DVector<f64> {
+        if self.weight == 0.0 {
+            return DVector::zeros(0);
+        }
+        let short = self.bounds.short(&file_values(self.model, pieces, eta));
+        DVector::from_vec(short) * self.weight
+    }
+
+    /// All residuals, and how they fall with the coordinates.
+    fn rows(&self, pieces: &[Piece], eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let (theta, slope) = standard(self.model, pieces, eta);
+        let j = &self.jacobian * slope;
+        let residual = &self.target - &self.jacobian * &theta;
+        if self.weight == 0.0 {
+            return (residual, j);
+        }
+        let (rows, bounded) = (residual.len(), self.bounds.count());
+        let mut all = residual.resize_vertically(rows + bounded, 0.0);
+        all.rows_mut(rows, bounded).copy_from(&self.short(pieces, eta));
+        let mut j = j.resize_vertically(rows + bounded, 0.0);
+        let mut at = 0;
+        for piece in pieces {
+            if let Piece::Own(_) = piece {
+                let step = 1e-5 * eta[at].abs().max(1e-2);
+                let moved = |by: f64| {
+                    let mut moved = eta.clone();
+                    moved[at] += by;
+                    self.short(pieces, &moved)
+                };
+                let fall = (moved(-step) - moved(step)) / (2.0 * step);
+                j.view_mut((rows, at), (bounded, 1)).copy_from(&fall);
+            }
+            at += piece.len();
+        }
+        (all, j)
+    }
+
+    /// The nearest coordinates from `eta` on, and the steps that were made (Levenberg, Marquardt).
+    fn search(
+        &self,
+        pieces: &[Piece],
+        eta: &DVector<f64>,
+        first: &DVector<f64>,
+    ) -> (DVector<f64>, usize) {
+        let mut eta = eta.clone();
+        let mut damping = 1e-3;
+        let mut steps = 0;
+        let mut cost = self.cost(pieces, &eta, first);
+        while steps < MAX_STEPS {
+            steps += 1;
+            let (residual, j) = self.rows(pieces, &eta);
+            let next = damped(&j, &residual, &(first - &eta), damping).map(|step| {
+                let longest = step.amax();
+                let limited = if longest > 2.0 { step * (2.0 / longest) } else { step };
+                &eta + limited
+            });
+            let better = next.map(|next| (self.cost(pieces, &next, first), next));
+            match better.filter(|(there, _)| *there < cost) {
+                Some((there, next)) => {
+                    let gain = cost - there;
+                    (cost, eta) = (there, next);
+                    damping = (damping * 0.2).max(1e-14);
+                    if gain < 1e-12 * cost.max(1e-12) {
+                        break;
+                    }
+                }
+                None if damping > 1e12 => break,
+                None => damping = damping.max(1e-12) * 8.0,
+            }
+        }
+        (eta, steps)
+    }
+}
+
+/// The step that makes residuals smallest, damped, and drawn `home` a little.
+fn damped(
+    j: &DMatrix<f64>,
+    residual: &DVector<f64>,
+    home: &DVector<f64>,
+    damping: f64,
+) -> Option<DVector<f64>> {
+    let (rows, columns) = j.shape();
+    let mut matrix = DMatrix::zeros(rows + columns, columns);
+    let mut right = DVector::zeros(rows + columns);
+    matrix.rows_mut(0, rows).copy_from(j);
+    right.rows_mut(0, rows).copy_from(residual);
+    let stay = (STAY + damping).sqrt();
+    for place in 0..columns {
+        matrix[(rows + place, place)] = stay;
+        right[rows + place] = STAY / stay * home[place];
+    }
+    let qr = matrix.qr();
+    let right = qr.q().tr_mul(&right);
+    qr.r().solve_upper_triangular(&right)
+}
+
+/// The numbers of the file: those that coordinates stand for, and the others as they were.
+fn file_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+    for (place, value) in own_values(model, pieces, eta) {
+        values[place] = value;
+    }
+    values
 }
 
 /// The deviation of a weighted row: from the residual, or from rounding where there is none.
@@ -353,8 +438,7 @@ fn products(
     if own.is_empty() {
         return;
     }
-    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
-    own.iter().for_each(|&(place, value)| values[place] = value);
+    let mut values = file_values(model, pieces, eta);
     let is_product: Vec<bool> = model.standard.iter().map(|one| one.owner.is_none()).collect();
     let here = model.standard_values(&values);
     for (row, value) in here.iter().enumerate().filter(|(row, _)| is_product[*row]) {

@@ -91,12 +91,14 @@ impl System {
         phi.iter().all(|entry| entry.is_finite()).then_some(phi)
     }
 
-    /// (Z^T W)^-1 S (W^T Z)^-1 with S the long-run covariance of Z^T (y - W phi) of parts.
+    /// The long-run covariance of what parts do to phi: left out, a part p with A_p = Z_p^T W_p
+    /// changes it by (A - A_p)^-1 Z_p^T (y - W phi), since the estimate has adapted to it.
     fn covariance(&self, condensed: &Condensed, found: &Estimate) -> Option<(DMatrix<f64>, f64)> {
         let rank = self.rank;
         let z = self.r.view((0, 0), (rank, rank)).into_owned();
-        // (Z^T W)^-1 = (Q^T W)^-1 R_z^-T
-        let inverse = self.matrix().try_inverse()? * z.transpose().try_inverse()?;
+        // Z^T W = R_z^T Q^T W
+        let whole = z.transpose() * self.matrix();
+        let inverse = whole.clone().try_inverse()?;
         let phi = found.solution.phi.as_slice();
         let count = condensed.parts.len();
         let scores: Vec<DVector<f64>> = (0..count)
@@ -107,7 +109,11 @@ impl System {
                 };
                 let residual =
                     DVector::from_fn(own.r.nrows(), |row, _| own.r[(row, 2 * rank)] - fitted(row));
-                &inverse * (own.r.columns(0, rank).transpose() * residual)
+                let own_z = own.r.columns(0, rank).transpose();
+                let score = &own_z * residual;
+                let without = &whole - own_z * own.r.columns(rank, rank);
+                // what one part alone determines cannot be compared with the others
+                without.lu().solve(&score).unwrap_or_else(|| &inverse * score)
             })
             .collect();
         let mut sum = DMatrix::zeros(rank, rank);

@@ -4,11 +4,14 @@
 //! - [`estimate`]: least squares, weighted, robust, by instruments, with noise on both sides
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`validate`]: what is left of the torques
+//! - [`flipped_torques`]: whose sign is wrong
 //! - [`consistent()`]: the nearest bodies that exist
 
+mod bounds;
 mod condensed;
 mod consistent;
 mod errors;
+mod flipped;
 mod instruments;
 mod least_squares;
 mod likelihood;
@@ -23,6 +26,7 @@ mod validate;
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
 pub use errors::{Errors, interval_factor};
+pub use flipped::{FlippedTorque, flipped_torques};
 pub use least_squares::{Estimate, EstimateError, Method, Options, estimate};
 pub(in crate::identify) use likelihood::noise_of_positions;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};

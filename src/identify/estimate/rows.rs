@@ -18,6 +18,8 @@ pub struct Block {
     /// For each joint the torque that was measured, and that less what is known; none where none
     /// was measured.
     pub torque: Vec<Option<[Vec<f64>; 2]>>,
+    /// For each joint which of its rows count; none where all do.
+    pub counts: Vec<Option<Vec<bool>>>,
 }
 
 impl Block {
@@ -94,7 +96,15 @@ impl<'a> BlockMaker<'a> {
         (block.first, block.samples) = (first, samples);
         block.columns.resize(self.model.joints.len(), Vec::new());
         block.torque.resize(self.model.joints.len(), None);
+        let slow = self.data.slow.as_deref();
+        block.counts.clear();
         for joint in 0..self.model.joints.len() {
+            let rates = &self.motion[self.model.joints.len() + joint];
+            let counted = |slowest: f64| {
+                let windows = rates.windows(2 * reach + 1).step_by(factor);
+                windows.map(|rates| is_fast(rates, slowest)).collect()
+            };
+            block.counts.push(slow.map(|slow| counted(slow[joint])));
             block.columns[joint].resize(rows.width(joint), Vec::new());
             for (place, column) in block.columns[joint].iter_mut().enumerate() {
                 column.resize(samples, 0.0);
@@ -112,4 +122,9 @@ impl<'a> BlockMaker<'a> {
             }
         }
     }
+}
+
+/// Whether a joint moves one way, faster than this.
+fn is_fast(rates: &[f64], slowest: f64) -> bool {
+    rates.iter().all(|rate| *rate > slowest) || rates.iter().all(|rate| *rate < -slowest)
 }

@@ -29,6 +29,7 @@ pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
     let mut found = Findings::default();
     time_unit(log, &mut found);
     let moving: Vec<bool> = log.joints.iter().map(moves).collect();
+    let has_drives = joints.iter().any(|joint| joint.is_driven);
     for ((signals, joint), &moves) in log.joints.iter().zip(joints).zip(&moving) {
         position(signals, joint, &mut found);
         if moves {
@@ -36,7 +37,7 @@ pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
         } else if !joint.is_base {
             found.remarks.push(LogRemark::Resting { joint: joint.name.clone() });
         }
-        torque(signals, joint, moves, &mut found);
+        torque(signals, (joint, has_drives), moves, &mut found);
     }
     if !moving.contains(&true) {
         found.faults.push(LogFault::NothingMoves);
@@ -113,7 +114,12 @@ fn logged_rate(
     }
 }
 
-fn torque(signals: &JointSignals, joint: &RegressionJoint, moves: bool, found: &mut Findings) {
+fn torque(
+    signals: &JointSignals,
+    (joint, has_drives): (&RegressionJoint, bool),
+    moves: bool,
+    found: &mut Findings,
+) {
     let Some(torque) = &signals.tau else { return };
     let [low, high] = range(torque);
     let column = format!("tau_{}", joint.name);
@@ -121,7 +127,9 @@ fn torque(signals: &JointSignals, joint: &RegressionJoint, moves: bool, found: &
         return;
     }
     if low == high {
-        if moves {
+        // what has no drive in a model with drives has no torque either
+        let is_passive = low == 0.0 && !joint.is_driven && has_drives;
+        if moves && !is_passive {
             found.suspicions.push(Suspicion::ConstantTorque { column });
         }
         return;

@@ -41,7 +41,7 @@ pub struct JointSignals {
     pub reference: Option<Vec<f64>>,
     /// Angle of the motor before a spring, before the gear \[rad\].
     pub motor: Option<Vec<f64>>,
-    /// Torque of that motor, as if there were no spring [N m, N].
+    /// Torque of that motor, before the gear \[N m\].
     pub motor_torque: Option<Vec<f64>>,
     /// The step of the encoder, if the position has steps [rad, m].
     pub step: Option<f64>,
@@ -111,7 +111,8 @@ impl MeasuredLog {
             let (None, Some(command)) = (&own.tau, &own.motor_torque) else { continue };
             let suspicion = Suspicion::CommandOfSpring { joint: joint.name.clone() };
             if robot.accepts_suspicious {
-                own.tau = Some(command.clone());
+                let factor = joint.gear_ratio;
+                own.tau = Some(command.iter().map(|torque| factor * torque).collect());
                 self.remarks.push(LogRemark::Accepted(suspicion));
             } else {
                 faults.push(LogFault::Suspicion(suspicion));
@@ -270,7 +271,13 @@ impl Wanted {
                     let described = &robot.joints[joint];
                     let side = self.torque_side.unwrap_or(described.torque_side);
                     let factor = described.gear_ratio;
-                    if matches!(signal, 3 | 4) && side == TorqueSide::Motor && factor != 1.0 {
+                    let is_geared = side == TorqueSide::Motor && factor != 1.0;
+                    if described.is_elastic {
+                        // A spring's torque is one of the joint, a motor's is kept as its own.
+                        if signal == 4 && side == TorqueSide::Joint {
+                            values.iter_mut().for_each(|value| *value /= factor);
+                        }
+                    } else if matches!(signal, 3 | 4) && is_geared {
                         values.iter_mut().for_each(|value| *value *= factor);
                         if !geared.contains(&described.name) {
                             geared.push(described.name.clone());

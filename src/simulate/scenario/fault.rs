@@ -30,6 +30,8 @@ pub enum Cause {
     TwoRobots,
     /// No joint has this name; holds it and the one that was meant, perhaps.
     UnknownJoint(String, Option<String>),
+    /// A posture has no position of this joint.
+    NoPosition(String),
     /// A joint of the floating base, which nothing drives.
     Undrivable(String),
     /// More rows of the log than there may be; holds the most.
@@ -90,6 +92,7 @@ impl fmt::Display for Cause {
             Self::NoEffect(missing) => write!(f, "this has no effect without {missing}"),
             Self::TwoRobots => write!(f, "`model` and `cradle_balls` are two robots"),
             Self::UnknownJoint(name, _) => write!(f, "no joint is called `{name}`"),
+            Self::NoPosition(name) => write!(f, "the position of `{name}` is missing"),
             Self::Undrivable(name) => {
                 write!(f, "`{name}` moves the floating base: no drive is there")
             }
@@ -150,6 +153,7 @@ impl Cause {
             Self::TwoRobots => "keep one of them",
             Self::UnknownJoint(..) => "`denavit inspect MODEL` lists the joints",
             Self::UnknownColumn(..) => "columns are named in the first line of the log",
+            Self::NoPosition(_) => "a posture has the position of every joint",
             Self::Undrivable(_) => "control the joints between links",
             Self::TooManyRows(_) => "write a row less often: `log_period_s`",
             Self::Log(_) => "a log is a table with a column `t` that increases (docs/scenario.md)",

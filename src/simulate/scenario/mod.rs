@@ -19,6 +19,8 @@ pub use controller::{CONTROLLER_FORMAT, Controller, controller_schema, read_cont
 pub use fault::{Cause, ScenarioError};
 pub use ranges::Range;
 pub use read::{Loader, read};
+pub(crate) use read::{check_format, read_document};
+pub(crate) use reader::{Fields, Node, Report};
 pub use trajectory::{TRAJECTORY_FORMAT, Trajectory, read_trajectory, trajectory_schema};
 
 use super::audit::Tolerances;

@@ -65,7 +65,7 @@ pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, Sc
 }
 
 /// Reads a JSON document with these keys: what `build` makes of it, if nothing is wrong with it.
-pub(super) fn read_document<T>(
+pub(crate) fn read_document<T>(
     file: &str,
     source: &[u8],
     keys: &'static [&'static str],
@@ -89,7 +89,7 @@ pub(super) fn read_document<T>(
 }
 
 /// Notes a tag that is missing or of another format.
-pub(super) fn check_format(fields: &Fields<'_>, expected: &'static str, report: &mut Report) {
+pub(crate) fn check_format(fields: &Fields<'_>, expected: &'static str, report: &mut Report) {
     let Some(tag) = fields.get("format") else {
         report.push(fields.at, Cause::NoFormat(expected));
         return;

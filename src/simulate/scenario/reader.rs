@@ -8,28 +8,28 @@ use denavit_codegen::model::json::{Json, Value};
 use std::borrow::Cow;
 
 /// The faults found so far.
-pub(super) type Report = model::Report<Cause>;
+pub(crate) type Report = model::Report<Cause>;
 
 /// A value.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node<'v>(pub(super) &'v Json<'v>);
+pub(crate) struct Node<'v>(pub(crate) &'v Json<'v>);
 
 /// An object; its keys have been checked.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fields<'v> {
+pub(crate) struct Fields<'v> {
     entries: &'v [(Cow<'v, str>, Json<'v>)],
     /// Where it begins.
-    pub(super) at: usize,
+    pub(crate) at: usize,
 }
 
 impl<'v> Node<'v> {
     /// Where the value begins.
-    pub(super) fn at(self) -> usize {
+    pub(crate) fn at(self) -> usize {
         self.0.start
     }
 
     /// The value as an object that may have the keys `known`.
-    pub(super) fn fields(
+    pub(crate) fn fields(
         self,
         known: &'static [&'static str],
         report: &mut Report,
@@ -47,7 +47,7 @@ impl<'v> Node<'v> {
     }
 
     /// The value as an object with any keys.
-    pub(super) fn members(self, report: &mut Report) -> Option<Fields<'v>> {
+    pub(crate) fn members(self, report: &mut Report) -> Option<Fields<'v>> {
         match &self.0.value {
             Value::Object(entries) => Some(Fields { entries, at: self.at() }),
             _ => self.wrong_kind("an object", report),
@@ -55,21 +55,21 @@ impl<'v> Node<'v> {
     }
 
     /// Notes that something else should stand here.
-    pub(super) fn wrong_kind<T>(self, expected: &'static str, report: &mut Report) -> Option<T> {
+    pub(crate) fn wrong_kind<T>(self, expected: &'static str, report: &mut Report) -> Option<T> {
         let cause = model::Cause::WrongKind { expected, found: self.0.value.kind() };
         report.push(self.at(), Cause::Form(cause));
         None
     }
 
     /// The value, if it is a number, however large.
-    pub(super) fn as_number(self) -> Option<f64> {
+    pub(crate) fn as_number(self) -> Option<f64> {
         match self.0.value {
             Value::Number(text) => text.parse().ok(),
             _ => None,
         }
     }
 
-    pub(super) fn number(self, report: &mut Report) -> Option<f64> {
+    pub(crate) fn number(self, report: &mut Report) -> Option<f64> {
         let Some(number) = self.as_number() else {
             return self.wrong_kind("a number", report);
         };
@@ -81,7 +81,7 @@ impl<'v> Node<'v> {
     }
 
     /// A number of this range.
-    pub(super) fn number_in(self, range: Range, report: &mut Report) -> Option<f64> {
+    pub(crate) fn number_in(self, range: Range, report: &mut Report) -> Option<f64> {
         let number = self.number(report)?;
         if !range.contains(number) {
             report.push(self.at(), Cause::OutsideRange(number, range));
@@ -90,18 +90,18 @@ impl<'v> Node<'v> {
         Some(number)
     }
 
-    pub(super) fn items(self, report: &mut Report) -> Vec<Node<'v>> {
+    pub(crate) fn items(self, report: &mut Report) -> Vec<Node<'v>> {
         match &self.0.value {
             Value::List(items) => items.iter().map(Node).collect(),
             _ => self.wrong_kind("a list", report).unwrap_or_default(),
         }
     }
 
-    pub(super) fn numbers(self, report: &mut Report) -> Vec<f64> {
+    pub(crate) fn numbers(self, report: &mut Report) -> Vec<f64> {
         self.items(report).into_iter().filter_map(|item| item.number(report)).collect()
     }
 
-    pub(super) fn text(self, report: &mut Report) -> Option<&'v str> {
+    pub(crate) fn text(self, report: &mut Report) -> Option<&'v str> {
         match &self.0.value {
             Value::Text(text) => Some(text),
             _ => self.wrong_kind("a string", report),
@@ -109,7 +109,7 @@ impl<'v> Node<'v> {
     }
 
     /// One of some words, each with its meaning.
-    pub(super) fn word<T: Copy>(
+    pub(crate) fn word<T: Copy>(
         self,
         known: &'static [&'static str],
         meanings: &[T],
@@ -128,17 +128,17 @@ impl<'v> Node<'v> {
 }
 
 impl<'v> Fields<'v> {
-    pub(super) fn get(&self, key: &str) -> Option<Node<'v>> {
+    pub(crate) fn get(&self, key: &str) -> Option<Node<'v>> {
         let found = self.entries.iter().find(|(known, _)| known == key);
         found.map(|(_, value)| Node(value))
     }
 
     /// Where the value of a key begins, or the object without it.
-    pub(super) fn place(&self, key: &str) -> usize {
+    pub(crate) fn place(&self, key: &str) -> usize {
         self.get(key).map_or(self.at, Node::at)
     }
 
-    pub(super) fn require(&self, key: &'static str, report: &mut Report) -> Option<Node<'v>> {
+    pub(crate) fn require(&self, key: &'static str, report: &mut Report) -> Option<Node<'v>> {
         let node = self.get(key);
         if node.is_none() {
             report.push(self.at, Cause::Form(model::Cause::MissingKey(key)));
@@ -147,17 +147,17 @@ impl<'v> Fields<'v> {
     }
 
     /// All entries, in the order of the file.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&'v str, Node<'v>)> + use<'v> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&'v str, Node<'v>)> + use<'v> {
         self.entries.iter().map(|(key, value)| (key.as_ref(), Node(value)))
     }
 
     /// A number of this range; `absent` stands in for it, and for a fault.
-    pub(super) fn number(&self, key: &str, range: Range, absent: f64, report: &mut Report) -> f64 {
+    pub(crate) fn number(&self, key: &str, range: Range, absent: f64, report: &mut Report) -> f64 {
         self.get(key).and_then(|node| node.number_in(range, report)).unwrap_or(absent)
     }
 
     /// A number of this range that must be there; the largest stands in for a fault.
-    pub(super) fn required_number(
+    pub(crate) fn required_number(
         &self,
         key: &'static str,
         range: Range,
@@ -168,7 +168,7 @@ impl<'v> Fields<'v> {
     }
 
     /// A list of so many numbers of this range.
-    pub(super) fn array<const N: usize>(
+    pub(crate) fn array<const N: usize>(
         &self,
         key: &str,
         range: Range,
@@ -192,7 +192,7 @@ impl<'v> Fields<'v> {
     }
 
     /// A whole number of this range.
-    pub(super) fn count(
+    pub(crate) fn count(
         &self,
         key: &str,
         range: Range,
@@ -211,7 +211,7 @@ impl<'v> Fields<'v> {
         count.or_else(|| node.wrong_kind("a whole number", report)).unwrap_or(absent)
     }
 
-    pub(super) fn flag(&self, key: &str, report: &mut Report) -> bool {
+    pub(crate) fn flag(&self, key: &str, report: &mut Report) -> bool {
         let Some(node) = self.get(key) else { return false };
         match node.0.value {
             Value::Bool(flag) => flag,
@@ -219,7 +219,7 @@ impl<'v> Fields<'v> {
         }
     }
 
-    pub(super) fn numbers(&self, key: &'static str, report: &mut Report) -> Vec<f64> {
+    pub(crate) fn numbers(&self, key: &'static str, report: &mut Report) -> Vec<f64> {
         self.require(key, report).map_or_else(Vec::new, |node| node.numbers(report))
     }
 }

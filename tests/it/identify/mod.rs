@@ -3,6 +3,7 @@
 mod emps;
 mod estimate;
 mod forward;
+mod gait;
 mod leg;
 mod log;
 mod noise;

@@ -290,9 +290,9 @@ impl Search<'_> {
         let (mut evaluations, mut iterates) = (0, Vec::new());
         let mut stop = SolverStop::Stuck;
         let first = (FIRST_SHARE * self.options.evaluations as f64) as usize;
-        for (sharpness, most) in
-            SHARPNESS.into_iter().zip([first, self.options.evaluations.saturating_sub(first)])
-        {
+        for (sharpness, most) in SHARPNESS.into_iter().zip([first, usize::MAX]) {
+            // what the first solution does not need is for the second
+            let most = most.min(self.options.evaluations.saturating_sub(evaluations));
             problem.sharpness = sharpness;
             let before = evaluations;
             let tell_start = |iterate: &Iterate, evaluations: usize| {

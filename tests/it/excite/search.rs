@@ -191,3 +191,35 @@ fn where_no_posture_is_allowed_the_answer_is_infeasible() {
     assert!(!found.found().ended.is_feasible());
     assert!(found.found().ended.worst() > 1.0);
 }
+
+/// A robot that hangs by its floating base, 0.45 m above the ground, with a leg of 0.5 m: the foot
+/// clears the ground only while the leg is lifted by 0.495 rad or more, which the search must keep
+/// to, and which it would not without a clearance.
+#[test]
+fn a_foot_below_a_floating_base_keeps_off_the_ground() {
+    let text = r#"{"format": "denavit-model/1", "name": "hopper", "convention": "standard",
+        "gravity": [0, 0, -9.81], "base": {"type": "planar_floating", "body":
+            {"mass": 5, "com": [0, 0, 0], "inertia": {"zz": 0.1}, "about": "com"}},
+        "links": [{"name": "leg", "parent": "base",
+            "joint": {"type": "revolute", "a": 0.5, "theta": "pi"},
+            "limits": {"position": [0.1, 2.5], "velocity": 4, "acceleration": 20},
+            "body": {"mass": 1, "com": [-0.2, 0, 0], "inertia": {"zz": 0.02}, "about": "com"}}],
+        "drives": {"leg": {"viscous": 0.1}},
+        "contacts": [{"name": "foot", "link": "leg", "position": [0, 0, 0]}]}"#;
+    let robot = denavit::model::read("hopper.json", text.as_bytes()).expect("a sound model");
+    let lowest = |clearance_m: Option<f64>| {
+        let hold = vec![("base_z".to_owned(), 0.45)];
+        let found = found(&robot, &ExciteOptions { clearance_m, hold, ..options() });
+        let file = trajectory(&found);
+        let leg = file.find("leg").expect("it moves");
+        let angles = (0..4001).map(|k| leg.at(0.001 * f64::from(k)).position);
+        let lowest = angles.map(|q| 0.45 - 0.5 * q.cos()).fold(f64::INFINITY, f64::min);
+        (lowest, found.found().ended.is_feasible(), found.found().ended.lowest.clone())
+    };
+    let (height, is_feasible, told) = lowest(Some(0.01));
+    assert!(is_feasible && height >= 0.01 - 1e-6, "{height}");
+    let (point, seen) = told.expect("it has a foot");
+    assert!(point == "foot" && (seen - height).abs() < 1e-3, "{seen} {height}");
+    let (height, _, _) = lowest(None);
+    assert!(height < -0.01, "{height}");
+}

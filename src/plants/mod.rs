@@ -16,6 +16,7 @@ mod cradle;
 pub mod effect;
 mod generated;
 mod interpreted;
+mod laws;
 mod model;
 pub mod regression;
 mod regression_model;
@@ -25,6 +26,7 @@ mod regression_values;
 pub use cradle::Cradle;
 pub use generated::{planar_biped, plant_of, puma560, tulip};
 pub use interpreted::InterpretedPlant;
+pub use laws::{LawMoment, LawResponse};
 pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
     SeriesElasticModel,
@@ -68,11 +70,27 @@ pub trait Plant {
     /// For each link the upper three rows of its homogeneous transform, 12 entries a link.
     fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]);
 
-    /// Power that laws of added effects take out of the joints \[W\]; their torque is part of the
-    /// bias.
-    fn law_power(&mut self, q: &[f64], qd: &[f64]) -> f64 {
-        let _ = (q, qd);
-        0.0
+    /// Number of states that laws of added effects have.
+    fn law_states(&self) -> usize {
+        0
+    }
+
+    /// Whether a law of an added effect depends on accelerations.
+    fn has_accelerated_laws(&self) -> bool {
+        false
+    }
+
+    /// The values of the laws' states at the beginning; those of `moment` are not used.
+    fn law_start(&mut self, moment: &LawMoment<'_>) -> Vec<f64> {
+        let _ = moment;
+        Vec::new()
+    }
+
+    /// Torques of laws of added effects, which the bias leaves out, and rates of their states.
+    /// Answers whether there are laws; if not, `response` is left as it is.
+    fn laws(&mut self, moment: &LawMoment<'_>, response: &mut LawResponse) -> bool {
+        let _ = (moment, response);
+        false
     }
 
     /// Number of guards: events of its own that a plant written by hand may have, beside those of

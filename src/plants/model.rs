@@ -179,7 +179,7 @@ impl fmt::Display for PlantError {
             Self::Effect(name, what) => write!(
                 f,
                 "the effect `{name}` depends on {what}, which simulations do not follow\n  hint: \
-                 they follow laws of q and qd, and laws proportional to qdd"
+                 take it out of the model, or the contact points"
             ),
         }
     }

@@ -1,8 +1,10 @@
 //! The equations of motion between two events (thesis 2.43 and 2.50): the set of closed contacts
 //! and what each of them does stay as they are.
 
+mod laws;
 mod manifold;
 
+use self::laws::solve_laws;
 use super::breakdown::Breakdown;
 use super::contact::cholesky::dot;
 use super::contact::delassus::Delassus;
@@ -13,8 +15,8 @@ use super::control::{Control, ControlMemory};
 use super::drive::{DriveOutput, Drives};
 use super::ground::Ground;
 use super::integrate::Rates;
-use super::state::{INTEGRALS, Layout};
-use crate::plants::Plant;
+use super::state::{INTEGRALS, Layout, Parts};
+use crate::plants::{LawMoment, LawResponse, Plant};
 
 /// A contact that carries force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,6 +123,7 @@ pub(super) struct Work {
     pub(super) contacts: Vec<Contact>,
     pub(super) modes: Vec<Mode>,
     scratch: Vec<f64>,
+    laws: LawResponse,
 }
 
 impl<'a> Motion<'a> {
@@ -146,7 +149,8 @@ impl<'a> Motion<'a> {
             scratch: zeros(n),
             ..Work::default()
         };
-        let layout = Layout { joints: n, motors: drives.elastic.len() };
+        let laws = plant.law_states();
+        let layout = Layout { joints: n, motors: drives.elastic.len(), laws };
         Self {
             plant,
             control,
@@ -200,7 +204,7 @@ impl<'a> Motion<'a> {
                 self.control.command(plant, time, q, qd, &mut self.memory, command);
             }
         }
-        let Work { mass, bias, acceleration, drive, command, .. } = &mut self.work;
+        let Work { mass, bias, acceleration, drive, command, scratch, laws, .. } = &mut self.work;
         self.drives.respond(self.plant.model(), command, parts, drive);
         self.plant.mass_matrix(parts.q, mass);
         self.plant.bias(parts.q, parts.qd, bias);
@@ -210,7 +214,19 @@ impl<'a> Motion<'a> {
         for (entry, (torque, bias)) in acceleration.iter_mut().zip(drive.torque.iter().zip(bias)) {
             *entry = torque - *bias;
         }
-        self.delassus.solve_mass(acceleration);
+        scratch.fill(0.0);
+        let Parts { q, qd, laws: states, .. } = parts;
+        let moment = LawMoment { t_s, q, qd, qdd: scratch, states };
+        if !self.plant.laws(&moment, laws) {
+            self.delassus.solve_mass(acceleration);
+        } else if laws.slopes.is_empty() {
+            acceleration.iter_mut().zip(&laws.torque).for_each(|(entry, law)| *entry -= law);
+            self.delassus.solve_mass(acceleration);
+        } else {
+            let driving = acceleration.clone();
+            self.delassus.solve_mass(acceleration);
+            solve_laws(self.plant, &moment, mass, &driving, (acceleration, laws))?;
+        }
         match acceleration.iter().all(|entry| entry.is_finite()) {
             true => Ok(()),
             false => Err(Breakdown::NotFinite),
@@ -453,10 +469,18 @@ impl Rates for Motion<'_> {
             }
         }
         let [put_in, lost] = self.work.drive.power;
-        dy[2 * positions] = put_in;
         let parts = self.layout.parts(y);
-        let by_laws = self.plant.law_power(parts.q, parts.qd);
-        dy[2 * positions + 1] = lost + rubbed + by_laws;
+        let Parts { q, qd, laws: states, .. } = parts;
+        let Work { laws, acceleration, .. } = &mut self.work;
+        let moment = LawMoment { t_s, q, qd, qdd: acceleration, states };
+        let mut by_laws = 0.0;
+        if self.plant.laws(&moment, laws) {
+            by_laws = laws.torque.iter().zip(qd).map(|(torque, rate)| torque * rate).sum();
+            dy[2 * positions..2 * positions + self.layout.laws].copy_from_slice(&laws.rates);
+        }
+        let integrals = 2 * positions + self.layout.laws;
+        dy[integrals] = put_in;
+        dy[integrals + 1] = lost + rubbed + by_laws;
         match dy.iter().all(|entry| entry.is_finite()) {
             true => Ok(()),
             false => Err(Breakdown::NotFinite),

@@ -14,7 +14,7 @@ use super::record::Recorder;
 use super::settle::{Scuffing, Settler, TOUCH_M, Touching};
 use super::start::{StartError, check};
 use super::state::State;
-use crate::plants::Plant;
+use crate::plants::{LawMoment, Plant};
 
 /// How a run is made.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,6 +161,12 @@ pub fn simulate_believing(
     let mut drives = Drives::new(plant.model(), simulation.drives);
     drives.stiction_rate = simulation.stiction_rate;
     check(plant, control, &mut state, simulation, &drives)?;
+    if state.laws.len() != plant.law_states() {
+        let rest = vec![0.0; state.q.len()];
+        let (q, qd) = (&state.q, &state.qd);
+        let moment = LawMoment { t_s: state.t_s, q, qd, qdd: &rest, states: &[] };
+        state.laws = plant.law_start(&moment);
+    }
     let friction = vec![simulation.friction; plant.model().contacts.len()];
     let holding = Holding {
         drift_rate: simulation.drift_rate,

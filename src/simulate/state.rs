@@ -15,6 +15,9 @@ pub struct State {
     pub motor: Vec<f64>,
     /// Their rates [rad/s].
     pub motor_rate: Vec<f64>,
+    /// States of the laws of added effects; where there are none, a run begins with their own
+    /// initial values.
+    pub laws: Vec<f64>,
 }
 
 impl State {
@@ -25,11 +28,12 @@ impl State {
 }
 
 /// Where the parts of a state stand in the vector that is integrated: q, motor angles, qd, motor
-/// rates, then two integrals: work put in, and energy lost to friction \[J\].
+/// rates, states of laws, then two integrals: work put in, and energy lost to friction \[J\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) joints: usize,
     pub(super) motors: usize,
+    pub(super) laws: usize,
 }
 
 /// The integrals at the end of the vector.
@@ -37,7 +41,7 @@ pub(super) const INTEGRALS: usize = 2;
 
 impl Layout {
     pub(super) fn len(self) -> usize {
-        2 * (self.joints + self.motors) + INTEGRALS
+        2 * (self.joints + self.motors) + self.laws + INTEGRALS
     }
 
     /// Number of positions, of joints and motors.
@@ -54,13 +58,14 @@ impl Layout {
         let (q, rest) = y.split_at(self.joints);
         let (motor, rest) = rest.split_at(self.motors);
         let (qd, rest) = rest.split_at(self.joints);
-        let (motor_rate, integrals) = rest.split_at(self.motors);
-        Parts { q, qd, motor, motor_rate, work_in: integrals[0], lost: integrals[1] }
+        let (motor_rate, rest) = rest.split_at(self.motors);
+        let (laws, integrals) = rest.split_at(self.laws);
+        Parts { q, qd, motor, motor_rate, laws, work_in: integrals[0], lost: integrals[1] }
     }
 
     pub(super) fn pack(self, state: &State) -> Vec<f64> {
         let mut y = Vec::with_capacity(self.len());
-        for part in [&state.q, &state.motor, &state.qd, &state.motor_rate] {
+        for part in [&state.q, &state.motor, &state.qd, &state.motor_rate, &state.laws] {
             y.extend_from_slice(part);
         }
         y.resize(self.len(), 0.0);
@@ -75,6 +80,7 @@ impl Layout {
             qd: parts.qd.to_vec(),
             motor: parts.motor.to_vec(),
             motor_rate: parts.motor_rate.to_vec(),
+            laws: parts.laws.to_vec(),
         }
     }
 }
@@ -86,6 +92,7 @@ pub(super) struct Parts<'a> {
     pub(super) qd: &'a [f64],
     pub(super) motor: &'a [f64],
     pub(super) motor_rate: &'a [f64],
+    pub(super) laws: &'a [f64],
     pub(super) work_in: f64,
     pub(super) lost: f64,
 }

@@ -1,7 +1,7 @@
 //! A plant under control, as a model of time stepping.
 
 use super::{Instant, Terms, TimeSteppingModel};
-use crate::plants::Plant;
+use crate::plants::{LawMoment, LawResponse, Plant};
 use crate::simulate::contact::Space;
 use crate::simulate::control::{Control, ControlMemory};
 use crate::simulate::drive::{DriveModelling, DriveOutput, Drives};
@@ -46,6 +46,7 @@ pub(super) struct DriveTerms {
     output: DriveOutput,
     /// Torque on each joint from its drive, Coulomb friction taken off [N m, N].
     pub(super) torque: Vec<f64>,
+    laws: LawResponse,
     /// Power that laws of added effects take \[W\].
     law_power: f64,
 }
@@ -127,8 +128,8 @@ impl<'a> ControlledPlant<'a> {
     /// Commands, friction and forces of the drives; torques and accelerations of motors.
     pub(super) fn drive(&mut self, t_s: f64, q: &[f64], qd: &[f64]) {
         let parts = split(self.joints(), q, qd);
-        let DriveTerms { command, gain, friction, output, torque, law_power } = &mut self.step;
-        *law_power = self.plant.law_power(parts.q, parts.qd);
+        let DriveTerms { command, gain, friction, output, torque, laws, law_power } =
+            &mut self.step;
         gain.clear();
         if let Some(held) = &self.held {
             command.copy_from_slice(held);
@@ -152,6 +153,21 @@ impl<'a> ControlledPlant<'a> {
         self.drives.friction_factors(model, parts, friction);
         self.drives.respond(model, command, parts, output);
         torque.clone_from(&output.torque);
+        // explicitly: a run with laws of states or accelerations is refused
+        let moment = LawMoment {
+            t_s,
+            q: parts.q,
+            qd: parts.qd,
+            qdd: &vec![0.0; parts.q.len()],
+            states: &[],
+        };
+        *law_power = 0.0;
+        if self.plant.laws(&moment, laws) {
+            for ((torque, law), rate) in torque.iter_mut().zip(&laws.torque).zip(parts.qd) {
+                *torque -= law;
+                *law_power += law * rate;
+            }
+        }
     }
 
     /// The torque that each joint needs of its drive, friction included [N m, N].
@@ -205,7 +221,7 @@ impl<'a> ControlledPlant<'a> {
 /// Joints and motors of coordinates and rates.
 pub(super) fn split<'a>(joints: usize, q: &'a [f64], qd: &'a [f64]) -> Parts<'a> {
     let ((q, motor), (qd, motor_rate)) = (q.split_at(joints), qd.split_at(joints));
-    Parts { q, qd, motor, motor_rate, work_in: 0.0, lost: 0.0 }
+    Parts { q, qd, motor, motor_rate, laws: &[], work_in: 0.0, lost: 0.0 }
 }
 
 impl TimeSteppingModel for ControlledPlant<'_> {

@@ -32,6 +32,10 @@ pub fn simulate_by_steps(
     let drives = Drives::new(plant.model(), simulation.drives);
     check(plant, control, &mut state, simulation, &drives)?;
     check_stepping(simulation, stepping)?;
+    if plant.law_states() > 0 || plant.has_accelerated_laws() {
+        let what = "effects with states, or that depend on the load";
+        return Err(StartError::EventSchemeOnly(what));
+    }
     check_gaps(plant, &state.q)?;
     let falls = FallWatch::new(plant.model());
     let friction = match simulation.friction {
@@ -210,7 +214,7 @@ impl Runner<'_> {
         let ((q, motor), (qd, motor_rate)) = (parts(&self.q), parts(&self.qd));
         Run {
             stop,
-            end: State { t_s: self.t_s, q, qd, motor, motor_rate },
+            end: State { t_s: self.t_s, q, qd, motor, motor_rate, laws: Vec::new() },
             log: self.recorder.log,
             events: self.recorder.events,
             audit: self.recorder.audit,

@@ -151,26 +151,67 @@ fn a_simulation_has_the_laws_of_rates() {
     assert!((effect[1] - drive).abs() < 1e-5, "{} is not {drive}", effect[1]);
 }
 
+/// A slider of 2 kg without gravity, with a bristle and a cable, that slides on at 0.3 m/s.
+fn slider(directory: &Directory, more: &str) {
+    let model = format!(
+        r#"{{"format": "denavit-model/1", "name": "slider", "convention": "standard",
+        "gravity": [0, 0, 0], {more}
+        "effects": [
+            {{"effect": "dahl", "at": {{"link": "cart"}},
+                "parameters": {{"fc": 0.5, "slip": 0.01}}}},
+            {{"effect": "capstan", "at": {{"link": "cart"}}, "parameters": {{"mu_theta": 0.4}}}},
+            {{"effect": "torque_drift", "at": {{"link": "cart"}}, "parameters": {{"c": 0.3}}}}],
+        "links": [{{"name": "cart", "joint": {{"type": "prismatic"}}, "body": {{"mass": 2}}}}]}}"#
+    );
+    fs::write(directory.path.join("slider.json"), model).expect("a file");
+    let scenario = r#"{"format": "denavit-scenario/1", "model": "slider.json", "duration_s": 0.5,
+        "initial": {"qd": {"cart": 0.3}}}"#;
+    fs::write(directory.path.join("slide.json"), scenario).expect("a file");
+}
+
+#[test]
+fn a_simulation_follows_states_loads_and_time() {
+    let directory = Directory::new("simulate_states");
+    slider(&directory, "");
+    done(&directory, &["simulate", "slide.json", "-o", "log.csv"]);
+    let log = fs::read_to_string(directory.path.join("log.csv")).expect("a log");
+    let rows: Vec<&str> = log.lines().filter(|line| !line.starts_with('#')).collect();
+    let column = rows[0].split(',').position(|name| name == "qd_cart").expect("a column");
+    let last = rows[rows.len() - 1].split(',').nth(column).expect("a value");
+    let found: f64 = last.parse().expect("a number");
+    // 2 a exp(0.4 sign(v) sign(a)) + 0.5 z + 0.3 t = 0, z' = (v - |v| z)/0.01, by small steps
+    let rates = |t: f64, [v, z]: [f64; 2]| {
+        let driving = -(0.5 * z + 0.3 * t);
+        let steep = (v / 0.01).tanh();
+        let a = driving / 2.0 * (-0.4 * steep * driving.signum()).exp();
+        [a, (v - v.abs() * z) / 0.01]
+    };
+    let (mut y, h) = ([0.3, 0.0], 1e-5);
+    for step in 0..50_000 {
+        let t = f64::from(step) * h;
+        let moved = |k: [f64; 2], part: f64| [y[0] + part * h * k[0], y[1] + part * h * k[1]];
+        let k1 = rates(t, y);
+        let k2 = rates(t + h / 2.0, moved(k1, 0.5));
+        let k3 = rates(t + h / 2.0, moved(k2, 0.5));
+        let k4 = rates(t + h, moved(k3, 1.0));
+        y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+    }
+    assert!(y[0] < 0.25, "it is braked: {}", y[0]);
+    assert!((found - y[0]).abs() < 1e-6, "{found} is not {}", y[0]);
+}
+
 #[test]
 fn a_simulation_says_which_effects_it_does_not_follow() {
-    let directory = Directory::new("simulate_dahl");
-    let text = shipped::find("planar_2r").expect("a model").text;
-    for (effect, parameters, said) in [
-        ("dahl", r#""fc": 1, "slip": 0.01"#, "states of its own"),
-        ("capstan", r#""mu_theta": 1"#, "the load"),
-        ("torque_drift", r#""c": 1"#, "the time"),
-    ] {
-        let effects = format!(
-            r#""effects": [{{"effect": "{effect}", "at": {{"link": "link1"}},
-            "parameters": {{{parameters}}}}}], "links""#
-        );
-        let model = text.replacen("\"links\"", &effects, 1);
-        fs::write(directory.path.join("arm.json"), model).expect("a file");
-        let scenario = r#"{"format": "denavit-scenario/1", "model": "arm.json", "duration_s": 1}"#;
-        fs::write(directory.path.join("run.json"), scenario).expect("a file");
-        let Run { code, stderr, .. } =
-            run_in(&directory.path, &["simulate", "run.json", "-o", "log.csv"]);
-        assert_eq!(code, Some(2), "{effect}");
-        assert_says(&stderr, &[&format!("`{effect}`"), said, "hint: "]);
-    }
+    let directory = Directory::new("simulate_refused");
+    slider(&directory, "");
+    let steps = ["simulate", "slide.json", "--scheme", "time-stepping", "-o", "log.csv"];
+    let Run { code, stderr, .. } = run_in(&directory.path, &steps);
+    assert_eq!(code, Some(2));
+    assert_says(&stderr, &["only the event-driven scheme"]);
+    let contacts = r#""contacts": [{"name": "toe", "link": "cart", "position": [0, 0, 0.1]}],"#;
+    slider(&directory, contacts);
+    let Run { code, stderr, .. } =
+        run_in(&directory.path, &["simulate", "slide.json", "-o", "log.csv"]);
+    assert_eq!(code, Some(2));
+    assert_says(&stderr, &["`capstan`", "the load", "hint: "]);
 }

@@ -137,7 +137,12 @@ fn intervals(case: &Case, named: &[&Named]) -> [usize; 2] {
         let entry = hidden.law.entry();
         let answer =
             named.iter().find(|one| one.name == entry.name && one.is(hidden, &case.truth, true));
-        let Some([value, std]) = answer.and_then(|one| one.parameters.get(entry.parameter)) else {
+        let stated = |one: &&Named| {
+            let only = one.parameters.values().next().filter(|_| one.parameters.len() == 1);
+            one.parameters.get(entry.parameter).or(only).copied()
+        };
+        let asked = !entry.parameter.is_empty();
+        let Some([value, std]) = answer.filter(|_| asked).and_then(stated) else {
             continue;
         };
         within[1] += 1;

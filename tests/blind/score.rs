@@ -201,8 +201,9 @@ pub(crate) fn table(scores: &[Score]) -> String {
         line(&format!("{level}: and nothing else"), clean, these.len());
     }
     let rights = |kind: Kind| of(kind).filter(|score| score.right).count();
-    let both = of(Kind::Pair).filter(|score| score.found == 2).count();
-    line("pairs: both named", both, of(Kind::Pair).count());
+    let seen = || of(Kind::Pair).filter(|score| score.level != "hidden");
+    let both = seen().filter(|score| score.found == 2).count();
+    line("pairs: both named", both, seen().count());
     let false_discoveries = of(Kind::Nothing).filter(|score| !score.right).count();
     line("nothing hidden: false discoveries", false_discoveries, of(Kind::Nothing).count());
     line(

@@ -36,6 +36,15 @@ impl Watched {
     }
 }
 
+/// How a state inside a step is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sight {
+    /// By dense output.
+    Dense,
+    /// By a step of the very length.
+    Steps,
+}
+
 /// An event: what fired, and when.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fired {
@@ -50,6 +59,11 @@ const AHEAD_S: f64 = 1e-6;
 /// Crossings are located to this \[s\].
 const RESOLUTION_S: f64 = 1e-13;
 
+/// Dense output is searched for limits of forces down to this part of the step.
+const FORCES_SEEN: f64 = 1e-6;
+/// Slack begins with this \[N\].
+const LEAST_SLACK_N: f64 = 1e-8;
+
 /// Looks for events; keeps what must be known of contacts that have just opened.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
@@ -59,6 +73,8 @@ pub(super) struct Watch {
     /// How much less than no force to spare is no event \[N\]: none, unless the laws of contact saw
     /// nothing to change where the forces were short by a part of that.
     pub(super) slack: f64,
+    /// Force to spare at the start of the last step in which the forces reached a limit \[N\].
+    margin: f64,
     transforms: Vec<f64>,
     points: Vec<f64>,
     y: Vec<f64>,
@@ -69,10 +85,17 @@ impl Watch {
         Self {
             level: vec![0.0; contacts],
             slack: 0.0,
+            margin: 0.0,
             transforms: vec![0.0; 12 * links],
             points: vec![0.0; 3 * fall_points],
             y: vec![0.0; len],
         }
+    }
+
+    /// The slack after the laws of contact saw nothing to change where the forces had this to
+    /// spare: always more, so that no limit fires without end.
+    pub(super) fn more_slack(&self, spare: f64) -> f64 {
+        2.0 * (self.slack - spare.min(self.margin).min(0.0)).max(LEAST_SLACK_N)
     }
 
     /// Everything to be watched with the contacts as they are, but for their forces.
@@ -123,6 +146,7 @@ impl Watch {
             let value = self.value(motion, stepper, Watched::Margin, t1)?;
             if value < 0.0 {
                 let before = (t0, self.value(motion, stepper, Watched::Margin, t0)?);
+                self.margin = before.1 - self.slack;
                 let (watched, end) = (Watched::Margin, (t1, value));
                 let fired = self.pin_down(motion, stepper, watched, before, end)?;
                 if first.is_none_or(|found| fired.t_s < found.t_s) {
@@ -159,11 +183,14 @@ impl Watch {
         last: (f64, f64),
         negative: (f64, f64),
     ) -> Result<Fired, Breakdown> {
-        let t_s = match self.arm(motion, stepper, watched, last, negative.0)? {
-            Some(positive) => self.locate(motion, stepper, watched, positive, negative)?,
-            None => stepper.start_time(),
-        };
-        Ok(Fired { watched, t_s })
+        // just after an event dense output may miss a transient that steps resolve
+        for sight in [Sight::Dense, Sight::Steps] {
+            if let Some(positive) = self.arm(motion, stepper, (watched, sight), last, negative.0)? {
+                let t_s = self.locate(motion, stepper, (watched, sight), positive, negative)?;
+                return Ok(Fired { watched, t_s });
+            }
+        }
+        Ok(Fired { watched, t_s: stepper.start_time() })
     }
 
     /// Contacts that have risen count from the ground again.
@@ -180,8 +207,8 @@ impl Watch {
     fn arm(
         &mut self,
         motion: &mut Motion<'_>,
-        stepper: &Stepper,
-        watched: Watched,
+        stepper: &mut Stepper,
+        (watched, sight): (Watched, Sight),
         last: (f64, f64),
         before: f64,
     ) -> Result<Option<(f64, f64)>, Breakdown> {
@@ -191,7 +218,7 @@ impl Watch {
         let mut t = before;
         for _ in 0..40 {
             t = last.0 + 0.5 * (t - last.0);
-            let value = self.value(motion, stepper, watched, t)?;
+            let value = self.value_by(sight, motion, stepper, watched, t)?;
             if value > 0.0 {
                 return Ok(Some((t, value)));
             }
@@ -204,26 +231,35 @@ impl Watch {
         &mut self,
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
-        watched: Watched,
+        (watched, sight): (Watched, Sight),
         positive: (f64, f64),
         negative: (f64, f64),
     ) -> Result<f64, Breakdown> {
         let ((mut a, mut fa), (mut b, mut fb)) = (positive, negative);
+        // forces cost most, and are polished from there anyway
+        let (t0, t1) = (stepper.start_time(), stepper.time());
+        let resolution = match (watched, sight) {
+            (Watched::Margin, Sight::Dense) => RESOLUTION_S.max(FORCES_SEEN * (t1 - t0)),
+            _ => RESOLUTION_S,
+        };
         // Illinois: false position that halves the value of an end that stays
         for _ in 0..80 {
-            if b - a <= RESOLUTION_S {
+            if b - a <= resolution {
                 break;
             }
             let guess = a + (b - a) * fa / (fa - fb);
             let t = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
-            let value = self.value(motion, stepper, watched, t)?;
+            let value = self.value_by(sight, motion, stepper, watched, t)?;
             if value > 0.0 {
                 (a, fa, fb) = (t, value, 0.5 * fb);
             } else {
                 (b, fb, fa) = (t, value, 0.5 * fa);
             }
         }
-        self.polish(motion, stepper, watched, 0.5 * (a + b))
+        match sight {
+            Sight::Dense => self.polish(motion, stepper, watched, 0.5 * (a + b)),
+            Sight::Steps => Ok(0.5 * (a + b)),
+        }
     }
 
     /// Newton's method on steps of the very length, from a root of the dense output.
@@ -241,10 +277,7 @@ impl Watch {
         let slope = (after - before) / (2.0 * width);
         let mut t = guess;
         for _ in 0..6 {
-            let mut y = std::mem::take(&mut self.y);
-            stepper.restep(motion, t, &mut y)?;
-            let value = self.measure(motion, watched, t, &y)?;
-            self.y = y;
+            let value = self.stepped_value(motion, stepper, watched, t)?;
             let change = value / slope;
             // a crossing without slope stays where dense output saw it
             if !change.is_finite() || change.abs() > 0.5 * (t1 - t0) {
@@ -256,6 +289,36 @@ impl Watch {
             }
         }
         Ok(t)
+    }
+
+    fn value_by(
+        &mut self,
+        sight: Sight,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+        watched: Watched,
+        t_s: f64,
+    ) -> Result<f64, Breakdown> {
+        match sight {
+            Sight::Dense => self.value(motion, stepper, watched, t_s),
+            Sight::Steps => self.stepped_value(motion, stepper, watched, t_s),
+        }
+    }
+
+    /// A watched value at the end of a step of the very length.
+    fn stepped_value(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+        watched: Watched,
+        t_s: f64,
+    ) -> Result<f64, Breakdown> {
+        let mut y = std::mem::take(&mut self.y);
+        let value = stepper
+            .restep(motion, t_s, &mut y)
+            .and_then(|()| self.measure(motion, watched, t_s, &y));
+        self.y = y;
+        value
     }
 
     fn value(
@@ -348,8 +411,8 @@ fn spare_force(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Result<(f64, f64
 }
 
 /// A time just after the forces have reached a limit, with the state that the modes before would
-/// lead to: as near as the limit is broken there by much more than rounding. Returns that time, and
-/// the force to spare there.
+/// lead to: as near as the limit is broken there by much more than rounding, else where it is
+/// broken most. Returns that time, and the force to spare there.
 pub(super) fn look_ahead(
     motion: &mut Motion<'_>,
     stepper: &mut Stepper,
@@ -359,12 +422,18 @@ pub(super) fn look_ahead(
     // the step was good up to its end; not much is known beyond
     let last = stepper.time().max(t_s + 64.0 * AHEAD_S);
     let mut ahead = AHEAD_S;
+    let mut worst = (t_s, f64::INFINITY);
+    let mut trial = y.to_vec();
     loop {
         let t = (t_s + ahead).min(last);
-        stepper.restep(motion, t, y)?;
-        let (spare, largest) = spare_force(motion, t, y)?;
+        stepper.restep(motion, t, &mut trial)?;
+        let (spare, largest) = spare_force(motion, t, &trial)?;
+        if spare < worst.1 {
+            worst = (t, spare);
+            y.copy_from_slice(&trial);
+        }
         if t >= last || spare < -1e-4 * largest {
-            return Ok((t, spare));
+            return Ok(worst);
         }
         ahead *= 4.0;
     }

@@ -3,12 +3,12 @@
 
 mod laws;
 mod manifold;
+mod moved;
 
 use self::laws::solve_laws;
+use self::moved::MovedMemory;
 use super::breakdown::Breakdown;
-use super::contact::cholesky::dot;
 use super::contact::delassus::Delassus;
-use super::contact::independent::IndependentRows;
 use super::contact::solver::ContactSolver;
 use super::contact::{Contact, ContactFailure, ContactProblem, Friction, Mode, Tolerance};
 use super::control::{Control, ControlMemory};
@@ -48,6 +48,9 @@ pub(super) struct Holding {
 
 /// The direction of slower slipping in space remembers that in which it began [m/s].
 pub(super) const DIRECTED_SPEED: f64 = 1e-4;
+
+/// The cosine of the angle by which fast slipping turns before its direction is remembered anew.
+const FOLLOWED: f64 = 0.8;
 
 /// How far slipping is from its end [m/s]: the speed along its direction, and in space half the
 /// speed that it remembers more. A point about which its foot turns has no direction of its own: it
@@ -93,9 +96,14 @@ pub(super) struct Motion<'a> {
     pub(super) solver: ContactSolver,
     pub(super) delassus: Delassus,
     memory: ControlMemory,
-    independent: IndependentRows,
-    /// The contacts of which those rows are.
-    chosen_for: Vec<usize>,
+    moved: MovedMemory,
+    /// Joint positions of which the mass matrix is factored, the contact points are placed, and
+    /// their Jacobian is known; the contacts whose rows are those of `work`. Most states come again
+    /// with other rates, or another question.
+    factored_for: Vec<f64>,
+    placed_for: Vec<f64>,
+    followed_for: Vec<f64>,
+    followed: Vec<usize>,
     pub(super) work: Work,
 }
 
@@ -112,8 +120,6 @@ pub(super) struct Work {
     pub(super) contact_bias: Vec<f64>,
     /// Rows of the contacts of the problem, along the ground's directions.
     pub(super) rows: Vec<f64>,
-    /// Of these the ones that are independent of each other.
-    few: Vec<f64>,
     /// Their velocities.
     pub(super) velocity: Vec<f64>,
     /// Their accelerations without contact forces.
@@ -167,8 +173,11 @@ impl<'a> Motion<'a> {
             solver: ContactSolver::new(),
             delassus: Delassus::new(),
             memory: ControlMemory::default(),
-            independent: IndependentRows::default(),
-            chosen_for: Vec::new(),
+            moved: MovedMemory::default(),
+            factored_for: Vec::new(),
+            placed_for: Vec::new(),
+            followed_for: Vec::new(),
+            followed: Vec::new(),
             work,
         }
     }
@@ -206,11 +215,15 @@ impl<'a> Motion<'a> {
         }
         let Work { mass, bias, acceleration, drive, command, scratch, laws, .. } = &mut self.work;
         self.drives.respond(self.plant.model(), command, parts, drive);
-        self.plant.mass_matrix(parts.q, mass);
         self.plant.bias(parts.q, parts.qd, bias);
-        self.delassus
-            .factor(mass, self.layout.joints)
-            .map_err(|error| Breakdown::Singular { coordinate: error.coordinate })?;
+        if self.factored_for != parts.q {
+            self.plant.mass_matrix(parts.q, mass);
+            self.factored_for.clear();
+            self.delassus
+                .factor(mass, self.layout.joints)
+                .map_err(|error| Breakdown::Singular { coordinate: error.coordinate })?;
+            self.factored_for.extend_from_slice(parts.q);
+        }
         for (entry, (torque, bias)) in acceleration.iter_mut().zip(drive.torque.iter().zip(bias)) {
             *entry = torque - *bias;
         }
@@ -243,12 +256,25 @@ impl<'a> Motion<'a> {
     pub(super) fn follow_points(&mut self, y: &[f64], contacts: &[usize]) {
         let (n, parts) = (self.layout.joints, self.layout.parts(y));
         let Work { positions, jacobian, rows, velocity, .. } = &mut self.work;
-        self.plant.contact_positions(parts.q, positions);
-        self.plant.contact_jacobian(parts.q, jacobian);
-        rows.clear();
-        for &contact in contacts {
-            let world = &jacobian[3 * contact * n..3 * (contact + 1) * n];
-            self.ground.append_rows(world, n, rows);
+        let stays = self.followed_for == parts.q;
+        if !stays {
+            self.plant.contact_jacobian(parts.q, jacobian);
+            self.followed_for.clear();
+            self.followed_for.extend_from_slice(parts.q);
+        }
+        if self.placed_for != parts.q {
+            self.plant.contact_positions(parts.q, positions);
+            self.placed_for.clear();
+            self.placed_for.extend_from_slice(parts.q);
+        }
+        if !stays || self.followed != contacts {
+            rows.clear();
+            for &contact in contacts {
+                let world = &jacobian[3 * contact * n..3 * (contact + 1) * n];
+                self.ground.append_rows(world, n, rows);
+            }
+            self.followed.clear();
+            self.followed.extend_from_slice(contacts);
         }
         velocity.clear();
         let speed = |row: &[f64]| row.iter().zip(parts.qd).map(|(w, v)| w * v).sum::<f64>();
@@ -285,62 +311,6 @@ impl<'a> Motion<'a> {
         self.respond(t_s, y, |solver, problem, modes, force| {
             solver.forces(problem, modes, force).map(|_| ())
         })
-    }
-
-    /// As `constrained_motion`, with any of the forces that move the plant alike.
-    fn moved(&mut self, t_s: f64, y: &[f64]) -> Result<(), Breakdown> {
-        let all_stick = self.closed.iter().all(|closed| closed.mode == Mode::Stick);
-        if self.closed.is_empty() || !all_stick {
-            return self.respond(t_s, y, ContactSolver::moving_forces);
-        }
-        self.free_motion(t_s, y)?;
-        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
-        self.follow_points(y, &listed);
-        self.choose_rows(listed);
-        let n = self.layout.joints;
-        self.append_bias(y);
-        self.hold();
-        let Work { rows, free, few, force, acceleration, scratch, .. } = &mut self.work;
-        few.clear();
-        force.clear();
-        for &row in &self.independent.chosen {
-            let line = &rows[row * n..(row + 1) * n];
-            few.extend_from_slice(line);
-            force.push(free[row] + dot(line, acceleration));
-        }
-        self.delassus.project(few);
-        if !self.independent.cancel(self.delassus.matrix(), force) {
-            // far from where they were chosen
-            return self.respond(t_s, y, ContactSolver::moving_forces);
-        }
-        self.delassus.respond(force, acceleration, scratch);
-        Ok(())
-    }
-
-    /// Smooth motion begins, with the contacts as they are from now on.
-    pub(super) fn begin_smooth(&mut self) {
-        self.chosen_for.clear();
-    }
-
-    /// Rows that say all that the listed contacts' rows say, while these stay the same.
-    fn choose_rows(&mut self, listed: Vec<usize>) {
-        if self.chosen_for != listed {
-            self.delassus.project(&self.work.rows);
-            self.independent.choose(self.delassus.matrix(), self.delassus.rows());
-            self.chosen_for = listed;
-        }
-    }
-
-    /// What accelerations of the closed contact points have from rates alone, into `work.free`.
-    fn append_bias(&mut self, y: &[f64]) {
-        let parts = self.layout.parts(y);
-        let Work { contact_bias, free, .. } = &mut self.work;
-        self.plant.contact_bias(parts.q, parts.qd, contact_bias);
-        free.clear();
-        for closed in &self.closed {
-            let at = 3 * closed.contact;
-            self.ground.append(&contact_bias[at..at + 3], free);
-        }
     }
 
     fn respond(
@@ -412,30 +382,46 @@ impl<'a> Motion<'a> {
     }
 
     /// Lets the directions of what slips in space follow its motion, at a state of the smooth
-    /// motion.
-    pub(super) fn follow_slips(&mut self, y: &[f64]) {
+    /// motion. Says if one did: rates have changed by a little then, those known of this state too.
+    pub(super) fn follow_slips(&mut self, y: &[f64]) -> bool {
         let rows = self.ground.rows();
         if rows < 3 || self.closed.iter().all(|closed| closed.mode == Mode::Stick) {
-            return;
+            return false;
         }
         let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
         self.follow_points(y, &listed);
+        let mut any = false;
         for (index, closed) in self.closed.iter_mut().enumerate() {
             let speed = &self.work.velocity[index * rows..index * rows + 2];
             let size = speed[0].hypot(speed[1]);
             match &mut closed.mode {
                 Mode::Slip(direction) if *direction != [0.0; 2] && size > 50.0 * DIRECTED_SPEED => {
-                    *direction = [speed[0] / size, speed[1] / size];
+                    let now = [speed[0] / size, speed[1] / size];
+                    if now[0] * direction[0] + now[1] * direction[1] < FOLLOWED {
+                        (*direction, any) = (now, true);
+                    }
                 }
                 _ => {}
             }
         }
+        any
     }
 
     /// Gaps of all contact points \[m\], after `positions` of `work` are those of `y`.
     pub(super) fn place(&mut self, y: &[f64]) {
         let parts = self.layout.parts(y);
-        self.plant.contact_positions(parts.q, &mut self.work.positions);
+        if self.placed_for != parts.q {
+            self.plant.contact_positions(parts.q, &mut self.work.positions);
+            self.placed_for.clear();
+            self.placed_for.extend_from_slice(parts.q);
+        }
+    }
+
+    /// The plant has changed: what is known of its last position is so no longer.
+    pub(super) fn forget_position(&mut self) {
+        self.factored_for.clear();
+        self.placed_for.clear();
+        self.followed_for.clear();
     }
 
     /// Height of a contact point, where `place` or `project` last saw it \[m\].

@@ -282,7 +282,9 @@ impl Runner<'_> {
                 return Ok(stop);
             }
             self.y.copy_from_slice(self.stepper.state());
-            self.motion.follow_slips(&self.y);
+            if self.motion.follow_slips(&self.y) {
+                self.stepper.forget_rates();
+            }
             if self.stepper.time() - self.audited_s > AUDIT_S {
                 self.audited_s = self.stepper.time();
                 self.recorder.note(&mut self.motion, self.audited_s, &self.y, false)?;
@@ -368,7 +370,7 @@ impl Runner<'_> {
             let settled = self.settler.switch(motion, law, (ahead_s, &ahead), &mut self.y)?;
             let same = before.len() == motion.closed.len()
                 && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
-            self.watch.slack = if same { 2.0 * (self.watch.slack - spare.min(0.0)) } else { 0.0 };
+            self.watch.slack = if same { self.watch.more_slack(spare) } else { 0.0 };
             settled
         } else {
             self.watch.slack = 0.0;
@@ -419,6 +421,7 @@ impl Runner<'_> {
         let before = self.y[rates.clone()].to_vec();
         let (positions, rest) = self.y.split_at_mut(rates.start);
         self.motion.plant.jump(guard, &mut positions[..n], &mut rest[..n]);
+        self.motion.forget_position();
         let energy_j = self.motion.energy(&self.y) - energy;
         self.recorder.add_impact(energy_j);
         self.events.push(Event {

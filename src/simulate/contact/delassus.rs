@@ -31,6 +31,8 @@ pub struct Delassus {
     half: Vec<f64>,
     /// Row-major, `rows` x `rows`.
     matrix: Vec<f64>,
+    /// Number of factorisations and projections so far.
+    changes: u64,
 }
 
 impl Delassus {
@@ -44,6 +46,11 @@ impl Delassus {
         self.rows
     }
 
+    /// A number that another factorisation or projection changes.
+    pub(crate) fn changes(&self) -> u64 {
+        self.changes
+    }
+
     /// G, row-major, `rows` x `rows` [1/kg for rows of a point's velocity].
     pub fn matrix(&self) -> &[f64] {
         &self.matrix
@@ -54,6 +61,7 @@ impl Delassus {
         assert_eq!(mass.len(), dof * dof, "a square matrix");
         self.dof = dof;
         self.rows = 0;
+        self.changes += 1;
         self.factor.clear();
         // Rows and columns backwards: all entries backwards.
         self.factor.extend(mass.iter().rev());
@@ -68,6 +76,7 @@ impl Delassus {
         let rows = jacobian.len().checked_div(dof).unwrap_or(0);
         assert_eq!(jacobian.len(), rows * dof, "whole rows");
         self.rows = rows;
+        self.changes += 1;
         self.half.clear();
         self.half.resize(rows * dof, 0.0);
         self.matrix.clear();

@@ -42,17 +42,18 @@ impl IndependentRows {
         self.chosen.sort_unstable();
     }
 
-    /// x := -G^-1 x, with G that of the chosen rows; false if they are not independent.
-    pub(crate) fn cancel(&mut self, delassus: &[f64], x: &mut [f64]) -> bool {
+    /// Factors G, that of the chosen rows; false if they are not independent.
+    pub(crate) fn factor(&mut self, delassus: &[f64]) -> bool {
         self.factor.clear();
         self.factor.extend_from_slice(delassus);
-        if factorise(&mut self.factor, x.len()).is_err() {
-            return false;
-        }
+        factorise(&mut self.factor, self.chosen.len()).is_ok()
+    }
+
+    /// x := -G^-1 x, with G as it was factored last.
+    pub(crate) fn cancel(&self, x: &mut [f64]) {
         forward(&self.factor, x);
         backward(&self.factor, x);
         x.iter_mut().for_each(|entry| *entry = -*entry);
-        true
     }
 }
 
@@ -76,7 +77,8 @@ mod tests {
             .flat_map(|i| rows.chosen.iter().map(|j| all[3 * i + j]).collect::<Vec<_>>())
             .collect();
         let mut force = [0.7, -0.2];
-        assert!(rows.cancel(&few, &mut force));
+        assert!(rows.factor(&few));
+        rows.cancel(&mut force);
         for (i, wanted) in [0.7, -0.2].into_iter().enumerate() {
             let made: f64 = (0..2).map(|j| few[2 * i + j] * force[j]).sum();
             assert!((made + wanted).abs() < 1e-14);

@@ -6,16 +6,8 @@
 //! planes instead of the cones would be an endless number of nearly parallel ones.
 
 use super::minimum_norm::MinimumNorm;
+use super::sharing::Limit;
 use nalgebra::{Cholesky, DMatrix, DVector};
-
-/// What one contact must keep: its normal force, and its cone if it sticks.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limit {
-    /// Place of the normal force among the unknowns; the tangential ones stand just before it.
-    pub(super) at: usize,
-    /// Coefficient of friction of a contact that sticks.
-    pub(super) mu: Option<f64>,
-}
 
 /// A linear function of (z, t): its value at 0 and its slope.
 struct Line {
@@ -104,8 +96,8 @@ fn list(least: &[f64], system: &MinimumNorm, limits: &[Limit], scale: f64) -> Ve
     let mut barriers = Vec::new();
     for limit in limits {
         barriers.push(Barrier { side: line(limit.at, 1.0, -1.0), across: None });
-        if let Some(mu) = limit.mu {
-            let across = [line(limit.at - 2, 1.0, 0.0), line(limit.at - 1, 1.0, 0.0)];
+        if let Some((tangents, mu)) = limit.cone {
+            let across = [line(limit.at - tangents, 1.0, 0.0), line(limit.at - 1, 1.0, 0.0)];
             barriers.push(Barrier { side: line(limit.at, mu, -1.0), across: Some(across) });
         }
     }

@@ -26,6 +26,12 @@ impl MinimumNorm {
 
     /// Factors `a` (row-major, n x n); pivots below `tolerance` times the largest entry are zero.
     pub fn factor(&mut self, a: &[f64], n: usize, tolerance: f64) {
+        self.factor_range(a, n, tolerance);
+        self.find_null_space();
+    }
+
+    /// As `factor`, for the range alone: null vectors wait for `find_null_space`.
+    pub(crate) fn factor_range(&mut self, a: &[f64], n: usize, tolerance: f64) {
         assert_eq!(a.len(), n * n, "a square matrix");
         self.n = n;
         self.lu.clear();
@@ -49,7 +55,47 @@ impl MinimumNorm {
             self.exchange(step, row, column);
             self.eliminate(step);
         }
-        self.find_null_space();
+        self.null.clear();
+    }
+
+    /// A = L R, with as many columns of L (n x rank) and rows of R (rank x n) as A has rank;
+    /// row-major.
+    pub(crate) fn full_rank_factors(&self, left: &mut Vec<f64>, right: &mut Vec<f64>) {
+        let (n, rank) = (self.n, self.rank);
+        for factor in [&mut *left, &mut *right] {
+            factor.clear();
+            factor.resize(n * rank, 0.0);
+        }
+        for (i, row) in self.rows.iter().enumerate() {
+            let line = &mut left[row * rank..(row + 1) * rank];
+            let known = i.min(rank);
+            line[..known].copy_from_slice(&self.lu[i * n..i * n + known]);
+            if i < rank {
+                line[i] = 1.0;
+            }
+        }
+        for i in 0..rank {
+            for j in i..n {
+                right[i * n + self.columns[j]] = self.lu[i * n + j];
+            }
+        }
+    }
+
+    /// Writes d of L d = b, by the independent rows; returns by how much the others are missed.
+    pub(crate) fn reduce(&self, b: &[f64], d: &mut Vec<f64>) -> f64 {
+        let (n, rank) = (self.n, self.rank);
+        d.clear();
+        let mut missed = 0.0_f64;
+        for (i, row) in self.rows.iter().enumerate() {
+            let line = &self.lu[i * n..i * n + i.min(rank)];
+            let left = b[*row] - line.iter().zip(&*d).map(|(l, d)| l * d).sum::<f64>();
+            if i < rank {
+                d.push(left);
+            } else {
+                missed = missed.max(left.abs());
+            }
+        }
+        missed
     }
 
     /// The numerical rank.
@@ -138,8 +184,9 @@ impl MinimumNorm {
         }
     }
 
-    /// x_free = e_k, U1 x_basic = -U2 e_k, then Gram-Schmidt, twice.
-    fn find_null_space(&mut self) {
+    /// The null vectors, after `factor_range`: x_free = e_k, U1 x_basic = -U2 e_k, then
+    /// Gram-Schmidt, twice.
+    pub(crate) fn find_null_space(&mut self) {
         let (n, rank) = (self.n, self.rank);
         self.null.clear();
         self.null.resize((n - rank) * n, 0.0);

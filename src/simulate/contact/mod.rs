@@ -35,6 +35,7 @@ pub mod minimum_norm;
 pub mod modes;
 pub mod newton;
 pub mod pyramid;
+pub(crate) mod sharing;
 pub mod solver;
 
 /// Where the contacts move.

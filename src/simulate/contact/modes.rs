@@ -10,12 +10,11 @@
 //! never by the signs of an arbitrary one. Friction cones in space enter as tangent planes, added
 //! where the last distribution leaves the cone.
 
-mod moving;
-
 use super::cholesky::dot;
-use super::interior::{self, Limit};
+use super::interior;
 use super::lemke::{LcpOutcome, Lemke};
 use super::minimum_norm::MinimumNorm;
+use super::sharing::{Limit, Sharing};
 use super::{ContactFailure, ContactProblem, Mode, length};
 
 /// Pivots below this, relative to the largest, are redundancies of contacts.
@@ -23,6 +22,8 @@ const RANK: f64 = 1e-10;
 /// Smaller entries of a unit null vector are no direction: points of a foot that is flat up to a
 /// drift would pull at each other with 10^12 N to lift one of them.
 const DIRECTION: f64 = 1e-5;
+/// As much force to spare, relative to the largest, is far from any limit.
+const ENOUGH: f64 = 1e-4;
 /// Rounds of tangent planes: each at least halves the angle by which a cone is left.
 const ROUNDS: usize = 40;
 
@@ -33,6 +34,9 @@ pub struct ModeSolver {
     matrix: Vec<f64>,
     right: Vec<f64>,
     values: Vec<f64>,
+    sharing: Sharing,
+    limits: Vec<Limit>,
+    /// The system with its null vectors, where sharing finds nothing.
     system: MinimumNorm,
     /// The transpose, and the products of its null vectors with those of the system: needed where
     /// friction makes the matrix unsymmetric.
@@ -91,22 +95,31 @@ impl ModeSolver {
         force: &mut [f64],
     ) -> Result<usize, ContactFailure> {
         self.solve(problem, modes)?;
-        let redundancy = self.system.nullity();
-        if redundancy > 0 {
-            self.with_planes(problem, modes, Self::least_admissible);
-            if let Some(limits) = self.cones(problem, modes)
-                && least_slack(&limits, &self.values) < -problem.force_zero(0.0)
-            {
-                // planes that did not get there: forces far inside the cones are as good
-                self.values.copy_from_slice(&self.least);
-                let (_, along) = self.cone_margin(&limits, false);
-                for (direction, along) in along.into_iter().enumerate() {
-                    self.move_along(direction, along);
-                }
+        let redundancy = self.sharing.nullity();
+        if redundancy > 0 && least_slack(&self.limits, &self.values) < 0.0 {
+            if self.sharing.share(&self.limits, 0.0) {
+                self.values.copy_from_slice(self.sharing.forces());
+            } else {
+                self.share_by_planes(problem, modes);
             }
         }
         self.expand(force);
         Ok(redundancy)
+    }
+
+    /// Forces where sharing finds none: there may be none.
+    fn share_by_planes(&mut self, problem: &ContactProblem<'_>, modes: &[Mode]) {
+        self.find_null_vectors();
+        if !self.has_cones_in_space() {
+            self.with_planes(problem, modes, Self::least_admissible);
+            return;
+        }
+        // forces far inside the cones, or near to them, are as good
+        let (_, along) =
+            interior::largest_margin(&self.values, &self.system, &self.limits, f64::INFINITY);
+        for (direction, along) in along.into_iter().enumerate() {
+            self.move_along(direction, along);
+        }
     }
 
     /// The largest t such that forces exist that keep the modes, with f_n >= t for every closed
@@ -123,9 +136,22 @@ impl ModeSolver {
     ) -> Result<(f64, f64), ContactFailure> {
         self.solve(problem, modes)?;
         let largest = self.values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
-        if let Some(limits) = self.cones(problem, modes) {
-            return Ok((self.cone_margin(&limits, true).0, largest));
+        let slack = least_slack(&self.limits, &self.values);
+        let rough = self.has_cones_in_space() && slack > 0.0;
+        if rough || self.sharing.nullity() == 0 {
+            return Ok((slack, largest));
         }
+        let enough = ENOUGH * largest;
+        if self.has_cones_in_space() {
+            if self.sharing.share(&self.limits, enough) {
+                return Ok((enough, largest));
+            }
+            self.find_null_vectors();
+            let (margin, _) =
+                interior::largest_margin(&self.values, &self.system, &self.limits, enough);
+            return Ok((margin, largest));
+        }
+        self.find_null_vectors();
         let mut margin = f64::INFINITY;
         self.with_planes(problem, modes, |solver| {
             margin = solver.largest_slack();
@@ -134,49 +160,43 @@ impl ModeSolver {
         Ok((margin, largest))
     }
 
-    /// What each closed contact must keep, if a cone in space is among it.
-    fn cones(&self, problem: &ContactProblem<'_>, modes: &[Mode]) -> Option<Vec<Limit>> {
-        let limits: Vec<Limit> = closed(problem, modes)
-            .map(|Held { at, tangents, friction }| Limit {
-                at,
-                mu: friction.filter(|_| tangents == 2),
-            })
-            .collect();
-        limits.iter().any(|limit| limit.mu.is_some()).then_some(limits)
+    /// What each closed contact must keep.
+    fn list_limits(&mut self, problem: &ContactProblem<'_>, modes: &[Mode]) {
+        self.limits.clear();
+        self.limits.extend(closed(problem, modes).map(|Held { at, tangents, friction }| Limit {
+            at,
+            cone: friction.filter(|_| tangents > 0).map(|mu| (tangents, mu)),
+        }));
     }
 
-    /// The largest margin and where along the null vectors it is, of the values of least norm.
-    /// `roughly`: that it is positive may be all.
-    fn cone_margin(&self, limits: &[Limit], roughly: bool) -> (f64, Vec<f64>) {
-        let free = self.system.nullity();
-        let slack = least_slack(limits, &self.values);
-        if free == 0 || (roughly && slack > 0.0) {
-            return (slack, vec![0.0; free]);
-        }
-        let largest = self.values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
-        let enough = if roughly { 1e-4 * largest } else { f64::INFINITY };
-        interior::largest_margin(&self.values, &self.system, limits, enough)
+    fn has_cones_in_space(&self) -> bool {
+        self.limits.iter().any(|limit| limit.cone.is_some_and(|(tangents, _)| tangents == 2))
     }
 
-    /// The forces of least norm, whatever their signs.
+    /// The forces as equally compliant points share them, whatever their signs.
     fn solve(
         &mut self,
         problem: &ContactProblem<'_>,
         modes: &[Mode],
     ) -> Result<(), ContactFailure> {
         self.list_unknowns(problem, modes);
+        self.list_limits(problem, modes);
         self.write_system(problem);
-        let size = self.unknowns.len();
-        self.system.factor(&self.matrix, size, RANK);
+        let missed = self.sharing.pose(&self.matrix, &self.right);
         self.values.clear();
-        self.values.resize(size, 0.0);
-        let missed = self.system.solve(&self.right, &mut self.values);
-        if self.is_unsymmetric() {
-            self.share_by_compliance();
-        }
+        self.values.extend_from_slice(self.sharing.forces());
         // Constraints that are met only up to a drift contradict each other a little.
         let allowed = 1e5 * problem.response_zero();
         if missed > allowed { Err(ContactFailure::Inconsistent) } else { Ok(()) }
+    }
+
+    /// Null vectors of the system and, where friction makes it unsymmetric, of its transpose.
+    fn find_null_vectors(&mut self) {
+        self.system.clone_from(self.sharing.system());
+        self.system.find_null_space();
+        if self.is_unsymmetric() {
+            self.transpose_system();
+        }
     }
 
     /// Redundant, and with friction that follows normal forces.
@@ -184,9 +204,9 @@ impl ModeSolver {
         self.system.nullity() > 0 && self.unknowns.iter().any(|unknown| unknown.tangents > 0)
     }
 
-    /// Moves the values along the null vectors N to where L^T x = 0, L the null vectors of the
-    /// transpose: L^T (A x + b + eps x) = eps L^T x.
-    fn share_by_compliance(&mut self) {
+    /// Null vectors L of the transpose, and their products with N, those of the system: a force x
+    /// that gives way moves the values along N by (L^T N)^-1 L^T x.
+    fn transpose_system(&mut self) {
         let (size, free) = (self.unknowns.len(), self.system.nullity());
         self.lcp.clear();
         for row in 0..size {
@@ -203,12 +223,6 @@ impl ModeSolver {
             self.lcp.extend((0..free).map(|j| dot(left, self.system.null_vector(j))));
         }
         self.products.factor(&self.lcp, free, RANK);
-        let values = std::mem::take(&mut self.values);
-        let along = self.along(&values);
-        self.values = values;
-        for (direction, along) in along.into_iter().enumerate() {
-            self.move_along(direction, -along);
-        }
     }
 
     /// (L^T N)^-1 L^T x.
@@ -444,11 +458,12 @@ fn closed<'p>(
     })
 }
 
-/// The least of f_n and of mu f_n - |f_t|.
+/// The least of f_n and of mu f_n - |f_t|; infinite if nothing is closed.
 fn least_slack(limits: &[Limit], x: &[f64]) -> f64 {
     let slack = |limit: &Limit| {
         let normal = x[limit.at];
-        let cone = limit.mu.map(|mu| mu * normal - length(&x[limit.at - 2..limit.at]));
+        let cone =
+            limit.cone.map(|(count, mu)| mu * normal - length(&x[limit.at - count..limit.at]));
         cone.map_or(normal, |cone| cone.min(normal))
     };
     limits.iter().map(slack).fold(f64::INFINITY, f64::min)

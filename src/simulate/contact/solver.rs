@@ -64,16 +64,6 @@ impl ContactSolver {
         self.modes.forces(problem, modes, force)
     }
 
-    /// Forces of given modes, for the motion alone; see [`ModeSolver::moving_forces`].
-    pub fn moving_forces(
-        &mut self,
-        problem: &ContactProblem<'_>,
-        modes: &[Mode],
-        force: &mut [f64],
-    ) -> Result<(), ContactFailure> {
-        self.modes.moving_forces(problem, modes, force)
-    }
-
     /// How far given modes are from violating a law; see [`ModeSolver::margin`].
     pub fn margin(
         &mut self,

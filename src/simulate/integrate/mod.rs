@@ -151,6 +151,11 @@ impl Stepper {
         self.known = false;
     }
 
+    /// The rates at the end of the last step are not those of the next one's start.
+    pub fn forget_rates(&mut self) {
+        self.known = false;
+    }
+
     /// Start of the last step \[s\].
     pub fn start_time(&self) -> f64 {
         self.t0
@@ -206,10 +211,7 @@ impl Stepper {
             let error = match tried {
                 Ok(error) => error,
                 // a step too long may lead to where the equations have no answer
-                Err(_) if trial > SHORTEST_FAILURE_S => {
-                    self.implicit.forget();
-                    None
-                }
+                Err(_) if trial > SHORTEST_FAILURE_S => None,
                 Err(breakdown) => return Err(breakdown),
             };
             // an error that is not finite, or no convergence: a much shorter step

@@ -37,7 +37,7 @@ const SLOW: f64 = 0.15;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Implicit {
     jacobian: Option<Jacobian>,
-    /// Whether the Jacobian is that of the start of the step.
+    /// Whether the Jacobian is that of the start of the step: a shorter one has no better.
     fresh: bool,
     factored: Option<(f64, Factored<f64>, Factored<Complex<f64>>)>,
     /// Ways of the stages, and the same in eigenvectors.
@@ -57,6 +57,7 @@ impl Implicit {
 
     /// The step that was just made has been accepted.
     pub(super) fn accept(&mut self, step: f64) {
+        self.fresh = false;
         let (_, ways) = self.last.get_or_insert_with(Default::default);
         for (kept, way) in ways.iter_mut().zip(&self.z) {
             kept.clone_from(way);
@@ -75,7 +76,6 @@ impl Stepper {
         step: f64,
         accuracy: Accuracy,
     ) -> Result<Option<f64>, Breakdown> {
-        self.implicit.fresh = false;
         loop {
             self.factor(system, step)?;
             if let Some(slowest) = self.solve_stages(system, step, accuracy)? {

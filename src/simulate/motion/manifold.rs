@@ -22,6 +22,7 @@ impl Motion<'_> {
         let (n, rows) = (self.layout.joints, self.ground.rows());
         let normals: Vec<usize> = (0..contacts.len()).map(|i| i * rows + rows - 1).collect();
         // the second pass takes out what the first bends
+        self.factored_for.clear();
         for _ in 0..2 {
             self.plant.mass_matrix(&y[..n], &mut self.work.mass);
             self.delassus

@@ -220,25 +220,7 @@ fn print(
         cost.evaluations,
     )?;
     writeln!(out)?;
-    let audit = &run.audit;
-    let mut rows = vec![
-        ("energy balance [J]", audit.energy_j),
-        ("momentum across impacts [N s]", audit.momentum_ns),
-        ("penetration [m]", audit.penetration_m),
-        ("complementarity [N m]", audit.complementarity_nm),
-        ("adhesion [N]", audit.adhesion_n),
-        ("speed of closed contacts [m/s]", audit.separation_m_s),
-        ("forces against momentum [N]", audit.force_n),
-        ("zero moment point against momentum [m]", audit.zmp_m),
-        ("friction beyond its cone [N]", audit.cone_n),
-        ("friction demand of one link", audit.friction_demand),
-        ("friction demand of all contacts", audit.friction_total),
-        ("largest torque [N m, N]", audit.torque),
-    ];
-    if audit.zmp_margin_m.is_finite() {
-        rows.push(("margin of the zero moment point [m]", audit.zmp_margin_m));
-    }
-    for (law, worst) in rows {
+    for (_, law, worst) in run.audit.listed(scenario.plant.model()) {
         writeln!(out, "{law:<40} {worst:>10.3e}")?;
     }
     for (law, found, allowed) in broken {

@@ -2,6 +2,7 @@
 
 use super::ground::{Ground, cross, dot};
 use super::motion::Motion;
+use crate::plants::PlantModel;
 
 /// What a run may miss the laws by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +114,34 @@ pub struct Audit {
 impl Audit {
     pub(super) fn new() -> Self {
         Self { zmp_margin_m: f64::INFINITY, ..Self::default() }
+    }
+
+    /// The figures that have a meaning for a plant, each with the name of its log's header, where it
+    /// is there, and with what it is called: contacts have some where there are contact points,
+    /// balances where contacts are all that holds it.
+    pub fn listed(&self, model: &PlantModel) -> Vec<(Option<&'static str>, &'static str, f64)> {
+        let touches = !model.contacts.is_empty();
+        let free = touches && model.joints.first().is_some_and(|joint| !joint.drivable);
+        let margin = free && self.zmp_margin_m.is_finite();
+        let rows = [
+            (true, Some("energy_j"), "energy balance [J]", self.energy_j),
+            (free, Some("momentum_ns"), "momentum across impacts [N s]", self.momentum_ns),
+            (touches, Some("penetration_m"), "penetration [m]", self.penetration_m),
+            (touches, Some("complementarity_nm"), "complementarity [N m]", self.complementarity_nm),
+            (touches, Some("adhesion_n"), "adhesion [N]", self.adhesion_n),
+            (touches, None, "speed of closed contacts [m/s]", self.separation_m_s),
+            (free, Some("force_n"), "forces against momentum [N]", self.force_n),
+            (free, Some("zmp_m"), "zero moment point against momentum [m]", self.zmp_m),
+            (touches, Some("cone_n"), "friction beyond its cone [N]", self.cone_n),
+            (touches, Some("friction_demand"), "friction demand of one link", self.friction_demand),
+            (touches, None, "friction demand of all contacts", self.friction_total),
+            (true, None, "largest torque [N m, N]", self.torque),
+            (margin, None, "margin of the zero moment point [m]", self.zmp_margin_m),
+        ];
+        rows.into_iter()
+            .filter(|row| row.0)
+            .map(|(_, key, name, found)| (key, name, found))
+            .collect()
     }
 
     /// The laws that were missed by more than is tolerated: name, by how much, tolerance.

@@ -145,18 +145,19 @@ impl MinimumNorm {
         missed
     }
 
+    /// Row and column of the largest entry that is left; of equal ones the first.
     fn largest_below(&self, step: usize) -> (usize, usize) {
         let n = self.n;
-        let (mut best, mut place) = (-1.0, (step, step));
-        for row in step..n {
-            for column in step..n {
-                let size = self.lu[row * n + column].abs();
-                if size > best {
-                    (best, place) = (size, (row, column));
-                }
+        let (mut best, mut row) = (-1.0, step);
+        for (index, line) in self.lu.chunks_exact(n).enumerate().skip(step) {
+            let size = largest(&line[step..]);
+            if size > best {
+                (best, row) = (size, index);
             }
         }
-        place
+        let line = &self.lu[row * n + step..(row + 1) * n];
+        let place = line.iter().position(|entry| entry.abs() == best);
+        (row, step + place.unwrap_or(0))
     }
 
     fn exchange(&mut self, step: usize, row: usize, column: usize) {
@@ -178,8 +179,8 @@ impl MinimumNorm {
         for line in lower.chunks_exact_mut(n) {
             let factor = line[step] / pivot_row[step];
             line[step] = factor;
-            for j in step + 1..n {
-                line[j] -= factor * pivot_row[j];
+            for (entry, pivot) in line[step + 1..].iter_mut().zip(&pivot_row[step + 1..]) {
+                *entry -= factor * pivot;
             }
         }
     }
@@ -216,4 +217,21 @@ impl MinimumNorm {
             }
         }
     }
+}
+
+/// The largest magnitude, in lanes that do not wait for each other; NaN is passed over.
+fn largest(entries: &[f64]) -> f64 {
+    let mut lanes = [0.0_f64; 4];
+    let chunks = entries.chunks_exact(4);
+    let rest = chunks.remainder();
+    let larger = |most: &mut f64, entry: &f64| {
+        if entry.abs() > *most {
+            *most = entry.abs();
+        }
+    };
+    for chunk in chunks {
+        lanes.iter_mut().zip(chunk).for_each(|(most, entry)| larger(most, entry));
+    }
+    lanes.iter_mut().zip(rest).for_each(|(most, entry)| larger(most, entry));
+    lanes.iter().fold(0.0, |most, lane| if *lane > most { *lane } else { most })
 }

@@ -153,7 +153,7 @@ impl Sharing {
                 }
                 share *= 0.5;
             }
-            if !(then < now) {
+            if then.is_nan() || then >= now {
                 // rounding, or nothing keeps the limits
                 break;
             }

@@ -148,19 +148,11 @@ impl Scenario {
             header.push(("step_s", format!("{:e}", self.stepping.step_s)));
         }
         header.push(("stop", run.stop.word().to_owned()));
-        let audit = &run.audit;
-        let figures = [
-            ("audit_energy_j", audit.energy_j),
-            ("audit_momentum_ns", audit.momentum_ns),
-            ("audit_penetration_m", audit.penetration_m),
-            ("audit_complementarity_nm", audit.complementarity_nm),
-            ("audit_adhesion_n", audit.adhesion_n),
-            ("audit_zmp_m", audit.zmp_m),
-            ("audit_force_n", audit.force_n),
-            ("audit_cone_n", audit.cone_n),
-            ("audit_friction_demand", audit.friction_demand),
-        ];
-        header.extend(figures.map(|(name, value)| (name, format!("{value:e}"))));
-        header.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        let mut header: Vec<(String, String)> =
+            header.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        for (key, _, worst) in run.audit.listed(model) {
+            header.extend(key.map(|key| (format!("audit_{key}"), format!("{worst:e}"))));
+        }
+        header
     }
 }

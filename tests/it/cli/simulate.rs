@@ -264,3 +264,19 @@ fn a_log_that_is_followed_is_not_replaced() {
     assert!(run.stderr.contains("would be replaced"), "{}", run.stderr);
     assert_eq!(fs::read_to_string(directory.path.join("run.csv")).expect("a file"), log);
 }
+
+/// A robot that touches nothing has no figures of contacts, neither printed nor in its log.
+#[test]
+fn figures_of_contacts_are_those_of_robots_with_contacts() {
+    let directory = Directory::new("figures");
+    for (scenario, touches) in [("double_pendulum", false), ("rocking_block", true)] {
+        let run = run_in(&directory.path, &["simulate", scenario, "-o", "log.csv"]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        assert!(run.stdout.contains("energy balance [J]"), "{}", run.stdout);
+        assert_eq!(run.stdout.contains("penetration [m]"), touches, "{}", run.stdout);
+        assert_eq!(run.stdout.contains("forces against momentum"), touches, "{}", run.stdout);
+        let log = fs::read_to_string(directory.path.join("log.csv")).expect("a log");
+        assert!(log.contains("# audit_energy_j: "), "{log}");
+        assert_eq!(log.contains("# audit_adhesion_n: "), touches, "{log}");
+    }
+}

@@ -116,9 +116,9 @@ impl Audit {
         Self { zmp_margin_m: f64::INFINITY, ..Self::default() }
     }
 
-    /// The figures that have a meaning for a plant, each with the name of its log's header, where it
-    /// is there, and with what it is called: contacts have some where there are contact points,
-    /// balances where contacts are all that holds it.
+    /// The figures that have a meaning for a plant, each with the name in its log's header (none
+    /// if it is not there) and with what it is called: those of contacts where there are contact
+    /// points, balances where contacts are all that holds the plant.
     pub fn listed(&self, model: &PlantModel) -> Vec<(Option<&'static str>, &'static str, f64)> {
         let touches = !model.contacts.is_empty();
         let free = touches && model.joints.first().is_some_and(|joint| !joint.drivable);

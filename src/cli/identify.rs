@@ -75,7 +75,7 @@ pub(crate) struct Arguments {
     /// Weighings and held postures: say which parameters, or sums of them, follow from these,
     /// joined with the logs for the estimate if there are any
     #[arg(long = "static", value_name = "FILE", conflicts_with_all = ["svg", "html", "motion_svg",
-        "output"])]
+        "output", "validate"])]
     statics: Option<PathBuf>,
     /// Coulomb friction as the sign of the rate of a joint, or as tanh(rate / RATE), with which
     /// logs are then simulated too [rad/s, m/s]; 0.01 if no RATE is given

@@ -44,6 +44,20 @@ pub struct Consequences {
     pub degrees_of_freedom: usize,
 }
 
+impl Consequences {
+    /// Whether the equations miss each other by more than chance does in one of three million
+    /// cases: five deviations of the cube root of chi squared, which is nearly normal (Wilson and
+    /// Hilferty 1931).
+    pub fn contradicts(&self) -> bool {
+        if self.degrees_of_freedom == 0 {
+            return false;
+        }
+        let degrees = self.degrees_of_freedom as f64;
+        let spread = 2.0 / (9.0 * degrees);
+        self.chi_squared > degrees * (1.0 - spread + 5.0 * spread.sqrt()).powi(3)
+    }
+}
+
 /// Parts of a row space below this, of the largest, are rounding.
 const RANK_TOLERANCE: f64 = 1e-10;
 

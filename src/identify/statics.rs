@@ -50,6 +50,10 @@ pub enum StaticFault {
     UnknownName(usize, String, Option<String>),
     /// A link has no mass among the unknowns: it is known, or written in symbols of its own.
     NoMass(usize, String),
+    /// A link stands on the scale twice.
+    Repeated(usize, String),
+    /// Nothing is on the scale.
+    NothingWeighed(usize),
     /// A posture has not one position for each joint: expected, found.
     WrongPosture(usize, usize, usize),
     /// A standard deviation is not positive, or a number not finite.
@@ -69,6 +73,14 @@ impl fmt::Display for StaticFault {
             Self::NoMass(at, link) => write!(
                 f,
                 "measurement {}: the mass of `{link}` is not among the unknown parameters",
+                at + 1
+            ),
+            Self::Repeated(at, link) => {
+                write!(f, "measurement {}: `{link}` is named twice", at + 1)
+            }
+            Self::NothingWeighed(at) => write!(
+                f,
+                "measurement {}: `links` is empty\n  hint: name the links on the scale",
                 at + 1
             ),
             Self::WrongPosture(at, expected, found) => write!(
@@ -143,7 +155,14 @@ fn masses(
 ) -> Vec<(usize, f64)> {
     let owners = || model.standard.iter().filter_map(|one| one.owner.as_ref());
     let mut members = Vec::new();
-    for link in links {
+    if links.is_empty() {
+        faults.push(StaticFault::NothingWeighed(at));
+    }
+    for (place, link) in links.iter().enumerate() {
+        if links[..place].contains(link) {
+            faults.push(StaticFault::Repeated(at, link.clone()));
+            continue;
+        }
         let is_mass = |owner: &Option<(String, &'static str)>| {
             owner.as_ref().is_some_and(|(name, prefix)| name == link && *prefix == "m")
         };

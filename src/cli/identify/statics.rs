@@ -44,8 +44,8 @@ pub(super) fn run(
         true => write_json(out, &as_json(&model, &knowledge, &found, &remarks))?,
         false => write(out, &model, (&knowledge, &found), &remarks)?,
     }
-    let is_something = !found.combinations.is_empty();
-    Ok(if is_something { Answer::Done } else { Answer::Negative })
+    let is_answer = !found.combinations.is_empty() && !found.contradicts();
+    Ok(if is_answer { Answer::Done } else { Answer::Negative })
 }
 
 /// Adds what logs say; a remark if only a part of it can be added.
@@ -61,6 +61,10 @@ fn join(model: &RegressionModel, answered: &Answered, knowledge: &mut Knowledge)
             .to_owned(),
     )
 }
+
+/// What is said of equations that cannot all be true.
+const CONTRADICTION: &str = " They contradict each other: a measurement, its sign, its unit or its \
+                             deviation is wrong, and what follows is not to be used.";
 
 /// A combination as a sum.
 fn sum(model: &RegressionModel, one: &Determined) -> String {
@@ -125,9 +129,10 @@ fn write(
         let share = found.chi_squared / found.degrees_of_freedom as f64;
         let text = format!(
             "The equations miss each other by {} standard deviations ({} more than are needed): \
-             about 1 is what the stated deviations lead one to expect.",
+             about 1 is what the stated deviations lead one to expect.{}",
             short(share.sqrt()),
-            found.degrees_of_freedom
+            found.degrees_of_freedom,
+            if found.contradicts() { CONTRADICTION } else { "" }
         );
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
@@ -164,6 +169,7 @@ fn as_json(
         "combinations": combinations.collect::<Vec<_>>(),
         "chi_squared": found.chi_squared,
         "degrees_of_freedom": found.degrees_of_freedom,
+        "contradicts": found.contradicts(),
         "remarks": remarks,
     })
 }

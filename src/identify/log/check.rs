@@ -10,6 +10,9 @@ const SLOWEST_STEP_S: f64 = 0.1;
 /// A turning joint without limits hardly goes further \[rad\].
 const LARGEST_ANGLE_RAD: f64 = 20.0;
 
+/// Times its limit that a torque goes to if the limits of a trajectory are the model's.
+const FAR_BEYOND: f64 = 3.0;
+
 /// Two signals that are one.
 const SAME: f64 = 0.98;
 
@@ -133,6 +136,15 @@ fn torque(
             found.suspicions.push(Suspicion::ConstantTorque { column });
         }
         return;
+    }
+    if let Some([least, most]) = joint.torque_limits {
+        let limit = least.abs().max(most.abs());
+        let is_beyond = |value: f64| value.abs() > FAR_BEYOND * limit;
+        if limit > 0.0 && (is_beyond(low) || is_beyond(high)) {
+            let samples = torque.iter().filter(|value| is_beyond(**value)).count();
+            let (column, value) = (column.clone(), if is_beyond(low) { low } else { high });
+            found.suspicions.push(Suspicion::BeyondTorque { column, value, limit, samples });
+        }
     }
     for value in [low, high] {
         // Samples that stand at the very extreme, five or more at once.

@@ -26,6 +26,12 @@ pub enum LogFault {
     RepeatedColumn { column: String },
     /// A column that is needed is not there.
     MissingColumn { column: String, nearest: Option<String> },
+    /// A joint has no torque, and others have; holds its column and the one that is meant, perhaps.
+    MissingTorque { column: String, nearest: Option<String> },
+    /// Several of our columns are taken from one of the log.
+    SharedColumn { column: String, ours: Vec<String> },
+    /// A number that nothing of a robot can be.
+    Impossible { column: String, value: f64, line: usize },
     /// A name that is mapped is none of the model's columns.
     UnknownName { name: String, nearest: Option<String> },
     /// The log says that it is of another model.
@@ -72,6 +78,8 @@ pub enum Suspicion {
     Swapped { joint: String, other: String },
     /// A torque never changes while its joint moves.
     ConstantTorque { column: String },
+    /// A torque is far beyond what the model says the joint can have.
+    BeyondTorque { column: String, value: f64, limit: f64, samples: usize },
     /// The torque that was commanded to a motor is all that there is of a joint behind a spring.
     CommandOfSpring { joint: String },
     /// A position is beyond its limits.
@@ -131,6 +139,7 @@ impl LogFault {
             | Self::Undefined { line, .. }
             | Self::TimeNotIncreasing { line }
             | Self::TimeRepeated { line }
+            | Self::Impossible { line, .. }
             | Self::Gaps { line, .. } => Some(line),
             _ => None,
         }
@@ -144,6 +153,26 @@ fn meant(f: &mut fmt::Formatter<'_>, nearest: &Option<String>, other: &str) -> f
     }
 }
 
+fn missing_torque(
+    f: &mut fmt::Formatter<'_>,
+    column: &str,
+    nearest: &Option<String>,
+) -> fmt::Result {
+    write!(f, "there is no column `{column}`, and other joints have torques")?;
+    meant(f, nearest, "--columns MAP.json says which column of the log it is")?;
+    write!(f, "; {{\"{column}\": null}} there leaves it out")
+}
+
+fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> fmt::Result {
+    let ours: Vec<String> = ours.iter().map(|one| format!("`{one}`")).collect();
+    write!(
+        f,
+        "column `{column}` is taken for {}\n  hint: --columns MAP.json gives each its own; null \
+         leaves one out",
+        ours.join(" and ")
+    )
+}
+
 impl fmt::Display for LogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -154,6 +183,11 @@ impl fmt::Display for LogFault {
             Self::MissingColumn { column, nearest } => {
                 write!(f, "there is no column `{column}`")?;
                 meant(f, nearest, "--columns MAP.json says which column of the log it is")
+            }
+            Self::MissingTorque { column, nearest } => missing_torque(f, column, nearest),
+            Self::SharedColumn { column, ours } => shared_column(f, column, ours),
+            Self::Impossible { column, value, .. } => {
+                write!(f, "{value:e} in column `{column}`: nothing of a robot is so large")
             }
             Self::UnknownName { name, nearest } => {
                 write!(f, "--columns maps `{name}`, which is no column of this model")?;
@@ -248,6 +282,11 @@ impl fmt::Display for Suspicion {
                 "`{joint}` has a spring behind its motor, and the log has the torque of the motor, \
                  `tau_cmd_{joint}`, alone: the joint gets another one\n  hint: --two-stage finds \
                  the springs first; or give the joint's own torque as `tau_{joint}`"
+            )?,
+            Self::BeyondTorque { column, value, limit, samples } => write!(
+                f,
+                "`{column}` goes to {value:.4} in {samples} samples, and the model's limit is \
+                 {limit:.4}"
             )?,
             Self::BeyondLimits { column, value, limits: [low, high] } => write!(
                 f,

@@ -16,10 +16,11 @@ pub struct ColumnSource {
     pub offset: f64,
 }
 
-/// A mapping of columns: our name to its source. A column that is not mapped has our name.
+/// A mapping of columns: our name to its source, or to nothing if it is left out on purpose. A
+/// column that is not mapped has our name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnMapping {
-    sources: BTreeMap<String, ColumnSource>,
+    sources: BTreeMap<String, Option<ColumnSource>>,
 }
 
 /// A mapping that cannot be read.
@@ -39,7 +40,8 @@ impl fmt::Display for MappingError {
         write!(
             f,
             "{file}:{line}:{column}: {cause}\n  hint: as {{\"q_knee\": {{\"column\": \"deg\", \
-             \"scale\": 0.0174533, \"offset\": 0}}, \"t\": \"time\"}}"
+             \"scale\": 0.0174533, \"offset\": 0}}, \"t\": \"time\", \"tau_hip\": \
+             null}}"
         )
     }
 }
@@ -65,13 +67,18 @@ impl ColumnMapping {
     /// Reads a mapping from JSON. `file` is its name, for messages alone.
     pub fn from_json(file: &str, source: &[u8]) -> Result<Self, MappingError> {
         let error = |at, cause| MappingError { file: file.to_owned(), at, cause };
-        let raw: BTreeMap<String, Entry> = serde_json::from_slice(source).map_err(|problem| {
-            let text = problem.to_string();
-            let end = text.find(" at line").unwrap_or(text.len());
-            error((problem.line(), problem.column()), text[..end].to_owned())
-        })?;
+        let raw: BTreeMap<String, Option<Entry>> =
+            serde_json::from_slice(source).map_err(|problem| {
+                let text = problem.to_string();
+                let end = text.find(" at line").unwrap_or(text.len());
+                error((problem.line(), problem.column()), text[..end].to_owned())
+            })?;
         let mut sources = BTreeMap::new();
         for (name, entry) in raw {
+            let Some(entry) = entry else {
+                sources.insert(name, None);
+                continue;
+            };
             let source = match entry {
                 Entry::Name(column) => ColumnSource { column, scale: 1.0, offset: 0.0 },
                 Entry::Full(Full { column, scale, offset }) => ColumnSource {
@@ -84,20 +91,20 @@ impl ColumnMapping {
                 let cause = format!("`{name}`: the scale must be a finite number other than 0");
                 return Err(error((1, 1), cause));
             }
-            sources.insert(name, source);
+            sources.insert(name, Some(source));
         }
         Ok(Self { sources })
     }
 
     /// Adds or replaces the source of a column.
     pub fn insert(&mut self, name: &str, source: ColumnSource) {
-        self.sources.insert(name.to_owned(), source);
+        self.sources.insert(name.to_owned(), Some(source));
     }
 
-    /// The source of one of our columns.
-    pub fn source(&self, name: &str) -> ColumnSource {
+    /// The source of one of our columns; none if it is left out on purpose.
+    pub fn source(&self, name: &str) -> Option<ColumnSource> {
         let own = || ColumnSource { column: name.to_owned(), scale: 1.0, offset: 0.0 };
-        self.sources.get(name).cloned().unwrap_or_else(own)
+        self.sources.get(name).cloned().unwrap_or_else(|| Some(own()))
     }
 
     /// The names that are mapped.

@@ -18,7 +18,7 @@ pub use mapping::{ColumnMapping, ColumnSource, MappingError};
 use crate::plants::regression::RegressionJoint;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::TorqueSide;
-use reader::{Head, Lines, read_head, read_rows};
+use reader::{Head, Lines, Table, read_head, read_rows};
 use std::io::BufRead;
 
 /// What was measured of a joint, one entry for each sample.
@@ -160,6 +160,10 @@ pub fn read_log(
             values.iter_mut().for_each(|value| *value = scale * *value + offset);
         }
     }
+    let impossible = impossible(&table, &wanted);
+    if !impossible.is_empty() {
+        return Err(failed(impossible));
+    }
     if table.rows() == 0 {
         return Err(failed(vec![LogFault::TooShort { rows: 0 }]));
     }
@@ -185,6 +189,28 @@ pub fn read_log(
         }
     }
     if faults.is_empty() { Ok(log) } else { Err(failed(faults)) }
+}
+
+/// What no position, rate, torque or force of a robot reaches, in its SI unit.
+const LARGEST: f64 = 1e12;
+
+/// The same of times \[s\], which may count from any beginning, in any unit.
+const LARGEST_TIME: f64 = 1e20;
+
+/// The first number of each column that nothing of a robot can be.
+fn impossible(table: &Table, wanted: &Wanted) -> Vec<LogFault> {
+    let mut faults = Vec::new();
+    for (values, column) in table.columns.iter().zip(&wanted.columns) {
+        let largest = match column.goes_to {
+            Target::Time => LARGEST_TIME,
+            _ => LARGEST,
+        };
+        if let Some(row) = values.iter().position(|value| value.abs() > largest) {
+            let (value, line) = (values[row], table.line(row));
+            faults.push(LogFault::Impossible { column: column.name.clone(), value, line });
+        }
+    }
+    faults
 }
 
 /// A column that is read.
@@ -236,7 +262,12 @@ impl Wanted {
         let is_mapped = |name: &str| mapping.names().any(|mapped| mapped == name);
         let mut columns = Vec::new();
         for (name, goes_to, is_needed) in all {
-            let source = mapping.source(&name);
+            let Some(source) = mapping.source(&name) else {
+                if is_needed {
+                    faults.push(LogFault::MissingColumn { column: name, nearest: None });
+                }
+                continue;
+            };
             match head.columns.iter().position(|column| *column == source.column) {
                 Some(place) => {
                     let (scale, offset) = (source.scale, source.offset);
@@ -250,6 +281,8 @@ impl Wanted {
                 None => {}
             }
         }
+        faults.extend(shared(head, &columns));
+        faults.extend(missing_torques(head, robot, &columns, mapping));
         faults.extend(other_robot(head, robot));
         let torque_side = torque_side(head).unwrap_or_else(|fault| {
             faults.push(fault);
@@ -314,6 +347,55 @@ impl Wanted {
         let named = robot.contacts.iter().cloned().zip(forces);
         log.contacts = named.filter(|(_, axes)| axes.iter().any(|axis| !axis.is_empty())).collect();
     }
+}
+
+/// Columns of the log that more than one of ours are taken from.
+fn shared(head: &Head, columns: &[Column]) -> Vec<LogFault> {
+    let mut faults = Vec::new();
+    for (place, column) in head.columns.iter().enumerate() {
+        let users = columns.iter().filter(|one| one.place == place);
+        let ours: Vec<String> = users.map(|one| one.name.clone()).collect();
+        if ours.len() > 1 {
+            faults.push(LogFault::SharedColumn { column: column.clone(), ours });
+        }
+    }
+    faults
+}
+
+/// Joints without a torque where others have one, if nobody said so: a name with a mistake in it
+/// would silently take the joint's equation away. Joints of a floating base have no motor, nor have
+/// those without a drive in a model with drives. A log without any torque is another matter: the
+/// wrench on a base shows parameters too.
+fn missing_torques(
+    head: &Head,
+    robot: LogOf<'_>,
+    columns: &[Column],
+    mapping: &ColumnMapping,
+) -> Vec<LogFault> {
+    let has_torque = |joint: usize| {
+        columns.iter().any(|one| matches!(one.goes_to, Target::Joint(of, 3 | 4) if of == joint))
+    };
+    let has_drives = robot.joints.iter().any(|joint| joint.is_driven);
+    let all = robot.joints.iter().enumerate();
+    let motors: Vec<usize> = all
+        .filter(|(_, joint)| !joint.is_base && (joint.is_driven || !has_drives))
+        .map(|(joint, _)| joint)
+        .collect();
+    if !motors.iter().any(|&joint| has_torque(joint)) {
+        return Vec::new();
+    }
+    let is_ours = |name: &&str| columns.iter().all(|one| head.columns[one.place] != **name);
+    let mut faults = Vec::new();
+    for &joint in motors.iter().filter(|&&joint| !has_torque(joint)) {
+        let column = format!("tau_{}", robot.joints[joint].name);
+        if mapping.names().any(|name| name == column) {
+            continue; // left out on purpose, or a fault already
+        }
+        let free = head.columns.iter().map(String::as_str).filter(is_ours);
+        let nearest = nearest(&column, free).map(str::to_owned);
+        faults.push(LogFault::MissingTorque { column, nearest });
+    }
+    faults
 }
 
 /// Where the log says that its torques were measured.

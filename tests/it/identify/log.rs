@@ -285,3 +285,68 @@ fn one_side_of_the_gears_is_decided_in_one_place() {
     let faults = read("# torque_side: load\n").unwrap_err();
     assert!(faults.to_string().contains("`joint` and `motor`"), "{faults}");
 }
+
+/// A mistake in the name of a torque would silently take its joint out of the estimate.
+#[test]
+fn a_torque_that_is_missing_beside_others_is_a_fault() {
+    let mut made = Made::new();
+    let name = made.names[1].clone();
+    made.header[6] = format!("taw_{name}");
+    let faults = made.read().unwrap_err();
+    let expected = LogFault::MissingTorque {
+        column: format!("tau_{name}"),
+        nearest: Some(format!("taw_{name}")),
+    };
+    assert_eq!(faults, [expected]);
+    let log = made.read_as(&made.text(), &format!(r#"{{"tau_{name}": "taw_{name}"}}"#));
+    assert!(log.expect("it is named").joints[1].tau.is_some());
+    let log = made.read_as(&made.text(), &format!(r#"{{"tau_{name}": null}}"#));
+    assert!(log.expect("left out on purpose").joints[1].tau.is_none());
+    // what every log must have cannot be left out
+    let faults = made.read_as(&made.text(), &format!(r#"{{"q_{name}": null}}"#)).unwrap_err();
+    assert!(matches!(faults[0], LogFault::MissingColumn { .. }), "{faults:?}");
+}
+
+#[test]
+fn one_column_is_not_two_of_ours() {
+    let made = Made::new();
+    let (a, b) = (&made.names[0], &made.names[1]);
+    let twice = format!(r#"{{"tau_{a}": "tau_{b}"}}"#);
+    let faults = made.read_as(&made.text(), &twice).unwrap_err();
+    let ours = vec![format!("tau_{a}"), format!("tau_{b}")];
+    assert_eq!(faults, [LogFault::SharedColumn { column: ours[1].clone(), ours }]);
+    let exchanged = format!(r#"{{"tau_{a}": "tau_{b}", "tau_{b}": "tau_{a}"}}"#);
+    let log = made.read_as(&made.text(), &exchanged).expect("each has its own");
+    assert_eq!(log.joints[0].tau.as_ref().expect("measured")[3], made.rows[3][6]);
+}
+
+#[test]
+fn numbers_that_nothing_of_a_robot_can_be_have_their_line() {
+    for (column, value) in [(5, 1e308), (1, -1e20), (0, 1e300)] {
+        let made = Made::new().each(|k, row| {
+            if k == 500 {
+                row[column] = value;
+            }
+        });
+        let faults = made.read().unwrap_err();
+        let expected =
+            LogFault::Impossible { column: made.header[column].clone(), value, line: 502 };
+        assert_eq!(faults, [expected]);
+    }
+}
+
+#[test]
+fn one_torque_far_beyond_its_limit_is_a_suspicion() {
+    let mut joints = joints().0;
+    joints[0].torque_limits = Some([-2.0, 2.0]);
+    let of =
+        LogOf { model: "planar_2r", joints: &joints, contacts: &[], accepts_suspicious: false };
+    let read = |value: f64| {
+        let made = Made::new().each(|k, row| row[5] = if k == 900 { value } else { row[5] });
+        let text = made.text();
+        read_log("log.csv", text.as_bytes(), of, &ColumnMapping::default())
+    };
+    assert!(read(1.9).is_ok());
+    let found = suspicion(read(-40.0).unwrap_err().faults);
+    assert!(matches!(found, Suspicion::BeyondTorque { samples: 1, .. }), "{found:?}");
+}

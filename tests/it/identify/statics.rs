@@ -154,3 +154,28 @@ fn all_faults_are_found_at_once() {
     assert_eq!(faults[1], StaticFault::WrongPosture(1, 2, 1));
     assert_eq!(faults[2], StaticFault::BadNumber(2));
 }
+
+#[test]
+fn a_scale_bears_each_link_once() {
+    let wrong = [weighing(&["link1", "link1"], 4.0), weighing(&[], 1.0)];
+    let faults = static_knowledge(&arm(), &wrong).expect_err("neither is a weighing");
+    let repeated = StaticFault::Repeated(0, "link1".to_owned());
+    assert_eq!(faults, [repeated, StaticFault::NothingWeighed(1)]);
+}
+
+/// Five deviations of a normal distribution are the bound: 1 degree of freedom, by hand.
+#[test]
+fn weighings_that_contradict_each_other_are_told() {
+    let apart = |deviations: f64| {
+        // the difference of two numbers with a deviation of 0.01 each
+        let both = [
+            weighing(&["link2"], 1.5),
+            weighing(&["link2"], 1.5 + deviations * 0.01 * 2f64.sqrt()),
+        ];
+        let found = static_knowledge(&arm(), &both).expect("sound").consequences();
+        assert!((found.chi_squared - deviations.powi(2)).abs() < 1e-6);
+        found.contradicts()
+    };
+    assert!(!apart(1.0) && !apart(4.0));
+    assert!(apart(6.0) && apart(100.0));
+}

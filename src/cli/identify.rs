@@ -43,8 +43,9 @@ Examples:
   denavit identify tulip_leg --train tracking.csv --filter 20 --svg torques.svg
   denavit identify tulip_leg --train tracking.csv --filter 20 --html tulip_leg.html
   denavit identify tulip_leg --train tracking.csv --filter 20 --controller tulip_leg
-  denavit identify tulip_leg --train tracking.csv --filter 20 --two-stage --friction tanh
-  denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json")]
+  denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json
+  denavit simulate tulip_leg_elastic_identification -o springs.csv
+  denavit identify tulip_leg --train springs.csv --two-stage --friction tanh --accept-suspicious")]
 pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL")]
@@ -288,7 +289,8 @@ impl Answered {
             .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
         model.law = arguments.friction;
         progress.show("reading logs");
-        let mut read = logs::read(arguments, &robot, &model)?;
+        let mut conditions = arguments.conditions;
+        let mut read = logs::read((arguments, &conditions), &robot, &model)?;
         let controller = arguments.controller.as_deref();
         let controller = controller.map(|path| Controlled::read(path, &robot)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone());
@@ -314,7 +316,20 @@ impl Answered {
             progress.show("simulating instruments");
             read.instruments = controller.instruments(&updated.robot, &read, arguments)?;
         }
-        let (found, updated) = estimated(&read, &options)?;
+        let (mut found, mut updated) = estimated(&read, &options)?;
+        let allows_for_noise = matches!(options.method, Method::Instrumental | Method::Likelihood);
+        while let Some(lower) = conditions.lower(&read.train)
+            && found.bias().is_some()
+            && !allows_for_noise
+        {
+            conditions = lower;
+            drop(read); // logs are large: not all of them twice
+            read = logs::read((arguments, &conditions), &robot, &model)?;
+            (found, updated) = estimated(&read, &options)?;
+        }
+        if let (Some(exchanged), false) = (&found.exchanged, arguments.accept_suspicious) {
+            return Err(IdentifyFailure::Exchanged(exchanged.clone()).into());
+        }
         progress.show("simulating the logs again");
         let simulated = match (&controller, read.motions.is_empty()) {
             (_, true) => None,

@@ -2,11 +2,11 @@
 
 use super::condition::Conditioned;
 use super::estimate::{
-    Consistent, Convergence, Estimate, EstimateError, FlippedTorque, IdentifiedParameter, Options,
-    Status, Validation, consistent, convergence, estimate, flipped_torques, noise_of_positions,
-    parameters, validate,
+    Consistent, Convergence, Estimate, EstimateError, ExchangedJoints, FlippedTorque,
+    IdentifiedParameter, Options, Status, Validation, consistent, convergence, estimate,
+    exchanged_joints, flipped_torques, noise_of_positions, parameters, validate,
 };
-use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
+use crate::plants::regression::{CoulombLaw, RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,11 @@ pub struct Identification {
     pub position_noise: Option<(String, f64)>,
     /// Joints whose torques seem to have the wrong sign.
     pub flipped: Vec<FlippedTorque>,
+    /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in much of
+    /// the logs, each with the share of samples.
+    pub reversals: Vec<(String, f64)>,
+    /// Two joints whose columns seem to be exchanged.
+    pub exchanged: Option<ExchangedJoints>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
     /// The nearest bodies that exist.
@@ -51,6 +56,12 @@ pub struct Identification {
 /// The share of a torque from which on noise of the positions is said to bias parameters: its
 /// square, a thousandth, is what standard errors of a good log are.
 const BIASING: f64 = 0.03;
+
+/// The share of samples near reversals from which on friction is said to be uncertain.
+const MANY_REVERSALS: f64 = 0.05;
+
+/// The share of the torques that an estimate of exchanged columns leaves, at least.
+const MISFIT: f64 = 0.05;
 
 impl Identification {
     /// What is to be said if noise of the positions biases the parameters.
@@ -80,7 +91,16 @@ impl Identification {
                  {{\"scale\": -1}}}} turns it round."
             )
         });
-        flipped.chain(self.bias()).collect()
+        let exchanged = self.exchanged.iter().map(|one| format!("Accepted: {one}."));
+        let reversals = self.reversals.iter().map(|(joint, share)| {
+            format!(
+                "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
+                 samples are within the filter's time of a reversal, or as slow. --skip-slow noise \
+                 leaves them out; --friction tanh has another law there.",
+                100.0 * share
+            )
+        });
+        exchanged.chain(flipped).chain(self.bias()).chain(reversals).collect()
     }
 
     /// The names of parameters that the motion does not show.
@@ -112,7 +132,9 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let listed = parameters(model, &found);
     Ok(Identification {
         flipped: flipped_torques(model, &found, &listed),
+        reversals: reversals(model, train, &listed),
         parameters: listed,
+        exchanged: (left.relative > MISFIT).then(|| exchanged_joints(model, train)).flatten(),
         train: left,
         position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: judged(phi),
@@ -124,4 +146,32 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         consistent: consistent(model, &found, &standard),
         estimate: found,
     })
+}
+
+/// The joints that turn round in so many samples that their Coulomb friction, by the sign of the
+/// rate, is not what it seems.
+fn reversals(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    listed: &[IdentifiedParameter],
+) -> Vec<(String, f64)> {
+    let is_estimated = |joint: &str| {
+        let name = format!("fc_{joint}");
+        listed.iter().any(|one| one.name == name && one.status != Status::NotExcited)
+    };
+    if model.law != CoulombLaw::Sign {
+        return Vec::new();
+    }
+    let mut sums = vec![0.0; model.joints.len()];
+    let mut samples = 0.0;
+    for log in logs.iter().filter(|log| log.slow.is_none()) {
+        let own = log.range.len() as f64;
+        for (sum, share) in sums.iter_mut().zip(log.near_reversals().unwrap_or_default()) {
+            *sum += share * own;
+        }
+        samples += own;
+    }
+    let names = model.joints.iter().map(|joint| joint.name.clone());
+    let shares = names.zip(sums).map(|(name, sum)| (name, sum / f64::max(samples, 1.0)));
+    shares.filter(|(name, share)| *share > MANY_REVERSALS && is_estimated(name)).collect()
 }

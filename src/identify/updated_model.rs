@@ -53,7 +53,7 @@ pub fn updated_model(
         body.is_some_and(|body| body.about == About::Com)
     };
     let values = model_values(model, found, &is_about_com);
-    let std_of = |parameter: &ModelParameter| {
+    let estimate_of = |parameter: &ModelParameter| {
         if is_moved(parameter, &is_about_com) {
             return None;
         }
@@ -61,7 +61,13 @@ pub fn updated_model(
             one.is_alone && one.name == parameter.name
         };
         let place = model.listed.iter().position(is_it)?;
-        listed[place].std.filter(|std| *std > 0.0 && std.is_finite())
+        let own = &listed[place];
+        own.std.filter(|std| *std > 0.0 && std.is_finite()).map(|std| (own.value, std))
+    };
+    // a deviation is that of the estimate: what was moved further to exist has none
+    let std_of = |parameter: &ModelParameter, value: f64| {
+        let (estimate, std) = estimate_of(parameter)?;
+        ((value - estimate).abs() <= std).then_some(std)
     };
     let effects = with_effect(model, &values);
     let text = |is_written: &dyn Fn(usize) -> bool| {
@@ -69,12 +75,12 @@ pub fn updated_model(
         let new: Vec<NewValue<'_>> = all
             .filter(|(place, (parameter, value))| {
                 is_written(*place)
-                    && (moved(parameter.value, **value) || std_of(parameter).is_some())
+                    && (moved(parameter.value, **value) || std_of(parameter, **value).is_some())
             })
             .map(|(_, (parameter, &value))| NewValue {
                 parameter,
-                value: snapped(value, std_of(parameter)),
-                std: std_of(parameter),
+                value: snapped(value, std_of(parameter, value)),
+                std: std_of(parameter, value),
             })
             .collect();
         updated(source, &new).ok_or_else(|| UpdateError::NoPlace(model.model.clone()))

@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use denavit::identify::UpdateError;
 use denavit::identify::condition::ConditionError;
-use denavit::identify::estimate::EstimateError;
+use denavit::identify::estimate::{EstimateError, ExchangedJoints};
 use denavit::identify::forward::ForwardError;
 use denavit::identify::log::{LogFaults, MappingError};
 use denavit::identify::statics::StaticFault;
@@ -28,6 +28,8 @@ pub(crate) enum IdentifyFailure {
     Plant(String, PlantError),
     /// Nothing can be estimated; holds the model's name.
     Estimate(String, EstimateError),
+    /// Columns of two joints seem to be exchanged.
+    Exchanged(ExchangedJoints),
     /// What was found makes no model.
     Update(UpdateError),
     /// A log cannot be simulated again; holds its name.
@@ -55,6 +57,11 @@ impl fmt::Display for IdentifyFailure {
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
             Self::Estimate(model, error) => write!(f, "{model}: {error}"),
+            Self::Exchanged(joints) => write!(
+                f,
+                "{joints}\n  hint: --columns can name them the other way round\n  hint: \
+                 --accept-suspicious takes the logs as they are"
+            ),
             Self::Formula(error) => write!(f, "{error}"),
             Self::Update(error) => write!(f, "{error}"),
             Self::Forward(file, error) => write!(f, "{file}: {error}"),

@@ -3,8 +3,9 @@
 use super::{Shown, SimulationGap};
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
-use denavit::identify::estimate::{IdentifiedParameter, JointResidual, Status};
+use denavit::identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
 use denavit::identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
+use denavit::plants::regression::{RegressionModel, StandardParameter};
 use serde::Serialize;
 use std::io::Write;
 
@@ -78,9 +79,21 @@ struct JointJson<'a> {
 }
 
 #[derive(Serialize)]
-struct ConsistentJson<'a> {
+pub(super) struct ConsistentJson<'a> {
     distance: f64,
     parameters: Vec<StandardJson<'a>>,
+}
+
+impl<'a> ConsistentJson<'a> {
+    pub(super) fn new(model: &'a RegressionModel, found: &Consistent) -> Self {
+        let standard = model.standard.iter().zip(&found.standard);
+        let one = |(one, &value): (&'a StandardParameter, &f64)| StandardJson {
+            name: &one.name,
+            unit: &one.unit,
+            value,
+        };
+        Self { distance: found.distance, parameters: standard.map(one).collect() }
+    }
 }
 
 #[derive(Serialize)]
@@ -195,7 +208,6 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         autocorrelation: &joint.autocorrelation,
     });
     let solution = &found.estimate.solution;
-    let standard = model.standard.iter().zip(&found.consistent.standard);
     let convergence = found.convergence.iter().map(|point| ConvergenceJson {
         time_s: point.time_s,
         values: &point.values,
@@ -216,12 +228,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         excited: solution.excited(),
         samples: found.train.samples,
         degrees_of_freedom: found.estimate.degrees_of_freedom,
-        consistent: ConsistentJson {
-            distance: found.consistent.distance,
-            parameters: standard
-                .map(|(one, &value)| StandardJson { name: &one.name, unit: &one.unit, value })
-                .collect(),
-        },
+        consistent: ConsistentJson::new(model, &found.consistent),
         convergence: convergence.collect(),
         simulation: simulated.map(SimulationJson::new),
         remarks: remarks

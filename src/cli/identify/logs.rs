@@ -14,7 +14,7 @@ use denavit::plants::{Plant, plant_of};
 use std::path::{Path, PathBuf};
 
 /// How logs are conditioned.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Conditions {
     /// Cutoff of the zero-phase Butterworth filter [Hz], with the order of one pass if it is not 4;
     /// or none. A tenth of the rate of sampling if nothing is said
@@ -29,7 +29,14 @@ pub(super) struct Conditions {
     /// Where rates and accelerations come from
     #[arg(long, value_enum, default_value_t)]
     rates: Rates,
+    /// How often the cutoff was halved, if none was given
+    #[arg(skip)]
+    halvings: u32,
 }
+
+/// Halvings of the cutoff, at most, and periods of it that a log must have.
+const MOST_HALVINGS: u32 = 4;
+const FEWEST_PERIODS: f64 = 40.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FilterChoice {
@@ -75,7 +82,7 @@ impl Conditions {
     }
 
     pub(super) fn of(&self, step_s: f64) -> Conditioning {
-        let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s };
+        let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s / f64::from(1 << self.halvings) };
         let filter = match self.filter {
             Some(FilterChoice::None) => None,
             Some(FilterChoice::Some(filter)) => Some(filter),
@@ -96,6 +103,22 @@ impl Conditions {
     }
 }
 
+impl Conditions {
+    /// The same with half the cutoff, for logs whose noise of positions biases parameters; none if
+    /// a filter was asked for, or a log is too short for it.
+    pub(super) fn lower(&self, logs: &[Conditioned]) -> Option<Self> {
+        if self.filter.is_some() || self.halvings == MOST_HALVINGS {
+            return None;
+        }
+        let lower = Self { halvings: self.halvings + 1, ..*self };
+        let is_long = |log: &Conditioned| {
+            let cutoff_hz = lower.of(log.step_s).filter.map_or(0.0, |filter| filter.cutoff_hz);
+            log.range.len() as f64 * log.step_s * cutoff_hz > FEWEST_PERIODS
+        };
+        (logs.iter().all(is_long) && self.average.is_none()).then_some(lower)
+    }
+}
+
 /// All logs of a run.
 pub(super) struct Read {
     pub(super) train: Vec<Conditioned>,
@@ -112,7 +135,7 @@ pub(super) struct Read {
 }
 
 pub(super) fn read(
-    arguments: &Arguments,
+    (arguments, conditions): (&Arguments, &Conditions),
     robot: &Robot,
     model: &RegressionModel,
 ) -> Result<Read, Failure> {
@@ -123,6 +146,7 @@ pub(super) fn read(
     let contacts = robot.contacts.values().map(|contact| contact.name.clone()).collect();
     let mut reader = Reader {
         arguments,
+        conditions,
         model,
         mapping,
         plant,
@@ -179,6 +203,7 @@ fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
 
 struct Reader<'a> {
     arguments: &'a Arguments,
+    conditions: &'a Conditions,
     model: &'a RegressionModel,
     mapping: ColumnMapping,
     plant: Option<Box<dyn Plant>>,
@@ -223,7 +248,10 @@ impl Reader<'_> {
             let step = joint.step.or(self.arguments.resolution).unwrap_or(0.0);
             *noise = noise.max(step / 12.0_f64.sqrt());
         }
-        let how = self.arguments.conditions.of(log.step_s);
+        let how = self.conditions.of(log.step_s);
+        if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, self.conditions.halvings) {
+            self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
+        }
         if let (Some(motions), Some(longest_s)) = (&mut self.motions, longest_s) {
             let head = log.head((longest_s / log.step_s).min(1e15) as usize + 1);
             let motion = MotionLog::new(&head, &self.names, how.filter);

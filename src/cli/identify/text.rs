@@ -58,11 +58,17 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     for text in found.warnings() {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
-    if found.consistent.distance > 1.0 {
+    write_nearest(out, found.consistent.distance)
+}
+
+/// Says if the bodies nearest to an estimate are so far from it, squared standard errors, that it
+/// belongs to none.
+pub(super) fn write_nearest(out: &mut dyn Write, distance: f64) -> Result<(), Failure> {
+    if distance > 1.0 {
         let text = format!(
             "The estimate belongs to no bodies that exist: the nearest ones are {} standard errors \
              away, over all parameters. A model file gets those.",
-            short(found.consistent.distance.sqrt())
+            short(distance.sqrt())
         );
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }

@@ -1,13 +1,14 @@
 //! `denavit identify --two-stage`: springs and motors first, then the load (thesis 3.3.2).
 
-use super::{Arguments, IdentifyFailure, json::ParameterJson, logs};
+use super::json::{ConsistentJson, ParameterJson};
+use super::{Arguments, IdentifyFailure, logs, text};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
 use crate::cli::files::{check_outputs, on_stdout, read_model_text, write_whole};
 use crate::cli::json::write_json;
 use denavit::identify::condition::Filter;
-use denavit::identify::estimate::{IdentifiedParameter, consistent, parameters};
+use denavit::identify::estimate::{Consistent, IdentifiedParameter, consistent, parameters};
 use denavit::identify::two_stage::{Estimate, Spring, TwoStage, two_stage};
 use denavit::identify::{NewValue, UpdateError, updated_model, updated_text};
 use denavit::model::{self, Robot};
@@ -23,6 +24,8 @@ struct Found<'a> {
     model: &'a RegressionModel,
     stages: TwoStage,
     parameters: Vec<IdentifiedParameter>,
+    /// The bodies nearest to the load.
+    bodies: Consistent,
     remarks: Vec<String>,
 }
 
@@ -53,7 +56,11 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let stages = two_stage(plant.model(), &model, &log, [&of_springs, &of_load])
         .map_err(|error| IdentifyFailure::TwoStage(log.file.clone(), error))?;
     let parameters = parameters(&model, &stages.load);
-    let found = Found { model: &model, stages, parameters, remarks };
+    let standard: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();
+    let bodies = consistent(&model, &stages.load, &standard);
+    let mut found = Found { model: &model, stages, parameters, bodies, remarks };
+    let moved = found.moved();
+    found.remarks.extend(moved);
     if let Some(path) = &arguments.output {
         write_whole(path, found.updated(&robot, &source)?.as_bytes())?;
     }
@@ -69,10 +76,7 @@ impl Found<'_> {
     /// The model's file with the springs, and with the bodies nearest to the load.
     fn updated(&self, robot: &Robot, source: &str) -> Result<String, Failure> {
         let model = self.model;
-        let standard: Vec<f64> =
-            model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();
-        let bodies = consistent(model, &self.stages.load, &standard);
-        let both = (&bodies, &self.parameters[..]);
+        let both = (&self.bodies, &self.parameters[..]);
         let updated = updated_model(robot, model, both, source).map_err(IdentifyFailure::Update)?;
         let mut named = Vec::new();
         for spring in &self.stages.springs {
@@ -94,13 +98,31 @@ impl Found<'_> {
             .map(|(parameter, estimate)| NewValue {
                 parameter,
                 value: estimate.value.max(0.0),
-                std: Some(estimate.std).filter(|std| *std > 0.0),
+                // a deviation is that of the estimate, which is not what is written
+                std: Some(estimate.std).filter(|std| *std > 0.0 && estimate.value >= 0.0),
             })
             .collect();
         let text = updated_text(&updated.text, &new)
             .ok_or_else(|| IdentifyFailure::Update(UpdateError::NoPlace(robot.name.clone())))?;
         model::read("the identified model", text.as_bytes()).map_err(Failure::Model)?;
         Ok(text)
+    }
+
+    /// What is said of friction below 0: the model gets none.
+    fn moved(&self) -> Vec<String> {
+        let all = self.stages.springs.iter().flat_map(|spring| {
+            [("Viscous", spring.viscous), ("Coulomb", spring.coulomb)].map(|one| (spring, one))
+        });
+        all.filter(|(_, (_, estimate))| estimate.value < 0.0)
+            .map(|(spring, (what, Estimate { value, std }))| {
+                format!(
+                    "{what} friction of the motor of {} comes out as {} +- {std:.1e}, which no \
+                     motor has: a model file gets 0, without a deviation.",
+                    spring.joint,
+                    short(value)
+                )
+            })
+            .collect()
     }
 
     fn write(&self, out: &mut dyn Write) -> Result<(), Failure> {
@@ -117,6 +139,7 @@ impl Found<'_> {
                 ("stiffness", spring.stiffness, "N/m"),
                 ("viscous", spring.viscous, "N m s/rad"),
                 ("Coulomb", spring.coulomb, "N m"),
+                ("motor's zero", spring.motor_zero, "rad"),
             ];
             for (at, (what, Estimate { value, std }, unit)) in rows.into_iter().enumerate() {
                 let missed = match at {
@@ -146,7 +169,7 @@ impl Found<'_> {
             table.push(vec![joint.name.clone(), short(*size), short(*missed)]);
         }
         write!(out, "{table}")?;
-        Ok(())
+        text::write_nearest(out, self.bodies.distance)
     }
 
     fn json(&self) -> TwoStageJson<'_> {
@@ -162,6 +185,7 @@ impl Found<'_> {
                     residual_rms,
                 })
                 .collect(),
+            consistent: ConsistentJson::new(self.model, &self.bodies),
             remarks: &self.remarks,
         }
     }
@@ -180,6 +204,8 @@ struct TwoStageJson<'a> {
     springs: Vec<SpringJson<'a>>,
     parameters: Vec<ParameterJson<'a>>,
     residual: Vec<ResidualJson<'a>>,
+    /// theta0 of the nearest bodies that exist, and how far they are.
+    consistent: ConsistentJson<'a>,
     remarks: &'a [String],
 }
 
@@ -189,6 +215,10 @@ struct SpringJson<'a> {
     stiffness: EstimateJson,
     viscous: EstimateJson,
     coulomb: EstimateJson,
+    /// The force of the spring where both encoders read 0.
+    preload: EstimateJson,
+    /// The motor's reading where the spring is relaxed and the joint reads 0.
+    motor_zero: EstimateJson,
     /// Roots of the mean square of what the motor's equation misses, and of its torque \[N m\].
     residual_rms: f64,
     torque_rms: f64,
@@ -216,6 +246,8 @@ impl<'a> SpringJson<'a> {
             stiffness: of(spring.stiffness, "N/m"),
             viscous: of(spring.viscous, "N m s/rad"),
             coulomb: of(spring.coulomb, "N m"),
+            preload: of(spring.preload, "N"),
+            motor_zero: of(spring.motor_zero, "rad"),
             residual_rms: spring.residual,
             torque_rms: spring.torque,
         }

@@ -30,9 +30,17 @@ pub struct Butterworth {
     sections: Vec<Section>,
     /// Samples after which a transient has died down.
     settling: usize,
+    /// Samples on either side of a step that two passes smear it over.
+    smear: usize,
 }
 
 impl Butterworth {
+    /// Samples on either side of a step that two passes smear it over: half a period of the
+    /// cutoff.
+    pub fn smear(&self) -> usize {
+        self.smear
+    }
+
     /// The filter of an order (of one pass; two passes have twice the slope) whose single pass
     /// halves the power at `cutoff_hz`. None if the cutoff is not between 0 and half the rate of
     /// sampling, or the order not from 1 to 10.
@@ -56,7 +64,8 @@ impl Butterworth {
         });
         let sections = pairs.chain(single).collect();
         let settling = (order as f64 / relative).ceil().min(1e7) as usize;
-        Some(Self { sections, settling })
+        let smear = (0.5 / relative).ceil().min(1e7) as usize;
+        Some(Self { sections, settling, smear })
     }
 
     /// Samples at each end that depend on what was not measured.

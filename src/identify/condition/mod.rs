@@ -301,14 +301,52 @@ impl Conditioned {
 impl Conditioned {
     /// q, qd and qdd at so many samples that are left, from `first` on.
     pub fn motion_at(&self, first: usize, samples: usize, columns: &mut Vec<Vec<f64>>) {
-        let start = self.range.start + Decimator::new(self.decimation).reach();
-        let from = start + first * self.decimation;
+        let from = self.first_place(first);
         self.motion(from..from + (samples - 1) * self.decimation + 1, columns);
         if self.decimation > 1 {
             for column in columns {
                 *column = column.iter().copied().step_by(self.decimation).collect();
             }
         }
+    }
+
+    /// Where a sample that is left stands among all.
+    fn first_place(&self, sample: usize) -> usize {
+        self.range.start + Decimator::new(self.decimation).reach() + sample * self.decimation
+    }
+
+    /// Where so many samples that are left stand among all, from `first` on.
+    pub fn places(&self, first: usize, samples: usize) -> impl Iterator<Item = usize> + Clone {
+        let from = self.first_place(first);
+        let decimation = self.decimation;
+        (0..samples).map(move |sample| from + sample * decimation)
+    }
+
+    /// For each joint the share of samples within the filter's time of a reversal, or slower than
+    /// its usual acceleration makes it in that time: where what depends on the sign of the rate is
+    /// smeared over. None without a filter.
+    pub fn near_reversals(&self) -> Option<Vec<f64>> {
+        let smear = self.filter.as_ref()?.smear();
+        let mut motion = Vec::new();
+        self.motion(self.range.clone(), &mut motion);
+        let n = self.joints();
+        let share = |joint: usize| {
+            let (rates, accelerations) = (&motion[n + joint], &motion[2 * n + joint]);
+            let squares: f64 = accelerations.iter().map(|a| a * a).sum();
+            let usual = (squares / accelerations.len().max(1) as f64).sqrt();
+            let slow = usual * self.step_s * smear as f64;
+            let mut is_near: Vec<bool> = rates.iter().map(|rate| rate.abs() < slow).collect();
+            let mut end = 0;
+            for (at, pair) in rates.windows(2).enumerate() {
+                if (pair[0] > 0.0) != (pair[1] > 0.0) {
+                    let last = (at + 1 + smear).min(rates.len());
+                    is_near[end.max((at + 1).saturating_sub(smear))..last].fill(true);
+                    end = last;
+                }
+            }
+            is_near.iter().filter(|&&near| near).count() as f64 / rates.len().max(1) as f64
+        };
+        Some((0..n).map(share).collect())
     }
 
     /// The covariance of position, rate and acceleration that white noise of variance 1 of the

@@ -5,12 +5,14 @@
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`validate`]: what is left of the torques
 //! - [`flipped_torques`]: whose sign is wrong
+//! - [`exchanged_joints`]: whose columns have each other's names
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
 mod condensed;
 mod consistent;
 mod errors;
+mod exchanged;
 mod flipped;
 mod instruments;
 mod least_squares;
@@ -26,6 +28,7 @@ mod validate;
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
 pub use errors::{Errors, interval_factor};
+pub use exchanged::{ExchangedColumns, ExchangedJoints, exchanged_joints};
 pub use flipped::{FlippedTorque, flipped_torques};
 pub use least_squares::{Estimate, EstimateError, Method, Options, estimate};
 pub(in crate::identify) use likelihood::noise_of_positions;

@@ -108,6 +108,8 @@ pub enum LogRemark {
     CommandedTorque { joint: String },
     /// Torques of motors were multiplied by the gear ratios.
     MotorTorques { joints: Vec<String> },
+    /// The default filter has a lower cutoff, since noise of positions biased parameters.
+    LoweredFilter { cutoff_hz: f64 },
     /// A suspicion that was accepted.
     Accepted(Suspicion),
 }
@@ -331,6 +333,11 @@ impl fmt::Display for LogRemark {
             Self::MotorTorques { joints } => {
                 write!(f, "torques of motors, multiplied by the gear ratios: {}", joints.join(", "))
             }
+            Self::LoweredFilter { cutoff_hz } => write!(
+                f,
+                "noise of positions would bias parameters: filtered below {cutoff_hz} Hz (--filter \
+                 says otherwise)"
+            ),
             Self::Accepted(suspicion) => {
                 let text = suspicion.to_string();
                 write!(f, "accepted: {}", text.lines().next().unwrap_or_default())

@@ -20,6 +20,19 @@ fn identified(directory: &Directory, words: &[&str]) -> Value {
     serde_json::from_str(&run.stdout).expect("JSON")
 }
 
+/// A scenario of the planar arm.
+fn moving_arm() -> Value {
+    json!({
+        "format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 5,
+        "control": {"joints": {
+            "link1": {"kp": 300, "kd": 30, "reference":
+                {"fourier": {"frequency_rad_s": 2, "sines": [0.4, 0.2], "cosines": [0.1, 0.2]}}},
+            "link2": {"kp": 300, "kd": 30, "reference":
+                {"fourier": {"frequency_rad_s": 3, "sines": [0.5, 0.2], "cosines": [0.1, 0.3]}}}}},
+        "log_period_s": 0.002,
+    })
+}
+
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
@@ -128,6 +141,15 @@ fn weighings_and_postures_say_what_follows() {
     assert_eq!(follows("Izz_link2"), (None, false), "nothing moved");
     let run = run_in(&directory.path, &[&["identify"][..], &words].concat());
     assert!(run.stdout.contains("of which 6 stand alone"), "{}", run.stdout);
+    assert!(!run.stdout.contains("contradict"), "{}", run.stdout);
+    let mut file = file;
+    file["postures"][2]["torques"]["link1"]["torque"] = (-3.0).into();
+    write(&directory, "sign.json", &file.to_string());
+    let run = run_in(&directory.path, &["identify", "planar_2r", "--static", "sign.json"]);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(run.stdout.contains("They contradict each other"), "{}", run.stdout);
+    let words = ["identify", "planar_2r", "--static", "rest.json", "--validate", "rest.json"];
+    assert_eq!(run_in(&directory.path, &words).code, Some(2));
 
     // faults are told with their place, all at once
     let file = r#"{"format": "denavit-statics/1",
@@ -152,6 +174,8 @@ fn laws_of_friction_can_be_chosen() {
         let found = identified(&directory, &words);
         let all = found["parameters"].as_array().expect("a list").clone();
         let one = all.iter().find(|one| one["name"] == "fc_hip_x").expect("a parameter").clone();
+        let is_said = found["remarks"].to_string().contains("friction of hip_x is uncertain");
+        assert_eq!(is_said, more.is_empty(), "{more:?}: {}", found["remarks"]);
         (number(&one["value"]) / number(&one["model_value"]), number(&found["residual"]["train"]))
     };
     let (sign, left_by_sign) = friction(&[]);
@@ -181,6 +205,45 @@ fn a_torque_of_the_wrong_sign_is_told_by_its_joint() {
     }
 }
 
+/// Without rates and references only the balance of torques shows which joint is which.
+#[test]
+fn exchanged_joints_are_told_by_the_balance_of_torques() {
+    let directory = Directory::new("exchanged");
+    write(&directory, "arm.json", &moving_arm().to_string());
+    let run = run_in(&directory.path, &["simulate", "arm.json", "-o", "arm.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let map = |exchanged: &[&str]| {
+        let mut map = serde_json::Map::new();
+        for (joint, other) in [("link1", "link2"), ("link2", "link1")] {
+            for left_out in ["qd", "qdd", "ref"] {
+                map.insert(format!("{left_out}_{joint}"), Value::Null);
+            }
+            for one in exchanged {
+                map.insert(format!("{one}_{joint}"), format!("{one}_{other}").into());
+            }
+        }
+        write(&directory, "map.json", &Value::Object(map).to_string());
+    };
+    let words = ["identify", "planar_2r", "--train", "arm.csv", "--columns", "map.json"];
+    map(&[]);
+    let run = run_in(&directory.path, &words);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let cases: [(&[&str], &str); 3] = [
+        (&["q"], "the positions of"),
+        (&["tau"], "the torques of"),
+        (&["q", "tau"], "positions and torques of"),
+    ];
+    for (exchanged, said) in cases {
+        map(exchanged);
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(2), "{exchanged:?}: {}", run.stdout);
+        assert!(run.stderr.contains(said), "{exchanged:?}: {}", run.stderr);
+        let accepted = [&words[..], &["--accept-suspicious"]].concat();
+        let run = run_in(&directory.path, &accepted);
+        assert!(run.code != Some(2) && run.stdout.contains("exchanged"), "{}", run.stdout);
+    }
+}
+
 /// What is written is a model, however little the log says: bodies as sums of unknowns, moments of
 /// inertia about centres of mass, numbers that the file does not have yet.
 #[test]
@@ -201,16 +264,7 @@ fn written_models_are_sound() {
     assert_eq!(read.code, Some(0), "{}", read.stderr);
 
     // a body about its centre of mass, written over several lines, without drives
-    let arm = json!({
-        "format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 5,
-        "control": {"joints": {
-            "link1": {"kp": 300, "kd": 30, "reference":
-                {"fourier": {"frequency_rad_s": 2, "sines": [0.4, 0.2], "cosines": [0.1, 0.2]}}},
-            "link2": {"kp": 300, "kd": 30, "reference":
-                {"fourier": {"frequency_rad_s": 3, "sines": [0.5, 0.2], "cosines": [0.1, 0.3]}}}}},
-        "log_period_s": 0.002,
-    });
-    write(&directory, "arm.json", &arm.to_string());
+    write(&directory, "arm.json", &moving_arm().to_string());
     let run = run_in(&directory.path, &["simulate", "arm.json", "-o", "arm.csv"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let words = ["identify", "planar_2r", "--train", "arm.csv", "--with", "friction"];

@@ -155,3 +155,24 @@ fn filters_that_cannot_be_are_refused() {
     assert!(matches!(of(2000, filter(500.0)), Err(ConditionError::Cutoff { .. })));
     assert!(matches!(of(300, filter(20.0)), Err(ConditionError::TooShort { .. })));
 }
+
+/// A sine turns round twice in its period, and a filter of 10 Hz smears each reversal over 0.05 s
+/// on either side: 0.2 of a second. A joint that goes one way has none.
+#[test]
+fn samples_near_reversals_are_counted() {
+    let step_s = 0.001;
+    let joint = |q: &dyn Fn(f64) -> f64| JointSignals {
+        q: (0..10_000).map(|k| q(step_s * k as f64)).collect(),
+        ..JointSignals::default()
+    };
+    let sine = |t: f64| (TAU * t).sin();
+    let joints = vec![joint(&sine), joint(&|t| 0.3 * t)];
+    let log = MeasuredLog { step_s, joints, ..MeasuredLog::default() };
+    let filter = Some(Filter { order: 4, cutoff_hz: 10.0 });
+    let how = Conditioning { filter, ..Conditioning::default() };
+    let names = ["a", "b"].map(str::to_owned);
+    let conditioned = Conditioned::new(log, &names, &how).expect("long enough");
+    let shares = conditioned.near_reversals().expect("there is a filter");
+    assert!((shares[0] - 0.2).abs() < 0.01, "{shares:?}");
+    assert_eq!(shares[1], 0.0);
+}

@@ -104,3 +104,59 @@ fn logs_without_a_signal_are_refused() {
     refused("tau_hip_x", &|log| log.joints[joint("hip_x")].tau = None);
     refused("tau_cmd_ankle_y", &|log| log.joints[joint("ankle_y")].motor_torque = None);
 }
+
+/// Columns that are not what they are taken for have a hint that mends them; an encoder whose zero
+/// is elsewhere has none, and changes nothing but that zero.
+#[test]
+fn motors_are_checked_against_their_joints() {
+    let (plant, log) = experiment();
+    let knee = plant.find_joint("knee").expect("a joint");
+    let sound = identified(&plant, &log, CoulombLaw::Tanh(0.01)).expect("it moves");
+    let with = |angle: &dyn Fn(f64) -> f64, torque: f64| {
+        let mut log = log.clone();
+        let own = &mut log.joints[knee];
+        own.motor.iter_mut().flatten().for_each(|value| *value = angle(*value));
+        own.motor_torque.iter_mut().flatten().for_each(|value| *value *= torque);
+        identified(&plant, &log, CoulombLaw::Tanh(0.01))
+    };
+    let drive = plant.joints[knee].drive.expect("a drive");
+    let spring = drive.series_elastic.expect("a spring");
+    let turns = drive.gear_ratio * spring.load_radius / spring.motor_radius;
+    for factor in [-1.0, 1.0 / turns, 1.0_f64.to_radians().recip()] {
+        let error = with(&|angle| factor * angle, 1.0).expect_err("another angle");
+        let TwoStageError::MotorAngle { scale: Some((scale, _)), .. } = error else {
+            panic!("{error}");
+        };
+        assert!((scale * factor - 1.0).abs() < 1e-9, "{factor}: {scale}");
+    }
+    for factor in [-1.0, turns, 1.0 / turns] {
+        let error = with(&|angle| angle, factor).expect_err("another torque");
+        let TwoStageError::MotorTorque { scale: (scale, _), .. } = error else {
+            panic!("{error}");
+        };
+        assert!((scale * factor - 1.0).abs() < 1e-9, "{factor}: {scale}");
+    }
+    let moved = with(&|angle| angle + 10.0, 1.0).expect("only its zero is another");
+    let place = sound.springs.iter().position(|one| one.joint == "knee").expect("a spring");
+    let [a, b] = [&sound, &moved].map(|both| &both.springs[place]);
+    assert!((b.stiffness.value / a.stiffness.value - 1.0).abs() < 1e-6);
+    assert!((b.motor_zero.value - a.motor_zero.value - 10.0).abs() < 1e-6, "{b:?}");
+    for (a, b) in sound.listed.iter().zip(&moved.listed) {
+        assert!((a.value - b.value).abs() < 1e-3 * a.std, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_spring_that_is_not_seen_is_refused() {
+    let (plant, mut log) = experiment();
+    let knee = plant.find_joint("knee").expect("a joint");
+    let drive = plant.joints[knee].drive.expect("a drive");
+    let spring = drive.series_elastic.expect("a spring");
+    let turns = drive.gear_ratio * spring.load_radius / spring.motor_radius;
+    // a motor angle that was made from the joint's, and what no torque makes
+    let made = log.joints[knee].q.iter().enumerate();
+    let made = made.map(|(k, q)| turns * (q + 0.02 * (0.0017 * k as f64).sin()));
+    log.joints[knee].motor = Some(made.collect());
+    let error = identified(&plant, &log, CoulombLaw::Sign).expect_err("no spring");
+    assert!(matches!(error, TwoStageError::NoStiffness { .. }), "{error}");
+}

@@ -2,23 +2,30 @@
 //!
 //! 1. Each spring with the friction of its motor, from motor torque, motor angle and joint angle
 //!    alone (3.23):
-//!    tau_M - Ia th'' = fv th' + fc sgn(th') + k (r_M / N)(r_M th / N - r_L q).
-//! 2. The springs then measure the torque on their joints, tau_L = k r_L (r_M th / N - r_L q)
-//!    (3.24), and these joints join the stiff ones, whose motors measure it (3.17), in one
-//!    regression of the base parameters (3.25).
+//!    tau_M - Ia th'' = fv th' + fc sgn(th') + (r_M / N) (k (r_M th / N - r_L q) + F0).
+//!    The encoders of motor and joint need not be 0 together: F0 is the force of the spring where
+//!    both read 0.
+//! 2. The springs then measure the torque on their joints,
+//!    tau_L = r_L (k (r_M th / N - r_L q) + F0) (3.24), and these joints join the stiff ones, whose
+//!    motors measure it (3.17), in one regression of the base parameters (3.25).
 //!
 //! Both sides of each equation pass the same zero-phase filter. Residuals of motion are correlated
 //! in time, so that covariances are those of sums over blocks which are long against the
 //! correlation (a sandwich with batch means). The uncertainty of the springs goes on into the
-//! loads: with d = phi(k + s) - phi(k), s the deviation of k, the covariance of phi grows by d d^T.
+//! loads: with d = phi(k + s) - phi(k), s the deviation of k and F0 along a column of the root of
+//! their covariance, the covariance of phi grows by d d^T.
 
-use super::condition::{ConditionError, Conditioned, Conditioning};
-use super::estimate::{self, EstimateError, estimate};
+mod fault;
+mod readings;
+
+pub use fault::TwoStageError;
+
+use super::condition::{Conditioned, Conditioning};
+use super::estimate::{self, estimate};
 use super::log::{JointSignals, MeasuredLog};
 use crate::plants::regression::{CoulombLaw, RegressionModel};
 use crate::plants::{DriveModel, PlantModel, SeriesElasticModel};
 use nalgebra::{DMatrix, DVector};
-use std::fmt;
 
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,10 +47,25 @@ pub struct Spring {
     pub coulomb: Estimate,
     /// [N/m].
     pub stiffness: Estimate,
+    /// The spring's force where both encoders read 0 \[N\].
+    pub preload: Estimate,
+    /// The covariance of stiffness and preload \[N^2/m\].
+    pub covariance: f64,
+    /// The motor's reading where the spring is relaxed and the joint reads 0 \[rad\].
+    pub motor_zero: Estimate,
     /// Root mean square of what the equation misses \[N m\].
     pub residual: f64,
     /// Root mean square of its left side \[N m\].
     pub torque: f64,
+}
+
+impl Spring {
+    /// The columns of the root of the covariance of stiffness and preload.
+    fn deviations(&self) -> [[f64; 2]; 2] {
+        let along = self.covariance / self.stiffness.std.max(f64::MIN_POSITIVE);
+        let across = (self.preload.std.powi(2) - along * along).max(0.0).sqrt();
+        [[self.stiffness.std, along], [0.0, across]]
+    }
 }
 
 /// What both stages came to.
@@ -60,40 +82,6 @@ pub struct TwoStage {
     /// torque [N m, N].
     pub residuals: Vec<[f64; 2]>,
 }
-
-/// Why a log does not give the parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TwoStageError {
-    /// No joint is behind a spring.
-    NoSprings,
-    /// The log has no such column.
-    MissingColumn(String),
-    /// The log cannot be conditioned.
-    Condition(ConditionError),
-    /// The load cannot be estimated.
-    Estimate(EstimateError),
-    /// The motion does not tell these parameters apart; holds a joint, or the load.
-    NotExcited(String),
-    /// The gear ratio of an elastic drive is 0; holds the joint.
-    NoDrive(String),
-}
-
-impl fmt::Display for TwoStageError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::MissingColumn(column) => write!(f, "the log has no column `{column}`"),
-            Self::NoSprings => write!(f, "the model has no series elastic drive"),
-            Self::Condition(error) => write!(f, "{error}"),
-            Self::Estimate(error) => write!(f, "{error}"),
-            Self::NotExcited(what) => {
-                write!(f, "the motion does not tell the parameters of {what} apart")
-            }
-            Self::NoDrive(joint) => write!(f, "the drive of `{joint}` has no gear ratio"),
-        }
-    }
-}
-
-impl std::error::Error for TwoStageError {}
 
 /// Blocks over which scores are summed.
 const BLOCKS: usize = 50;
@@ -219,6 +207,11 @@ impl Elastic {
         motor_radius * motor / self.drive.gear_ratio - load_radius * q
     }
 
+    /// Turns of the motor for one of the joint, the spring being relaxed.
+    fn turns(&self) -> f64 {
+        self.drive.gear_ratio * self.spring.load_radius / self.spring.motor_radius
+    }
+
     /// The first stage (3.23).
     fn identify(
         &self,
@@ -228,6 +221,7 @@ impl Elastic {
         law: CoulombLaw,
     ) -> Result<Spring, TwoStageError> {
         let [angles, rates, accelerations] = &motion.motors[place];
+        readings::check_angles(name, angles, &motion.positions[self.joint], self.turns())?;
         let lever = self.spring.motor_radius / self.drive.gear_ratio;
         // the law is that of joints: motors turn so many times as fast
         let turns = self.drive.gear_ratio.abs();
@@ -236,10 +230,15 @@ impl Elastic {
             rates.clone(),
             rates.iter().map(|rate| law.of(rate / turns)).collect(),
             pairs.map(|(motor, q)| lever * self.elongation(*motor, *q)).collect::<Vec<f64>>(),
+            vec![lever; rates.len()],
         ];
         let rows = columns[0].len();
-        let x = DMatrix::from_fn(rows, 3, |row, column| columns[column][row]);
+        let x = DMatrix::from_fn(rows, 4, |row, column| columns[column][row]);
         let inertia = self.drive.rotor_inertia;
+        let of_model = accelerations.iter().zip(&columns[2]);
+        let of_model: Vec<f64> =
+            of_model.map(|(a, e)| inertia * a + self.spring.stiffness * e).collect();
+        readings::check_torque(name, &motion.torques[place], &of_model, self.turns())?;
         let left = motion.torques[place].iter().zip(accelerations);
         let y = DVector::from_iterator(rows, left.map(|(torque, a)| torque - inertia * a));
         let solved = Solved::new(&x, &y)
@@ -249,11 +248,23 @@ impl Elastic {
             value: solved.values[at],
             std: covariance[(at, at)].max(0.0).sqrt(),
         };
+        let (stiffness, preload) = (estimate(2), estimate(3));
+        readings::check_stiffness(name, stiffness)?;
+        // r_M th / N + F0 / k = 0, to first order
+        let zero = -preload.value / (stiffness.value * lever);
+        let slopes = [-zero / stiffness.value, -1.0 / (stiffness.value * lever)];
+        let shared = covariance[(2, 3)];
+        let variance = (slopes[0] * stiffness.std).powi(2)
+            + (slopes[1] * preload.std).powi(2)
+            + 2.0 * slopes[0] * slopes[1] * shared;
         Ok(Spring {
             joint: name.to_owned(),
             viscous: estimate(0),
             coulomb: estimate(1),
-            stiffness: estimate(2),
+            stiffness,
+            preload,
+            covariance: shared,
+            motor_zero: Estimate { value: zero, std: variance.max(0.0).sqrt() },
             residual: rms(solved.residuals.as_slice()),
             torque: rms(y.as_slice()),
         })
@@ -271,22 +282,25 @@ struct Load<'a> {
 
 impl Load<'_> {
     fn identify(&self, springs: Vec<Spring>) -> Result<TwoStage, TwoStageError> {
-        let stiffness: Vec<f64> = springs.iter().map(|spring| spring.stiffness.value).collect();
-        let mut found = self.estimate(&stiffness)?;
+        let forces: Vec<[f64; 2]> =
+            springs.iter().map(|one| [one.stiffness.value, one.preload.value]).collect();
+        let mut found = self.estimate(&forces)?;
         let phi = found.solution.phi.clone();
         let mut covariance = found.covariance.clone();
         for (place, spring) in springs.iter().enumerate() {
-            let mut moved = stiffness.clone();
-            moved[place] += spring.stiffness.std;
-            let direction = self.estimate(&moved)?.solution.phi - &phi;
-            covariance += &direction * direction.transpose();
+            for step in spring.deviations() {
+                let mut moved = forces.clone();
+                moved[place] = [0, 1].map(|at| moved[place][at] + step[at]);
+                let direction = self.estimate(&moved)?.solution.phi - &phi;
+                covariance += &direction * direction.transpose();
+            }
         }
         let to = self.model.to_listed();
         let (values, spread) = (to * &phi, to * &covariance * to.transpose());
         let listed = (0..values.len())
             .map(|at| Estimate { value: values[at], std: spread[(at, at)].max(0.0).sqrt() });
         let listed = listed.collect();
-        let torques = self.loads(&stiffness).torque;
+        let torques = self.loads(&forces).torque;
         let size = |torque: &Option<Vec<f64>>| rms(torque.as_deref().unwrap_or_default());
         let residuals = found.noise.iter().zip(&torques).map(|(noise, t)| [*noise, size(t)]);
         let residuals = residuals.collect();
@@ -294,8 +308,8 @@ impl Load<'_> {
         Ok(TwoStage { springs, listed, load: found, residuals })
     }
 
-    fn estimate(&self, stiffness: &[f64]) -> Result<estimate::Estimate, TwoStageError> {
-        let logs = [self.loads(stiffness)];
+    fn estimate(&self, forces: &[[f64; 2]]) -> Result<estimate::Estimate, TwoStageError> {
+        let logs = [self.loads(forces)];
         let start = vec![0.0; self.model.rank()];
         let options = estimate::Options::default();
         let found = estimate(self.model, &logs, &[], &options, &start);
@@ -308,7 +322,7 @@ impl Load<'_> {
 
     /// The log of the joints alone, with the torques on the loads: those of the springs (3.24),
     /// and those of stiff drives without the known inertia of their rotors.
-    fn loads(&self, stiffness: &[f64]) -> Conditioned {
+    fn loads(&self, forces: &[[f64; 2]]) -> Conditioned {
         let n = self.plant.joints.len();
         let mut loads = self.conditioned.clone();
         let range = loads.range.clone();
@@ -324,8 +338,9 @@ impl Load<'_> {
             if let Some(place) = self.elastic.iter().position(|one| one.joint == joint) {
                 let one = &self.elastic[place];
                 let angles = motors[place].iter().zip(&loads.q[joint]);
-                let factor = stiffness[place] * one.spring.load_radius;
-                let torque = angles.map(|(motor, q)| factor * one.elongation(*motor, *q));
+                let (radius, [stiffness, preload]) = (one.spring.load_radius, forces[place]);
+                let force = |motor, q| stiffness * one.elongation(motor, q) + preload;
+                let torque = angles.map(|(motor, q)| radius * force(*motor, *q));
                 loads.torque[joint] = Some(torque.collect());
             } else if let Some(torque) = &mut loads.torque[joint] {
                 let reflected = |drive: &DriveModel| drive.gear_ratio.powi(2) * drive.rotor_inertia;

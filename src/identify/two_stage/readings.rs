@@ -1,0 +1,111 @@
+//! Whether the columns of a motor behind a spring are what they are taken for: its angle against
+//! that of the joint times the gear ratio, its torque against the spring of the model.
+
+use super::{Estimate, TwoStageError};
+use std::f64::consts::TAU;
+
+/// How far a motor may turn, of how far gear and joint say: springs are stiff.
+const TURNS: [f64; 2] = [0.5, 2.0];
+
+/// Angles that do not follow each other.
+const OTHER: f64 = 0.5;
+
+/// How far a spring of a model may be wrong.
+const WRONG_SPRING: f64 = 2.5;
+
+/// Standard errors that a stiffness is above 0.
+const SURE: f64 = 5.0;
+
+/// How near a mistake explains a ratio.
+fn explains(ratio: f64, slack: f64) -> bool {
+    (1.0 / slack..slack).contains(&ratio)
+}
+
+/// The factor, of those that mend known mistakes, that brings a ratio nearest to 1.
+fn mending(
+    ratio: f64,
+    slack: f64,
+    mistakes: &[(f64, &'static str)],
+) -> Option<(f64, &'static str)> {
+    let distance = |scale: f64| (ratio * scale).ln().abs();
+    let all = mistakes.iter().filter(|(scale, _)| explains(ratio * scale, slack));
+    all.copied().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))
+}
+
+/// Slope and correlation of a signal over what it is expected to be, both without their means;
+/// none if nothing is expected.
+fn compared(found: &[f64], expected: &[f64]) -> Option<(f64, f64)> {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let (found_mean, expected_mean) = (mean(found), mean(expected));
+    let (mut both, mut of_found, mut of_expected) = (0.0, 0.0, 0.0);
+    for (found, expected) in found.iter().zip(expected) {
+        let (found, expected) = (found - found_mean, expected - expected_mean);
+        both += found * expected;
+        of_found += found * found;
+        of_expected += expected * expected;
+    }
+    let size = (of_found * of_expected).sqrt().max(f64::MIN_POSITIVE);
+    (of_expected > 0.0).then_some((both / of_expected, both / size))
+}
+
+/// The angle of the motor is that of the joint times the turns of the gear, nearly.
+pub(super) fn check_angles(
+    joint: &str,
+    motor: &[f64],
+    q: &[f64],
+    turns: f64,
+) -> Result<(), TwoStageError> {
+    let expected: Vec<f64> = q.iter().map(|q| turns * q).collect();
+    // a joint that rests is another fault
+    let Some((ratio, correlation)) = compared(motor, &expected) else { return Ok(()) };
+    if (TURNS[0]..TURNS[1]).contains(&ratio) && correlation > OTHER {
+        return Ok(());
+    }
+    let radian = 1.0_f64.to_radians();
+    let mistakes = [
+        (-1.0, "has it the other sign"),
+        (turns, "is it the angle after the gear"),
+        (-turns, "is it the angle after the gear, with the other sign"),
+        (radian, "is it in degrees"),
+        (-radian, "is it in degrees, with the other sign"),
+        (turns * radian, "is it the angle after the gear, in degrees"),
+        (TAU, "does it count turns"),
+    ];
+    let scale = match correlation.abs() > OTHER {
+        true => mending(ratio, 1.33, &mistakes),
+        false => None,
+    };
+    Err(TwoStageError::MotorAngle { joint: joint.to_owned(), ratio, correlation, scale })
+}
+
+/// The torque of the motor is nearly what its inertia and the spring of the model need, `expected`;
+/// or off by no known mistake: springs of a model may be wrong.
+pub(super) fn check_torque(
+    joint: &str,
+    torque: &[f64],
+    expected: &[f64],
+    turns: f64,
+) -> Result<(), TwoStageError> {
+    let Some((ratio, correlation)) = compared(torque, expected) else { return Ok(()) };
+    if correlation.abs() < OTHER || explains(ratio, WRONG_SPRING) {
+        return Ok(());
+    }
+    let mistakes = [
+        (-1.0, "has it the other sign"),
+        (1.0 / turns, "is it the torque after the gear"),
+        (-1.0 / turns, "is it the torque after the gear, with the other sign"),
+        (turns, "was it divided by the gear ratio twice (# torque_side: motor)"),
+        (-turns, "was it divided by the gear ratio twice, with the other sign"),
+    ];
+    let scale = mending(ratio, WRONG_SPRING, &mistakes);
+    let refused = |scale| TwoStageError::MotorTorque { joint: joint.to_owned(), ratio, scale };
+    scale.map_or(Ok(()), |scale| Err(refused(scale)))
+}
+
+/// The stiffness is above 0 by more than its error.
+pub(super) fn check_stiffness(joint: &str, stiffness: Estimate) -> Result<(), TwoStageError> {
+    match stiffness.value > SURE * stiffness.std {
+        true => Ok(()),
+        false => Err(TwoStageError::NoStiffness { joint: joint.to_owned(), stiffness }),
+    }
+}

@@ -5,13 +5,14 @@
 //! - [`tulip`], [`puma560`], [`planar_biped`]: what the compiler made of three of them when this
 //!   library was built
 //! - [`simulate`]: robots in motion, on the ground
-//! - [`identify`]: parameters from measurements
+//! - [`diagnose`]: what a model lacks, from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`identify`]: parameters from measured motion, and motion that shows them
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
 
+pub mod diagnose;
 mod generated;
 pub mod identify;
 pub mod plants;

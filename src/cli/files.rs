@@ -44,7 +44,7 @@ pub(crate) fn read_model_with_effects(
     effect::read_model(&name, &bytes, &own).map_err(Failure::Model)
 }
 
-fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
+pub(crate) fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
     let files = effect::files(folder)
         .map_err(|error| Failure::Read { file: folder.display().to_string(), error })?;
     let read = |path: &PathBuf| {

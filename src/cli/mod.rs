@@ -8,6 +8,7 @@ mod count;
 mod decompose;
 mod demo;
 mod derive;
+mod diagnose;
 mod elimination;
 mod emit;
 mod excite;
@@ -56,6 +57,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Excite(excite::Arguments),
     Identify(identify::Arguments),
+    Diagnose(diagnose::Arguments),
 }
 
 /// What a command that ran to its end says.
@@ -105,6 +107,7 @@ impl Command {
             Self::Simulate(arguments) => simulate::run(arguments, out),
             Self::Excite(arguments) => excite::run(arguments, out),
             Self::Identify(arguments) => identify::run(arguments, out),
+            Self::Diagnose(arguments) => diagnose::run(arguments, out),
         }
     }
 }

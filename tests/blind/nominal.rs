@@ -147,7 +147,7 @@ impl Nominal {
 
     fn number(&self, value: f64) -> Value {
         if value == 0.0 {
-            json!({"value": 0, "known": true})
+            json!(0)
         } else {
             json!({"value": value, "std": value.abs() * self.relative_std})
         }

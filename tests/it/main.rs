@@ -5,6 +5,7 @@ mod blind;
 mod blind_battery;
 mod cli;
 mod contact;
+mod diagnose;
 mod effect;
 mod emitted;
 mod excite;

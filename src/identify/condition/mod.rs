@@ -158,7 +158,7 @@ pub struct Conditioned {
 }
 
 /// Samples on either side that a derivative looks at.
-const STENCIL: usize = 3;
+pub(crate) const STENCIL: usize = 3;
 
 impl Conditioned {
     /// Conditions a log. It is consumed, since nothing of it is held twice: 16 bytes a joint and
@@ -385,13 +385,13 @@ fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, ConditionError> {
 }
 
 /// The first difference of sixth order, per sample.
-fn rate(q: &[f64], k: usize) -> f64 {
+pub(crate) fn rate(q: &[f64], k: usize) -> f64 {
     let odd = |d: usize| q[k + d] - q[k - d];
     (45.0 * odd(1) - 9.0 * odd(2) + odd(3)) / 60.0
 }
 
 /// The second difference of sixth order, per sample squared.
-fn acceleration(q: &[f64], k: usize) -> f64 {
+pub(crate) fn acceleration(q: &[f64], k: usize) -> f64 {
     let even = |d: usize| q[k + d] - q[k] + (q[k - d] - q[k]);
     (270.0 * even(1) - 27.0 * even(2) + 2.0 * even(3)) / 180.0
 }

@@ -246,7 +246,16 @@ pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     if moved.len() < 20 {
         return None;
     }
-    let step = moved.iter().copied().fold(f64::INFINITY, f64::min);
+    let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
+    // Larger multiples know the step better than the digits of one.
+    let step = (1..=3).fold(least, |step, digits| {
+        let small = moved.iter().filter(|&&d| d < 10.0_f64.powi(digits) * step);
+        let (sum, count) = small.fold((0.0, 0.0), |(sum, count), d| {
+            let times = (d / step).round();
+            (sum + d * times, count + times * times)
+        });
+        sum / count
+    });
     // Printing rounds: a step is one if it is large against that.
     let rounding = 1e-9 * size;
     if step < 20.0 * rounding {

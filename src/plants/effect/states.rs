@@ -18,6 +18,8 @@ use nalgebra::DMatrix;
 pub(super) struct StateLaw {
     states: usize,
     parameters: usize,
+    /// Whether no state's rate depends on another state.
+    is_separate: bool,
     /// f, df/dx, df/dp, then for each x and each p the derivative of df/dx.
     rates: LawProgram,
     /// Initial values and their derivatives by the parameters.
@@ -28,6 +30,7 @@ pub(super) struct StateLaw {
 struct Rates<'a> {
     states: usize,
     parameters: usize,
+    is_separate: bool,
     entries: &'a [f64],
 }
 
@@ -64,6 +67,10 @@ impl StateLaw {
         let by: Vec<ExprId> = states.iter().chain(&parameters).copied().collect();
         let rates: Vec<ExprId> = effect.states.iter().map(|state| state.rate).collect();
         let slopes = gradient(dag, &rates, &states).concat();
+        let zero = dag.zero();
+        let count = states.len();
+        let mut others = slopes.iter().enumerate().filter(|(at, _)| at / count != at % count);
+        let is_separate = others.all(|(_, slope)| *slope == zero);
         let mut entries = rates.clone();
         entries.extend(&slopes);
         entries.extend(gradient(dag, &rates, &parameters).concat());
@@ -72,7 +79,7 @@ impl StateLaw {
         let mut initial: Vec<ExprId> = effect.states.iter().map(|state| state.initial).collect();
         initial.extend(gradient(dag, &initial.clone(), &parameters).concat());
         let initial = LawProgram::new(dag, &names(effect), inputs, initial)?;
-        Ok(Self { states: states.len(), parameters: parameters.len(), rates, initial })
+        Ok(Self { states: count, parameters: parameters.len(), is_separate, rates, initial })
     }
 
     /// The states at each sample, one column for each, and their derivatives: one column for each
@@ -103,7 +110,8 @@ impl StateLaw {
                 }
                 inputs[columns.len()..].copy_from_slice(&state[..s]);
                 rates.evaluate(&[&inputs], &mut entries).expect("the shapes are those of the law");
-                let rates = Rates { states: s, parameters: p, entries: &entries };
+                let is_separate = self.is_separate;
+                let rates = Rates { states: s, parameters: p, is_separate, entries: &entries };
                 step(&rates, t[k] - t[k - 1], &mut state);
             }
             path.iter_mut().zip(&state).for_each(|(path, x)| path.push(*x));
@@ -130,13 +138,14 @@ fn step(rates: &Rates<'_>, h: f64, state: &mut [f64]) {
         rates.second(i, j, s + parameter) + through
     };
     let mut steps = vec![0.0; s * (1 + p)];
-    if s == 1 {
-        let z = h * rates.by_state(0, 0);
-        let (phi, slope) = phi_1(z);
-        steps[0] = h * phi * rates.rate(0);
-        for parameter in 0..p {
-            let turned = h * slope * slope_along(parameter, 0, 0) * rates.rate(0);
-            steps[1 + parameter] = h * (phi * along(parameter, 0) + turned);
+    if rates.is_separate {
+        for i in 0..s {
+            let (phi, slope) = phi_1(h * rates.by_state(i, i));
+            steps[i] = h * phi * rates.rate(i);
+            for parameter in 0..p {
+                let turned = h * slope * slope_along(parameter, i, i) * rates.rate(i);
+                steps[s + i * p + parameter] = h * (phi * along(parameter, i) + turned);
+            }
         }
     } else {
         // the exponential of [[h J, h f], [0, 0]] has h phi_1(h J) f in its last column

@@ -4,7 +4,7 @@ use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
 /// certificate.
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "demo",
     "inspect",
     "derive",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 12] = [
     "simulate",
     "excite",
     "identify",
+    "diagnose",
 ];
 
 /// The command lines of a help text's examples; three blanks begin a remark.

@@ -1,0 +1,136 @@
+//! A diagnosis as JSON (the keys that others rely on stand in docs/diagnosis.md).
+
+use super::Shown;
+use crate::cli::failure::Failure;
+use crate::cli::json::write_json;
+use denavit::diagnose::{Gaps, Where};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::Write;
+
+#[derive(Serialize)]
+struct DiagnosisJson<'a> {
+    model: &'a str,
+    verdict: &'static str,
+    reasons: &'a [String],
+    r#where: Vec<WhereJson<'a>>,
+    effects: Vec<EffectJson<'a>>,
+    noise_floor: f64,
+    gap: GapJson,
+    share_closed: Option<f64>,
+    driven: [&'a [String]; 2],
+    remarks: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct WhereJson<'a> {
+    joint: &'a str,
+    share: f64,
+    regime: Option<String>,
+    regime_share: Option<f64>,
+    window: [f64; 2],
+    over_noise: f64,
+}
+
+#[derive(Serialize)]
+struct EffectJson<'a> {
+    effect: &'a str,
+    at: &'a str,
+    share: f64,
+    parameters: BTreeMap<&'a str, ValueJson<'a>>,
+    indistinguishable: Vec<OtherJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct ValueJson<'a> {
+    value: f64,
+    std: Option<f64>,
+    unit: &'a str,
+}
+
+#[derive(Serialize)]
+struct OtherJson<'a> {
+    effect: &'a str,
+    at: &'a str,
+    gap: f64,
+    cosine: f64,
+}
+
+#[derive(Serialize)]
+struct GapJson {
+    train: OneGapJson,
+    validate: OneGapJson,
+}
+
+#[derive(Serialize)]
+struct OneGapJson {
+    before: f64,
+    after: f64,
+    floor: f64,
+    per_joint_before: Vec<Option<f64>>,
+    per_joint_after: Vec<Option<f64>>,
+}
+
+impl From<&Gaps> for OneGapJson {
+    fn from(gaps: &Gaps) -> Self {
+        Self {
+            before: gaps.before.all,
+            after: gaps.after.all,
+            floor: gaps.floor.all,
+            per_joint_before: gaps.before.per_joint.clone(),
+            per_joint_after: gaps.after.per_joint.clone(),
+        }
+    }
+}
+
+pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
+    let Shown { robot, candidates, found, remarks, .. } = shown;
+    let of_joint = |one: &'_ Where| -> (Option<String>, Option<f64>) {
+        let part = one.parts.first();
+        (part.map(|part| part.regime.to_string()), part.map(|part| part.share))
+    };
+    let places = found.before.iter().map(|one| {
+        let (regime, regime_share) = of_joint(one);
+        WhereJson {
+            joint: &one.joint,
+            share: one.share,
+            regime,
+            regime_share,
+            window: one.window_s.0,
+            over_noise: one.over_noise,
+        }
+    });
+    let effects = found.effects.iter().map(|one| {
+        let own = &candidates[one.candidate];
+        let values = one.parameters.iter().map(|value| {
+            let std = Some(value.std).filter(|std| std.is_finite());
+            (value.name.as_str(), ValueJson { value: value.value, std, unit: &value.unit })
+        });
+        let others = one.alternatives.iter().map(|other| OtherJson {
+            effect: &candidates[other.candidate].effect,
+            at: &candidates[other.candidate].at,
+            gap: other.held_out_gap,
+            cosine: other.cosine,
+        });
+        EffectJson {
+            effect: &own.effect,
+            at: &own.at,
+            share: one.share,
+            parameters: values.collect(),
+            indistinguishable: others.collect(),
+        }
+    });
+    let json = DiagnosisJson {
+        model: &robot.name,
+        verdict: found.verdict.word(),
+        reasons: &found.reasons,
+        r#where: places.collect(),
+        effects: effects.collect(),
+        noise_floor: found.held_out.floor.all,
+        gap: GapJson { train: (&found.train).into(), validate: (&found.held_out).into() },
+        share_closed: found.share_closed(),
+        driven: [&found.driven[0], &found.driven[1]],
+        remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
+    };
+    write_json(out, &json)
+}

@@ -1,0 +1,96 @@
+//! The catalogue in all places of a robot.
+
+use super::candidate::Candidate;
+use super::joint_law::{JointLaw, ReadingLaw, RobotLaw};
+use super::law::Law;
+use crate::plants::effect::{EffectLaw, RobotEffect};
+use crate::plants::regression::RegressionJoint;
+use denavit_codegen::effect::{Channel, Effect, EffectSite, Law as EffectKindLaw, with_term};
+use denavit_codegen::model::{EffectPlace, JointKind, Robot};
+
+/// Every effect in every place of a robot where it can act.
+pub fn candidates(effects: &[Effect], robot: &Robot, joints: &[RegressionJoint]) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    for effect in effects {
+        if matches!(effect.law, EffectKindLaw::Moves(_) | EffectKindLaw::Term(_)) {
+            all.extend(on_robot(effect, robot, joints));
+            continue;
+        }
+        for (joint, described) in joints.iter().enumerate().filter(|(_, joint)| !joint.is_base) {
+            match effect.at {
+                EffectSite::Joint => all.extend(on_joint(effect, described, joint, None)),
+                EffectSite::JointPair => {
+                    // What couples joints is in the wrist or belt between neighbours.
+                    let beside = [joint.checked_sub(1), Some(joint + 1)].into_iter().flatten();
+                    let beside = beside.filter(|&other| other < joints.len());
+                    all.extend(beside.filter_map(|other| {
+                        on_joint(effect, described, joint, Some((other, &joints[other])))
+                    }));
+                }
+                EffectSite::Link | EffectSite::Contact | EffectSite::Model => {}
+            }
+        }
+    }
+    all
+}
+
+/// An effect that changes the model: on each moving link, or on the whole.
+fn on_robot(effect: &Effect, robot: &Robot, joints: &[RegressionJoint]) -> Vec<Candidate> {
+    let places: Vec<(EffectPlace, String, Option<usize>)> = match effect.at {
+        EffectSite::Model => vec![(EffectPlace::Model, "model".to_owned(), None)],
+        EffectSite::Joint | EffectSite::Link => {
+            let moving = robot.joints().map(|(link, _)| {
+                let name = robot.links[link].name.clone();
+                let joint = joints.iter().position(|joint| joint.name == name);
+                (EffectPlace::Link(link), name, joint)
+            });
+            moving.collect()
+        }
+        EffectSite::JointPair | EffectSite::Contact => Vec::new(),
+    };
+    // A term that the model has is not missing; a place without what is moved has no such effect.
+    let has_term = |term| with_term(robot.terms, term, true) == robot.terms;
+    if matches!(effect.law, EffectKindLaw::Term(term) if has_term(term)) {
+        return Vec::new();
+    }
+    let of = |(at, name, joint): (EffectPlace, String, Option<usize>)| {
+        let law = RobotEffect::new(robot, effect, at).ok()?;
+        Some(Candidate {
+            effect: effect.name.clone(),
+            title: effect.title.clone(),
+            at: name,
+            joint,
+            law: Box::new(RobotLaw { effect: law }),
+        })
+    };
+    places.into_iter().filter_map(of).collect()
+}
+
+fn on_joint(
+    effect: &Effect,
+    described: &RegressionJoint,
+    joint: usize,
+    other: Option<(usize, &RegressionJoint)>,
+) -> Option<Candidate> {
+    let kind = if described.slides { JointKind::Prismatic } else { JointKind::Revolute };
+    let law = EffectLaw::new(effect, kind).ok()?;
+    let law: Box<dyn Law> = match law.channel() {
+        None | Some(Channel::Torque) => {
+            Box::new(JointLaw { law, joint, other: other.map(|(other, _)| other) })
+        }
+        // Rates are derivatives of positions here, never those of the log.
+        Some(Channel::Rate) => return None,
+        Some(Channel::Position) => Box::new(ReadingLaw { law, joint }),
+    };
+    let at = match other {
+        Some((_, other)) => format!("{} with {}", described.name, other.name),
+        None => described.name.clone(),
+    };
+    Some(Candidate {
+        effect: effect.name.clone(),
+        title: effect.title.clone(),
+        at,
+        joint: Some(joint),
+        law,
+    })
+}

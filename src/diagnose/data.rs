@@ -1,0 +1,190 @@
+//! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
+
+use super::law::{Motion, Response, derivative};
+use super::nominal::Nominal;
+use super::rows::{LogRows, PerJoint, torques};
+use super::signals::Signals;
+
+/// A stretch of rows: those of one joint in one log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// The log.
+    pub log: usize,
+    /// The joint.
+    pub joint: usize,
+    /// The first of its rows.
+    pub first: usize,
+    /// Their number.
+    pub rows: usize,
+}
+
+/// Logs with the columns of everything that the nominal model is not sure of.
+#[derive(Clone, Debug)]
+pub struct Data<'a> {
+    /// The nominal model.
+    pub nominal: &'a Nominal<'a>,
+    /// The logs.
+    pub signals: Vec<Signals>,
+    /// All rows: joint by joint, log by log.
+    pub stretches: Vec<Stretch>,
+    /// Torque less what the model gives with z = 0, per row [N m, N].
+    pub residual: Vec<f64>,
+    /// For each entry of z its column; the last one is of the time between torque and motion.
+    pub columns: Vec<Vec<f64>>,
+    /// The measured torque of every row, filtered [N m, N].
+    pub torque: Vec<f64>,
+}
+
+/// Torques of the model at the samples of one log.
+#[derive(Clone, Debug)]
+pub struct ModelTorques {
+    /// phi of the model's parameters.
+    pub phi: Vec<f64>,
+    /// Rigid bodies alone.
+    pub load: PerJoint,
+    /// Their rates.
+    pub load_rate: PerJoint,
+    /// Everything.
+    pub total: PerJoint,
+}
+
+impl<'a> Data<'a> {
+    /// The rows of logs.
+    pub fn new(nominal: &'a Nominal<'a>, signals: Vec<Signals>) -> Self {
+        let rows: Vec<LogRows> = signals.iter().map(|log| LogRows::new(nominal, log)).collect();
+        let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
+        let mut data = Self {
+            nominal,
+            stretches: Vec::new(),
+            residual: Vec::new(),
+            columns: vec![Vec::new(); nominal.len() + 1],
+            torque: Vec::new(),
+            signals,
+        };
+        // Channels of a log are sampled and held: when is known to half a sample.
+        let of_time = |signals: &Signals| -> PerJoint {
+            let shift_s = -0.5 * signals.log_step_s;
+            let shifted = |torque: &Vec<f64>| -> Vec<f64> {
+                let rate = derivative(torque, signals.step_s);
+                signals.rows_of(&rate.iter().map(|rate| shift_s * rate).collect::<Vec<f64>>())
+            };
+            torques(nominal, signals, &given).iter().map(shifted).collect()
+        };
+        let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
+        for joint in 0..nominal.model.joints.len() {
+            for (log, rows) in rows.iter().enumerate() {
+                let Some(target) = &rows.target[joint] else { continue };
+                let (first, count) = (data.residual.len(), target.len());
+                data.stretches.push(Stretch { log, joint, first, rows: count });
+                let computed = rows.torque(nominal, joint, &given);
+                data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
+                data.torque.extend(data.signals[log].torque[joint].iter().flatten());
+                for (column, direction) in data.columns.iter_mut().zip(&directions) {
+                    column.extend(rows.torque(nominal, joint, direction));
+                }
+                data.columns[directions.len()].extend(&time[log][joint]);
+            }
+        }
+        data
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.residual.len()
+    }
+
+    /// Torque less what the model gives with z, per row.
+    pub fn residual_of(&self, z: &[f64]) -> Vec<f64> {
+        let mut residual = self.residual.clone();
+        for (column, factor) in self.columns.iter().zip(z).filter(|(_, factor)| **factor != 0.0) {
+            residual.iter_mut().zip(column).for_each(|(sum, entry)| *sum -= factor * entry);
+        }
+        residual
+    }
+
+    /// The torques that the model gives the motion of each log with z.
+    pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
+        let (phi, load_phi) = (self.nominal.phi(z), self.nominal.load_phi(z));
+        let one = |signals: &Signals| {
+            let load = torques(self.nominal, signals, &load_phi);
+            let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
+            let load_rate = load.iter().map(rate).collect();
+            let total = torques(self.nominal, signals, &phi);
+            ModelTorques { phi: phi.clone(), load, load_rate, total }
+        };
+        self.signals.iter().map(one).collect()
+    }
+
+    /// What a response to the motion of one log is in the rows: joint by joint, those that have
+    /// rows. `signals` are the log's, or a coarse view of them.
+    pub fn in_rows(&self, log: usize, signals: &Signals, response: &Response) -> RowResponse {
+        let mut found = RowResponse::default();
+        for (place, &joint) in response.joints.iter().enumerate() {
+            let of_joint = |stretch: &&Stretch| stretch.log == log && stretch.joint == joint;
+            let Some(&stretch) = self.stretches.iter().find(of_joint) else { continue };
+            let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
+            found.stretches.push(stretch);
+            found.gradient.push(gradient.collect());
+            found.torque.push(signals.rows_of(&response.torque[place]));
+        }
+        found
+    }
+}
+
+/// A response in the rows: for each stretch the torque, and its derivatives by each parameter.
+#[derive(Clone, Debug, Default)]
+pub struct RowResponse {
+    /// The rows it acts on.
+    pub stretches: Vec<Stretch>,
+    /// For each stretch the torque.
+    pub torque: Vec<Vec<f64>>,
+    /// For each stretch and parameter the derivative.
+    pub gradient: Vec<Vec<Vec<f64>>>,
+}
+
+impl RowResponse {
+    /// Appends the response of another log.
+    pub fn append(&mut self, mut other: Self) {
+        self.stretches.append(&mut other.stretches);
+        self.torque.append(&mut other.torque);
+        self.gradient.append(&mut other.gradient);
+    }
+
+    /// The response with its rows turned by a share of each stretch.
+    pub fn turned(&self, turn: f64) -> Self {
+        let mut turned = self.clone();
+        let columns = turned.torque.iter_mut().chain(turned.gradient.iter_mut().flatten());
+        for column in columns {
+            let by = (turn * column.len() as f64) as usize % column.len().max(1);
+            column.rotate_right(by);
+        }
+        turned
+    }
+
+    /// Takes the torque away from rows.
+    pub fn subtract_from(&self, rows: &mut [f64]) {
+        for (stretch, torque) in self.stretches.iter().zip(&self.torque) {
+            let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
+            rows.iter_mut().zip(torque).for_each(|(row, torque)| *row -= torque);
+        }
+    }
+}
+
+impl ModelTorques {
+    /// The torques at the samples of a coarse view.
+    pub fn thinned(&self, fine: &Signals, coarse: &Signals) -> Self {
+        let thin = |all: &PerJoint| all.iter().map(|one| coarse.thinned(fine, one)).collect();
+        Self {
+            phi: self.phi.clone(),
+            load: thin(&self.load),
+            load_rate: thin(&self.load_rate),
+            total: thin(&self.total),
+        }
+    }
+
+    /// The motion of a log with these torques.
+    pub fn motion<'m>(&'m self, nominal: &'m Nominal<'m>, signals: &'m Signals) -> Motion<'m> {
+        let Self { phi, load, load_rate, total } = self;
+        Motion { model: (nominal, phi), signals, load, load_rate, total }
+    }
+}

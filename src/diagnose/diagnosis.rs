@@ -1,0 +1,327 @@
+//! The whole of it: logs and a model in, what is missing out, as data.
+
+use super::candidate::Candidate;
+use super::data::Data;
+use super::family::{Alternative, family};
+use super::floor::NoiseFloor;
+use super::gap::{Gap, share_closed};
+use super::nominal::{Nominal, Uncertainty};
+use super::regime::{Where, where_left};
+use super::search::{Screen, SearchOptions, Step, Stop, search};
+use super::signals::{Filters, Signals};
+use super::state::{Setting, State};
+use crate::identify::condition::ConditionError;
+use crate::identify::log::MeasuredLog;
+use crate::plants::regression::RegressionModel;
+
+/// What is to be diagnosed, from what.
+pub struct Request<'a> {
+    /// Base parameters of the nominal model and their columns.
+    pub model: &'a RegressionModel,
+    /// Logs to fit.
+    pub train: Vec<MeasuredLog>,
+    /// Logs to judge with.
+    pub held_out: Vec<MeasuredLog>,
+    /// What may be missing.
+    pub candidates: &'a [Candidate],
+    /// How far numbers of the model may be off that state nothing.
+    pub uncertainty: Uncertainty,
+    /// What the search asks for.
+    pub options: SearchOptions,
+    /// The filters; found from the steps of the encoders if none are given.
+    pub filters: Option<Filters>,
+}
+
+/// The answer in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// What is left is noise.
+    NothingMissing,
+    /// Effects were found that leave noise.
+    Explained,
+    /// Effects were found, and more than noise is left.
+    PartlyExplained,
+    /// More than noise is left, and no effect of the catalogue explains it.
+    Unexplained,
+    /// The logs do not say.
+    CannotTell,
+}
+
+impl Verdict {
+    /// The word in files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::NothingMissing => "nothing_missing",
+            Self::Explained => "explained",
+            Self::PartlyExplained => "partly_explained",
+            Self::Unexplained => "unexplained",
+            Self::CannotTell => "cannot_tell",
+        }
+    }
+}
+
+/// A parameter of an effect, with its error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectValue {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Its unit.
+    pub unit: String,
+}
+
+/// An effect that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundEffect {
+    /// Its number among the candidates.
+    pub candidate: usize,
+    /// Its parameters.
+    pub parameters: Vec<EffectValue>,
+    /// The share of what can be explained that is open again without it, on held-out logs.
+    pub share: f64,
+    /// Effects that would do as well in its place.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// Gaps of one set of logs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gaps {
+    /// Of the nominal model, re-estimated.
+    pub before: Gap,
+    /// With the effects.
+    pub after: Gap,
+    /// Of noise alone.
+    pub floor: Gap,
+}
+
+/// What a model lacks.
+#[derive(Clone, Debug)]
+pub struct Diagnosis {
+    /// The answer in one word.
+    pub verdict: Verdict,
+    /// Why.
+    pub reasons: Vec<String>,
+    /// Where torques disagreed before.
+    pub before: Vec<Where>,
+    /// Where they still do.
+    pub after: Vec<Where>,
+    /// The effects, in the order in which they were found.
+    pub effects: Vec<FoundEffect>,
+    /// How they were found.
+    pub steps: Vec<Step>,
+    /// Gaps of the logs that were fitted.
+    pub train: Gaps,
+    /// Gaps of the logs that were held out.
+    pub held_out: Gaps,
+    /// The filters.
+    pub filters: Filters,
+    /// Numbers of the model that the logs would move beyond their uncertainty, before and after.
+    pub driven: [Vec<String>; 2],
+}
+
+/// Shares of the rate of sampling that the filter of positions may pass.
+const SHARES: [f64; 6] = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018];
+
+/// A gap within so many times that of noise is one of noise.
+const NOISE: f64 = 1.6;
+
+/// Laps that differ by so many times their noise do not repeat.
+const UNREPEATABLE: f64 = 3.0;
+
+/// Diagnoses. `watch` hears of the effects that were found so far.
+pub fn diagnose(
+    request: Request<'_>,
+    watch: &mut dyn FnMut(&[usize], f64),
+) -> Result<Diagnosis, ConditionError> {
+    let nominal = Nominal::new(request.model, request.uncertainty);
+    let filters = match request.filters {
+        Some(filters) => filters,
+        None => quiet_filters(&nominal, &request.train)?,
+    };
+    let read = |logs: Vec<MeasuredLog>| -> Result<Data<'_>, ConditionError> {
+        let signals: Result<Vec<Signals>, _> =
+            logs.into_iter().map(|log| Signals::new(log, filters)).collect();
+        Ok(Data::new(&nominal, signals?))
+    };
+    let (train, held_out) = (read(request.train)?, read(request.held_out)?);
+    let train_floor = NoiseFloor::of_logs(&nominal, &train.signals);
+    let held_out_floor = NoiseFloor::of_logs(&nominal, &held_out.signals);
+    let setting = Setting {
+        train: &train,
+        held_out: &held_out,
+        candidates: request.candidates,
+        coarse: train.signals.iter().map(Signals::coarse).collect(),
+        train_floor: &train_floor,
+        held_out_floor: &held_out_floor,
+    };
+    let outcome = search(&setting, &request.options, &mut |state| {
+        let taken: Vec<usize> = state.taken.iter().map(|one| one.candidate).collect();
+        watch(&taken, state.held_out_gap.all);
+    });
+    let filter_s = 0.35 / filters.torque_hz;
+    let left = |state: &State| {
+        where_left(&train, &state.residual, &state.torques[0], &train_floor, filter_s)
+    };
+    let driven = |state: &State| {
+        let both = state.held.iter().zip(&nominal.uncertain);
+        both.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect::<Vec<String>>()
+    };
+    let floors = [Gap::of_floor(&train, &train_floor), Gap::of_floor(&held_out, &held_out_floor)];
+    let effects = found_effects(
+        (&setting, &outcome.screen),
+        &request.options,
+        [&outcome.before, &outcome.after],
+    );
+    let (before, after) = (&outcome.before, &outcome.after);
+    let [train_floor_gap, held_out_floor_gap] = floors;
+    let mut diagnosis = Diagnosis {
+        verdict: Verdict::CannotTell,
+        reasons: Vec::new(),
+        before: left(before),
+        after: left(after),
+        effects,
+        train: Gaps {
+            before: before.gap.clone(),
+            after: after.gap.clone(),
+            floor: train_floor_gap,
+        },
+        held_out: Gaps {
+            before: before.held_out_gap.clone(),
+            after: after.held_out_gap.clone(),
+            floor: held_out_floor_gap,
+        },
+        filters,
+        driven: [driven(before), driven(after)],
+        steps: outcome.steps,
+    };
+    diagnosis.judge(&setting, outcome.stop);
+    Ok(diagnosis)
+}
+
+/// The widest filters with which the steps of the encoders make less of a torque than its noise.
+fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters, ConditionError> {
+    let Some(log) = logs.first() else { return Ok(Filters::new(1.0, SHARES[0])) };
+    let mut last = Err(ConditionError::NoPeriod);
+    for share in SHARES {
+        let filters = Filters::new(log.step_s, share);
+        let signals = match Signals::new(log.clone(), filters) {
+            Ok(signals) => signals,
+            Err(error) => {
+                last = last.or(Err(error));
+                break;
+            }
+        };
+        let floor = NoiseFloor::of_logs(nominal, &[signals]).remove(0);
+        let mut ratios: Vec<f64> =
+            floor.positions.iter().zip(&floor.white).map(|(p, w)| p / w.max(1e-300)).collect();
+        ratios.sort_by(f64::total_cmp);
+        last = Ok(filters);
+        if ratios.get(ratios.len() / 2).is_none_or(|ratio| *ratio < 1.0) {
+            break;
+        }
+    }
+    last
+}
+
+/// The effects of a state, each with its share, its errors and what would do as well.
+fn found_effects(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    [before, after]: [&State; 2],
+) -> Vec<FoundEffect> {
+    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
+    let mut at = 0;
+    let mut found = Vec::new();
+    for (place, taken) in after.taken.iter().enumerate() {
+        let parameters = setting.candidates[taken.candidate].law.parameters();
+        let value =
+            |(k, (value, parameter)): (usize, (&f64, &crate::plants::effect::LawParameter))| {
+                EffectValue {
+                    name: parameter.name.clone(),
+                    value: *value,
+                    std: after.covariance[(at + k, at + k)].max(0.0).sqrt(),
+                    unit: parameter.unit.clone(),
+                }
+            };
+        let values = taken.values.iter().zip(parameters).enumerate().map(value).collect();
+        let mut others = after.taken.clone();
+        others.remove(place);
+        let without = setting.state(&others).held_out_gap.all;
+        let whole = before.held_out_gap.all - floor;
+        found.push(FoundEffect {
+            candidate: taken.candidate,
+            parameters: values,
+            share: (without - after.held_out_gap.all) / whole.max(f64::MIN_POSITIVE),
+            alternatives: family((setting, screen), options, after, place),
+        });
+        at += taken.values.len();
+    }
+    found
+}
+
+impl Diagnosis {
+    /// The share of what could be explained of held-out logs that was explained.
+    pub fn share_closed(&self) -> Option<f64> {
+        let Gaps { before, after, floor } = &self.held_out;
+        share_closed(before.all, after.all, floor.all)
+    }
+
+    fn judge(&mut self, setting: &Setting<'_>, stop: Stop) {
+        let Gaps { before, after, floor } = &self.held_out;
+        let joints = &setting.train.nominal.model.joints;
+        let is_noise = |gap: &Gap| {
+            let both = gap.per_joint.iter().zip(&floor.per_joint);
+            both.filter_map(|(gap, floor)| Some(gap.as_ref()? / floor.as_ref()?))
+                .all(|ratio| ratio < NOISE)
+        };
+        let unrepeatable = setting
+            .train_floor
+            .iter()
+            .filter_map(NoiseFloor::unrepeatable)
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|(_, ratio)| *ratio > UNREPEATABLE);
+        let mut reasons = Vec::new();
+        let ambiguous: Vec<String> = self
+            .effects
+            .iter()
+            .filter(|one| one.alternatives.len() > 2)
+            .map(|one| setting.candidates[one.candidate].name())
+            .collect();
+        self.verdict = if let Some((joint, ratio)) = unrepeatable {
+            reasons.push(format!(
+                "not repeatable: laps of {} differ by {ratio:.1} times their noise",
+                joints[joint].name
+            ));
+            Verdict::CannotTell
+        } else if self.effects.is_empty() {
+            match is_noise(before) {
+                true => Verdict::NothingMissing,
+                false => {
+                    reasons.push("nothing in the catalogue explains what is left".to_owned());
+                    Verdict::Unexplained
+                }
+            }
+        } else if !ambiguous.is_empty() {
+            reasons.push(format!("alias: others would do as well as {}", ambiguous.join(", ")));
+            Verdict::CannotTell
+        } else if is_noise(after) || self.share_closed().is_some_and(|share| share > 0.95) {
+            Verdict::Explained
+        } else {
+            reasons.push("more than noise is left".to_owned());
+            Verdict::PartlyExplained
+        };
+        if stop == Stop::MostEffects {
+            reasons.push("as many effects were found as are allowed".to_owned());
+        }
+        if !self.driven[1].is_empty() {
+            reasons.push(format!(
+                "the logs would move parameters beyond their uncertainty: {}",
+                self.driven[1].join(", ")
+            ));
+        }
+        self.reasons = reasons;
+    }
+}

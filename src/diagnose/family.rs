@@ -1,0 +1,78 @@
+//! Names that the data cannot tell apart.
+
+use super::evidence::paired;
+use super::gap::Gap;
+use super::problem::Problem;
+use super::search::{ALIKE, Screen, SearchOptions, refine, score};
+use super::state::{Setting, State, Taken};
+
+/// An effect that would do as well in the place of one that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternative {
+    /// The candidate.
+    pub candidate: usize,
+    /// The values of its parameters.
+    pub values: Vec<f64>,
+    /// The gap that it leaves on held-out logs.
+    pub held_out_gap: f64,
+    /// Standard errors by which it is worse, over all logs.
+    pub worse_by: f64,
+    /// The cosine of the angle between what the two do to the torques that the model's own
+    /// parameters cannot.
+    pub cosine: f64,
+}
+
+/// Standard errors from which on one name is worse than another.
+const DISTINCT: f64 = 2.5;
+
+/// The effects that would do as well as the one in a place of `state.taken`, with the others as
+/// they are, best first. Laws with more parameters that are no better are no alternatives.
+pub fn family(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    state: &State,
+    place: usize,
+) -> Vec<Alternative> {
+    let mut others = state.taken.clone();
+    let own = others.remove(place);
+    let rest = State { taken: others.clone(), ..state.clone() };
+    let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+    let scored = score(setting, screen, &rest, None);
+    let chosen = {
+        let mut taken = others;
+        taken.push(own.clone());
+        setting.trial(&problem, &rest, &taken)
+    };
+    let gap = |residual: &[f64]| Gap::new(setting.held_out, residual).all;
+    let best = gap(&chosen.held_out_residual);
+    let mut found = Vec::new();
+    for trial in refine(setting, 2 * options.refined, &rest, (&problem, &scored)) {
+        let Some(other) = trial.taken.last().cloned() else { continue };
+        let Taken { candidate, values } = other.clone();
+        if candidate == own.candidate || values.len() > own.values.len() {
+            continue;
+        }
+        let held_out_gap = gap(&trial.held_out_residual);
+        let worse_by = paired(&trial.blocks.concat(), &chosen.blocks.concat());
+        if held_out_gap <= best * (1.0 + ALIKE) && worse_by < DISTINCT {
+            let cosine = cosine(setting, &problem, &rest, [&own, &other]);
+            found.push(Alternative { candidate, values, held_out_gap, worse_by, cosine });
+        }
+    }
+    found.sort_by(|a, b| a.held_out_gap.total_cmp(&b.held_out_gap));
+    found
+}
+
+/// The cosine of what two effects do, in the rows, outside of what z can do.
+fn cosine(setting: &Setting<'_>, problem: &Problem<'_>, state: &State, pair: [&Taken; 2]) -> f64 {
+    let rows = pair.map(|one| {
+        let fitted = setting.fitted(std::slice::from_ref(one));
+        let mut rows = vec![0.0; setting.train.rows()];
+        for response in problem.responses(&fitted, &state.torques[0]) {
+            response.subtract_from(&mut rows);
+        }
+        problem.outside(&rows)
+    });
+    let [a, b] = &rows;
+    a.dot(b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE)
+}

@@ -1,0 +1,121 @@
+//! The noise floor: what no model can explain, because it does not repeat.
+
+use super::nominal::Nominal;
+use super::rows::torques;
+use super::signals::Signals;
+use crate::identify::condition::{Butterworth, Laps};
+
+/// The floor of one log, after the filter of the rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseFloor {
+    /// Deviation of each joint's torque [N m, N]; of white noise above the motion's frequencies,
+    /// unless laps show more.
+    pub deviation: Vec<f64>,
+    /// From white noise alone.
+    pub white: Vec<f64>,
+    /// From the steps of the encoders, through the model.
+    pub positions: Vec<f64>,
+    /// From laps, where the motion repeats.
+    pub laps: Option<Vec<f64>>,
+    /// The period of the laps \[s\].
+    pub period_s: Option<f64>,
+}
+
+/// The least share of a torque that its floor is taken to be: logs without noise have digits.
+const LEAST: f64 = 1e-6;
+
+impl NoiseFloor {
+    /// The floors of logs, with the torques of the nominal model.
+    pub fn of_logs(nominal: &Nominal<'_>, logs: &[Signals]) -> Vec<Self> {
+        let phi = nominal.phi(&vec![0.0; nominal.len()]);
+        let of = |signals: &Signals| {
+            let computed = torques(nominal, signals, &phi);
+            let disturbed = torques(nominal, &signals.disturbed(), &phi);
+            Self::new(signals, &computed, &disturbed)
+        };
+        logs.iter().map(of).collect()
+    }
+
+    /// The floor of a log, given the torques that the model makes of its motion, and of the same
+    /// with another error of its encoders.
+    pub fn new(signals: &Signals, computed: &[Vec<f64>], disturbed: &[Vec<f64>]) -> Self {
+        let gain = signals.noise_gain();
+        let white: Vec<f64> = signals
+            .measured
+            .iter()
+            .map(|torque| torque.as_ref().map_or(0.0, |torque| gain * white_noise(torque)))
+            .collect();
+        let both = computed.iter().zip(disturbed);
+        let positions: Vec<f64> = both
+            .map(|(a, b)| {
+                rms(&signals.rows_of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()))
+            })
+            .collect();
+        let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
+        let end = q.first().map_or(0, Vec::len);
+        let laps = Laps::find(&q, signals.log_step_s, (0, end)).ok();
+        let of_laps = laps.map(|laps| {
+            let both = signals.measured.iter().zip(computed);
+            both.map(|(measured, computed)| {
+                let Some(measured) = measured else { return 0.0 };
+                let computed = signals.cell_means(computed);
+                let left = measured.iter().zip(computed).map(|(a, b)| a - b).collect();
+                lap_noise(&signals.filtered(left), laps)
+            })
+            .collect::<Vec<f64>>()
+        });
+        let deviation = (0..white.len()).map(|joint| {
+            let of_log = white[joint].hypot(positions[joint]);
+            let seen = of_laps.as_ref().map_or(of_log, |laps| laps[joint].max(of_log));
+            let rms = signals.torque[joint].as_ref().map_or(0.0, |torque| rms(torque));
+            seen.max(LEAST * rms).max(f64::MIN_POSITIVE)
+        });
+        Self {
+            deviation: deviation.collect(),
+            white,
+            positions,
+            period_s: laps.map(|laps| laps.samples as f64 * signals.log_step_s),
+            laps: of_laps,
+        }
+    }
+
+    /// How much more laps differ than white noise lets them, at the joint where that is most.
+    pub fn unrepeatable(&self) -> Option<(usize, f64)> {
+        let laps = self.laps.as_ref()?;
+        let own = self.white.iter().zip(&self.positions).map(|(a, b)| a.hypot(*b));
+        let ratios = laps.iter().zip(own).enumerate().filter(|(_, (_, own))| *own > 0.0);
+        ratios.map(|(joint, (lap, own))| (joint, lap / own)).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Deviation of white noise in a signal, from what it has above a quarter of its rate; steps and
+/// spikes do not count.
+fn white_noise(signal: &[f64]) -> f64 {
+    let Some(filter) = Butterworth::new(4, 0.25, 1.0) else { return 0.0 };
+    let mut smooth = signal.to_vec();
+    filter.zero_phase(&mut smooth);
+    let mut sizes: Vec<f64> = signal.iter().zip(&smooth).map(|(a, b)| (a - b).abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let mut impulse = vec![0.0; 129];
+    impulse[64] = 1.0;
+    filter.zero_phase(&mut impulse);
+    impulse[64] -= 1.0;
+    let gain = impulse.iter().map(|x| x * x).sum::<f64>().sqrt();
+    // The median of the absolute value of a normal variable is 0.6745 of its deviation.
+    median / (0.6745 * gain)
+}
+
+/// Deviation of a signal, from the differences of laps that follow each other.
+fn lap_noise(signal: &[f64], laps: Laps) -> f64 {
+    let Laps { start, samples, count } = laps;
+    let pairs = start..start + (count - 1) * samples;
+    let count = pairs.len().max(1);
+    let squares: f64 = pairs.map(|k| (signal[k + samples] - signal[k]).powi(2)).sum();
+    (squares / (2 * count) as f64).sqrt()
+}
+
+/// Root of the mean square.
+pub fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,137 @@
+//! Effects of the catalogue as laws on the torques of a robot's joints.
+
+use super::law::{Law, Motion, Response};
+use super::rows::PerJoint;
+use super::signals::Signals;
+use crate::plants::effect::{EffectLaw, JointSamples, LawParameter, RobotEffect};
+use denavit_codegen::effect::Channel;
+
+/// An effect that adds to the torque of one joint, or changes the log of that torque.
+pub(super) struct JointLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+    /// The other joint, for laws of a pair.
+    pub(super) other: Option<usize>,
+}
+
+/// The samples of a joint in a motion.
+fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> JointSamples<'m> {
+    let signals = motion.signals;
+    let mut samples = JointSamples {
+        t: &signals.t,
+        q: &signals.q[joint],
+        qd: &signals.qd[joint],
+        qdd: &signals.qdd[joint],
+        tau_load: &motion.load[joint],
+        tau_load_rate: &motion.load_rate[joint],
+        tau: &motion.total[joint],
+        ..JointSamples::default()
+    };
+    if let Some(other) = other {
+        samples.q_2 = &signals.q[other];
+        samples.qd_2 = &signals.qd[other];
+        samples.qdd_2 = &signals.qdd[other];
+        samples.tau_load_2 = &motion.load[other];
+    }
+    samples
+}
+
+impl Law for JointLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let samples = samples(&motion, self.joint, self.other);
+        let gradient = self.law.gradient(&samples, values);
+        Response {
+            joints: vec![self.joint],
+            torque: vec![self.law.torque(&samples, values)],
+            gradient: gradient.into_iter().map(|column| vec![column]).collect(),
+        }
+    }
+}
+
+/// An effect that moves what the model says, or a term that it lacks: it acts on all joints.
+pub(super) struct RobotLaw {
+    /// What it adds.
+    pub(super) effect: RobotEffect,
+}
+
+impl Law for RobotLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.effect.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let signals = motion.signals;
+        let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
+            .map(|all| all.iter().map(Vec::as_slice).collect::<Vec<&[f64]>>());
+        let torque = self.effect.torque(&q, &qd, &qdd, values);
+        let gradient = self.effect.gradient(&q, &qd, &qdd, values);
+        Response { joints: (0..torque.len()).collect(), torque, gradient }
+    }
+}
+
+/// An effect that stands between a position or rate and its log: the model was given what is
+/// logged, and gives other torques for what is true.
+pub(super) struct ReadingLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+}
+
+/// By which share of a parameter's size it is moved for a difference.
+const DIFFERENCE: f64 = 1e-4;
+
+impl ReadingLaw {
+    /// What the torques of the true motion have more than those of the logged one.
+    fn torques(&self, motion: &Motion<'_>, values: &[f64]) -> PerJoint {
+        let (joint, logged) = (self.joint, motion.signals);
+        let samples = samples(motion, joint, None);
+        let truth = self.law.corrected(&samples, values);
+        let mut signals: Signals = logged.clone();
+        match self.law.channel() {
+            Some(Channel::Position) => signals.move_joint(joint, &truth),
+            _ => signals.qd[joint] = truth,
+        }
+        let mut torques = motion.torques_of(&signals);
+        let own = motion.torques_of(logged);
+        for (torque, own) in torques.iter_mut().flatten().zip(own.iter().flatten()) {
+            *torque -= own;
+        }
+        torques
+    }
+}
+
+impl Law for ReadingLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let torque = self.torques(&motion, values);
+        let by = |place: usize| -> PerJoint {
+            let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
+            let size = sizes.fold(values[place].abs(), f64::max);
+            let step = DIFFERENCE * if size > 0.0 { size } else { 1.0 };
+            let at = |sign: f64| {
+                let mut moved = values.to_vec();
+                moved[place] += sign * step;
+                self.torques(&motion, &moved)
+            };
+            let slope = |(a, b): (&f64, &f64)| (a - b) / (2.0 * step);
+            let of_joint =
+                |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(slope).collect::<Vec<f64>>();
+            at(1.0).iter().zip(&at(-1.0)).map(of_joint).collect()
+        };
+        Response {
+            joints: (0..torque.len()).collect(),
+            gradient: (0..values.len()).map(by).collect(),
+            torque,
+        }
+    }
+}

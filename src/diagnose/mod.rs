@@ -1,0 +1,47 @@
+//! Diagnosis: where computed and measured torques disagree, which effect is missing, and what
+//! cannot be told.
+//!
+//! - [`Signals`]: logs, filtered
+//! - [`Nominal`]: what the model says, and how sure it is
+//! - [`Data`]: both as rows
+//! - [`NoiseFloor`], [`Gap`]: how far they are apart, and how far they must be
+//! - [`Candidate`], [`Law`]: what may be missing
+//! - [`Problem`]: fits of effects with the model's own uncertainty eliminated
+//! - [`search()`]: which effects are missing
+
+mod candidate;
+mod catalogue;
+mod data;
+mod diagnosis;
+mod evidence;
+mod family;
+mod floor;
+mod gap;
+mod joint_law;
+mod law;
+mod nominal;
+mod problem;
+mod regime;
+mod rows;
+mod search;
+mod signals;
+mod state;
+
+pub use candidate::{Candidate, starts};
+pub use catalogue::candidates;
+pub use data::{Data, ModelTorques, RowResponse, Stretch};
+pub use diagnosis::{Diagnosis, EffectValue, FoundEffect, Gaps, Request, Verdict, diagnose};
+pub use evidence::{block_costs, by_ranks, paired};
+pub use family::{Alternative, family};
+pub use floor::{NoiseFloor, rms};
+pub use gap::{Gap, share_closed};
+pub use law::{Law, Motion, Response};
+pub use nominal::{Nominal, Uncertain, Uncertainty};
+pub use problem::{Fitted, Found, Problem, View};
+pub use regime::{Part, Regime, Where, where_left};
+pub use rows::PerJoint;
+pub use search::{
+    Outcome, Scored, Screen, SearchOptions, Step, Stop, score, search, share_explained,
+};
+pub use signals::{Filters, Signals};
+pub use state::{Setting, State, Taken, Trial};

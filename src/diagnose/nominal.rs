@@ -1,0 +1,139 @@
+//! What the model says, and how sure it is of it.
+//!
+//! Torques are linear in theta0 (docs/base-parameters.md). The numbers of the model file move
+//! theta0 each within its standard deviation; a unit of z moves one of them by one deviation, so
+//! that z has the prior N(0, 1) in all its entries.
+
+use crate::plants::regression::{ModelParameter, RegressionModel};
+
+/// How far numbers of a model may be off that say nothing of it, as a share of their value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Of bodies.
+    pub body: f64,
+    /// Of friction, rotors and offsets, which are known from measurements alone.
+    pub joint: f64,
+}
+
+impl Default for Uncertainty {
+    fn default() -> Self {
+        Self { body: 0.05, joint: 1.0 }
+    }
+}
+
+/// A number of the model that may be off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertain {
+    /// Its name in the model.
+    pub name: String,
+    /// The value that the model gives.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Whether the model states the deviation.
+    pub is_stated: bool,
+    /// Whether it cannot be negative.
+    pub is_positive: bool,
+}
+
+/// The nominal model: phi of its values and the directions in which they may be off.
+#[derive(Clone, Debug)]
+pub struct Nominal<'a> {
+    /// Base parameters and their columns.
+    pub model: &'a RegressionModel,
+    /// The numbers that may be off, one for each entry of z.
+    pub uncertain: Vec<Uncertain>,
+    /// theta0 of the model's values.
+    theta: Vec<f64>,
+    /// What a unit of each entry of z adds to theta0.
+    directions: Vec<Vec<f64>>,
+}
+
+/// What begins the names of parameters that no rigid body has, but for the rotor's inertia.
+const FRICTION: [&str; 3] = ["fv", "fc", "off"];
+
+impl<'a> Nominal<'a> {
+    /// The nominal model with the deviations that it states, others by `uncertainty`.
+    pub fn new(model: &'a RegressionModel, uncertainty: Uncertainty) -> Self {
+        let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+        let theta = model.standard_values(&values);
+        let (mut uncertain, mut directions) = (Vec::new(), Vec::new());
+        for (place, parameter) in model.parameters.iter().enumerate() {
+            let Some(std) = deviation(model, parameter, uncertainty) else { continue };
+            // theta0 is a polynomial of the numbers: products of mass and distances.
+            let at = |sign: f64| {
+                let mut moved = values.clone();
+                moved[place] += 0.5 * sign * std;
+                model.standard_values(&moved)
+            };
+            let (above, below) = (at(1.0), at(-1.0));
+            directions.push(above.iter().zip(&below).map(|(a, b)| a - b).collect());
+            uncertain.push(Uncertain {
+                name: parameter.name.clone(),
+                value: parameter.value,
+                std,
+                is_stated: parameter.std.is_some(),
+                is_positive: parameter.is_positive,
+            });
+        }
+        Self { model, uncertain, theta, directions }
+    }
+
+    /// Number of entries of z.
+    pub fn len(&self) -> usize {
+        self.uncertain.len()
+    }
+
+    /// Whether the model is certain of everything.
+    pub fn is_empty(&self) -> bool {
+        self.uncertain.is_empty()
+    }
+
+    /// theta0 of z.
+    pub fn theta(&self, z: &[f64]) -> Vec<f64> {
+        let mut theta = self.theta.clone();
+        for (direction, factor) in self.directions.iter().zip(z) {
+            for (sum, entry) in theta.iter_mut().zip(direction) {
+                *sum += factor * entry;
+            }
+        }
+        theta
+    }
+
+    /// phi of z.
+    pub fn phi(&self, z: &[f64]) -> Vec<f64> {
+        self.model.axes_of_standard(&self.theta(z))
+    }
+
+    /// phi of z without friction and offsets: what moves and carries the bodies.
+    pub fn load_phi(&self, z: &[f64]) -> Vec<f64> {
+        let mut theta = self.theta(z);
+        for (value, standard) in theta.iter_mut().zip(&self.model.standard) {
+            if standard.owner.as_ref().is_some_and(|(_, prefix)| FRICTION.contains(prefix)) {
+                *value = 0.0;
+            }
+        }
+        self.model.axes_of_standard(&theta)
+    }
+
+    /// What a unit of each entry of z adds to phi.
+    pub fn directions(&self) -> Vec<Vec<f64>> {
+        self.directions.iter().map(|direction| self.model.axes_of_standard(direction)).collect()
+    }
+}
+
+/// The deviation of a number; none where it is certain: stated as 0, or 0 without a statement.
+fn deviation(
+    model: &RegressionModel,
+    parameter: &ModelParameter,
+    uncertainty: Uncertainty,
+) -> Option<f64> {
+    let is_of_joint = model.standard.iter().any(|standard| {
+        let of_joint = |prefix: &str| FRICTION.contains(&prefix) || prefix == "Ia";
+        standard.name == parameter.name
+            && standard.owner.as_ref().is_some_and(|(_, prefix)| of_joint(prefix))
+    });
+    let share = if is_of_joint { uncertainty.joint } else { uncertainty.body };
+    let std = parameter.std.unwrap_or(share * parameter.value.abs());
+    Some(std).filter(|std| *std > 0.0)
+}

@@ -1,0 +1,376 @@
+//! Weighted least squares with everything that the nominal model is not sure of eliminated.
+//!
+//! For each try of an effect the best z is implied: with [A; I] = Q R the cost of what is left is
+//! |rho|^2 - |Q' rho|^2, so that only the few parameters of effects are searched (variable
+//! projection, Golub and Pereyra 1973).
+
+use super::data::{Data, ModelTorques, RowResponse};
+use super::law::Law;
+use super::signals::Signals;
+use nalgebra::{DMatrix, DVector};
+
+/// A law with the values of its parameters.
+#[derive(Clone)]
+pub struct Fitted<'l> {
+    /// The law.
+    pub law: &'l dyn Law,
+    /// Its parameters.
+    pub values: Vec<f64>,
+}
+
+/// Rows with their weights, and what of them z explains.
+pub struct Problem<'a> {
+    /// The rows.
+    pub data: &'a Data<'a>,
+    /// The motion that laws are evaluated on: that of the data, or a coarse view of it.
+    pub signals: &'a [Signals],
+    /// One over the deviation of each row.
+    pub weights: Vec<f64>,
+    held: Vec<Option<f64>>,
+    q: DMatrix<f64>,
+    r: DMatrix<f64>,
+    residual: DVector<f64>,
+}
+
+/// What was found of effects.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The values of each law's parameters.
+    pub values: Vec<Vec<f64>>,
+    /// Sum of squares of what is left, weighted, with that of z.
+    pub cost: f64,
+    /// Covariance of all values in order, if residuals were independent.
+    pub covariance: DMatrix<f64>,
+    /// The nominal model's own parameters, in their deviations.
+    pub z: Vec<f64>,
+    /// What is left of each row [N m, N].
+    pub residual: Vec<f64>,
+}
+
+/// Most iterations of a search.
+const ITERATIONS: usize = 12;
+
+impl<'a> Problem<'a> {
+    /// A problem with a deviation for each joint. Entries of z that are `held` are not eliminated
+    /// but have their values. Laws that are `given` are taken away, and what they are linear in
+    /// near their values is eliminated too.
+    pub fn new(
+        data: &'a Data<'a>,
+        deviation: &[f64],
+        held: &[Option<f64>],
+        given: &[RowResponse],
+    ) -> Self {
+        let mut weights = vec![0.0; data.rows()];
+        for stretch in &data.stretches {
+            weights[stretch.first..stretch.first + stretch.rows]
+                .fill(1.0 / deviation[stretch.joint]);
+        }
+        let (rows, own) = (data.rows(), data.columns.len());
+        let of_given = |response: &RowResponse| response.gradient.first().map_or(0, Vec::len);
+        let width = own + given.iter().map(of_given).sum::<usize>();
+        let mut stacked = DMatrix::zeros(rows + width, width);
+        let given_z: Vec<f64> = held.iter().map(|z| z.unwrap_or(0.0)).collect();
+        let left = data.residual_of(&given_z);
+        let mut residual =
+            DVector::from_iterator(rows, left.iter().zip(&weights).map(|(r, w)| r * w));
+        for (place, column) in data.columns.iter().enumerate() {
+            stacked[(rows + place, place)] = 1.0;
+            if held[place].is_none() {
+                for (row, (entry, weight)) in column.iter().zip(&weights).enumerate() {
+                    stacked[(row, place)] = entry * weight;
+                }
+            }
+        }
+        let mut begin = own;
+        for response in given {
+            for (place, stretch) in response.stretches.iter().enumerate() {
+                for k in 0..stretch.rows {
+                    let (row, weight) = (stretch.first + k, weights[stretch.first]);
+                    residual[row] -= weight * response.torque[place][k];
+                    for (parameter, gradient) in response.gradient[place].iter().enumerate() {
+                        stacked[(row, begin + parameter)] = weight * gradient[k];
+                    }
+                }
+            }
+            begin += of_given(response);
+        }
+        for place in own..width {
+            // A column of zeros must not make R singular.
+            let length = stacked.column(place).norm();
+            stacked[(rows + place, place)] = 1e-6 * length.max(1e-6);
+        }
+        let (q, r) = if width == 0 {
+            (DMatrix::zeros(rows, 0), DMatrix::zeros(0, 0))
+        } else {
+            let qr = stacked.qr();
+            (qr.q().rows(0, rows).into_owned(), qr.r())
+        };
+        Self { data, signals: &data.signals, weights, held: held.to_vec(), q, r, residual }
+    }
+
+    /// The responses of laws to all logs, in the rows.
+    pub fn responses(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Vec<RowResponse> {
+        let of_law = |fitted: &Fitted<'_>| {
+            let mut all = RowResponse::default();
+            for (log, torques) in torques.iter().enumerate() {
+                let signals = &self.signals[log];
+                let motion = torques.motion(self.data.nominal, signals);
+                let response = fitted.law.response(motion, &fitted.values);
+                all.append(self.data.in_rows(log, signals, &response));
+            }
+            all
+        };
+        laws.iter().map(of_law).collect()
+    }
+
+    /// What laws with these responses leave, and the normal equations of their parameters.
+    pub fn look(&self, responses: &[RowResponse]) -> View {
+        let mut rho = self.residual.clone();
+        let mut columns: Vec<Vec<(usize, Vec<f64>)>> = Vec::new();
+        for response in responses {
+            let parameters = response.gradient.first().map_or(0, Vec::len);
+            let begin = columns.len();
+            columns.resize(begin + parameters, Vec::new());
+            for (place, stretch) in response.stretches.iter().enumerate() {
+                let weight = self.weights[stretch.first];
+                let part = &mut rho.as_mut_slice()[stretch.first..stretch.first + stretch.rows];
+                for (row, torque) in part.iter_mut().zip(&response.torque[place]) {
+                    *row -= weight * torque;
+                }
+                for (parameter, gradient) in response.gradient[place].iter().enumerate() {
+                    let weighted = gradient.iter().map(|entry| weight * entry).collect();
+                    columns[begin + parameter].push((stretch.first, weighted));
+                }
+            }
+        }
+        View::new(&self.q, rho, &columns)
+    }
+
+    /// The same problem with laws evaluated on coarse views.
+    pub fn coarse<'c>(&'c self, signals: &'c [Signals]) -> Problem<'c> {
+        Problem {
+            data: self.data,
+            signals,
+            weights: self.weights.clone(),
+            held: self.held.clone(),
+            q: self.q.clone(),
+            r: self.r.clone(),
+            residual: self.residual.clone(),
+        }
+    }
+
+    /// The part of rows that z cannot explain, weighted.
+    pub fn outside(&self, rows: &[f64]) -> DVector<f64> {
+        let weighted = rows.iter().zip(&self.weights).map(|(row, weight)| row * weight);
+        let weighted = DVector::from_iterator(rows.len(), weighted);
+        let inside = &self.q * self.q.tr_mul(&weighted);
+        weighted - inside
+    }
+
+    /// What is left without any further law.
+    pub fn own_cost(&self) -> f64 {
+        self.residual.norm_squared() - self.q.tr_mul(&self.residual).norm_squared()
+    }
+
+    /// The cost of laws and how it changes, without their values' search.
+    pub fn cost(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> View {
+        self.look(&self.responses(laws, torques))
+    }
+
+    /// Searches the values of laws from those given: Levenberg and Marquardt's steps within bounds.
+    pub fn fit(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
+        let mut laws = laws.to_vec();
+        let mut responses = self.responses(&laws, torques);
+        let mut view = self.look(&responses);
+        let mut damping = 1e-4;
+        for _ in 0..ITERATIONS {
+            if view.gradient.is_empty() {
+                break;
+            }
+            let tried = moved(&laws, view.step(damping, &outward(&laws, &view)).as_slice());
+            let next = self.responses(&tried, torques);
+            let seen = self.look(&next);
+            let gain = view.cost - seen.cost;
+            if gain > 0.0 {
+                let is_done = gain < 1e-5 * view.cost;
+                (laws, responses, view) = (tried, next, seen);
+                damping = (damping * 0.1_f64).max(1e-12);
+                if is_done {
+                    break;
+                }
+            } else if damping > 1e4 {
+                break;
+            } else {
+                damping *= 10.0;
+            }
+        }
+        self.found(&laws, &responses, &view)
+    }
+
+    /// What laws leave with the values that they have.
+    pub fn at(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
+        let responses = self.responses(laws, torques);
+        let view = self.look(&responses);
+        self.found(laws, &responses, &view)
+    }
+
+    fn found(&self, laws: &[Fitted<'_>], responses: &[RowResponse], view: &View) -> Found {
+        let z = self.z(&view.explained);
+        let mut residual = self.data.residual_of(&z);
+        responses.iter().for_each(|response| response.subtract_from(&mut residual));
+        Found {
+            values: laws.iter().map(|fitted| fitted.values.clone()).collect(),
+            cost: view.cost,
+            covariance: view.covariance(),
+            z,
+            residual,
+        }
+    }
+
+    /// z of Q' rho.
+    fn z(&self, explained: &DVector<f64>) -> Vec<f64> {
+        let own = self.data.columns.len();
+        let solved = self.r.solve_upper_triangular(explained);
+        let mut z = solved.map_or_else(|| vec![0.0; own], |z| z.as_slice()[..own].to_vec());
+        for (z, held) in z.iter_mut().zip(&self.held) {
+            *z = held.unwrap_or(*z);
+        }
+        z
+    }
+}
+
+/// What is left of the rows, and the normal equations of the laws' parameters.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Sum of squares of what is left.
+    pub cost: f64,
+    /// Half the negative derivative of the cost by each parameter.
+    pub gradient: DVector<f64>,
+    /// Half its second derivative, of Gauss and Newton.
+    pub normal: DMatrix<f64>,
+    /// Squared length of each column before z is eliminated.
+    pub lengths: Vec<f64>,
+    explained: DVector<f64>,
+}
+
+impl View {
+    fn new(q: &DMatrix<f64>, rho: DVector<f64>, columns: &[Vec<(usize, Vec<f64>)>]) -> Self {
+        let explained = q.tr_mul(&rho);
+        let count = columns.len();
+        let mut inside = DMatrix::zeros(q.ncols(), count);
+        let mut gradient = DVector::zeros(count);
+        for (place, column) in columns.iter().enumerate() {
+            for (first, entries) in column {
+                let part = q.rows(*first, entries.len());
+                let entries = DVector::from_column_slice(entries);
+                let mut sum = inside.column_mut(place);
+                sum += part.tr_mul(&entries);
+                gradient[place] += entries.dot(&rho.rows(*first, entries.len()));
+            }
+        }
+        gradient -= inside.tr_mul(&explained);
+        let mut normal = -inside.tr_mul(&inside);
+        let mut lengths = vec![0.0; count];
+        for a in 0..count {
+            for b in a..count {
+                let mut sum = 0.0;
+                for (first, entries) in &columns[a] {
+                    let same = columns[b].iter().filter(|(other, _)| other == first);
+                    let dot = |other: &Vec<f64>| -> f64 {
+                        entries.iter().zip(other).map(|(x, y)| x * y).sum()
+                    };
+                    sum += same.map(|(_, other)| dot(other)).sum::<f64>();
+                }
+                if a == b {
+                    lengths[a] = sum;
+                }
+                normal[(a, b)] += sum;
+                normal[(b, a)] = normal[(a, b)];
+            }
+        }
+        let cost = rho.norm_squared() - explained.norm_squared();
+        Self { cost, gradient, normal, lengths, explained }
+    }
+
+    /// The damped step; parameters in `held` stay.
+    fn step(&self, damping: f64, held: &[bool]) -> DVector<f64> {
+        let count = self.gradient.len();
+        let mut normal = self.normal.clone();
+        let mut gradient = self.gradient.clone();
+        for place in 0..count {
+            let own = normal[(place, place)].max(1e-9 * self.lengths[place]);
+            normal[(place, place)] = own * (1.0 + damping);
+            // A column of zeros, or one that z explains whole, says nothing.
+            if held[place] || own <= 1e-12 * self.lengths[place] || own == 0.0 {
+                normal.row_mut(place).fill(0.0);
+                normal.column_mut(place).fill(0.0);
+                normal[(place, place)] = 1.0;
+                gradient[place] = 0.0;
+            }
+        }
+        scaled_solve(&normal, &gradient).unwrap_or_else(|| DVector::zeros(count))
+    }
+
+    /// How much the cost would fall with the best linear step.
+    pub fn gain(&self) -> f64 {
+        let step = self.step(1e-9, &vec![false; self.gradient.len()]);
+        self.gradient.dot(&step)
+    }
+
+    fn covariance(&self) -> DMatrix<f64> {
+        let count = self.gradient.len();
+        let scale: Vec<f64> =
+            (0..count).map(|k| self.normal[(k, k)].max(1e-300).sqrt().recip()).collect();
+        let scaled = DMatrix::from_fn(count, count, |a, b| {
+            self.normal[(a, b)] * scale[a] * scale[b] + if a == b { 1e-12 } else { 0.0 }
+        });
+        let inverse = scaled.try_inverse();
+        let inverse = inverse.unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY));
+        DMatrix::from_fn(count, count, |a, b| inverse[(a, b)] * scale[a] * scale[b])
+    }
+}
+
+/// Solves positive definite equations whose unknowns have different units.
+fn scaled_solve(normal: &DMatrix<f64>, gradient: &DVector<f64>) -> Option<DVector<f64>> {
+    let count = gradient.len();
+    let scale: Vec<f64> = (0..count).map(|k| normal[(k, k)].max(1e-300).sqrt().recip()).collect();
+    let scaled = DMatrix::from_fn(count, count, |a, b| normal[(a, b)] * scale[a] * scale[b]);
+    let right = DVector::from_fn(count, |k, _| gradient[k] * scale[k]);
+    let solved = scaled.clone().cholesky().map(|factor| factor.solve(&right));
+    let solved = solved.or_else(|| scaled.svd(true, true).solve(&right, 1e-10).ok())?;
+    let step = DVector::from_fn(count, |k, _| solved[k] * scale[k]);
+    step.iter().all(|entry| entry.is_finite()).then_some(step)
+}
+
+/// The laws after a step, within their bounds.
+fn moved<'l>(laws: &[Fitted<'l>], step: &[f64]) -> Vec<Fitted<'l>> {
+    let mut steps = step.iter();
+    let mut laws = laws.to_vec();
+    for fitted in &mut laws {
+        let parameters = fitted.law.parameters();
+        for (value, parameter) in fitted.values.iter_mut().zip(parameters) {
+            let [low, high] = parameter.bounds;
+            let mut step = *steps.next().unwrap_or(&0.0);
+            if !parameter.linear {
+                // What a law is not linear in is not moved further than it is worth trusting.
+                let most = (0.5 * value.abs()).max(1e-3 * (high - low).min(1e3));
+                step = step.clamp(-most, most);
+            }
+            *value = (*value + step).clamp(low, high);
+        }
+    }
+    laws
+}
+
+/// Parameters at a bound that a step would leave.
+fn outward(laws: &[Fitted<'_>], view: &View) -> Vec<bool> {
+    let mut held = Vec::new();
+    for fitted in laws {
+        for (value, parameter) in fitted.values.iter().zip(fitted.law.parameters()) {
+            let slope = view.gradient[held.len()];
+            let [low, high] = parameter.bounds;
+            held.push((*value <= low && slope < 0.0) || (*value >= high && slope > 0.0));
+        }
+    }
+    held
+}

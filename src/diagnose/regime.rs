@@ -1,0 +1,245 @@
+//! Where torques disagree: in which joint, and in which of its states of motion.
+
+use super::data::{Data, ModelTorques, Stretch};
+use super::floor::NoiseFloor;
+use std::fmt;
+
+/// A state of motion of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Regime {
+    /// It moves towards larger positions.
+    Forward,
+    /// It moves towards smaller positions.
+    Backward,
+    /// Within this time of a reversal \[s\].
+    NearReversal(f64),
+    /// Slower than a tenth of its highest speed.
+    Slow,
+    /// Faster than three fifths of it.
+    Fast,
+    /// At more than three fifths of its largest acceleration.
+    Accelerating,
+    /// At more than three fifths of the largest torque of its rigid bodies.
+    Loaded,
+    /// In the highest sixth of its positions.
+    UpperEnd,
+    /// In the lowest sixth of its positions.
+    LowerEnd,
+    /// In the first third of the log.
+    Early,
+    /// In the last third of the log.
+    Late,
+    /// Its torque rests at an extreme.
+    Saturated,
+}
+
+impl fmt::Display for Regime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Forward => write!(f, "moving forward"),
+            Self::Backward => write!(f, "moving backward"),
+            Self::NearReversal(within) => write!(f, "within {:.0} ms of reversals", 1e3 * within),
+            Self::Slow => write!(f, "below a tenth of its highest speed"),
+            Self::Fast => write!(f, "above three fifths of its highest speed"),
+            Self::Accelerating => write!(f, "above three fifths of its largest acceleration"),
+            Self::Loaded => write!(f, "above three fifths of its largest load"),
+            Self::UpperEnd => write!(f, "in the highest sixth of its positions"),
+            Self::LowerEnd => write!(f, "in the lowest sixth of its positions"),
+            Self::Early => write!(f, "in the first third of the log"),
+            Self::Late => write!(f, "in the last third of the log"),
+            Self::Saturated => write!(f, "while its torque rests at an extreme"),
+        }
+    }
+}
+
+/// A regime's part of what a joint leaves unexplained.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// The regime.
+    pub regime: Regime,
+    /// Its share of the squares that are left of the joint.
+    pub share: f64,
+    /// Its share of the time.
+    pub time: f64,
+}
+
+impl Part {
+    /// The share beyond that of its time.
+    pub fn excess(&self) -> f64 {
+        self.share - self.time
+    }
+}
+
+/// What one joint leaves unexplained.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Where {
+    /// The joint's name.
+    pub joint: String,
+    /// Its share of what all joints leave beyond the noise, in squares of relative torques.
+    pub share: f64,
+    /// Root of mean square of what is left, over that of the noise.
+    pub over_noise: f64,
+    /// Every regime that the joint was in, by what it has beyond its share of time.
+    pub parts: Vec<Part>,
+    /// The second of the log in which most is left: from, to, and the share of squares in it.
+    pub window_s: ([f64; 2], f64),
+}
+
+impl Where {
+    /// One sentence: joint, regime, share.
+    pub fn sentence(&self) -> String {
+        let share = 100.0 * self.share;
+        match self.parts.first().filter(|part| part.excess() > 0.15) {
+            Some(Part { regime, share: own, time }) => format!(
+                "{}: {share:.0} % of the unexplained torque; {regime}, in {:.0} % of the time, \
+                 {:.0} % of that",
+                self.joint,
+                100.0 * time,
+                100.0 * own
+            ),
+            None => format!(
+                "{}: {share:.0} % of the unexplained torque, in all states of its motion",
+                self.joint
+            ),
+        }
+    }
+}
+
+/// What each joint leaves, the one that leaves most first. `filter_s` is the time that the filter
+/// of torques spreads an event over.
+pub fn where_left(
+    data: &Data<'_>,
+    residual: &[f64],
+    torques: &[ModelTorques],
+    floors: &[NoiseFloor],
+    filter_s: f64,
+) -> Vec<Where> {
+    let joints = &data.nominal.model.joints;
+    let mut found = Vec::new();
+    for (joint, described) in joints.iter().enumerate() {
+        let own: Vec<Stretch> =
+            data.stretches.iter().filter(|stretch| stretch.joint == joint).copied().collect();
+        if own.is_empty() {
+            continue;
+        }
+        let all = |stretch: &Stretch| stretch.first..stretch.first + stretch.rows;
+        let squares = |values: &[f64]| -> f64 {
+            own.iter().flat_map(|s| &values[all(s)]).map(|value| value * value).sum()
+        };
+        let (left, torque) = (squares(residual), squares(&data.torque));
+        let noise: f64 =
+            own.iter().map(|s| s.rows as f64 * floors[s.log].deviation[joint].powi(2)).sum();
+        let mut sums: Vec<(Regime, f64, usize)> = Vec::new();
+        for stretch in &own {
+            let flags = regimes(data, &torques[stretch.log], stretch, filter_s);
+            for (regime, is_in) in flags {
+                let part = is_in.iter().zip(&residual[all(stretch)]).filter(|(is_in, _)| **is_in);
+                let (square, count) =
+                    part.fold((0.0, 0), |(s, n), (_, value)| (s + value * value, n + 1));
+                match sums.iter_mut().find(|(known, ..)| *known == regime) {
+                    Some((_, sum, number)) => (*sum, *number) = (*sum + square, *number + count),
+                    None => sums.push((regime, square, count)),
+                }
+            }
+        }
+        let rows: usize = own.iter().map(|stretch| stretch.rows).sum();
+        let mut parts: Vec<Part> = sums
+            .into_iter()
+            .filter(|(_, _, count)| *count > 0)
+            .map(|(regime, square, count)| Part {
+                regime,
+                share: square / left.max(f64::MIN_POSITIVE),
+                time: count as f64 / rows as f64,
+            })
+            .collect();
+        parts.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
+        found.push(Where {
+            joint: described.name.clone(),
+            share: (left - noise).max(0.0) / torque.max(f64::MIN_POSITIVE),
+            over_noise: (left / noise.max(f64::MIN_POSITIVE)).sqrt(),
+            parts,
+            window_s: window(data, residual, &own),
+        });
+    }
+    let whole: f64 = found.iter().map(|one| one.share).sum();
+    for one in &mut found {
+        one.share = if whole > 0.0 { one.share / whole } else { 0.0 };
+    }
+    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    found
+}
+
+/// For each regime whether the rows of a stretch are in it.
+fn regimes(
+    data: &Data<'_>,
+    torques: &ModelTorques,
+    stretch: &Stretch,
+    filter_s: f64,
+) -> Vec<(Regime, Vec<bool>)> {
+    let (signals, joint) = (&data.signals[stretch.log], stretch.joint);
+    let [q, qd, qdd] =
+        [&signals.q, &signals.qd, &signals.qdd].map(|all| signals.at_rows(&all[joint]));
+    let load = signals.at_rows(&torques.load[joint]);
+    let torque = &data.torque[stretch.first..stretch.first + stretch.rows];
+    let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let (low, high) = q.iter().fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    let sixth = (high - low) / 6.0;
+    let [fastest, hardest, heaviest] = [&qd, &qdd, &load].map(|values| most(values));
+    let within_s = filter_s.max(0.02);
+    let reach = (within_s / signals.row_step_s()).ceil() as usize;
+    let reversals: Vec<usize> =
+        (1..qd.len()).filter(|&k| (qd[k - 1] < 0.0) != (qd[k] < 0.0)).collect();
+    let near = |k: usize| {
+        let after = reversals.partition_point(|&at| at + reach < k);
+        reversals.get(after).is_some_and(|&at| at <= k + reach)
+    };
+    let count = qd.len();
+    let extreme = most(torque);
+    let rests = |k: usize| {
+        let beside = [k.saturating_sub(1), (k + 1).min(count - 1)];
+        torque[k].abs() > 0.97 * extreme
+            && beside.iter().all(|&at| (torque[at] - torque[k]).abs() < 0.01 * extreme)
+    };
+    let of = |is_in: &dyn Fn(usize) -> bool| (0..count).map(is_in).collect::<Vec<bool>>();
+    vec![
+        (Regime::Forward, of(&|k| qd[k] > 0.0)),
+        (Regime::Backward, of(&|k| qd[k] < 0.0)),
+        (Regime::NearReversal(within_s), of(&near)),
+        (Regime::Slow, of(&|k| qd[k].abs() < 0.1 * fastest)),
+        (Regime::Fast, of(&|k| qd[k].abs() > 0.6 * fastest)),
+        (Regime::Accelerating, of(&|k| qdd[k].abs() > 0.6 * hardest)),
+        (Regime::Loaded, of(&|k| load[k].abs() > 0.6 * heaviest)),
+        (Regime::UpperEnd, of(&|k| q[k] > high - sixth)),
+        (Regime::LowerEnd, of(&|k| q[k] < low + sixth)),
+        (Regime::Early, of(&|k| 3 * k < count)),
+        (Regime::Late, of(&|k| 3 * k >= 2 * count)),
+        (Regime::Saturated, of(&rests)),
+    ]
+}
+
+/// The second in which most is left.
+fn window(data: &Data<'_>, residual: &[f64], own: &[Stretch]) -> ([f64; 2], f64) {
+    let whole: f64 = own
+        .iter()
+        .flat_map(|s| &residual[s.first..s.first + s.rows])
+        .map(|value| value * value)
+        .sum();
+    let mut best = ([0.0; 2], 0.0);
+    for stretch in own {
+        let signals = &data.signals[stretch.log];
+        let times = signals.at_rows(&signals.t);
+        let length = ((1.0 / signals.row_step_s()) as usize).clamp(1, stretch.rows);
+        let part = &residual[stretch.first..stretch.first + stretch.rows];
+        let mut sum: f64 = part[..length].iter().map(|value| value * value).sum();
+        for end in length..=part.len() {
+            let share = sum / whole.max(f64::MIN_POSITIVE);
+            if share > best.1 {
+                best = ([times[end - length], times[end - 1]], share);
+            }
+            if end < part.len() {
+                sum += part[end].powi(2) - part[end - length].powi(2);
+            }
+        }
+    }
+    best
+}

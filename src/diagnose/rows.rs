@@ -1,0 +1,107 @@
+//! The rows that a diagnosis regresses: for each joint and log what the torques are linear in, and
+//! what was measured.
+
+use super::nominal::Nominal;
+use super::signals::Signals;
+use crate::plants::regression::{RegressionEvaluator, RegressionRows};
+
+/// Samples that are evaluated at once.
+const BLOCK: usize = 512;
+
+/// A signal of every joint at the samples of a log's motion.
+pub type PerJoint = Vec<Vec<f64>>;
+
+/// The columns of one log, filtered, in the rows.
+#[derive(Clone, Debug)]
+pub(super) struct LogRows {
+    /// For each joint its columns of phi, as its pattern lists them.
+    columns: Vec<Vec<Vec<f64>>>,
+    /// For each joint the torque that was measured less what is known; none where none was.
+    pub(super) target: Vec<Option<Vec<f64>>>,
+}
+
+impl LogRows {
+    /// The rows of a log.
+    pub(super) fn new(nominal: &Nominal<'_>, signals: &Signals) -> Self {
+        let model = nominal.model;
+        let joints = model.joints.len();
+        let widths: Vec<usize> = model.pattern().iter().map(Vec::len).collect();
+        let mut columns: Vec<Vec<Vec<f64>>> =
+            widths.iter().map(|&width| vec![Vec::new(); width]).collect();
+        let mut known: Vec<Option<Vec<f64>>> = vec![None; joints];
+        for_each_block(&mut model.evaluator(), signals, |rows| {
+            for joint in 0..joints {
+                for (place, column) in columns[joint].iter_mut().enumerate() {
+                    column.extend_from_slice(rows.column(joint, place));
+                }
+                if let Some(part) = rows.known(joint) {
+                    known[joint].get_or_insert_default().extend_from_slice(part);
+                }
+            }
+        });
+        for column in columns.iter_mut().flatten() {
+            *column = signals.rows_of(column);
+        }
+        let target = signals.torque.iter().zip(known).map(|(torque, known)| {
+            let mut target = torque.clone()?;
+            if let Some(known) = known {
+                let known = signals.rows_of(&known);
+                target.iter_mut().zip(known).for_each(|(torque, known)| *torque -= known);
+            }
+            Some(target)
+        });
+        Self { columns, target: target.collect() }
+    }
+
+    /// The torque of a joint that phi adds, in the rows.
+    pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, phi: &[f64]) -> Vec<f64> {
+        let samples = self.columns[joint].first().map_or(0, Vec::len);
+        let mut torque = vec![0.0; samples];
+        for (column, &place) in self.columns[joint].iter().zip(&nominal.model.pattern()[joint]) {
+            let factor = phi[place];
+            if factor != 0.0 {
+                torque.iter_mut().zip(column).for_each(|(sum, entry)| *sum += factor * entry);
+            }
+        }
+        torque
+    }
+}
+
+/// The torque of every joint by phi and by what is known, at the samples of the motion.
+pub(super) fn torques(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
+    let joints = nominal.model.joints.len();
+    let of_joint: Vec<Vec<f64>> = nominal
+        .model
+        .pattern()
+        .iter()
+        .map(|places| places.iter().map(|&place| phi[place]).collect())
+        .collect();
+    let mut torques = vec![Vec::with_capacity(signals.samples()); joints];
+    let mut part = Vec::new();
+    for_each_block(&mut nominal.model.evaluator(), signals, |rows| {
+        part.resize(rows.samples(), 0.0);
+        for joint in 0..joints {
+            rows.torque(joint, &of_joint[joint], &mut part);
+            torques[joint].extend_from_slice(&part);
+        }
+    });
+    torques
+}
+
+fn for_each_block(
+    evaluator: &mut RegressionEvaluator,
+    signals: &Signals,
+    mut visit: impl FnMut(&RegressionRows),
+) {
+    let mut rows = RegressionRows::default();
+    for first in (0..signals.samples()).step_by(BLOCK) {
+        let range = first..(first + BLOCK).min(signals.samples());
+        let motion: Vec<&[f64]> = [&signals.q, &signals.qd, &signals.qdd]
+            .into_iter()
+            .flatten()
+            .map(|column| &column[range.clone()])
+            .collect();
+        evaluator.evaluate(&motion, &mut rows).expect("signals have a column for each joint");
+        visit(&rows);
+    }
+}

@@ -1,0 +1,342 @@
+//! Which effects: forward, with swaps and removals, judged by logs that were not fitted.
+
+use super::candidate::{Candidate, starts};
+use super::data::RowResponse;
+use super::evidence::{by_ranks, paired};
+use super::gap::{Gap, share_closed};
+use super::problem::{Fitted, Problem};
+use super::state::{Setting, State, Taken, Trial};
+
+/// What a search is allowed, and asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchOptions {
+    /// Most effects that are added.
+    pub most_effects: usize,
+    /// Standard errors by which an effect must lower the squares that are left of held-out logs.
+    pub significance: f64,
+    /// The share of what can still be explained that an effect must close, in squares.
+    pub least_share: f64,
+    /// Candidates that are fitted in each round, of all that are scored.
+    pub refined: usize,
+    /// What the turns of decoys begin with.
+    pub seed: u64,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self { most_effects: 6, significance: 3.0, least_share: 0.1, refined: 10, seed: 1 }
+    }
+}
+
+/// A candidate with what it would explain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scored {
+    /// Its number.
+    pub candidate: usize,
+    /// By how much the weighted squares that are left would fall, to first order.
+    pub gain: f64,
+    /// The values where that is most.
+    pub values: Vec<f64>,
+}
+
+/// One step of a search, for a report.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// The candidate that explained most.
+    pub added: usize,
+    /// Whether it was added: the last one of a search may not have been.
+    pub is_taken: bool,
+    /// Gain of the best candidate and of the best decoy.
+    pub gain: f64,
+    /// That of the best decoy.
+    pub decoy: f64,
+    /// Standard errors by which held-out logs are better.
+    pub significance: f64,
+    /// The share of what can be explained that it closes.
+    pub share: f64,
+    /// The gaps after the step: of the logs that are fitted, and held out.
+    pub gaps: [f64; 2],
+    /// The candidates that came next, with the held-out gap that each would have left.
+    pub runners_up: Vec<(usize, f64)>,
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// What is left is noise.
+    Floor,
+    /// No candidate explains more than chance, or enough.
+    NothingLeft,
+    /// As many effects as are allowed were found.
+    MostEffects,
+}
+
+/// What a search found.
+pub struct Outcome {
+    /// The nominal model, re-estimated.
+    pub before: State,
+    /// The model with what was found.
+    pub after: State,
+    /// What the candidates do to the training logs.
+    pub screen: Screen,
+    /// How it came about.
+    pub steps: Vec<Step>,
+    /// Why it ended.
+    pub stop: Stop,
+}
+
+/// Rows that count as one: what is left is correlated over the time of the filter.
+const ROWS_PER_SAMPLE: f64 = 4.0;
+
+/// Searches which candidates are missing. `watch` hears of every step.
+pub fn search(
+    setting: &Setting<'_>,
+    options: &SearchOptions,
+    watch: &mut dyn FnMut(&State),
+) -> Outcome {
+    let before = setting.state(&[]);
+    let screen = Screen::new(setting, &before);
+    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
+    let mut state = before.clone();
+    let (mut steps, mut idle) = (Vec::new(), Vec::new());
+    let stop = loop {
+        watch(&state);
+        if state.taken.len() >= options.most_effects || idle.len() > options.refined {
+            break Stop::MostEffects;
+        }
+        if state.held_out_gap.all <= floor {
+            break Stop::Floor;
+        }
+        let Some((next, step)) =
+            forward((setting, &screen), options, (&state, &idle), (before.held_out_gap.all, floor))
+        else {
+            break Stop::NothingLeft;
+        };
+        if !step.is_taken {
+            steps.push(step);
+            break Stop::NothingLeft;
+        }
+        let swapped = swap((setting, &screen), options, setting.state(&next.taken));
+        let next = without_idle(setting, swapped);
+        // An effect that the model's own uncertainty makes idle is not tried again.
+        if next.candidates() == state.candidates() {
+            idle.push(step.added);
+            continue;
+        }
+        idle.clear();
+        state = next;
+        steps.push(Step { gaps: [state.gap.all, state.held_out_gap.all], ..step });
+    };
+    Outcome { before, after: state, screen, steps, stop }
+}
+
+/// A share of what can be explained that is found at two standard errors.
+const LARGE: f64 = 0.2;
+
+/// The effect that explains most of what is left, if it is more than chance.
+fn forward(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    (state, idle): (&State, &[usize]),
+    (before, floor): (f64, f64),
+) -> Option<(Trial, Step)> {
+    let mut scored = score(setting, screen, state, None);
+    scored.retain(|one| !idle.contains(&one.candidate));
+    let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
+    let decoy = score(setting, screen, state, Some(turn)).first().map_or(0.0, |best| best.gain);
+    let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+    let trials = refine(setting, options.refined, state, (&problem, &scored));
+    let best = best(setting, &trials)?;
+    let idle = setting.trial(&problem, state, &state.taken);
+    let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
+    let significance = paired(worse, better).max(by_ranks(worse, better));
+    let added = best.taken.last().expect("an effect was added").candidate;
+    let gain = idle.found.cost - best.found.cost;
+    let after = Gap::new(setting.held_out, &best.held_out_residual).all;
+    let energy = |gap: f64| gap * gap;
+    let now = energy(state.held_out_gap.all);
+    let closed = now - energy(after);
+    let share = closed / (energy(before) - energy(floor));
+    let of_rest = closed / (now - energy(floor));
+    let mut runners_up: Vec<(usize, f64)> = trials
+        .iter()
+        .filter_map(|trial| {
+            let last = trial.taken.last()?.candidate;
+            (last != added)
+                .then(|| (last, Gap::new(setting.held_out, &trial.held_out_residual).all))
+        })
+        .collect();
+    runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
+    // Blocks in which another missing effect weighs scatter much: a large share needs less.
+    let asked = if share > LARGE { 2.0 } else { options.significance };
+    let is_more = gain > decoy && significance > asked;
+    let is_taken = is_more && of_rest >= options.least_share;
+    let gaps = [Gap::new(setting.train, &best.found.residual).all, after];
+    let step = Step { added, is_taken, gain, decoy, significance, share, gaps, runners_up };
+    Some((best.clone(), step))
+}
+
+/// All candidates that a state has not, by what they would explain; as decoys, if they are turned.
+pub fn score(
+    setting: &Setting<'_>,
+    screen: &Screen,
+    state: &State,
+    turn: Option<f64>,
+) -> Vec<Scored> {
+    let given = {
+        let plain = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        plain.responses(&setting.fitted(&state.taken), &state.torques[0])
+    };
+    let problem = Problem::new(setting.train, &state.deviation, &state.held, &given);
+    let own_cost = problem.own_cost();
+    let best_of = |(candidate, starts): (usize, &Vec<(Vec<f64>, RowResponse)>)| {
+        if state.taken.iter().any(|taken| taken.candidate == candidate) {
+            return None;
+        }
+        let of_start = |(values, response): &(Vec<f64>, RowResponse)| {
+            let turned = turn.map(|turn| response.turned(turn));
+            let view = problem.look(std::slice::from_ref(turned.as_ref().unwrap_or(response)));
+            Scored { candidate, gain: own_cost - view.cost + view.gain(), values: values.clone() }
+        };
+        let all = starts.iter().map(of_start).filter(|one| one.gain.is_finite());
+        all.max_by(|a, b| a.gain.total_cmp(&b.gain))
+    };
+    let mut scored: Vec<Scored> = screen.responses.iter().enumerate().filter_map(best_of).collect();
+    scored.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    scored
+}
+
+/// What every candidate does to the training logs from where its search begins.
+pub struct Screen {
+    /// For each candidate its starts with their responses in the rows.
+    responses: Vec<Vec<(Vec<f64>, RowResponse)>>,
+}
+
+impl Screen {
+    /// Evaluates all candidates on the motion, or coarse views of it.
+    pub fn new(setting: &Setting<'_>, state: &State) -> Self {
+        let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let (problem, torques) = match &setting.coarse {
+            Some(coarse) => (problem.coarse(coarse), &state.coarse),
+            None => (problem.coarse(&setting.train.signals), &state.torques[0]),
+        };
+        let of = |candidate: &Candidate| -> Vec<(Vec<f64>, RowResponse)> {
+            let law = candidate.law.as_ref();
+            let of_start = |values: Vec<f64>| {
+                let fitted = [Fitted { law, values: values.clone() }];
+                (values, problem.responses(&fitted, torques).remove(0))
+            };
+            starts(law.parameters()).into_iter().map(of_start).collect()
+        };
+        Self { responses: setting.candidates.iter().map(of).collect() }
+    }
+}
+
+/// How many are fitted to the whole motion, of all that are fitted roughly.
+const FINE: usize = 3;
+
+/// The best scored candidates, each fitted together with what a state has; best first.
+pub(super) fn refine(
+    setting: &Setting<'_>,
+    count: usize,
+    state: &State,
+    (problem, scored): (&Problem<'_>, &[Scored]),
+) -> Vec<Trial> {
+    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
+    let rough = |one: &Scored| {
+        let mut taken = state.taken.clone();
+        taken.push(Taken { candidate: one.candidate, values: one.values.clone() });
+        let taken = setting.roughly(problem, state, &taken);
+        // Judged on the whole motion, with the values as they are.
+        setting.judged(problem, state, &taken)
+    };
+    let candidates = scored.iter().take(count).filter(|one| one.gain > 0.0);
+    let mut trials: Vec<Trial> = candidates.map(rough).collect();
+    trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
+    for trial in trials.iter_mut().take(FINE) {
+        *trial = setting.trial(problem, state, &trial.taken);
+    }
+    trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
+    trials
+}
+
+/// By which share a held-out gap may be larger for a law with fewer parameters.
+pub(super) const ALIKE: f64 = 0.03;
+
+/// The trial that explains most, or nearly that with fewer parameters.
+fn best<'t>(setting: &Setting<'_>, trials: &'t [Trial]) -> Option<&'t Trial> {
+    let gap = |trial: &Trial| Gap::new(setting.held_out, &trial.held_out_residual).all;
+    let gaps: Vec<f64> = trials.iter().map(gap).collect();
+    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let alike = trials.iter().zip(&gaps).filter(|(_, gap)| **gap <= (1.0 + ALIKE) * least);
+    let by_size = |(trial, gap): &(&Trial, &f64)| (trial.parameters(), **gap);
+    alike
+        .min_by(|a, b| {
+            let (a, b) = (by_size(a), by_size(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+        .map(|(trial, _)| trial)
+}
+
+/// Exchanges effects for candidates that explain more in their place, until none does.
+fn swap(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    mut state: State,
+) -> State {
+    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
+    for place in 0..state.taken.len().saturating_sub(1) {
+        let mut others = state.taken.clone();
+        let own = others.remove(place);
+        let rest = setting.state(&others);
+        let scored = score(setting, screen, &rest, None);
+        let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let now = setting.trial(&problem, &state, &state.taken);
+        let trials = refine(setting, options.refined, &rest, (&problem, &scored));
+        let Some(best) = best(setting, &trials) else { continue };
+        let is_other = best.taken.last().is_some_and(|last| last.candidate != own.candidate);
+        let is_better = paired(&concat(&now), &concat(best)) > options.significance;
+        if is_other && is_better && best.score(samples) < now.score(samples) {
+            state = setting.state(&best.taken.clone());
+        }
+    }
+    state
+}
+
+fn concat(trial: &Trial) -> Vec<f64> {
+    trial.blocks.concat()
+}
+
+/// Takes effects out that the others have made idle.
+fn without_idle(setting: &Setting<'_>, mut state: State) -> State {
+    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
+    let mut place = 0;
+    while place < state.taken.len() && state.taken.len() > 1 {
+        let mut others = state.taken.clone();
+        others.remove(place);
+        let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let now = setting.trial(&problem, &state, &state.taken);
+        let less = setting.trial(&problem, &state, &others);
+        // Rows are weighted by what is left of them: squares count as those of unit noise.
+        let worth = (less.cost() - now.cost()) / ROWS_PER_SAMPLE;
+        let parameters = (now.parameters() - less.parameters()) as f64;
+        if worth <= parameters * samples.ln() {
+            state = setting.state(&others);
+        } else {
+            place += 1;
+        }
+    }
+    state
+}
+
+/// A number from 0 to 1 of a seed and a round.
+fn unit(seed: u64, round: usize) -> f64 {
+    let mut random = crate::simulate::Random::new(seed);
+    (0..=round).map(|_| random.uniform()).last().unwrap_or(0.5)
+}
+
+/// The share of what can be explained that a search explained, on the logs that were held out.
+pub fn share_explained(setting: &Setting<'_>, outcome: &Outcome) -> Option<f64> {
+    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
+    share_closed(outcome.before.held_out_gap.all, outcome.after.held_out_gap.all, floor)
+}

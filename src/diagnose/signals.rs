@@ -1,0 +1,309 @@
+//! Logs as the diagnosis looks at them: motion at the full rate, torques through one filter.
+//!
+//! Positions pass a wide zero-phase filter, so that they can be differentiated. Torques pass a
+//! narrower one, and so does everything that is compared with them: columns of the regressor,
+//! torques of effects. A law with a step at a reversal then has the same edge on both sides of the
+//! equation, which is what tells a step from a slope.
+
+use crate::identify::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
+use crate::identify::log::{JointSignals, MeasuredLog};
+use crate::simulate::Random;
+use std::ops::Range;
+
+/// The filters of a diagnosis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filters {
+    /// Cutoff of the filter of positions \[Hz\].
+    pub motion_hz: f64,
+    /// Cutoff of the filter of torques and of all that is compared with them \[Hz\].
+    pub torque_hz: f64,
+}
+
+impl Filters {
+    /// The filters of logs of a step whose positions may vary up to a share of the rate of
+    /// sampling. Torques have half of it, which keeps what the filter of positions takes away out
+    /// of the comparison.
+    pub fn new(step_s: f64, share: f64) -> Self {
+        Self { motion_hz: share / step_s, torque_hz: 0.5 * share / step_s }
+    }
+}
+
+/// Order of one pass of both filters.
+const ORDER: usize = 4;
+
+/// Motion and torque of one log.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    /// The name of the log.
+    pub file: String,
+    /// Cutoff of the filter of torques \[Hz\].
+    pub torque_hz: f64,
+    /// Distance of samples of the log \[s\].
+    pub log_step_s: f64,
+    /// Distance of samples of the motion, which has more of them \[s\].
+    pub step_s: f64,
+    /// The time of each sample of the motion \[s\].
+    pub t: Vec<f64>,
+    /// Positions, filtered [rad, m], joint by joint.
+    pub q: Vec<Vec<f64>>,
+    /// Rates [rad/s, m/s].
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations [rad/s^2, m/s^2].
+    pub qdd: Vec<Vec<f64>>,
+    /// Torques of the rows, through the filter [N m, N]; none where none was measured.
+    pub torque: Vec<Option<Vec<f64>>>,
+    /// What the steps of the encoders are of the positions after their filter, drawn at random
+    /// [rad, m]: joint by joint, as long as the positions.
+    pub position_noise: Vec<Vec<f64>>,
+    /// Torques as they were measured, at the samples of the log.
+    pub measured: Vec<Option<Vec<f64>>>,
+    /// Where the rows are among the samples of the motion.
+    rows: Rows,
+    filter: Butterworth,
+}
+
+/// Where rows and cells are: a cell is the time of a sample of the log, a row one in so many.
+#[derive(Clone, Debug)]
+struct Rows {
+    range: Range<usize>,
+    stride: usize,
+    /// Samples of the motion in each cell.
+    within: usize,
+}
+
+/// Samples of the motion to a sample of the log. A step of friction is not at a sample, and the
+/// mean of a cell knows where it is.
+const WITHIN: usize = 3;
+
+impl Signals {
+    /// Filters a log.
+    pub fn new(log: MeasuredLog, filters: Filters) -> Result<Self, ConditionError> {
+        let MeasuredLog { file, start_s, step_s, joints, .. } = log;
+        let filter_of = |cutoff_hz: f64| {
+            let nyquist_hz = 0.5 / step_s;
+            let found = Butterworth::new(ORDER, cutoff_hz, step_s);
+            found.ok_or(ConditionError::Cutoff { cutoff_hz, nyquist_hz })
+        };
+        let (wide, filter) = (filter_of(filters.motion_hz)?, filter_of(filters.torque_hz)?);
+        let samples = joints.first().map_or(0, |joint| joint.q.len());
+        let edge = STENCIL + wide.settling();
+        // Even, so that a coarse view can have two samples to a row.
+        let stride = ((0.2 / (filters.torque_hz * step_s)) as usize * 2).max(1);
+        let cut = edge + filter.settling();
+        if samples < 2 * cut + 64 * stride {
+            let samples_left = samples.saturating_sub(2 * cut);
+            return Err(ConditionError::TooShort { samples: samples_left, needed: 64 * stride });
+        }
+        let kept = edge..samples - edge;
+        // Rows are where a coarse view of the motion has samples.
+        let first = filter.settling().next_multiple_of(stride);
+        let range = first..kept.len() - filter.settling();
+        let rows = Rows { range, stride, within: WITHIN };
+        let fine = step_s / WITHIN as f64;
+        // The cell of a sample is around it.
+        let offset = 0.5 * (WITHIN - 1) as f64 * fine;
+        let t = (0..kept.len() * WITHIN)
+            .map(|k| start_s + step_s * kept.start as f64 + fine * k as f64 - offset)
+            .collect();
+        let (q, qd, qdd) = (Vec::new(), Vec::new(), Vec::new());
+        let (torque, measured) = (Vec::new(), Vec::new());
+        let position_noise = Vec::new();
+        let mut signals = Self {
+            file,
+            torque_hz: filters.torque_hz,
+            log_step_s: step_s,
+            step_s: fine,
+            t,
+            q,
+            qd,
+            qdd,
+            position_noise,
+            torque,
+            measured,
+            rows,
+            filter,
+        };
+        let mut random = Random::new(1);
+        for joint in joints {
+            // An encoder's error is anywhere within its step.
+            let step = joint.step.unwrap_or(0.0);
+            let mut noise: Vec<f64> =
+                (0..samples).map(|_| step * (random.uniform() - 0.5)).collect();
+            wide.zero_phase(&mut noise);
+            signals.position_noise.push(noise);
+            signals.push(joint, &wide, kept.clone());
+        }
+        Ok(signals)
+    }
+
+    fn push(&mut self, joint: JointSignals, wide: &Butterworth, kept: Range<usize>) {
+        let JointSignals { mut q, tau, .. } = joint;
+        wide.zero_phase(&mut q);
+        let h = self.log_step_s;
+        let within = self.rows.within;
+        let fine = |signal: Vec<f64>| between(&signal, within);
+        self.qd.push(fine(kept.clone().map(|k| rate(&q, k) / h).collect()));
+        self.qdd.push(fine(kept.clone().map(|k| acceleration(&q, k) / (h * h)).collect()));
+        self.q.push(fine(q[kept.clone()].to_vec()));
+        let measured = tau.map(|tau| tau[kept].to_vec());
+        let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
+        self.torque.push(rows);
+        self.measured.push(measured);
+    }
+
+    /// The motion with another error of its encoders.
+    pub fn disturbed(&self) -> Self {
+        let mut other = self.clone();
+        let cells = self.samples() / self.rows.within;
+        let h = self.log_step_s;
+        for (joint, noise) in self.position_noise.iter().enumerate() {
+            let edge = (noise.len() - cells) / 2;
+            let added = |of: &dyn Fn(usize) -> f64| {
+                between(&(edge..edge + cells).map(of).collect::<Vec<f64>>(), self.rows.within)
+            };
+            add(&mut other.q[joint], &added(&|k| noise[k]));
+            add(&mut other.qd[joint], &added(&|k| rate(noise, k) / h));
+            add(&mut other.qdd[joint], &added(&|k| acceleration(noise, k) / (h * h)));
+        }
+        other
+    }
+
+    /// Gives a joint other positions, with the rates and accelerations that the difference adds.
+    pub fn move_joint(&mut self, joint: usize, positions: &[f64]) {
+        let h = self.log_step_s;
+        let cells: Vec<f64> = positions.iter().zip(&self.q[joint]).map(|(a, b)| a - b).collect();
+        let cells = self.cell_means(&cells);
+        let count = cells.len();
+        // At the ends, which the rows leave out, the difference rests.
+        let inner = STENCIL..count.saturating_sub(STENCIL);
+        let of = |value: &dyn Fn(usize) -> f64| {
+            let all = (0..count).map(|k| if inner.contains(&k) { value(k) } else { 0.0 });
+            between(&all.collect::<Vec<f64>>(), self.rows.within)
+        };
+        add(&mut self.qd[joint], &of(&|k| rate(&cells, k) / h));
+        add(&mut self.qdd[joint], &of(&|k| acceleration(&cells, k) / (h * h)));
+        self.q[joint] = positions.to_vec();
+    }
+
+    /// The motion at one cell in so many, for a first look: laws cost less there. Rows are the
+    /// same.
+    pub fn coarse(&self) -> Option<Self> {
+        let Rows { range, stride, within } = &self.rows;
+        let thin = (stride / 2).max(1);
+        let coarse = self.log_step_s * thin as f64;
+        let thinned = |signal: &Vec<f64>| -> Vec<f64> {
+            signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
+        };
+        let all = |signals: &[Vec<f64>]| signals.iter().map(thinned).collect();
+        let filter = Butterworth::new(ORDER, self.torque_hz, coarse)?;
+        let rows = Rows {
+            range: range.start / thin..range.end.div_ceil(thin),
+            stride: stride / thin,
+            within: 1,
+        };
+        let found = Self {
+            file: self.file.clone(),
+            log_step_s: coarse,
+            step_s: coarse,
+            torque_hz: self.torque_hz,
+            t: thinned(&self.t),
+            q: all(&self.q),
+            qd: all(&self.qd),
+            qdd: all(&self.qdd),
+            position_noise: Vec::new(),
+            torque: Vec::new(),
+            measured: Vec::new(),
+            rows,
+            filter,
+        };
+        (stride % thin == 0 && found.rows() == self.rows()).then_some(found)
+    }
+
+    /// What a signal of the fine motion is in this coarse one.
+    pub fn thinned(&self, fine: &Self, signal: &[f64]) -> Vec<f64> {
+        let within = fine.rows.within;
+        let thin = (self.step_s / fine.log_step_s).round() as usize;
+        signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.q.len()
+    }
+
+    /// Number of samples of the motion.
+    pub fn samples(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Number of rows of a joint.
+    pub fn rows(&self) -> usize {
+        self.rows.range.len().div_ceil(self.rows.stride)
+    }
+
+    /// The time between rows \[s\].
+    pub fn row_step_s(&self) -> f64 {
+        self.log_step_s * self.rows.stride as f64
+    }
+
+    /// What a signal of the motion's samples is in the rows: filtered, and fewer.
+    pub fn rows_of(&self, signal: &[f64]) -> Vec<f64> {
+        self.row_samples(&self.filtered(self.cell_means(signal)))
+    }
+
+    /// A signal of the log's samples through the filter of torques.
+    pub fn filtered(&self, mut signal: Vec<f64>) -> Vec<f64> {
+        self.filter.zero_phase(&mut signal);
+        signal
+    }
+
+    /// The mean of a signal of the motion in each cell.
+    pub fn cell_means(&self, signal: &[f64]) -> Vec<f64> {
+        let within = self.rows.within;
+        signal.chunks_exact(within).map(|cell| cell.iter().sum::<f64>() / within as f64).collect()
+    }
+
+    /// A signal of the motion at the rows, as it is.
+    pub fn at_rows(&self, signal: &[f64]) -> Vec<f64> {
+        self.row_samples(&self.cell_means(signal))
+    }
+
+    fn row_samples(&self, signal: &[f64]) -> Vec<f64> {
+        signal[self.rows.range.clone()].iter().copied().step_by(self.rows.stride).collect()
+    }
+
+    /// The share of the deviation of white noise that passes the filter.
+    pub fn noise_gain(&self) -> f64 {
+        let reach = 2 * self.filter.settling();
+        let mut impulse = vec![0.0; 2 * reach + 1];
+        impulse[reach] = 1.0;
+        self.filter.zero_phase(&mut impulse);
+        impulse.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+}
+
+fn add(signal: &mut [f64], other: &[f64]) {
+    signal.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
+}
+
+/// A signal at so many places in the cell of each sample, by the cubic through four samples.
+fn between(signal: &[f64], within: usize) -> Vec<f64> {
+    let last = signal.len() as isize - 1;
+    let at = |k: isize| signal[k.clamp(0, last) as usize];
+    let middle = 0.5 * (within - 1) as f64;
+    let mut fine = Vec::with_capacity(signal.len() * within);
+    for k in 0..signal.len() as isize {
+        for part in 0..within {
+            let x = (part as f64 - middle) / within as f64;
+            // From the sample before a place to the one after.
+            let (from, u) = if x < 0.0 { (k - 1, x + 1.0) } else { (k, x) };
+            let [a, b, c, d] = [-1, 0, 1, 2].map(|offset| at(from + offset));
+            fine.push(
+                -a * u * (u - 1.0) * (u - 2.0) / 6.0 + b * (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0
+                    - c * (u + 1.0) * u * (u - 2.0) / 2.0
+                    + d * (u + 1.0) * u * (u - 1.0) / 6.0,
+            );
+        }
+    }
+    fine
+}

@@ -1,0 +1,238 @@
+//! A model with the effects that it has so far, fitted to the logs for training and judged with
+//! others.
+
+use super::candidate::Candidate;
+use super::data::{Data, ModelTorques};
+use super::evidence::block_costs;
+use super::floor::{NoiseFloor, rms};
+use super::gap::Gap;
+use super::problem::{Fitted, Found, Problem};
+use super::signals::Signals;
+
+/// An effect that was taken into the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// Its number among the candidates.
+    pub candidate: usize,
+    /// The values of its parameters.
+    pub values: Vec<f64>,
+}
+
+/// Logs, candidates and floors: what does not change during a search.
+pub struct Setting<'a> {
+    /// Logs to fit.
+    pub train: &'a Data<'a>,
+    /// Logs to judge with.
+    pub held_out: &'a Data<'a>,
+    /// What may be missing.
+    pub candidates: &'a [Candidate],
+    /// Coarse views of the logs to fit; none if their filter leaves nothing to save.
+    pub coarse: Option<Vec<Signals>>,
+    /// Floors of the logs to fit.
+    pub train_floor: &'a [NoiseFloor],
+    /// Floors of the logs to judge with.
+    pub held_out_floor: &'a [NoiseFloor],
+}
+
+/// A model with effects, fitted.
+#[derive(Clone)]
+pub struct State {
+    /// The effects.
+    pub taken: Vec<Taken>,
+    /// The nominal model's own parameters, in their deviations.
+    pub z: Vec<f64>,
+    /// The entries of z that are at a bound: beyond it the logs, but not the model's uncertainty,
+    /// would have them.
+    pub held: Vec<Option<f64>>,
+    /// The deviation by which each joint's rows are weighted [N m, N].
+    pub deviation: Vec<f64>,
+    /// What is left of the logs that were fitted [N m, N].
+    pub residual: Vec<f64>,
+    /// What is left of the others.
+    pub held_out_residual: Vec<f64>,
+    /// The gap of the first.
+    pub gap: Gap,
+    /// The gap of the others.
+    pub held_out_gap: Gap,
+    /// Torques that the model gives the motion of the logs.
+    pub torques: [Vec<ModelTorques>; 2],
+    /// Those of coarse views of the first.
+    pub coarse: Vec<ModelTorques>,
+    /// Covariance of the effects' parameters.
+    pub covariance: nalgebra::DMatrix<f64>,
+}
+
+/// A tried set of effects.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The effects with their values.
+    pub taken: Vec<Taken>,
+    /// What the fit found.
+    pub found: Found,
+    /// What it leaves of the other logs.
+    pub held_out_residual: Vec<f64>,
+    /// Weighted squares of what is left of blocks of both, trained first.
+    pub blocks: [Vec<f64>; 2],
+}
+
+impl State {
+    /// The numbers of the effects' candidates, in order.
+    pub fn candidates(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.taken.iter().map(|one| one.candidate).collect();
+        all.sort_unstable();
+        all
+    }
+}
+
+impl Trial {
+    /// Weighted squares of what is left of all logs.
+    pub fn cost(&self) -> f64 {
+        self.blocks.iter().flatten().sum()
+    }
+
+    /// Number of parameters of all effects.
+    pub fn parameters(&self) -> usize {
+        self.taken.iter().map(|taken| taken.values.len()).sum()
+    }
+
+    /// The same, for the number of parameters that it took (Schwarz 1978); `samples` are those
+    /// that are independent.
+    pub fn score(&self, samples: f64) -> f64 {
+        samples * self.cost().ln() + self.parameters() as f64 * samples.ln()
+    }
+}
+
+/// Entries of z beyond which the model's own parameters are not moved.
+const MOST_Z: f64 = 3.0;
+
+/// Rounds in which entries of z are held.
+const MOST_HELD: usize = 8;
+
+impl<'a> Setting<'a> {
+    /// The laws of effects with their values.
+    pub fn fitted(&self, taken: &[Taken]) -> Vec<Fitted<'a>> {
+        let of = |one: &Taken| Fitted {
+            law: self.candidates[one.candidate].law.as_ref(),
+            values: one.values.clone(),
+        };
+        taken.iter().map(of).collect()
+    }
+
+    /// The model with effects, whose values are searched from those given.
+    pub fn state(&self, taken: &[Taken]) -> State {
+        let joints = self.train.nominal.model.joints.len();
+        let floor = self.floor_of_joints(joints);
+        let mut z = vec![0.0; self.train.columns.len()];
+        let mut taken = taken.to_vec();
+        let mut deviation = self.deviation(&self.train.residual, &floor);
+        let mut found = None;
+        let mut held = vec![None; z.len()];
+        for _ in 0..2 {
+            let torques = self.train.model_torques(&z);
+            held.fill(None);
+            for _ in 0..MOST_HELD {
+                let problem = Problem::new(self.train, &deviation, &held, &[]);
+                let best = problem.fit(&self.fitted(&taken), &torques);
+                let is_within = best.z.iter().all(|z| z.abs() <= MOST_Z);
+                taken.iter_mut().zip(&best.values).for_each(|(t, v)| t.values.clone_from(v));
+                deviation = self.deviation(&best.residual, &floor);
+                z.clone_from(&best.z);
+                found = Some(best);
+                if is_within {
+                    break;
+                }
+                for (held, z) in held.iter_mut().zip(&z).filter(|(_, z)| z.abs() > MOST_Z) {
+                    *held = Some(MOST_Z.copysign(*z));
+                }
+            }
+        }
+        let found = found.expect("two rounds were made");
+        let torques = [self.train.model_torques(&z), self.held_out.model_torques(&z)];
+        let held_out_residual = self.left(&taken, &z, &torques[1]);
+        let coarse = self
+            .coarse
+            .iter()
+            .flatten()
+            .enumerate()
+            .map(|(log, coarse)| torques[0][log].thinned(&self.train.signals[log], coarse));
+        State {
+            coarse: coarse.collect(),
+            gap: Gap::new(self.train, &found.residual),
+            held_out_gap: Gap::new(self.held_out, &held_out_residual),
+            residual: found.residual,
+            covariance: found.covariance,
+            taken,
+            z,
+            held,
+            deviation,
+            held_out_residual,
+            torques,
+        }
+    }
+
+    /// Fits a set of effects as they would stand in a state, whose weights and torques it keeps.
+    pub fn trial(&self, problem: &Problem<'_>, state: &State, taken: &[Taken]) -> Trial {
+        let found = problem.fit(&self.fitted(taken), &state.torques[0]);
+        self.judge(state, taken, found)
+    }
+
+    /// The same with values as they are.
+    pub fn judged(&self, problem: &Problem<'_>, state: &State, taken: &[Taken]) -> Trial {
+        let found = problem.at(&self.fitted(taken), &state.torques[0]);
+        self.judge(state, taken, found)
+    }
+
+    fn judge(&self, state: &State, taken: &[Taken], found: Found) -> Trial {
+        let mut taken = taken.to_vec();
+        taken.iter_mut().zip(&found.values).for_each(|(t, v)| t.values.clone_from(v));
+        let held_out_residual = self.left(&taken, &found.z, &state.torques[1]);
+        let blocks = [
+            block_costs(self.train, &found.residual, &state.deviation),
+            block_costs(self.held_out, &held_out_residual, &state.deviation),
+        ];
+        Trial { taken, found, held_out_residual, blocks }
+    }
+
+    /// Searches the values of effects on coarse views, where there are any.
+    pub fn roughly(&self, problem: &Problem<'_>, state: &State, taken: &[Taken]) -> Vec<Taken> {
+        let Some(coarse) = &self.coarse else { return taken.to_vec() };
+        let found = problem.coarse(coarse).fit(&self.fitted(taken), &state.coarse);
+        let both = taken.iter().zip(found.values);
+        both.map(|(one, values)| Taken { candidate: one.candidate, values }).collect()
+    }
+
+    /// What a model leaves of the logs that it was not fitted to.
+    fn left(&self, taken: &[Taken], z: &[f64], torques: &[ModelTorques]) -> Vec<f64> {
+        let mut residual = self.held_out.residual_of(z);
+        for fitted in self.fitted(taken) {
+            for (log, torques) in torques.iter().enumerate() {
+                let signals = &self.held_out.signals[log];
+                let motion = torques.motion(self.held_out.nominal, signals);
+                let response = fitted.law.response(motion, &fitted.values);
+                self.held_out.in_rows(log, signals, &response).subtract_from(&mut residual);
+            }
+        }
+        residual
+    }
+
+    fn floor_of_joints(&self, joints: usize) -> Vec<f64> {
+        let of_joint = |joint: usize| {
+            let all: Vec<f64> = self.train_floor.iter().map(|log| log.deviation[joint]).collect();
+            rms(&all)
+        };
+        (0..joints).map(of_joint).collect()
+    }
+
+    /// The deviation of each joint: what is left of it, at least the floor. A joint that misses
+    /// something counts less, and does not bend the model elsewhere.
+    fn deviation(&self, residual: &[f64], floor: &[f64]) -> Vec<f64> {
+        let of_joint = |(joint, floor): (usize, &f64)| {
+            let own = self.train.stretches.iter().filter(|stretch| stretch.joint == joint);
+            let parts: Vec<f64> = own
+                .map(|stretch| rms(&residual[stretch.first..stretch.first + stretch.rows]))
+                .collect();
+            rms(&parts).max(*floor)
+        };
+        floor.iter().enumerate().map(of_joint).collect()
+    }
+}

@@ -1,0 +1,4 @@
+//! What a model lacks.
+
+mod laws;
+mod search;

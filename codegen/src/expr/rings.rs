@@ -348,6 +348,11 @@ impl Ring for Residues {
                     UnaryFunction::Tanh | UnaryFunction::Sign => magnitude(value),
                     _ => (value, false),
                 };
+                // f(-0) = -f(0): what is odd is 0 at 0, in whichever order a difference is written.
+                let is_odd = matches!(function, UnaryFunction::Tanh | UnaryFunction::Sign);
+                if is_odd && value == Residue::ZERO {
+                    return Ok(value);
+                }
                 let seed = self.seed_of(dag, &[argument]);
                 let result = self.opaque(seed, &format!("{function:?}"), &[value]);
                 Ok(if negated { -result } else { result })

@@ -269,8 +269,8 @@ fn shared_operands_are_named_when_the_text_would_be_long() {
     assert_eq!(print_with_intermediates(&dag, &[short], 100).bindings, []);
 }
 
-/// Where the selection takes its second branch, the argument is 0 and has no sign, in whichever order
-/// a graph writes its differences.
+/// Where the selection takes its second branch, the argument is 0 and has no sign, in whichever
+/// order a graph writes its differences.
 #[test]
 fn odd_functions_of_what_vanishes_are_alike_in_all_graphs() {
     let names = ["a", "b", "c", "d", "e", "f", "g", "h"];

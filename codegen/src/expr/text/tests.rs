@@ -279,7 +279,9 @@ fn odd_functions_of_what_vanishes_are_alike_in_all_graphs() {
         let text = format!("{function}(2*(y - z + select({x} <= z - y, z - pi, z - y)))");
         let value = |order: [&str; 2]| {
             let mut dag = Dag::new();
-            order.map(|name| read(&mut dag, name).unwrap());
+            for name in order {
+                read(&mut dag, name).unwrap();
+            }
             let expr = read(&mut dag, &text).unwrap();
             residues(&dag, &[expr])
         };

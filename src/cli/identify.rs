@@ -15,7 +15,7 @@ use super::failure::Failure;
 use super::files::{check_outputs, on_stdout, read_model_text, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow};
+use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow, SlowRows};
 use denavit::identify::log::LogRemark;
 use denavit::identify::{
     Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
@@ -82,10 +82,12 @@ pub(crate) struct Arguments {
     /// logs are then simulated too [rad/s, m/s]; 0.01 if no RATE is given
     #[arg(long, value_name = "sign|tanh[:RATE]", value_parser = friction, default_value = "sign")]
     friction: CoulombLaw,
-    /// Leave out the rows of a joint while it is slower than this [rad/s, m/s] or turns round;
-    /// noise is three times what the steps of its encoder make of a rate
-    #[arg(long, value_name = "RATE|noise", value_parser = slow)]
-    skip_slow: Option<Slow>,
+    /// Leave out the rows of a joint near reversals, within the filter's time, where they bias its
+    /// Coulomb friction (biasing), or none (off), or those in which it is slower than a rate
+    /// [rad/s, m/s] or turns round; noise is three times what the steps of its encoder make of one
+    #[arg(long, value_name = "biasing|off|RATE|noise", value_parser = slow,
+        default_value = "biasing")]
+    skip_slow: SlowRows,
     /// How parameters are estimated
     #[arg(long, value_enum, default_value_t)]
     method: MethodName,
@@ -143,21 +145,19 @@ fn window(text: &str) -> Result<f64, String> {
     length.ok_or_else(|| "a time from 0.0001 to 100 s".to_owned())
 }
 
-/// Rates below which rows are left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Slow {
-    Noise,
-    Below(f64),
-}
-
 fn rate(text: &str) -> Option<f64> {
     text.parse::<f64>().ok().filter(|rate| (1e-9..=1e3).contains(rate))
 }
 
-fn slow(text: &str) -> Result<Slow, String> {
+fn slow(text: &str) -> Result<SlowRows, String> {
     match text {
-        "noise" => Ok(Slow::Noise),
-        text => rate(text).map(Slow::Below).ok_or_else(|| "a rate above 0, or `noise`".to_owned()),
+        "biasing" => Ok(SlowRows::Biasing),
+        "off" => Ok(SlowRows::Kept),
+        "noise" => Ok(SlowRows::Noise),
+        text => {
+            let below = rate(text).map(SlowRows::Below);
+            below.ok_or_else(|| "a rate above 0, `biasing`, `noise`, or `off`".to_owned())
+        }
     }
 }
 
@@ -219,7 +219,7 @@ impl Arguments {
             ErrorsName::Bootstrap => Errors::Bootstrap { draws: 200, seed: self.seed },
         };
         let prior = if self.prior { prior(model) } else { Vec::new() };
-        Options { method, errors, prior, position_noise: noise }
+        Options { method, errors, prior, position_noise: noise, slow: self.skip_slow }
     }
 }
 

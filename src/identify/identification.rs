@@ -3,10 +3,11 @@
 use super::condition::Conditioned;
 use super::estimate::{
     Consistent, Convergence, Estimate, EstimateError, ExchangedJoints, FlippedTorque,
-    IdentifiedParameter, Options, Status, Validation, consistent, convergence, estimate,
-    exchanged_joints, flipped_torques, noise_of_positions, parameters, validate,
+    IdentifiedParameter, Options, SlowRows, Status, Validation, biased_frictions, consistent,
+    convergence, estimate, exchanged_joints, flipped_torques, noise_of_positions, parameters,
+    validate,
 };
-use crate::plants::regression::{CoulombLaw, RegressionJoint, RegressionModel, StandardParameter};
+use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +41,10 @@ pub struct Identification {
     pub position_noise: Option<(String, f64)>,
     /// Joints whose torques seem to have the wrong sign.
     pub flipped: Vec<FlippedTorque>,
-    /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in much of
-    /// the logs, each with the share of samples.
+    /// Rows that were left out, joint by joint.
+    pub left_out: Vec<LeftOutRows>,
+    /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in so much
+    /// of the logs that it is biased, each with the share of samples.
     pub reversals: Vec<(String, f64)>,
     /// Two joints whose columns seem to be exchanged.
     pub exchanged: Option<ExchangedJoints>,
@@ -53,12 +56,20 @@ pub struct Identification {
     pub estimate: Estimate,
 }
 
+/// Rows of a joint that do not count, since it turns round or is slow there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOutRows {
+    /// The joint.
+    pub joint: String,
+    /// Samples that are left out, after decimation.
+    pub samples: usize,
+    /// Of so many.
+    pub of: usize,
+}
+
 /// The share of a torque from which on noise of the positions is said to bias parameters: its
 /// square, a thousandth, is what standard errors of a good log are.
 const BIASING: f64 = 0.03;
-
-/// The share of samples near reversals from which on friction is said to be uncertain.
-const MANY_REVERSALS: f64 = 0.05;
 
 /// The share of the torques that an estimate of exchanged columns leaves, at least.
 const MISFIT: f64 = 0.05;
@@ -72,6 +83,21 @@ impl Identification {
              biased, and their intervals too narrow. A filter with a lower cutoff has less of it.",
             100.0 * share
         ))
+    }
+
+    /// What is to be said of rows that do not count.
+    pub fn rows_left_out(&self) -> Option<String> {
+        let of =
+            |one: &LeftOutRows| format!("{} of {} samples of {}", one.samples, one.of, one.joint);
+        let listed: Vec<String> = self.left_out.iter().map(of).collect();
+        (!listed.is_empty()).then(|| {
+            format!(
+                "Left out of the estimate, since the joint turns round or is slow there, where \
+                 friction is not the sign of its rate: {} (--skip-slow off keeps them). What is \
+                 left of torques is that of all samples.",
+                listed.join(", ")
+            )
+        })
     }
 
     /// All that is to be said before anybody believes the parameters.
@@ -95,8 +121,9 @@ impl Identification {
         let reversals = self.reversals.iter().map(|(joint, share)| {
             format!(
                 "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
-                 samples are within the filter's time of a reversal, or as slow. --skip-slow noise \
-                 leaves them out; --friction tanh has another law there.",
+                 samples are within the filter's time of a reversal, or as slow, and count. \
+                 --skip-slow leaves them out, as far as other samples are there; --friction tanh \
+                 has another law there.",
                 100.0 * share
             )
         });
@@ -132,7 +159,8 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let listed = parameters(model, &found);
     Ok(Identification {
         flipped: flipped_torques(model, &found, &listed),
-        reversals: reversals(model, train, &listed),
+        reversals: reversals(model, train, (&found, options)),
+        left_out: left_out(model, train, &found),
         parameters: listed,
         exchanged: (left.relative > MISFIT).then(|| exchanged_joints(model, train)).flatten(),
         train: left,
@@ -148,30 +176,34 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     })
 }
 
-/// The joints that turn round in so many samples that their Coulomb friction, by the sign of the
-/// rate, is not what it seems.
+/// The joints whose Coulomb friction is biased by samples that were not left out.
 fn reversals(
     model: &RegressionModel,
     logs: &[Conditioned],
-    listed: &[IdentifiedParameter],
+    (found, options): (&Estimate, &Options),
 ) -> Vec<(String, f64)> {
-    let is_estimated = |joint: &str| {
-        let name = format!("fc_{joint}");
-        listed.iter().any(|one| one.name == name && one.status != Status::NotExcited)
-    };
-    if model.law != CoulombLaw::Sign {
+    if !matches!(options.slow, SlowRows::Biasing | SlowRows::Kept) {
         return Vec::new();
     }
-    let mut sums = vec![0.0; model.joints.len()];
-    let mut samples = 0.0;
-    for log in logs.iter().filter(|log| log.slow.is_none()) {
-        let own = log.range.len() as f64;
-        for (sum, share) in sums.iter_mut().zip(log.near_reversals().unwrap_or_default()) {
-            *sum += share * own;
-        }
-        samples += own;
-    }
-    let names = model.joints.iter().map(|joint| joint.name.clone());
-    let shares = names.zip(sums).map(|(name, sum)| (name, sum / f64::max(samples, 1.0)));
-    shares.filter(|(name, share)| *share > MANY_REVERSALS && is_estimated(name)).collect()
+    let without = left_out(model, logs, found);
+    let of = |(joint, share): (usize, f64)| (model.joints[joint].name.clone(), share);
+    let biased = biased_frictions(model, logs, (&found.solution.phi, &found.covariance));
+    let counted = biased.into_iter().map(of);
+    counted.filter(|(name, _)| without.iter().all(|one| one.joint != *name)).collect()
+}
+
+/// The rows of each joint that do not count.
+fn left_out(model: &RegressionModel, logs: &[Conditioned], found: &Estimate) -> Vec<LeftOutRows> {
+    let parts = &found.condensed.parts;
+    let rows = |joint: usize| parts.iter().map(|part| part[joint].rows()).sum::<usize>();
+    let of = |joint: usize| -> usize {
+        let measured = logs.iter().filter(|log| log.torque[joint].is_some());
+        measured.map(Conditioned::samples).sum()
+    };
+    let one = |joint: usize| LeftOutRows {
+        joint: model.joints[joint].name.clone(),
+        samples: of(joint) - rows(joint),
+        of: of(joint),
+    };
+    (0..model.joints.len()).map(one).filter(|one| one.samples > 0).collect()
 }

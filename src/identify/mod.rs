@@ -28,7 +28,7 @@ pub mod two_stage;
 mod updated_model;
 
 pub use contact_forces::add_contact_forces;
-pub use identification::{Identification, Request, identify};
+pub use identification::{Identification, LeftOutRows, Request, identify};
 pub use model_text::{NewValue, updated as updated_text};
 pub use model_values::{model_values, with_effect};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};

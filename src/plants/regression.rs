@@ -198,6 +198,12 @@ impl RegressionModel {
         &self.pattern
     }
 
+    /// Joint, and place in its pattern, of each column of Coulomb friction: a factor times
+    /// [`RegressionModel::law`] of the joint's rate.
+    pub fn coulomb(&self) -> &[(usize, usize)] {
+        &self.coulomb
+    }
+
     /// T of phi = T pi.
     pub fn to_axes(&self) -> &DMatrix<f64> {
         &self.to_axes

@@ -20,6 +20,8 @@ struct IdentifyJson<'a> {
     excited: usize,
     samples: usize,
     degrees_of_freedom: f64,
+    /// Samples that do not count, since a joint turns round or is slow there.
+    left_out: Vec<LeftOutJson<'a>>,
     /// theta0 of the nearest bodies that exist, and how far they are.
     consistent: ConsistentJson<'a>,
     convergence: Vec<ConvergenceJson<'a>>,
@@ -76,6 +78,13 @@ struct JointJson<'a> {
     torque_rms: f64,
     residual_rms: f64,
     autocorrelation: &'a [f64],
+}
+
+#[derive(Serialize)]
+struct LeftOutJson<'a> {
+    joint: &'a str,
+    samples: usize,
+    of: usize,
 }
 
 #[derive(Serialize)]
@@ -228,6 +237,11 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         excited: solution.excited(),
         samples: found.train.samples,
         degrees_of_freedom: found.estimate.degrees_of_freedom,
+        left_out: found
+            .left_out
+            .iter()
+            .map(|one| LeftOutJson { joint: &one.joint, samples: one.samples, of: one.of })
+            .collect(),
         consistent: ConsistentJson::new(model, &found.consistent),
         convergence: convergence.collect(),
         simulation: simulated.map(SimulationJson::new),

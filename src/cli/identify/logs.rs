@@ -1,6 +1,6 @@
 //! Logs read, checked and conditioned as the options say.
 
-use super::{Arguments, IdentifyFailure, MethodName, Slow};
+use super::{Arguments, IdentifyFailure, MethodName};
 use crate::cli::failure::Failure;
 use crate::cli::files::{open_log, read_file};
 use clap::{Args, ValueEnum};
@@ -263,16 +263,6 @@ impl Reader<'_> {
             motions.push(motion);
         }
         let conditioned = Conditioned::new(log, &self.names, &how);
-        let mut conditioned =
-            conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?;
-        let joints = self.names.len();
-        conditioned.slow = self.arguments.skip_slow.map(|slow| match slow {
-            Slow::Below(rate) => vec![rate; joints],
-            Slow::Noise => {
-                let of_rate = conditioned.noise_gains()[1][1].sqrt();
-                self.noise.iter().map(|noise| 3.0 * of_rate * noise).collect()
-            }
-        });
-        Ok(conditioned)
+        Ok(conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?)
     }
 }

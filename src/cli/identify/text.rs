@@ -55,6 +55,9 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     if let Some(gap) = shown.simulated {
         write_simulation(out, gap)?;
     }
+    if let Some(text) = found.rows_left_out() {
+        writeln!(out, "\n{}", paragraph("", "", &text))?;
+    }
     for text in found.warnings() {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }

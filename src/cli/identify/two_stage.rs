@@ -9,7 +9,7 @@ use crate::cli::files::{check_outputs, on_stdout, read_model_text, write_whole};
 use crate::cli::json::write_json;
 use denavit::identify::condition::Filter;
 use denavit::identify::estimate::{Consistent, IdentifiedParameter, consistent, parameters};
-use denavit::identify::two_stage::{Estimate, Spring, TwoStage, two_stage};
+use denavit::identify::two_stage::{Estimate, Spring, TwoStage, TwoStageOptions, two_stage};
 use denavit::identify::{NewValue, UpdateError, updated_model, updated_text};
 use denavit::model::{self, Robot};
 use denavit::plants::plant_of;
@@ -53,7 +53,8 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         decimation: 1,
         ..of_load
     };
-    let stages = two_stage(plant.model(), &model, &log, [&of_springs, &of_load])
+    let how = TwoStageOptions { of_springs, of_load, slow: arguments.skip_slow };
+    let stages = two_stage(plant.model(), &model, &log, &how)
         .map_err(|error| IdentifyFailure::TwoStage(log.file.clone(), error))?;
     let parameters = parameters(&model, &stages.load);
     let standard: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();

@@ -28,6 +28,8 @@ impl Section {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Butterworth {
     sections: Vec<Section>,
+    /// The cutoff of one pass, in cycles per sample.
+    cutoff: f64,
     /// Samples after which a transient has died down.
     settling: usize,
     /// Samples on either side of a step that two passes smear it over.
@@ -35,6 +37,11 @@ pub struct Butterworth {
 }
 
 impl Butterworth {
+    /// The cutoff of one pass, in cycles per sample.
+    pub fn cutoff(&self) -> f64 {
+        self.cutoff
+    }
+
     /// Samples on either side of a step that two passes smear it over: half a period of the
     /// cutoff.
     pub fn smear(&self) -> usize {
@@ -65,7 +72,7 @@ impl Butterworth {
         let sections = pairs.chain(single).collect();
         let settling = (order as f64 / relative).ceil().min(1e7) as usize;
         let smear = (0.5 / relative).ceil().min(1e7) as usize;
-        Some(Self { sections, settling, smear })
+        Some(Self { sections, cutoff: relative, settling, smear })
     }
 
     /// Samples at each end that depend on what was not measured.

@@ -14,15 +14,16 @@ pub struct Decimator {
 }
 
 impl Decimator {
-    /// The decimator by a factor; by 1 it does nothing.
-    pub fn new(factor: usize) -> Self {
+    /// The decimator by a factor, which passes what is below `edge`, in cycles per sample, as far
+    /// as fewer samples hold it: up to 0.8 of their Nyquist frequency. By 1 it does nothing.
+    pub fn new(factor: usize, edge: f64) -> Self {
         let factor = factor.max(1);
-        if factor == 1 {
+        let half = Self::reach_of(factor);
+        if half == 0 {
             return Self { factor, weights: vec![1.0] };
         }
-        let half = HALF_LENGTH * factor;
-        // 0.8 of the new Nyquist frequency, in cycles per old sample; Blackman's window.
-        let cutoff = 0.4 / factor as f64;
+        // Blackman's window
+        let cutoff = edge.min(0.4 / factor as f64);
         let weight = |k: usize| {
             let x = PI * k as f64 / (half + 1) as f64;
             let window = 0.42 + 0.5 * x.cos() + 0.08 * (2.0 * x).cos();
@@ -34,6 +35,11 @@ impl Decimator {
         let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
         weights.iter_mut().for_each(|weight| *weight /= sum);
         Self { factor, weights }
+    }
+
+    /// Samples on either side that one depends on that a factor leaves.
+    pub fn reach_of(factor: usize) -> usize {
+        if factor > 1 { HALF_LENGTH * factor } else { 0 }
     }
 
     /// One sample in so many is left.
@@ -87,7 +93,7 @@ mod tests {
     #[test]
     fn what_would_fold_over_is_gone_and_the_rest_passes() {
         for factor in [2, 5, 10] {
-            let decimator = Decimator::new(factor);
+            let decimator = Decimator::new(factor, 0.5);
             let nyquist = 0.5 / factor as f64;
             assert!((gain(&decimator, 0.0) - 1.0).abs() < 1e-12);
             assert!((gain(&decimator, 0.4 * nyquist) - 1.0).abs() < 1e-2);
@@ -95,8 +101,12 @@ mod tests {
                 assert!(gain(&decimator, cycles).abs() < 1e-3, "{factor} {cycles}");
             }
         }
+        // an edge far below the rate that is left: half of a wave passes there
+        let low = Decimator::new(10, 0.02);
+        assert!((gain(&low, 0.005) - 1.0).abs() < 0.02 && (gain(&low, 0.02) - 0.5).abs() < 0.1);
+        assert!(gain(&low, 0.04).abs() < 0.02, "{}", gain(&low, 0.04));
         let mut same = [0.0; 3];
-        Decimator::new(1).apply(&[1.0, 2.0, 3.0], &mut same);
+        Decimator::new(1, 0.5).apply(&[1.0, 2.0, 3.0], &mut same);
         assert_eq!(same, [1.0, 2.0, 3.0]);
     }
 }

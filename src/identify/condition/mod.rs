@@ -7,6 +7,7 @@
 mod butterworth;
 mod decimate;
 mod laps;
+mod reversals;
 
 pub use butterworth::Butterworth;
 pub use decimate::Decimator;
@@ -148,9 +149,6 @@ pub struct Conditioned {
     pub decimation: usize,
     /// The filter that positions and torques went through.
     pub filter: Option<Butterworth>,
-    /// Rows of a joint count only while it is faster than this, and does not turn round [rad/s,
-    /// m/s]; none counts all.
-    pub slow: Option<Vec<f64>>,
     /// Standard deviation of the torque of each joint about the mean lap, where there are laps.
     pub lap_noise: Option<Vec<Option<f64>>>,
     /// The laps that were found in the log.
@@ -179,7 +177,7 @@ impl Conditioned {
         if decimation >= samples {
             return Err(ConditionError::TooShort { samples, needed: decimation + 1 });
         }
-        let reach = Decimator::new(decimation).reach();
+        let reach = Decimator::reach_of(decimation);
         let needed = 2 * (edge + reach) + 8 * decimation;
         if samples < needed {
             return Err(ConditionError::TooShort { samples, needed });
@@ -229,7 +227,8 @@ impl Conditioned {
             Averaging::Found => Laps::find(&self.q, self.step_s, span)?,
         };
         // A lap goes on as it began, so that its edges can be filtered and differentiated.
-        let wrap = STENCIL + Decimator::new(self.decimation).reach();
+        let edge = STENCIL + self.filter.as_ref().map_or(0, Butterworth::settling);
+        let wrap = edge + Decimator::reach_of(self.decimation);
         let around = |mean: &[f64]| -> Vec<f64> {
             let n = mean.len();
             (0..n + 2 * wrap).map(|k| mean[(k + n * wrap.div_ceil(n) - wrap) % n]).collect()
@@ -247,10 +246,18 @@ impl Conditioned {
             *torque = mean.map(|(mean, _)| around(&mean));
         }
         self.start_s += laps.start as f64 * self.step_s - wrap as f64 * self.step_s;
-        self.range = STENCIL..laps.samples + 2 * wrap - STENCIL;
+        self.range = edge..laps.samples + 2 * wrap - edge;
         self.lap_noise = Some(noise);
         self.laps = Some(laps);
         Ok(())
+    }
+
+    /// What torques and columns pass alike. Of motion near its cutoff the first filter leaves less
+    /// than the torque that it goes with, where that is not linear in it: products of rates,
+    /// functions of positions. Below half of it they agree to less than a percent.
+    pub(crate) fn decimator(&self) -> Decimator {
+        let edge = self.filter.as_ref().map_or(0.5, |filter| 0.5 * filter.cutoff());
+        Decimator::new(self.decimation, edge)
     }
 
     /// Number of joints.
@@ -260,14 +267,14 @@ impl Conditioned {
 
     /// Samples that are left after decimation.
     pub fn samples(&self) -> usize {
-        let reach = Decimator::new(self.decimation).reach();
+        let reach = Decimator::reach_of(self.decimation);
         let inner = self.range.len().saturating_sub(2 * reach);
         inner.div_ceil(self.decimation)
     }
 
     /// The time of a sample that is left \[s\].
     pub fn time_s(&self, sample: usize) -> f64 {
-        let reach = Decimator::new(self.decimation).reach();
+        let reach = Decimator::reach_of(self.decimation);
         let at = self.range.start + reach + sample * self.decimation;
         self.start_s + self.step_s * at as f64
     }
@@ -312,7 +319,7 @@ impl Conditioned {
 
     /// Where a sample that is left stands among all.
     fn first_place(&self, sample: usize) -> usize {
-        self.range.start + Decimator::new(self.decimation).reach() + sample * self.decimation
+        self.range.start + Decimator::reach_of(self.decimation) + sample * self.decimation
     }
 
     /// Where so many samples that are left stand among all, from `first` on.
@@ -322,37 +329,10 @@ impl Conditioned {
         (0..samples).map(move |sample| from + sample * decimation)
     }
 
-    /// For each joint the share of samples within the filter's time of a reversal, or slower than
-    /// its usual acceleration makes it in that time: where what depends on the sign of the rate is
-    /// smeared over. None without a filter.
-    pub fn near_reversals(&self) -> Option<Vec<f64>> {
-        let smear = self.filter.as_ref()?.smear();
-        let mut motion = Vec::new();
-        self.motion(self.range.clone(), &mut motion);
-        let n = self.joints();
-        let share = |joint: usize| {
-            let (rates, accelerations) = (&motion[n + joint], &motion[2 * n + joint]);
-            let squares: f64 = accelerations.iter().map(|a| a * a).sum();
-            let usual = (squares / accelerations.len().max(1) as f64).sqrt();
-            let slow = usual * self.step_s * smear as f64;
-            let mut is_near: Vec<bool> = rates.iter().map(|rate| rate.abs() < slow).collect();
-            let mut end = 0;
-            for (at, pair) in rates.windows(2).enumerate() {
-                if (pair[0] > 0.0) != (pair[1] > 0.0) {
-                    let last = (at + 1 + smear).min(rates.len());
-                    is_near[end.max((at + 1).saturating_sub(smear))..last].fill(true);
-                    end = last;
-                }
-            }
-            is_near.iter().filter(|&&near| near).count() as f64 / rates.len().max(1) as f64
-        };
-        Some((0..n).map(share).collect())
-    }
-
     /// The covariance of position, rate and acceleration that white noise of variance 1 of the
     /// measured position makes, after both filters.
     pub fn noise_gains(&self) -> [[f64; 3]; 3] {
-        let decimator = Decimator::new(self.decimation);
+        let decimator = self.decimator();
         let settling = self.filter.as_ref().map_or(0, Butterworth::settling);
         let margin = 2 * settling + decimator.reach() + STENCIL;
         let mut impulse = vec![0.0; 2 * margin + 1 + 2 * decimator.reach()];

@@ -3,6 +3,7 @@
 //! Joints are kept apart, so that they can be weighted afterwards; parts are, so that errors can be
 //! found that residuals make which are alike from one sample to the next.
 
+use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
 use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
@@ -30,14 +31,17 @@ pub struct Condensed {
     pub rank: usize,
 }
 
+/// Logs, with the rows of them that are left out.
+pub(super) type Rows<'a> = (&'a [Conditioned], &'a LeftOut);
+
 /// What the rows of a joint in a block become: columns, and what they are to give, of one length;
 /// none where there are none. The first argument is the number of the log.
 pub(super) type RowsOf<'a> =
     &'a mut dyn for<'b> FnMut(usize, &'b Block, usize) -> Option<Vec<Cow<'b, [f64]>>>;
 
 impl Condensed {
-    /// Condenses conditioned logs.
-    pub fn new(model: &RegressionModel, logs: &[Conditioned]) -> Self {
+    /// Condenses conditioned logs without the rows that are left out.
+    pub(super) fn new(model: &RegressionModel, logs: Rows<'_>) -> Self {
         Self::of_rows(model, logs, (model.pattern().to_vec(), model.rank()), &mut plain)
     }
 
@@ -45,7 +49,7 @@ impl Condensed {
     /// joint.
     pub(super) fn weighted(
         model: &RegressionModel,
-        logs: &[Conditioned],
+        logs: Rows<'_>,
         factors: &dyn Fn(usize, &Block, usize) -> Vec<f64>,
     ) -> Self {
         let shape = (model.pattern().to_vec(), model.rank());
@@ -62,7 +66,7 @@ impl Condensed {
     /// Condenses rows of another pattern and rank.
     pub(super) fn of_rows(
         model: &RegressionModel,
-        logs: &[Conditioned],
+        (logs, left_out): Rows<'_>,
         (pattern, rank): (Vec<Vec<usize>>, usize),
         rows: RowsOf<'_>,
     ) -> Self {
@@ -83,9 +87,11 @@ impl Condensed {
             }
             BlockMaker::new(model, log).for_each(|block| {
                 for joint in 0..condensed.pattern.len() {
-                    if let Some(columns) = rows(index, block, joint) {
-                        condensed.add((block, joint), &columns, (begin, count, length));
-                    }
+                    let Some(columns) = rows(index, block, joint) else { continue };
+                    let (first, samples) = (block.first, block.samples);
+                    let counts = left_out.counts((index, log), joint, (first, samples));
+                    let columns = (&columns[..], counts.as_deref());
+                    condensed.add((block, joint), columns, (begin, count, length));
                 }
             });
         }
@@ -95,7 +101,7 @@ impl Condensed {
     fn add(
         &mut self,
         (block, joint): (&Block, usize),
-        columns: &[Cow<'_, [f64]>],
+        (columns, counts): (&[Cow<'_, [f64]>], Option<&[bool]>),
         (begin, count, length): (usize, usize, usize),
     ) {
         let mut from = 0;
@@ -105,7 +111,7 @@ impl Condensed {
             let to = block.samples.min(end.saturating_sub(block.first));
             let rows: Vec<&[f64]> = columns.iter().map(|column| &column[from..to]).collect();
             let triangle = &mut self.parts[begin + part][joint];
-            match &block.counts[joint] {
+            match counts {
                 None => triangle.push(&rows),
                 Some(counts) => {
                     let counted = |column: &&[f64]| -> Vec<f64> {

@@ -5,7 +5,7 @@
 //! references, are correlated with W and not with it: Z^T W phi = Z^T y (Janot, Vandanjon, Gautier
 //! 2014). With [Z | W | y] = Q R the equation is the upper block of R, and no square is formed.
 
-use super::condensed::Condensed;
+use super::condensed::{Condensed, Rows};
 use super::least_squares::{Estimate, EstimateError};
 use super::rows::BlockMaker;
 use super::triangle::{Triangle, upper};
@@ -17,17 +17,18 @@ use std::borrow::Cow;
 /// Replaces phi and its covariance by those of instruments, joints weighted as they are.
 pub(super) fn instrumental(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    rows: Rows<'_>,
     instruments: &[Conditioned],
     found: &mut Estimate,
 ) -> Result<(), EstimateError> {
+    let (logs, _) = rows;
     let fits = |(log, instrument): (&Conditioned, &Conditioned)| {
         log.samples() == instrument.samples() && log.decimation == instrument.decimation
     };
     if logs.len() != instruments.len() || !logs.iter().zip(instruments).all(fits) {
         return Err(EstimateError::Instruments);
     }
-    let condensed = paired(model, logs, instruments);
+    let condensed = paired(model, rows, instruments);
     let system = System::new(&condensed, &condensed.whole(), &found.weights);
     let solved = system.solve().ok_or(EstimateError::Instruments)?;
     found.solution.phi = solved;
@@ -39,7 +40,7 @@ pub(super) fn instrumental(
 }
 
 /// Rows of Z and W beside each other: columns of Z come first.
-fn paired(model: &RegressionModel, logs: &[Conditioned], instruments: &[Conditioned]) -> Condensed {
+fn paired(model: &RegressionModel, rows: Rows<'_>, instruments: &[Conditioned]) -> Condensed {
     let rank = model.rank();
     let pattern: Vec<Vec<usize>> = model
         .pattern()
@@ -48,7 +49,7 @@ fn paired(model: &RegressionModel, logs: &[Conditioned], instruments: &[Conditio
         .collect();
     let mut makers: Vec<BlockMaker<'_>> =
         instruments.iter().map(|log| BlockMaker::new(model, log)).collect();
-    Condensed::of_rows(model, logs, (pattern, 2 * rank), &mut |log, block, joint| {
+    Condensed::of_rows(model, rows, (pattern, 2 * rank), &mut |log, block, joint| {
         let columns = block.with_target(joint)?;
         let other = makers[log].at(block.first, block.samples);
         let z = other.columns[joint].iter().map(|column| Cow::Owned(column.clone()));

@@ -1,8 +1,9 @@
 //! The estimates: one loop of weighting and solving, by method.
 
-use super::condensed::Condensed;
+use super::condensed::{Condensed, Rows};
 use super::errors::{Errors, Problem};
 use super::instruments;
+use super::left_out::SlowRows;
 use super::likelihood;
 use super::robust::{Loss, scales};
 use super::rows::Block;
@@ -49,8 +50,10 @@ pub struct Options {
     /// What is known beforehand.
     pub prior: Vec<PriorRow>,
     /// Standard deviation of the measured positions of each joint before filtering [rad, m]; used
-    /// by [`Method::Likelihood`].
+    /// by [`Method::Likelihood`] and [`SlowRows::Noise`].
     pub position_noise: Vec<f64>,
+    /// Which rows are left out.
+    pub slow: SlowRows,
 }
 
 /// Why there is no estimate.
@@ -113,34 +116,20 @@ pub fn estimate(
     options: &Options,
     start: &[f64],
 ) -> Result<Estimate, EstimateError> {
-    let condensed = Condensed::new(model, logs);
-    let triangles = condensed.whole();
-    let rows: usize = triangles.iter().map(Triangle::rows).sum();
-    if rows == 0 {
-        return Err(EstimateError::NoTorque);
-    }
-    if rows < condensed.rank {
-        return Err(EstimateError::TooFewRows(rows, condensed.rank));
-    }
     let fit = Fit { options, start };
-    let mut first = fit.by_joint(condensed, options.method != Method::Ordinary);
+    let (mut first, left_out) = fit.counted(model, logs)?;
+    let rows = (logs, &left_out);
     match options.method {
         Method::Ordinary | Method::Weighted => {}
-        Method::Robust(loss) => first = fit.robust(model, logs, first, loss)?,
-        Method::Likelihood => first = fit.likely(model, logs, first)?,
+        Method::Robust(loss) => first = fit.robust(model, rows, first, loss)?,
+        Method::Likelihood => first = fit.likely(model, rows, first)?,
         Method::Total => total::total(&mut first),
         Method::Instrumental => {
-            instruments::instrumental(model, logs, instruments, &mut first)?;
+            instruments::instrumental(model, rows, instruments, &mut first)?;
             return Ok(first);
         }
     }
-    let problem = Problem {
-        condensed: &first.condensed,
-        weights: &first.weights,
-        prior: &options.prior,
-        solution: &first.solution,
-    };
-    let (mut covariance, degrees_of_freedom) = problem.covariance(options.errors);
+    let (mut covariance, degrees_of_freedom) = fit.problem(&first).covariance(options.errors);
     if options.method == Method::Ordinary && options.errors == Errors::Classical {
         let triangles = first.condensed.whole();
         let squares: f64 = first.squares(&triangles).iter().sum();
@@ -149,12 +138,37 @@ pub fn estimate(
     Ok(Estimate { covariance, degrees_of_freedom, ..first })
 }
 
-struct Fit<'a> {
-    options: &'a Options,
+/// What estimates have in common.
+pub(super) struct Fit<'a> {
+    pub(super) options: &'a Options,
     start: &'a [f64],
 }
 
 impl Fit<'_> {
+    /// Least squares, weighted by joint if that is wanted, of the rows that count.
+    pub(super) fn plain(
+        &self,
+        model: &RegressionModel,
+        rows: Rows<'_>,
+    ) -> Result<Estimate, EstimateError> {
+        let condensed = Condensed::new(model, rows);
+        let count: usize = condensed.parts.iter().flatten().map(Triangle::rows).sum();
+        match count {
+            0 => Err(EstimateError::NoTorque),
+            rows if rows < condensed.rank => Err(EstimateError::TooFewRows(rows, condensed.rank)),
+            _ => Ok(self.by_joint(condensed, self.options.method != Method::Ordinary)),
+        }
+    }
+
+    pub(super) fn problem<'a>(&'a self, found: &'a Estimate) -> Problem<'a> {
+        Problem {
+            condensed: &found.condensed,
+            weights: &found.weights,
+            prior: &self.options.prior,
+            solution: &found.solution,
+        }
+    }
+
     fn solved(&self, condensed: &Condensed, triangles: &[Triangle], weights: &[f64]) -> Solution {
         let prior = &self.options.prior;
         let r = stacked(triangles, &condensed.pattern, weights, prior, condensed.rank);
@@ -204,7 +218,7 @@ impl Fit<'_> {
     fn robust(
         &self,
         model: &RegressionModel,
-        logs: &[Conditioned],
+        (logs, left_out): Rows<'_>,
         mut found: Estimate,
         loss: Loss,
     ) -> Result<Estimate, EstimateError> {
@@ -217,7 +231,7 @@ impl Fit<'_> {
                 let scale = scales[joint].max(f64::MIN_POSITIVE);
                 residual.iter().map(|residual| loss.factor(residual / scale)).collect()
             };
-            let condensed = Condensed::weighted(model, logs, &factors);
+            let condensed = Condensed::weighted(model, (logs, left_out), &factors);
             let triangles = condensed.whole();
             let joint_weights = reciprocal(&scales, &triangles);
             let next = self.solved(&condensed, &triangles, &joint_weights);
@@ -237,7 +251,7 @@ impl Fit<'_> {
     fn likely(
         &self,
         model: &RegressionModel,
-        logs: &[Conditioned],
+        (logs, left_out): Rows<'_>,
         mut found: Estimate,
     ) -> Result<Estimate, EstimateError> {
         for _ in 0..MAX_REWEIGHTING {
@@ -248,7 +262,7 @@ impl Fit<'_> {
             let factors = |log: usize, block: &Block, joint: usize| {
                 variance.factors((log, joint), block, &noise)
             };
-            let condensed = Condensed::weighted(model, logs, &factors);
+            let condensed = Condensed::weighted(model, (logs, left_out), &factors);
             let triangles = condensed.whole();
             let ones: Vec<f64> =
                 triangles.iter().map(|one| if one.rows() > 0 { 1.0 } else { 0.0 }).collect();

@@ -3,6 +3,7 @@
 //! - [`Condensed`]: logs as triangles of joints and parts
 //! - [`estimate`]: least squares, weighted, robust, by instruments, with noise on both sides
 //! - [`Errors`]: standard errors for residuals that are correlated
+//! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
 //! - [`flipped_torques`]: whose sign is wrong
 //! - [`exchanged_joints`]: whose columns have each other's names
@@ -16,6 +17,7 @@ mod exchanged;
 mod flipped;
 mod instruments;
 mod least_squares;
+mod left_out;
 mod likelihood;
 mod report;
 mod robust;
@@ -24,6 +26,7 @@ mod solve;
 mod total;
 mod triangle;
 mod validate;
+mod widening;
 
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
@@ -31,6 +34,8 @@ pub use errors::{Errors, interval_factor};
 pub use exchanged::{ExchangedColumns, ExchangedJoints, exchanged_joints};
 pub use flipped::{FlippedTorque, flipped_torques};
 pub use least_squares::{Estimate, EstimateError, Method, Options, estimate};
+pub use left_out::SlowRows;
+pub(in crate::identify) use left_out::{biased_frictions, is_biased};
 pub(in crate::identify) use likelihood::noise_of_positions;
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;

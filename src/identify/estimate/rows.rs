@@ -18,8 +18,6 @@ pub struct Block {
     /// For each joint the torque that was measured, and that less what is known; none where none
     /// was measured.
     pub torque: Vec<Option<[Vec<f64>; 2]>>,
-    /// For each joint which of its rows count; none where all do.
-    pub counts: Vec<Option<Vec<bool>>>,
 }
 
 impl Block {
@@ -51,16 +49,45 @@ pub struct BlockMaker<'a> {
     data: &'a Conditioned,
     motion: Vec<Vec<f64>>,
     rows: RegressionRows,
+    /// Columns that jump with the rate: they pass the filter of the torque.
+    coulomb: Vec<Coulomb>,
     block: Block,
+}
+
+/// A column of Coulomb friction.
+struct Coulomb {
+    joint: usize,
+    place: usize,
+    /// Times the law of the rate.
+    factor: f64,
+}
+
+/// The columns of Coulomb friction, as they are at rates of 1.
+fn coulomb(model: &RegressionModel, evaluator: &mut RegressionEvaluator) -> Vec<Coulomb> {
+    let n = model.joints.len();
+    let motion: Vec<[f64; 1]> =
+        (0..3 * n).map(|at| [if at / n == 1 { 1.0 } else { 0.0 }]).collect();
+    let motion: Vec<&[f64]> = motion.iter().map(<[f64; 1]>::as_slice).collect();
+    let mut rows = RegressionRows::default();
+    evaluator.evaluate(&motion, &mut rows).expect("there is a column for each joint");
+    let at_one = model.law.of(1.0);
+    let of = |&(joint, place): &(usize, usize)| Coulomb {
+        joint,
+        place,
+        factor: rows.column(joint, place)[0] / at_one,
+    };
+    model.coulomb().iter().map(of).collect()
 }
 
 impl<'a> BlockMaker<'a> {
     /// Blocks of conditioned data of the model's robot.
     pub fn new(model: &'a RegressionModel, data: &'a Conditioned) -> Self {
+        let mut evaluator = model.evaluator();
         Self {
             model,
-            evaluator: model.evaluator(),
-            decimator: Decimator::new(data.decimation),
+            coulomb: coulomb(model, &mut evaluator),
+            evaluator,
+            decimator: data.decimator(),
             data,
             motion: Vec::new(),
             rows: RegressionRows::default(),
@@ -96,19 +123,19 @@ impl<'a> BlockMaker<'a> {
         (block.first, block.samples) = (first, samples);
         block.columns.resize(self.model.joints.len(), Vec::new());
         block.torque.resize(self.model.joints.len(), None);
-        let slow = self.data.slow.as_deref();
-        block.counts.clear();
         for joint in 0..self.model.joints.len() {
-            let rates = &self.motion[self.model.joints.len() + joint];
-            let counted = |slowest: f64| {
-                let windows = rates.windows(2 * reach + 1).step_by(factor);
-                windows.map(|rates| is_fast(rates, slowest)).collect()
-            };
-            block.counts.push(slow.map(|slow| counted(slow[joint])));
             block.columns[joint].resize(rows.width(joint), Vec::new());
             for (place, column) in block.columns[joint].iter_mut().enumerate() {
                 column.resize(samples, 0.0);
-                decimator.apply(rows.column(joint, place), column);
+                let friction =
+                    self.coulomb.iter().find(|one| (one.joint, one.place) == (joint, place));
+                match friction {
+                    None => decimator.apply(rows.column(joint, place), column),
+                    Some(one) => {
+                        let law = |rate: f64| one.factor * self.model.law.of(rate);
+                        decimator.apply(&self.data.of_rate(joint, range.clone(), law), column);
+                    }
+                }
             }
             let Some(measured) = &self.data.torque[joint] else { continue };
             let [torque, target] = block.torque[joint].get_or_insert_default();
@@ -122,9 +149,4 @@ impl<'a> BlockMaker<'a> {
             }
         }
     }
-}
-
-/// Whether a joint moves one way, faster than this.
-fn is_fast(rates: &[f64], slowest: f64) -> bool {
-    rates.iter().all(|rate| *rate > slowest) || rates.iter().all(|rate| *rate < -slowest)
 }

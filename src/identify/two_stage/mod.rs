@@ -21,7 +21,7 @@ mod readings;
 pub use fault::TwoStageError;
 
 use super::condition::{Conditioned, Conditioning};
-use super::estimate::{self, estimate};
+use super::estimate::{self, SlowRows, estimate};
 use super::log::{JointSignals, MeasuredLog};
 use crate::plants::regression::{CoulombLaw, RegressionModel};
 use crate::plants::{DriveModel, PlantModel, SeriesElasticModel};
@@ -86,16 +86,28 @@ pub struct TwoStage {
 /// Blocks over which scores are summed.
 const BLOCKS: usize = 50;
 
+/// How two stages go about a log.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TwoStageOptions {
+    /// The conditioning for springs and motors: it has no acceleration of a joint in it, and needs
+    /// the reversals of friction.
+    pub of_springs: Conditioning,
+    /// The conditioning for the load.
+    pub of_load: Conditioning,
+    /// Which rows are left out, of joints and motors; the rate is that of a joint, and of motors
+    /// [`SlowRows::Noise`] leaves out what biases.
+    pub slow: SlowRows,
+}
+
 /// Identifies a robot whose plant says which joints are elastic, with the law of Coulomb friction
 /// of `model` for joints and motors alike. The log has positions of joints, angles of the motors of
-/// elastic ones, torques of stiff joints and those of the motors of elastic ones. The two stages
-/// have conditionings of their own: the first has no acceleration of a joint in it, and needs the
-/// reversals of friction. Rotor inertias, gear ratios and radii are known (thesis 3.3.1).
+/// elastic ones, torques of stiff joints and those of the motors of elastic ones. Rotor inertias,
+/// gear ratios and radii are known (thesis 3.3.1).
 pub fn two_stage(
     plant: &PlantModel,
     model: &RegressionModel,
     log: &MeasuredLog,
-    [of_springs, of_loads]: [&Conditioning; 2],
+    how: &TwoStageOptions,
 ) -> Result<TwoStage, TwoStageError> {
     let elastic = elastic_joints(plant)?;
     if elastic.is_empty() {
@@ -111,13 +123,20 @@ pub fn two_stage(
     let conditioned = |how: &Conditioning| {
         Conditioned::new(measured.clone(), &names, how).map_err(TwoStageError::Condition)
     };
-    let motion = Motion::new(&conditioned(of_springs)?, plant.joints.len());
+    let motion = Motion::new(conditioned(&how.of_springs)?, plant.joints.len());
     let mut springs = Vec::new();
     for (place, one) in elastic.iter().enumerate() {
-        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, model.law)?);
+        let friction = (model.law, how.slow);
+        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, friction)?);
     }
-    let conditioned = conditioned(of_loads)?;
-    let load = Load { plant, model, conditioned: &conditioned, elastic: &elastic };
+    let conditioned = conditioned(&how.of_load)?;
+    let step = |joint: &JointSignals| joint.step.unwrap_or(0.0) / 12.0_f64.sqrt();
+    let options = estimate::Options {
+        slow: how.slow,
+        position_noise: log.joints.iter().map(step).collect(),
+        ..estimate::Options::default()
+    };
+    let load = Load { plant, model, conditioned: &conditioned, elastic: &elastic, options };
     load.identify(springs)
 }
 
@@ -174,6 +193,7 @@ fn measured(
 
 /// What the first stage needs of the conditioned samples that count.
 struct Motion {
+    conditioned: Conditioned,
     /// Of each joint.
     positions: Vec<Vec<f64>>,
     /// Angle, rate and acceleration of each motor of an elastic joint.
@@ -183,7 +203,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(conditioned: &Conditioned, joints: usize) -> Self {
+    fn new(conditioned: Conditioned, joints: usize) -> Self {
         let range = conditioned.range.clone();
         let mut all = Vec::new();
         conditioned.motion(range.clone(), &mut all);
@@ -196,6 +216,24 @@ impl Motion {
             motors: (joints..count).map(motor).collect(),
             torques: (joints..count).map(torque).collect(),
             positions: all[..joints].to_vec(),
+            conditioned,
+        }
+    }
+
+    /// Friction of size 1 of the motor that is the `place`-th, after the filter; a law is that of
+    /// joints: motors turn so many times as fast.
+    fn friction(&self, place: usize, law: CoulombLaw, turns: f64) -> Vec<f64> {
+        let (motor, range) = (self.positions.len() + place, self.conditioned.range.clone());
+        self.conditioned.of_rate(motor, range, |rate| law.of(rate / turns))
+    }
+
+    /// Samples in which a motor does not show its friction; none if they are to count.
+    fn slow(&self, place: usize, slow: SlowRows, turns: f64) -> Option<Vec<bool>> {
+        let motor = self.positions.len() + place;
+        match slow {
+            SlowRows::Kept => None,
+            SlowRows::Below(rate) => Some(self.conditioned.slow(motor, rate * turns, 1)),
+            SlowRows::Biasing | SlowRows::Noise => self.conditioned.near_reversals(motor, 1.0),
         }
     }
 }
@@ -218,32 +256,32 @@ impl Elastic {
         name: &str,
         motion: &Motion,
         place: usize,
-        law: CoulombLaw,
+        (law, slow): (CoulombLaw, SlowRows),
     ) -> Result<Spring, TwoStageError> {
         let [angles, rates, accelerations] = &motion.motors[place];
         readings::check_angles(name, angles, &motion.positions[self.joint], self.turns())?;
         let lever = self.spring.motor_radius / self.drive.gear_ratio;
-        // the law is that of joints: motors turn so many times as fast
         let turns = self.drive.gear_ratio.abs();
         let pairs = angles.iter().zip(&motion.positions[self.joint]);
         let columns = [
             rates.clone(),
-            rates.iter().map(|rate| law.of(rate / turns)).collect(),
+            motion.friction(place, law, turns),
             pairs.map(|(motor, q)| lever * self.elongation(*motor, *q)).collect::<Vec<f64>>(),
             vec![lever; rates.len()],
         ];
-        let rows = columns[0].len();
-        let x = DMatrix::from_fn(rows, 4, |row, column| columns[column][row]);
         let inertia = self.drive.rotor_inertia;
         let of_model = accelerations.iter().zip(&columns[2]);
         let of_model: Vec<f64> =
             of_model.map(|(a, e)| inertia * a + self.spring.stiffness * e).collect();
         readings::check_torque(name, &motion.torques[place], &of_model, self.turns())?;
         let left = motion.torques[place].iter().zip(accelerations);
-        let y = DVector::from_iterator(rows, left.map(|(torque, a)| torque - inertia * a));
-        let solved = Solved::new(&x, &y)
+        let left: Vec<f64> = left.map(|(torque, a)| torque - inertia * a).collect();
+        let is_left_out = match law {
+            CoulombLaw::Sign => motion.slow(place, slow, turns),
+            CoulombLaw::Tanh(_) => None,
+        };
+        let (solved, covariance) = Solved::counted(&columns, &left, (1, is_left_out))
             .ok_or_else(|| TwoStageError::NotExcited(format!("the spring of `{name}`")))?;
-        let covariance = solved.covariance();
         let estimate = |at: usize| Estimate {
             value: solved.values[at],
             std: covariance[(at, at)].max(0.0).sqrt(),
@@ -266,7 +304,7 @@ impl Elastic {
             covariance: shared,
             motor_zero: Estimate { value: zero, std: variance.max(0.0).sqrt() },
             residual: rms(solved.residuals.as_slice()),
-            torque: rms(y.as_slice()),
+            torque: rms(&left),
         })
     }
 }
@@ -278,6 +316,7 @@ struct Load<'a> {
     /// The joints, then the motors of the elastic ones.
     conditioned: &'a Conditioned,
     elastic: &'a [Elastic],
+    options: estimate::Options,
 }
 
 impl Load<'_> {
@@ -311,8 +350,7 @@ impl Load<'_> {
     fn estimate(&self, forces: &[[f64; 2]]) -> Result<estimate::Estimate, TwoStageError> {
         let logs = [self.loads(forces)];
         let start = vec![0.0; self.model.rank()];
-        let options = estimate::Options::default();
-        let found = estimate(self.model, &logs, &[], &options, &start);
+        let found = estimate(self.model, &logs, &[], &self.options, &start);
         let found = found.map_err(TwoStageError::Estimate)?;
         match found.solution.excited() == self.model.rank() {
             true => Ok(found),
@@ -365,6 +403,30 @@ struct Solved {
 }
 
 impl Solved {
+    /// Of columns and what they are to give, with the covariance. Of the friction in a column rows
+    /// that bias it more than its error says are left out.
+    fn counted(
+        columns: &[Vec<f64>; 4],
+        left: &[f64],
+        (friction, left_out): (usize, Option<Vec<bool>>),
+    ) -> Option<(Self, DMatrix<f64>)> {
+        let of = |rows: &[usize]| {
+            let x = DMatrix::from_fn(rows.len(), 4, |row, column| columns[column][rows[row]]);
+            let y = DVector::from_fn(rows.len(), |row, _| left[rows[row]]);
+            let solved = Self::new(&x, &y)?;
+            let covariance = solved.covariance();
+            Some((solved, covariance))
+        };
+        let all: Vec<usize> = (0..left.len()).collect();
+        let found = of(&all)?;
+        let Some(left_out) = left_out else { return Some(found) };
+        let counted: Vec<usize> = all.into_iter().filter(|&row| !left_out[row]).collect();
+        let share = 1.0 - counted.len() as f64 / left.len().max(1) as f64;
+        let variance = found.1[(friction, friction)];
+        let is_biased = estimate::is_biased(share, found.0.values[friction], variance);
+        Some(if is_biased { of(&counted).unwrap_or(found) } else { found })
+    }
+
     /// None if a column depends on others.
     fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<Self> {
         if x.nrows() < x.ncols() {
@@ -381,19 +443,34 @@ impl Solved {
         values.iter().all(|v| v.is_finite()).then_some(Self { values, residuals, q, inverse })
     }
 
-    /// Covariance of the values, from sums of scores over blocks of time.
+    /// Covariance of the values, from sums of scores over blocks of time, neighbours counted half.
     fn covariance(&self) -> DMatrix<f64> {
         let (rows, columns) = self.q.shape();
         let blocks = BLOCKS.min(rows / 4).max(1);
-        let mut spread = DMatrix::zeros(columns, columns);
-        for block in 0..blocks {
+        let score = |block: usize| {
             let (from, to) = (block * rows / blocks, (block + 1) * rows / blocks);
             let part = self.q.rows(from, to - from);
-            let score = part.tr_mul(&self.residuals.rows(from, to - from));
-            spread += &score * score.transpose();
+            part.tr_mul(&self.residuals.rows(from, to - from))
+        };
+        let scores: Vec<DVector<f64>> = (0..blocks).map(score).collect();
+        let mut spread = DMatrix::zeros(columns, columns);
+        for score in &scores {
+            spread += score * score.transpose();
+        }
+        let alone = spread.clone();
+        for pair in scores.windows(2) {
+            let cross = &pair[0] * pair[1].transpose();
+            spread += (&cross + cross.transpose()) * 0.5;
         }
         let correction = blocks as f64 / (blocks as f64 - 1.0).max(1.0);
-        correction * &self.inverse * spread * self.inverse.transpose()
+        let of =
+            |spread: &DMatrix<f64>| correction * &self.inverse * spread * self.inverse.transpose();
+        let (mut covariance, least) = (of(&spread), of(&alone));
+        // few blocks may have neighbours that take away more than there is
+        if (0..columns).any(|at| covariance[(at, at)] < 0.25 * least[(at, at)]) {
+            covariance = least;
+        }
+        covariance
     }
 }
 

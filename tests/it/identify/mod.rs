@@ -3,6 +3,7 @@
 mod emps;
 mod estimate;
 mod forward;
+mod friction;
 mod gait;
 mod leg;
 mod log;

@@ -1,8 +1,9 @@
 //! The experiment of thesis 3.3.4 as a simulation: two stiff and three series elastic joints.
 
 use denavit::identify::condition::{Conditioning, Filter};
+use denavit::identify::estimate::SlowRows;
 use denavit::identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
-use denavit::identify::two_stage::{TwoStage, TwoStageError, two_stage};
+use denavit::identify::two_stage::{TwoStage, TwoStageError, TwoStageOptions, two_stage};
 use denavit::model;
 use denavit::plants::PlantModel;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};
@@ -57,7 +58,9 @@ fn identified(
 ) -> Result<TwoStage, TwoStageError> {
     let mut model = regression();
     model.law = law;
-    two_stage(plant, &model, log, [&how(100.0, 1), &how(40.0, 5)])
+    let slow = SlowRows::default();
+    let options = TwoStageOptions { of_springs: how(100.0, 1), of_load: how(100.0, 10), slow };
+    two_stage(plant, &model, log, &options)
 }
 
 #[test]
@@ -71,23 +74,24 @@ fn springs_friction_and_load_come_out() {
     let coulomb = [0.00456, 0.00268, 0.01178];
     for (joint, (stiffness, viscous)) in printed.into_iter().enumerate() {
         let spring = &smooth.springs[joint];
+        // the sign finds as much, since motors near their reversals do not count
         for found in [spring, &sharp.springs[joint]] {
             assert!((found.stiffness.value / stiffness - 1.0).abs() < 0.01, "{found:?}");
+            assert!((found.viscous.value / viscous - 1.0).abs() < 0.01, "{found:?}");
+            assert!((found.coulomb.value / coulomb[joint] - 1.0).abs() < 0.005, "{found:?}");
         }
-        assert!((spring.viscous.value / viscous - 1.0).abs() < 0.05, "{spring:?}");
-        assert!((spring.coulomb.value / coulomb[joint] - 1.0).abs() < 0.02, "{spring:?}");
-        assert!(spring.residual < sharp.springs[joint].residual, "the law that is true fits best");
     }
     let model = regression();
-    let mut inside = 0;
-    for (parameter, found) in model.listed.iter().zip(&smooth.listed) {
-        let truth = parameter.value.expect("the model has values");
-        let apart = (found.value - truth).abs() / found.std;
-        println!("{}: {} for {truth}, {apart:.2} errors", parameter.name, found.value);
-        assert!(apart < 5.0, "{}: {} for {truth}", parameter.name, found.value);
-        inside += usize::from(apart < 2.0);
+    for listed in [&smooth.listed, &sharp.listed] {
+        let mut inside = 0;
+        for (parameter, found) in model.listed.iter().zip(listed) {
+            let truth = parameter.value.expect("the model has values");
+            let apart = (found.value - truth).abs() / found.std;
+            assert!(apart < 3.5, "{}: {} for {truth}", parameter.name, found.value);
+            inside += usize::from(apart < 2.0);
+        }
+        assert!(inside >= 16, "{inside} of 18 parameters of the load within two standard errors");
     }
-    assert!(inside >= 14, "{inside} of 18 parameters of the load within two standard errors");
 }
 
 #[test]

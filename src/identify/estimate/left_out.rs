@@ -1,0 +1,118 @@
+//! Rows that are left out: where a joint turns round or hardly moves, its friction is not what the
+//! sign of its rate says, and the filter smears that over its own time.
+
+use super::Options;
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::{CoulombLaw, RegressionModel};
+use nalgebra::{DMatrix, DVector};
+
+/// Which rows of a joint are left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SlowRows {
+    /// Those within the filter's time of a reversal, of joints whose Coulomb friction, as the sign
+    /// of a rate, is large enough for them to bias it.
+    #[default]
+    Biasing,
+    /// None.
+    Kept,
+    /// Those in which the joint is not faster than this, or turns round [rad/s, m/s].
+    Below(f64),
+    /// The same with three times what noise of the position makes of a rate.
+    Noise,
+}
+
+/// Deviations of a rate's noise that are slow.
+const NOISE: f64 = 3.0;
+
+/// The bias of friction, in its standard errors, from which on rows are left out: an interval of
+/// 95 % that is off by so much holds in 92 %.
+const BIAS: f64 = 0.5;
+
+/// The least share of its rows that a joint keeps.
+const LEAST: f64 = 0.1;
+
+/// Whether a share of samples near reversals biases Coulomb friction of a value and variance.
+pub(in crate::identify) fn is_biased(share: f64, friction: f64, variance: f64) -> bool {
+    friction.abs() * share > BIAS * variance.max(0.0).sqrt()
+}
+
+/// For each log the samples near reversals of a joint.
+fn near(logs: &[Conditioned], joint: usize, times: f64) -> Vec<Vec<bool>> {
+    let of_log = |log: &Conditioned| {
+        log.near_reversals(joint, times).unwrap_or_else(|| vec![false; log.range.len()])
+    };
+    logs.iter().map(of_log).collect()
+}
+
+/// The joints whose Coulomb friction, as the sign of a rate, is biased by rows near reversals by
+/// more than its error shows, each with the share of samples.
+pub(in crate::identify) fn biased_frictions(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (phi, covariance): (&DVector<f64>, &DMatrix<f64>),
+) -> Vec<(usize, f64)> {
+    if model.law != CoulombLaw::Sign {
+        return Vec::new();
+    }
+    let biased = |&(joint, place): &(usize, usize)| {
+        let at = model.pattern()[joint][place];
+        let near = near(logs, joint, 1.0);
+        let count = near.iter().flatten().filter(|&&near| near).count();
+        let share = count as f64 / near.iter().map(Vec::len).sum::<usize>().max(1) as f64;
+        is_biased(share, phi[at], covariance[(at, at)]).then_some((joint, share))
+    };
+    model.coulomb().iter().filter_map(biased).collect()
+}
+
+/// For each log and joint whether samples before decimation are left out; none where all count.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LeftOut(Vec<Vec<Option<Vec<bool>>>>);
+
+impl LeftOut {
+    /// What the options ask for before anything is known of friction.
+    pub(super) fn asked(logs: &[Conditioned], options: &Options) -> Self {
+        let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {
+            let slowest: Vec<f64> = match options.slow {
+                SlowRows::Biasing | SlowRows::Kept => return vec![None; log.joints()],
+                SlowRows::Below(rate) => vec![rate; log.joints()],
+                SlowRows::Noise => {
+                    let of_rate = NOISE * log.noise_gains()[1][1].sqrt();
+                    let noise = |joint: usize| options.position_noise.get(joint).copied();
+                    (0..log.joints()).map(|at| of_rate * noise(at).unwrap_or(0.0)).collect()
+                }
+            };
+            let slow = |joint: usize| Some(log.slow(joint, slowest[joint], 1));
+            (0..log.joints()).map(slow).collect()
+        };
+        Self(logs.iter().map(of_log).collect())
+    }
+
+    /// Leaves out a joint's rows near reversals; not if that leaves too few.
+    pub(super) fn widen(&mut self, logs: &[Conditioned], joint: usize, times: f64) -> bool {
+        let near = near(logs, joint, times);
+        let counted = |(log, near): (&Conditioned, &Vec<bool>)| {
+            log.counts(near, 0, log.samples()).into_iter().filter(|counts| *counts).count()
+        };
+        let kept: usize = logs.iter().zip(&near).map(counted).sum();
+        let all: usize = logs.iter().map(Conditioned::samples).sum();
+        let is_enough = kept as f64 >= LEAST * all as f64;
+        if is_enough {
+            for (of_log, near) in self.0.iter_mut().zip(near) {
+                of_log[joint] = Some(near);
+            }
+        }
+        is_enough
+    }
+
+    /// Which of so many samples that are left after decimation count for a joint, from `first` on;
+    /// none where all do.
+    pub(super) fn counts(
+        &self,
+        (number, log): (usize, &Conditioned),
+        joint: usize,
+        (first, samples): (usize, usize),
+    ) -> Option<Vec<bool>> {
+        let left_out = self.0[number][joint].as_ref()?;
+        Some(log.counts(left_out, first, samples))
+    }
+}

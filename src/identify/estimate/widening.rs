@@ -1,0 +1,105 @@
+//! How many rows near reversals are left out: more and more, until friction does not change.
+//!
+//! How wide the range of rates is in which friction is not its sign depends on the robot: a steep
+//! line, stiction, creeping. Where the range that is left out is too small, friction changes with
+//! the range by more than chance; the smallest that agrees with one of twice the rate is taken
+//! (after Lepski 1990).
+
+use super::errors::Errors;
+use super::least_squares::{Estimate, EstimateError, Fit};
+use super::left_out::{LeftOut, SlowRows, biased_frictions};
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::RegressionModel;
+use nalgebra::DMatrix;
+
+/// Doublings of the rate below which rows are left out.
+const MOST_DOUBLINGS: u32 = 5;
+
+/// Standard errors of a change that are no chance.
+const SURE: f64 = 2.0;
+
+/// The least share of its variance that a friction's change is taken to have.
+const LEAST: f64 = 1.0 / 16.0;
+
+/// An estimate with the covariance that is compared.
+struct Fitted {
+    found: Estimate,
+    covariance: DMatrix<f64>,
+    left_out: LeftOut,
+}
+
+impl Fit<'_> {
+    /// Least squares of the rows that count, with those that do not.
+    pub(super) fn counted(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+    ) -> Result<(Estimate, LeftOut), EstimateError> {
+        let mut fitted = self.fitted(model, logs, LeftOut::asked(logs, self.options))?;
+        let mut tried = vec![false; model.joints.len()];
+        // without the bias of one friction errors are smaller, which may show that of another
+        while self.options.slow == SlowRows::Biasing {
+            let of = (&fitted.found.solution.phi, &fitted.covariance);
+            let biased = biased_frictions(model, logs, of).into_iter().map(|(joint, _)| joint);
+            let joints: Vec<usize> = biased.filter(|&joint| !tried[joint]).collect();
+            if joints.is_empty() {
+                break;
+            }
+            joints.iter().for_each(|&joint| tried[joint] = true);
+            fitted = self.widened(model, logs, (fitted, joints));
+        }
+        Ok((fitted.found, fitted.left_out))
+    }
+
+    fn fitted(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        left_out: LeftOut,
+    ) -> Result<Fitted, EstimateError> {
+        let found = self.plain(model, (logs, &left_out))?;
+        let (covariance, _) = self.problem(&found).covariance(Errors::Correlated);
+        Ok(Fitted { found, covariance, left_out })
+    }
+
+    /// Without rows near reversals of joints, as many as it takes.
+    fn widened(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        (mut fitted, mut joints): (Fitted, Vec<usize>),
+    ) -> Fitted {
+        for doublings in 0..=MOST_DOUBLINGS {
+            let times = f64::from(1 << doublings);
+            let mut left_out = fitted.left_out.clone();
+            joints.retain(|&joint| left_out.widen(logs, joint, times));
+            if joints.is_empty() {
+                break;
+            }
+            let Ok(next) = self.fitted(model, logs, left_out) else { break };
+            if next.found.solution.excited() < fitted.found.solution.excited() {
+                break;
+            }
+            if doublings > 0 {
+                joints.retain(|&joint| has_moved(model, joint, [&fitted, &next]));
+                if joints.is_empty() {
+                    break;
+                }
+            }
+            fitted = next;
+        }
+        fitted
+    }
+}
+
+/// Whether Coulomb friction of a joint changes by more than chance as more rows are left out.
+fn has_moved(model: &RegressionModel, joint: usize, [before, after]: [&Fitted; 2]) -> bool {
+    let friction = model.coulomb().iter().find(|(of, _)| *of == joint);
+    friction.is_some_and(|&(_, place)| {
+        let at = model.pattern()[joint][place];
+        let of = |one: &Fitted| (one.found.solution.phi[at], one.covariance[(at, at)].max(0.0));
+        let ((value, variance), (other, larger)) = (of(before), of(after));
+        let of_change = (larger - variance).max(LEAST * variance);
+        (other - value).abs() > SURE * of_change.sqrt()
+    })
+}

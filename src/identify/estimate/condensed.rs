@@ -40,8 +40,13 @@ pub(super) type RowsOf<'a> =
     &'a mut dyn for<'b> FnMut(usize, &'b Block, usize) -> Option<Vec<Cow<'b, [f64]>>>;
 
 impl Condensed {
+    /// Condenses all rows of conditioned logs.
+    pub fn new(model: &RegressionModel, logs: &[Conditioned]) -> Self {
+        Self::counted(model, (logs, &LeftOut::none(logs)))
+    }
+
     /// Condenses conditioned logs without the rows that are left out.
-    pub(super) fn new(model: &RegressionModel, logs: Rows<'_>) -> Self {
+    pub(super) fn counted(model: &RegressionModel, logs: Rows<'_>) -> Self {
         Self::of_rows(model, logs, (model.pattern().to_vec(), model.rank()), &mut plain)
     }
 

@@ -151,7 +151,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         rows: Rows<'_>,
     ) -> Result<Estimate, EstimateError> {
-        let condensed = Condensed::new(model, rows);
+        let condensed = Condensed::counted(model, rows);
         let count: usize = condensed.parts.iter().flatten().map(Triangle::rows).sum();
         match count {
             0 => Err(EstimateError::NoTorque),

@@ -69,6 +69,11 @@ pub(in crate::identify) fn biased_frictions(
 pub(super) struct LeftOut(Vec<Vec<Option<Vec<bool>>>>);
 
 impl LeftOut {
+    /// Nothing.
+    pub(super) fn none(logs: &[Conditioned]) -> Self {
+        Self(logs.iter().map(|log| vec![None; log.joints()]).collect())
+    }
+
     /// What the options ask for before anything is known of friction.
     pub(super) fn asked(logs: &[Conditioned], options: &Options) -> Self {
         let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {

@@ -37,18 +37,20 @@ impl Fit<'_> {
     ) -> Result<(Estimate, LeftOut), EstimateError> {
         let mut fitted = self.fitted(model, logs, LeftOut::asked(logs, self.options))?;
         let mut tried = vec![false; model.joints.len()];
+        if self.options.slow != SlowRows::Biasing {
+            return Ok((fitted.found, fitted.left_out));
+        }
         // without the bias of one friction errors are smaller, which may show that of another
-        while self.options.slow == SlowRows::Biasing {
+        loop {
             let of = (&fitted.found.solution.phi, &fitted.covariance);
             let biased = biased_frictions(model, logs, of).into_iter().map(|(joint, _)| joint);
             let joints: Vec<usize> = biased.filter(|&joint| !tried[joint]).collect();
             if joints.is_empty() {
-                break;
+                return Ok((fitted.found, fitted.left_out));
             }
             joints.iter().for_each(|&joint| tried[joint] = true);
             fitted = self.widened(model, logs, (fitted, joints));
         }
-        Ok((fitted.found, fitted.left_out))
     }
 
     fn fitted(

@@ -203,7 +203,7 @@ enum ErrorsName {
 }
 
 impl Arguments {
-    fn options(&self, model: &RegressionModel, noise: Vec<f64>) -> Options {
+    fn options(&self, model: &RegressionModel, noise: Vec<f64>) -> Result<Options, Failure> {
         let method = match self.method {
             MethodName::Ols => Method::Ordinary,
             MethodName::Wls => Method::Weighted,
@@ -219,7 +219,10 @@ impl Arguments {
             ErrorsName::Bootstrap => Errors::Bootstrap { draws: 200, seed: self.seed },
         };
         let prior = if self.prior { prior(model) } else { Vec::new() };
-        Options { method, errors, prior, position_noise: noise, slow: self.skip_slow }
+        if self.prior && prior.is_empty() {
+            return Err(IdentifyFailure::NoPrior(model.model.clone()).into());
+        }
+        Ok(Options { method, errors, prior, position_noise: noise, slow: self.skip_slow })
     }
 }
 
@@ -293,7 +296,7 @@ impl Answered {
         let mut read = logs::read((arguments, &conditions), &robot, &model)?;
         let controller = arguments.controller.as_deref();
         let controller = controller.map(|path| Controlled::read(path, &robot)).transpose()?;
-        let options = arguments.options(&model, read.position_noise.clone());
+        let options = arguments.options(&model, read.position_noise.clone())?;
         progress.show("estimating");
         let estimated = |read: &logs::Read, options: &Options| {
             let request = Request {
@@ -329,6 +332,9 @@ impl Answered {
         }
         if let (Some(exchanged), false) = (&found.exchanged, arguments.accept_suspicious) {
             return Err(IdentifyFailure::Exchanged(exchanged.clone()).into());
+        }
+        if let (Some(units), false) = (&found.units, arguments.accept_suspicious) {
+            return Err(IdentifyFailure::Units(units.clone()).into());
         }
         progress.show("simulating the logs again");
         let simulated = match (&controller, read.motions.is_empty()) {

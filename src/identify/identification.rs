@@ -3,9 +3,9 @@
 use super::condition::Conditioned;
 use super::estimate::{
     Consistent, Convergence, Estimate, EstimateError, ExchangedJoints, FlippedTorque,
-    IdentifiedParameter, Options, SlowRows, Status, Validation, biased_frictions, consistent,
-    convergence, estimate, exchanged_joints, flipped_torques, noise_of_positions, parameters,
-    validate,
+    IdentifiedParameter, MistakenUnits, Options, SlowRows, Status, Validation, biased_frictions,
+    consistent, convergence, estimate, exchanged_joints, flipped_torques, mistaken_units,
+    noise_of_positions, parameters, validate,
 };
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -48,6 +48,8 @@ pub struct Identification {
     pub reversals: Vec<(String, f64)>,
     /// Two joints whose columns seem to be exchanged.
     pub exchanged: Option<ExchangedJoints>,
+    /// Time or torques that seem to be in another unit.
+    pub units: Option<MistakenUnits>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
     /// The nearest bodies that exist.
@@ -118,6 +120,11 @@ impl Identification {
             )
         });
         let exchanged = self.exchanged.iter().map(|one| format!("Accepted: {one}."));
+        let first = |one: &MistakenUnits| {
+            let text = one.to_string();
+            format!("Accepted: {}.", text.lines().next().unwrap_or_default())
+        };
+        let units = self.units.iter().map(first);
         let reversals = self.reversals.iter().map(|(joint, share)| {
             format!(
                 "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
@@ -127,7 +134,7 @@ impl Identification {
                 100.0 * share
             )
         });
-        exchanged.chain(flipped).chain(self.bias()).chain(reversals).collect()
+        exchanged.chain(units).chain(flipped).chain(self.bias()).chain(reversals).collect()
     }
 
     /// The names of parameters that the motion does not show.
@@ -163,6 +170,7 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         left_out: left_out(model, train, &found),
         parameters: listed,
         exchanged: (left.relative > MISFIT).then(|| exchanged_joints(model, train)).flatten(),
+        units: mistaken_units(model, train),
         train: left,
         position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: judged(phi),

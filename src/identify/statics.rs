@@ -54,6 +54,9 @@ pub enum StaticFault {
     Repeated(usize, String),
     /// Nothing is on the scale.
     NothingWeighed(usize),
+    /// Links weigh so many times what the model says, as if in another unit: mass \[kg\], that of
+    /// the model \[kg\].
+    Unit(usize, f64, f64),
     /// A posture has not one position for each joint: expected, found.
     WrongPosture(usize, usize, usize),
     /// A standard deviation is not positive, or a number not finite.
@@ -83,6 +86,12 @@ impl fmt::Display for StaticFault {
                 "measurement {}: `links` is empty\n  hint: name the links on the scale",
                 at + 1
             ),
+            Self::Unit(at, mass, expected) => write!(
+                f,
+                "measurement {}: {mass} kg, and the model says {expected} kg: is it in grams?\n  \
+                 hint: --accept-suspicious takes it as it is",
+                at + 1
+            ),
             Self::WrongPosture(at, expected, found) => write!(
                 f,
                 "measurement {}: a posture has {expected} positions, {found} are given",
@@ -98,6 +107,27 @@ impl fmt::Display for StaticFault {
 }
 
 impl std::error::Error for StaticFault {}
+
+/// Times the model's mass that no mistake of a model is.
+const OTHER_UNIT: f64 = 100.0;
+
+/// Weighings that seem to be in another unit, by the masses of the model.
+pub fn suspicious_units(
+    model: &RegressionModel,
+    measurements: &[StaticMeasurement],
+) -> Vec<StaticFault> {
+    let mass = |link: &String| {
+        let name = format!("m_{link}");
+        model.standard.iter().find(|one| one.name == name)?.value
+    };
+    let suspicious = |(at, measurement): (usize, &StaticMeasurement)| {
+        let StaticMeasurement::Weighing { links, mass_kg, .. } = measurement else { return None };
+        let expected: f64 = links.iter().map(mass).sum::<Option<f64>>()?;
+        let is_other = expected > 0.0 && *mass_kg > OTHER_UNIT * expected;
+        is_other.then_some(StaticFault::Unit(at, *mass_kg, expected))
+    };
+    measurements.iter().enumerate().filter_map(suspicious).collect()
+}
 
 /// What measurements at rest say of the standard parameters, or all that is wrong with them.
 ///

@@ -115,7 +115,8 @@ impl RegressionModel {
     /// are kept before others in what is listed.
     ///
     /// Rank and formulas are exact for the constants as symbols. Where their values make more
-    /// columns depend on others (a length that is 0), those of the values are taken.
+    /// columns depend on others (a length that is 0, a centre of mass that is known to be on an
+    /// axis), those of the values are taken.
     pub fn new(
         robot: &Robot,
         options: RegressorOptions,
@@ -124,13 +125,15 @@ impl RegressionModel {
         let side = robot.torque_side;
         let robot = with_joint_parameters(robot, options);
         let base = reduced(&robot, keep)?;
-        if let Ok(numeric) = bake_geometry(&robot)
-            && let Ok(special) = reduced(&numeric, keep)
-            && special.rank() < base.rank()
-        {
-            return Self::of(&numeric, special, side);
+        let special = || {
+            let numeric = bake_geometry(&robot).ok()?;
+            Some((reduced(&numeric, keep).ok()?, numeric))
+        };
+        let special = special().filter(|(special, _)| special.rank() < base.rank());
+        match special {
+            Some((special, numeric)) => Self::of(&numeric, special, side),
+            None => Self::of(&robot, base, side),
         }
-        Self::of(&robot, base, side)
     }
 
     fn of(

@@ -79,7 +79,7 @@ impl IdentificationPage<'_> {
             text += &format!(
                 " The estimate belongs to no bodies that exist; the nearest ones are {} standard \
                  errors away, over all parameters.",
-                short(found.consistent.distance.sqrt())
+                short(found.consistent.distance)
             );
         }
         text

@@ -1,5 +1,6 @@
 //! Baking: the values of the model in place of its parameter symbols.
 
+use super::parameter::Parameter;
 use super::robot::{Body, Drive, Joint, Robot};
 use crate::expr::{ExprId, Node, SymbolClass, substitute};
 use rustc_hash::FxHashMap;
@@ -34,19 +35,24 @@ pub fn bake(robot: &Robot) -> Result<Robot, BakeError> {
     bake_where(robot, |_| true)
 }
 
-/// The robot with numbers for lengths, angles and gravity; what is identified stays a symbol.
+/// The robot with numbers for lengths, angles and gravity, and for what is known of its bodies;
+/// what is identified stays a symbol.
 pub fn bake_geometry(robot: &Robot) -> Result<Robot, BakeError> {
-    let is_geometry = |symbol: ExprId| match robot.dag.node(symbol) {
-        Node::Symbol(id) => robot.dag.symbols()[id].class == SymbolClass::Geometry,
+    let is_known = |parameter: &Parameter| match robot.dag.node(parameter.symbol) {
+        Node::Symbol(id) => match robot.dag.symbols()[id].class {
+            SymbolClass::Geometry => true,
+            SymbolClass::Inertia => parameter.known && parameter.default.is_some(),
+            _ => false,
+        },
         _ => false,
     };
-    bake_where(robot, is_geometry)
+    bake_where(robot, is_known)
 }
 
-fn bake_where(robot: &Robot, is_baked: impl Fn(ExprId) -> bool) -> Result<Robot, BakeError> {
+fn bake_where(robot: &Robot, is_baked: impl Fn(&Parameter) -> bool) -> Result<Robot, BakeError> {
     let mut values: FxHashMap<ExprId, ExprId> = FxHashMap::default();
     let mut missing = Vec::new();
-    for parameter in robot.parameters.values().filter(|parameter| is_baked(parameter.symbol)) {
+    for parameter in robot.parameters.values().filter(|parameter| is_baked(parameter)) {
         match parameter.default {
             Some(value) => _ = values.insert(parameter.symbol, value),
             None => missing.push(parameter.name.clone()),

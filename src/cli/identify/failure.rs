@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use denavit::identify::UpdateError;
 use denavit::identify::condition::ConditionError;
-use denavit::identify::estimate::{EstimateError, ExchangedJoints};
+use denavit::identify::estimate::{EstimateError, ExchangedJoints, MistakenUnits};
 use denavit::identify::forward::ForwardError;
 use denavit::identify::log::{LogFaults, MappingError};
 use denavit::identify::statics::StaticFault;
@@ -42,6 +42,12 @@ pub(crate) enum IdentifyFailure {
     Statics(String, Vec<StaticFault>),
     /// Instrumental variables without instruments, and nothing to simulate them with.
     NoInstruments,
+    /// `--prior`, and the model states no standard deviation that says anything.
+    NoPrior(String),
+    /// Two logs for training say the same.
+    SameLogs([String; 2]),
+    /// Units of the logs seem to be others.
+    Units(MistakenUnits),
     /// A picture of a simulation that was not made.
     NotSimulated,
     /// A formula is not shown in a page.
@@ -78,6 +84,20 @@ impl fmt::Display for IdentifyFailure {
                 f,
                 "--method iv needs --instruments LOG.., or --controller FILE to simulate them"
             ),
+            Self::NoPrior(model) => write!(
+                f,
+                "{model}: --prior, and no base parameter is known by the standard deviations that \
+                 the model states\n  hint: {{\"value\": 2, \"std\": 0.1}} states one; all numbers \
+                 that a parameter depends on must have one"
+            ),
+            Self::SameLogs([one, other]) => write!(
+                f,
+                "{other} says the same as {one}: measured once, it counts once\n  hint: name each \
+                 log once"
+            ),
+            Self::Units(units) => {
+                write!(f, "{units}\n  hint: --accept-suspicious takes the logs as they are")
+            }
             Self::NotSimulated => write!(
                 f,
                 "--motion-svg: no log was simulated again\n  hint: --validate or --controller \

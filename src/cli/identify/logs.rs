@@ -163,15 +163,34 @@ pub(super) fn read(
     let simulates_train = controlled && (arguments.validate.is_empty() || needs_instruments);
     let train = reader.kept(&arguments.train, simulates_train.then_some(f64::INFINITY))?;
     let whole = reader.motions.take().unwrap_or_default();
+    let mut numbered = train.iter().enumerate();
+    let same = numbered.find_map(|(at, log)| {
+        let before = train[..at].iter().find(|other| says_the_same(other, log))?;
+        Some([&before.file, &log.file].map(String::clone))
+    });
+    if let Some(same) = same {
+        return Err(IdentifyFailure::SameLogs(same).into());
+    }
     let simulates = is_fixed || controlled;
     let validate = reader.kept(&arguments.validate, simulates.then_some(LONGEST_S))?;
     let mut motions = reader.motions.take().unwrap_or_default();
+    for log in &validate {
+        if let Some(same) = train.iter().find(|other| says_the_same(other, log)) {
+            let remark = LogRemark::SameAs { other: same.file.clone() };
+            reader.remarks.push((log.file.clone(), remark));
+        }
+    }
     if arguments.validate.is_empty() {
         motions.clone_from(&whole);
     }
     let instruments = reader.kept(&arguments.instruments, None)?;
     let Reader { remarks, noise, .. } = reader;
     Ok(Read { train, validate, instruments, motions, whole, remarks, position_noise: noise })
+}
+
+/// Whether two logs have one motion with one noise.
+fn says_the_same(one: &Conditioned, other: &Conditioned) -> bool {
+    one.range == other.range && one.q == other.q && one.torque == other.torque
 }
 
 /// A log as it was measured, without a look at torques of motors behind springs.

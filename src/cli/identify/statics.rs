@@ -9,7 +9,7 @@ use crate::cli::json::write_json;
 use crate::cli::progress::Progress;
 use denavit::identify::knowledge::{Consequences, Determined, Knowledge};
 use denavit::identify::read_statics;
-use denavit::identify::statics::static_knowledge;
+use denavit::identify::statics::{static_knowledge, suspicious_units};
 use denavit::plants::regression::RegressionModel;
 use denavit::report::{Align, Table, paragraph, short};
 use serde_json::json;
@@ -27,6 +27,10 @@ pub(super) fn run(
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
     let file = path.display().to_string();
     let measured = read_statics(&file, &read_file(path)?, &model).map_err(Failure::Scenario)?;
+    let suspicious = suspicious_units(&model, &measured);
+    if !(suspicious.is_empty() || arguments.accept_suspicious) {
+        return Err(IdentifyFailure::Statics(file, suspicious).into());
+    }
     let mut knowledge = static_knowledge(&model, &measured)
         .map_err(|faults| IdentifyFailure::Statics(file, faults))?;
     let mut remarks = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::{Shown, SimulationGap};
 use crate::cli::failure::Failure;
-use denavit::identify::estimate::{JointResidual, Status};
+use denavit::identify::estimate::{IdentifiedParameter, JointResidual, Status};
 use denavit::identify::forward::Forward;
 use denavit::report::{Align, Table, paragraph, short};
 use std::io::Write;
@@ -24,6 +24,22 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         short(solution.condition),
         short(solution.scaled_condition)
     )?;
+    writeln!(out, "{}", parameter_table(&found.parameters))?;
+    write_residuals(out, shown)?;
+    if let Some(gap) = shown.simulated {
+        write_simulation(out, gap)?;
+    }
+    if let Some(text) = found.rows_left_out() {
+        writeln!(out, "\n{}", paragraph("", "", &text))?;
+    }
+    for text in found.warnings() {
+        writeln!(out, "\n{}", paragraph("", "", &text))?;
+    }
+    write_nearest(out, found.consistent.distance)
+}
+
+/// Base parameters that were found.
+pub(super) fn parameter_table(parameters: &[IdentifiedParameter]) -> Table {
     let mut table = Table::new(&[
         ("parameter", Align::Left),
         ("value", Align::Right),
@@ -33,7 +49,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         ("", Align::Left),
         ("formula", Align::Left),
     ]);
-    for one in &found.parameters {
+    for one in parameters {
         let status = match one.status {
             Status::Identified => "",
             Status::Uncertain => "may be 0",
@@ -50,28 +66,17 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
             shortened(formula),
         ]);
     }
-    writeln!(out, "{}", table.without_empty_columns())?;
-    write_residuals(out, shown)?;
-    if let Some(gap) = shown.simulated {
-        write_simulation(out, gap)?;
-    }
-    if let Some(text) = found.rows_left_out() {
-        writeln!(out, "\n{}", paragraph("", "", &text))?;
-    }
-    for text in found.warnings() {
-        writeln!(out, "\n{}", paragraph("", "", &text))?;
-    }
-    write_nearest(out, found.consistent.distance)
+    table.without_empty_columns()
 }
 
-/// Says if the bodies nearest to an estimate are so far from it, squared standard errors, that it
+/// Says if the bodies nearest to an estimate are so far from it, in standard errors, that it
 /// belongs to none.
 pub(super) fn write_nearest(out: &mut dyn Write, distance: f64) -> Result<(), Failure> {
     if distance > 1.0 {
         let text = format!(
             "The estimate belongs to no bodies that exist: the nearest ones are {} standard errors \
              away, over all parameters. A model file gets those.",
-            short(distance.sqrt())
+            short(distance)
         );
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }

@@ -153,18 +153,7 @@ impl Found<'_> {
             }
         }
         writeln!(out, "{table}")?;
-        let mut table = columns(&["parameter", "value", "std", "model", "unit", "formula"]);
-        for one in &self.parameters {
-            table.push(vec![
-                one.name.clone(),
-                short(one.value),
-                one.std.map_or("-".to_owned(), |std| format!("{std:.1e}")),
-                one.model_value.map_or(String::new(), short),
-                one.unit.clone(),
-                if one.expression == one.name { String::new() } else { one.expression.clone() },
-            ]);
-        }
-        writeln!(out, "{}", table.without_empty_columns())?;
+        writeln!(out, "{}", text::parameter_table(&self.parameters))?;
         let mut table = columns(&["joint", "torque", "residual"]);
         for (joint, [missed, size]) in self.model.joints.iter().zip(&self.stages.residuals) {
             table.push(vec![joint.name.clone(), short(*size), short(*missed)]);
@@ -193,7 +182,7 @@ impl Found<'_> {
 }
 
 fn columns(names: &[&str]) -> Table {
-    let is_text = ["joint", "", "unit", "parameter", "formula"];
+    let is_text = ["joint", "", "unit"];
     let align = |name: &str| if is_text.contains(&name) { Align::Left } else { Align::Right };
     let columns: Vec<(&str, Align)> = names.iter().map(|name| (*name, align(name))).collect();
     Table::new(&columns)

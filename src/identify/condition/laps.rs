@@ -19,7 +19,47 @@ pub struct Laps {
     pub count: usize,
 }
 
+/// Joints whose variance is a smaller share of the largest one do not say whether laps repeat.
+const MOVES: f64 = 1e-4;
+
+/// The largest share of a joint's variance, of those that move, by which its position differs
+/// from itself so many samples later.
+fn misfit(moving: &[(&[f64], f64)], lag: usize, stride: usize) -> f64 {
+    let of_joint = |(q, variance): &(&[f64], f64)| {
+        let (mut sum, mut count) = (0.0, 0);
+        for k in (0..q.len() - lag).step_by(stride) {
+            sum += (q[k + lag] - q[k]).powi(2);
+            count += 1;
+        }
+        sum / (2.0 * f64::from(count.max(1)) * variance)
+    };
+    moving.iter().map(of_joint).fold(0.0, f64::max)
+}
+
+/// Positions between two samples, of joints that move, with their variances.
+fn moving(positions: &[Vec<f64>], (start, end): (usize, usize)) -> Vec<(&[f64], f64)> {
+    let all = positions.iter().map(|q| (&q[start..end], variance(&q[start..end])));
+    let all: Vec<(&[f64], f64)> = all.collect();
+    let most = all.iter().map(|(_, variance)| *variance).fold(0.0, f64::max);
+    all.into_iter().filter(|(_, variance)| *variance > MOVES * most).collect()
+}
+
 impl Laps {
+    /// Laps of a given period, with which the positions must repeat.
+    pub fn given(
+        positions: &[Vec<f64>],
+        (period_s, step_s): (f64, f64),
+        (start, end): (usize, usize),
+    ) -> Result<Self, ConditionError> {
+        let laps = Self::of_period(period_s, step_s, (start, end))?;
+        let stride = (end - start).div_ceil(SEARCHED).max(1);
+        let misfit = misfit(&moving(positions, (start, end)), laps.samples, stride);
+        match misfit < REPEATS {
+            true => Ok(laps),
+            false => Err(ConditionError::NotRepeated { period_s, misfit }),
+        }
+    }
+
     /// Laps of a given period from sample `start` on.
     pub fn of_period(
         period_s: f64,
@@ -47,22 +87,8 @@ impl Laps {
     ) -> Result<Self, ConditionError> {
         let samples = end - start;
         let stride = samples.div_ceil(SEARCHED).max(1);
-        let moving: Vec<(&[f64], f64)> = positions
-            .iter()
-            .map(|q| (&q[start..end], variance(&q[start..end])))
-            .filter(|(_, variance)| *variance > 0.0)
-            .collect();
-        let misfit = |lag: usize| -> f64 {
-            let of_joint = |(q, variance): &(&[f64], f64)| {
-                let (mut sum, mut count) = (0.0, 0);
-                for k in (0..samples - lag).step_by(stride) {
-                    sum += (q[k + lag] - q[k]).powi(2);
-                    count += 1;
-                }
-                sum / (2.0 * f64::from(count.max(1)) * variance)
-            };
-            moving.iter().map(of_joint).fold(0.0, f64::max)
-        };
+        let moving = moving(positions, (start, end));
+        let misfit = |lag: usize| misfit(&moving, lag, stride);
         if moving.is_empty() {
             return Err(ConditionError::NoPeriod);
         }
@@ -126,6 +152,20 @@ mod tests {
         let signal = two_harmonics(640.0, 2700);
         let laps = Laps::find(&[signal], 1e-3, (20, 2680)).expect("it repeats");
         assert_eq!((laps.samples, laps.count), (640, 4));
+    }
+
+    /// Laps of 640 samples are none of 600; a joint that rests but for noise has no say.
+    #[test]
+    fn a_period_with_which_nothing_repeats_is_refused() {
+        let mut random = crate::simulate::Random::new(3);
+        let noise: Vec<f64> = (0..2700).map(|_| 1e-4 * random.normal()).collect();
+        let positions = [two_harmonics(640.0, 2700), noise];
+        let given = |period_s: f64| Laps::given(&positions, (period_s, 1e-3), (20, 2680));
+        assert_eq!(given(0.64).map(|laps| laps.count), Ok(4));
+        for wrong in [0.6, 0.32, 0.7] {
+            let refused = matches!(given(wrong), Err(ConditionError::NotRepeated { .. }));
+            assert!(refused, "{wrong}: {:?}", given(wrong));
+        }
     }
 
     #[test]

@@ -94,6 +94,13 @@ pub enum ConditionError {
     },
     /// The motion does not repeat.
     NoPeriod,
+    /// The motion does not repeat with this period.
+    NotRepeated {
+        /// The period \[s\].
+        period_s: f64,
+        /// The share of a joint's variance by which laps differ.
+        misfit: f64,
+    },
 }
 
 impl fmt::Display for ConditionError {
@@ -119,6 +126,12 @@ impl fmt::Display for ConditionError {
             Self::OneLap { period_s } => {
                 write!(f, "the log has no two whole laps of {period_s} s")
             }
+            Self::NotRepeated { period_s, misfit } => write!(
+                f,
+                "laps of {period_s} s do not repeat: they differ by {:.0} % of the variance of a \
+                 joint\n  hint: `found` looks for the period; or do not average",
+                100.0 * misfit
+            ),
             Self::NoPeriod => {
                 write!(f, "the motion does not repeat\n  hint: give its period, or do not average")
             }
@@ -223,7 +236,7 @@ impl Conditioned {
         let span = (self.range.start, self.range.end);
         let laps = match averaging {
             Averaging::No => return Ok(()),
-            Averaging::Period(period_s) => Laps::of_period(period_s, self.step_s, span)?,
+            Averaging::Period(period_s) => Laps::given(&self.q, (period_s, self.step_s), span)?,
             Averaging::Found => Laps::find(&self.q, self.step_s, span)?,
         };
         // A lap goes on as it began, so that its edges can be filtered and differentiated.

@@ -31,8 +31,8 @@ pub struct Consistent {
     pub standard: Vec<f64>,
     /// phi of it.
     pub phi: Vec<f64>,
-    /// How far phi is from the estimate: squared standard errors over the number of parameters.
-    /// Far below 1, the estimate itself belongs to bodies that exist.
+    /// How far phi is from the estimate, in standard errors: the root of their mean square over
+    /// the parameters. Far below 1, the estimate itself belongs to bodies that exist.
     pub distance: f64,
     /// Values of the model's own numbers, where columns are products of them: their places in
     /// [`RegressionModel::parameters`].
@@ -93,7 +93,7 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     let standard = theta.as_slice().to_vec();
     let phi = model.axes_of_standard(&standard);
     let own = own_values(model, &pieces, &eta);
-    let distance = residual.norm_squared() / rank.max(1) as f64;
+    let distance = (residual.norm_squared() / rank.max(1) as f64).sqrt();
     Consistent { standard, phi, distance, own, steps }
 }
 

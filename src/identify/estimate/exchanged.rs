@@ -61,13 +61,14 @@ impl fmt::Display for ExchangedJoints {
 }
 
 /// Samples of a log.
-struct Window {
+pub(super) struct Window {
     /// q, qd and qdd of every joint.
-    motion: Vec<Vec<f64>>,
-    torque: Vec<Option<Vec<f64>>>,
+    pub(super) motion: Vec<Vec<f64>>,
+    pub(super) torque: Vec<Option<Vec<f64>>>,
 }
 
-fn windows(logs: &[Conditioned]) -> Vec<Window> {
+/// Some windows of each log.
+pub(super) fn windows(logs: &[Conditioned]) -> Vec<Window> {
     let mut all = Vec::new();
     for log in logs {
         let samples = log.samples();

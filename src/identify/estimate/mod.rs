@@ -7,6 +7,7 @@
 //! - [`validate`]: what is left of the torques
 //! - [`flipped_torques`]: whose sign is wrong
 //! - [`exchanged_joints`]: whose columns have each other's names
+//! - [`mistaken_units`]: time or torques in another unit
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
@@ -25,6 +26,7 @@ mod rows;
 mod solve;
 mod total;
 mod triangle;
+mod units;
 mod validate;
 mod widening;
 
@@ -42,4 +44,5 @@ pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
+pub use units::{MistakenUnits, mistaken_units};
 pub use validate::{JointResidual, LAGS, Validation, validate};

@@ -274,3 +274,44 @@ pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     let is_step = of_moved(multiples, all) > 0.995 && of_moved(equal, all) > 0.001;
     is_step.then_some(step)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn sampled(step: f64, digits: Option<i32>) -> Vec<f64> {
+        let at = |k: usize| {
+            let t = 1e-3 * k as f64;
+            let q = 0.8 * (TAU * 0.3 * t).sin() + 0.3 * (TAU * 0.7 * t).cos();
+            let stepped = if step > 0.0 { (q / step).round() * step } else { q };
+            let scale = digits.map_or(1.0, |digits| 10.0_f64.powi(digits));
+            if digits.is_some() { (stepped * scale).round() / scale } else { stepped }
+        };
+        (0..8000).map(at).collect()
+    }
+
+    /// Steps are found to far more digits than one difference has, in full precision and printed
+    /// to 7 digits.
+    #[test]
+    fn steps_of_encoders_are_found() {
+        for step in [TAU / 4000.0, TAU / 20_000.0, TAU / 200_000.0, 1e-5] {
+            let found = encoder_step(&sampled(step, None)).expect("steps");
+            assert!((found / step - 1.0).abs() < 1e-9, "{step}: {found}");
+        }
+        let printed = sampled(TAU / 20_000.0, Some(7));
+        let found = encoder_step(&printed).expect("steps");
+        assert!((found / (TAU / 20_000.0) - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    #[test]
+    fn smooth_noisy_and_resting_signals_have_none() {
+        assert_eq!(encoder_step(&sampled(0.0, None)), None);
+        let mut random = crate::simulate::Random::new(9);
+        let noisy: Vec<f64> =
+            sampled(0.0, None).into_iter().map(|q| q + 1e-4 * random.normal()).collect();
+        assert_eq!(encoder_step(&noisy), None);
+        assert_eq!(encoder_step(&[0.3; 500]), None);
+        assert_eq!(encoder_step(&[0.3]), None);
+    }
+}

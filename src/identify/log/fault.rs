@@ -1,5 +1,6 @@
 //! What is wrong with a log, or looks wrong.
 
+use super::reader::LONGEST_LINE;
 use super::repair::FEWEST_ROWS;
 use std::fmt;
 
@@ -20,6 +21,8 @@ pub enum LogFault {
     Unreadable(String),
     /// A line is not UTF-8 text.
     NotUtf8 { line: usize },
+    /// A line is longer than any log's.
+    LongLine { line: usize },
     /// There is no line with the names of the columns.
     NoColumns,
     /// Two columns have one name.
@@ -82,6 +85,9 @@ pub enum Suspicion {
     BeyondTorque { column: String, value: f64, limit: f64, samples: usize },
     /// The torque that was commanded to a motor is all that there is of a joint behind a spring.
     CommandOfSpring { joint: String },
+    /// A position jumps from one row to the next; holds the line and how many other jumps there
+    /// are.
+    Jump { column: String, line: usize, from: f64, to: f64, others: usize },
     /// A position is beyond its limits.
     BeyondLimits { column: String, value: f64, limits: [f64; 2] },
 }
@@ -110,6 +116,8 @@ pub enum LogRemark {
     MotorTorques { joints: Vec<String> },
     /// The default filter has a lower cutoff, since noise of positions biased parameters.
     LoweredFilter { cutoff_hz: f64 },
+    /// The log says the same as another one, which the estimate is from.
+    SameAs { other: String },
     /// A suspicion that was accepted.
     Accepted(Suspicion),
 }
@@ -136,6 +144,7 @@ impl LogFault {
     pub fn line(&self) -> Option<usize> {
         match *self {
             Self::NotUtf8 { line }
+            | Self::LongLine { line }
             | Self::RowLength { line, .. }
             | Self::NotANumber { line, .. }
             | Self::Undefined { line, .. }
@@ -180,6 +189,7 @@ impl fmt::Display for LogFault {
         match self {
             Self::Unreadable(reason) => write!(f, "cannot be read: {reason}"),
             Self::NotUtf8 { .. } => write!(f, "not UTF-8 text"),
+            Self::LongLine { .. } => write!(f, "more than {LONGEST_LINE} bytes: is it CSV?"),
             Self::NoColumns => write!(f, "no line with the names of columns"),
             Self::RepeatedColumn { column } => write!(f, "two columns `{column}`"),
             Self::MissingColumn { column, nearest } => {
@@ -225,9 +235,7 @@ impl fmt::Display for LogFault {
                 f,
                 "{count} cells of column `{column}` have no number, more than can be filled in"
             ),
-            Self::TimeNotIncreasing { .. } => {
-                write!(f, "the time is before that of the row above")
-            }
+            Self::TimeNotIncreasing { .. } => write!(f, "the time is before that of the row above"),
             Self::TimeRepeated { .. } => {
                 write!(f, "the time is that of the row above, with other numbers")
             }
@@ -290,6 +298,16 @@ impl fmt::Display for Suspicion {
                 "`{column}` goes to {value:.4} in {samples} samples, and the model's limit is \
                  {limit:.4}"
             )?,
+            Self::Jump { column, line, from, to, others } => {
+                write!(f, "`{column}` jumps from {from:.6} to {to:.6} in line {line}")?;
+                if *others > 0 {
+                    write!(f, ", and in {others} other places")?;
+                }
+                write!(
+                    f,
+                    "\n  hint: did its encoder slip, or were logs joined end to end? cut it"
+                )?;
+            }
             Self::BeyondLimits { column, value, limits: [low, high] } => write!(
                 f,
                 "`{column}` goes to {value:.4}, and the model's limits are {low:.4} to {high:.4}"
@@ -338,6 +356,9 @@ impl fmt::Display for LogRemark {
                 "noise of positions would bias parameters: filtered below {cutoff_hz} Hz (--filter \
                  says otherwise)"
             ),
+            Self::SameAs { other } => {
+                write!(f, "says the same as {other}: it validates nothing")
+            }
             Self::Accepted(suspicion) => {
                 let text = suspicion.to_string();
                 write!(f, "accepted: {}", text.lines().next().unwrap_or_default())

@@ -8,6 +8,7 @@
 
 mod check;
 mod fault;
+mod jumps;
 mod mapping;
 mod reader;
 mod repair;
@@ -168,6 +169,7 @@ pub fn read_log(
         return Err(failed(vec![LogFault::TooShort { rows: 0 }]));
     }
     let names: Vec<String> = wanted.columns.iter().map(|column| column.name.clone()).collect();
+    let jumps = wanted.jumps(&table);
     let even = repair::even(table, &names).map_err(failed)?;
     let mut log = MeasuredLog {
         file: file.to_owned(),
@@ -182,7 +184,7 @@ pub fn read_log(
     let mut found = check::check(&log, robot.joints);
     log.remarks.append(&mut found.remarks);
     let mut faults = found.faults;
-    for suspicion in found.suspicions {
+    for suspicion in jumps.into_iter().chain(found.suspicions) {
         match robot.accepts_suspicious {
             true => log.remarks.push(LogRemark::Accepted(suspicion)),
             false => faults.push(LogFault::Suspicion(suspicion)),
@@ -289,6 +291,13 @@ impl Wanted {
             None
         });
         if faults.is_empty() { Ok(Self { columns, torque_side }) } else { Err(faults) }
+    }
+
+    /// Positions of joints and motors that jump.
+    fn jumps(&self, table: &Table) -> Vec<Suspicion> {
+        let is_position = |column: &Column| matches!(column.goes_to, Target::Joint(_, 0 | 6));
+        let columns = self.columns.iter().enumerate().filter(|(_, column)| is_position(column));
+        columns.filter_map(|(place, column)| jumps::jump(table, place, &column.name)).collect()
     }
 
     fn hand_out(&self, log: &mut MeasuredLog, values: Vec<Vec<f64>>, robot: LogOf<'_>) {

@@ -1,10 +1,13 @@
 //! Logs as they stand in their files: streamed, only the columns that are wanted.
 
 use super::fault::LogFault;
-use std::io::{BufRead, ErrorKind};
+use std::io::{BufRead, ErrorKind, Read};
 
 /// Faults of one kind that are listed; more would say nothing new.
 const MAX_LISTED: usize = 5;
+
+/// Bytes of a line; a source without ends of lines must not fill the memory.
+pub(super) const LONGEST_LINE: u64 = 1 << 20;
 
 /// The first lines of a log: what it says of itself, and the names of its columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,7 +56,8 @@ impl<R: BufRead> Lines<R> {
     /// The next line with its number; none at the end.
     fn next(&mut self) -> Result<Option<(usize, &str)>, LogFault> {
         self.buffer.clear();
-        let read = self.source.read_until(b'\n', &mut self.buffer).map_err(|error| {
+        let mut source = (&mut self.source).take(LONGEST_LINE);
+        let read = source.read_until(b'\n', &mut self.buffer).map_err(|error| {
             let text = match error.kind() {
                 ErrorKind::IsADirectory => "it is a directory".to_owned(),
                 _ => error.to_string(),
@@ -64,6 +68,9 @@ impl<R: BufRead> Lines<R> {
             return Ok(None);
         }
         self.number += 1;
+        if read as u64 == LONGEST_LINE && self.buffer.last() != Some(&b'\n') {
+            return Err(LogFault::LongLine { line: self.number });
+        }
         let line = std::str::from_utf8(&self.buffer)
             .map_err(|_| LogFault::NotUtf8 { line: self.number })?;
         let line = if self.number == 1 { line.trim_start_matches('\u{feff}') } else { line };

@@ -286,3 +286,60 @@ fn written_models_are_sound() {
     let root: Vec<&str> = text.lines().filter(|line| line.starts_with("  \"")).collect();
     assert!(root.last().is_some_and(|line| line.starts_with("  \"drives\"")), "{text}");
 }
+
+/// Units that the model alone shows, logs that say the same, laps that do not repeat, a prior that
+/// says nothing, weighings in grams: each is told, none changes an answer in silence.
+#[test]
+fn what_only_the_model_shows_is_told() {
+    let directory = Directory::new("units");
+    write(&directory, "arm.json", &moving_arm().to_string());
+    let run = run_in(&directory.path, &["simulate", "arm.json", "-o", "arm.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let nothing_else =
+        r#""qd_link1": null, "qd_link2": null, "ref_link1": null, "ref_link2": null"#;
+    let map = |more: &str| format!("{{{nothing_else}{more}}}");
+    let torques = |scale: f64| {
+        let of = |joint: &str| format!(r#", "tau_{joint}": {{"scale": {scale}}}"#);
+        of("link1") + &of("link2")
+    };
+    let cases = [
+        (map(r#", "t": {"scale": 0.1}"#), Some(("the time seems", r#""scale": 10"#))),
+        (map(r#", "t": {"scale": 0.001}"#), Some(("the time seems", r#""scale": 1000"#))),
+        (map(&torques(1000.0)), Some(("torques seem to", r#""scale": 0.001"#))),
+        (map(""), None),
+    ];
+    for (map, told) in cases {
+        write(&directory, "map.json", &map);
+        let words = ["identify", "planar_2r", "--train", "arm.csv", "--columns", "map.json"];
+        let run = run_in(&directory.path, &words);
+        match told {
+            None => assert_eq!(run.code, Some(0), "{map}: {}", run.stderr),
+            Some((what, hint)) => {
+                assert_eq!(run.code, Some(2), "{map}: {}", run.stdout);
+                assert!(run.stderr.contains(what), "{map}: {}", run.stderr);
+                assert!(run.stderr.contains(hint), "{map}: {}", run.stderr);
+                let accepted = [&words[..], &["--accept-suspicious"]].concat();
+                assert_ne!(run_in(&directory.path, &accepted).code, Some(2), "{map}");
+            }
+        }
+    }
+    let refused = |words: &[&str], said: &str| {
+        let words = [&["identify", "planar_2r"][..], words].concat();
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(2), "{words:?}: {}", run.stdout);
+        assert!(run.stderr.contains(said), "{words:?}: {}", run.stderr);
+    };
+    std::fs::copy(directory.path.join("arm.csv"), directory.path.join("copy.csv")).expect("copied");
+    refused(&["--train", "arm.csv", "copy.csv"], "copy.csv says the same as arm.csv");
+    refused(&["--train", "arm.csv", "--average", "1.7"], "do not repeat");
+    refused(&["--train", "arm.csv", "--prior"], "--prior");
+    let found =
+        identified(&directory, &["planar_2r", "--train", "arm.csv", "--validate", "copy.csv"]);
+    assert!(found["remarks"].to_string().contains("it validates nothing"), "{}", found["remarks"]);
+    let weighing = json!({"links": ["link1", "link2"], "mass_kg": 3500, "std_kg": 1});
+    let statics = json!({"format": "denavit-statics/1", "weighings": [weighing], "postures": []});
+    write(&directory, "grams.json", &statics.to_string());
+    refused(&["--static", "grams.json"], "is it in grams?");
+    let accepted = ["identify", "planar_2r", "--static", "grams.json", "--accept-suspicious"];
+    assert_eq!(run_in(&directory.path, &accepted).code, Some(0));
+}

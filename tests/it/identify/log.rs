@@ -350,3 +350,43 @@ fn one_torque_far_beyond_its_limit_is_a_suspicion() {
     let found = suspicion(read(-40.0).unwrap_err().faults);
     assert!(matches!(found, Suspicion::BeyondTorque { samples: 1, .. }), "{found:?}");
 }
+
+/// An encoder that slips, and laps joined end to end, are named with their line; noise, rest and
+/// coarse steps are not.
+#[test]
+fn positions_that_jump_have_their_line() {
+    let slipped = Made::new().each(|k, row| row[2] += if k >= 700 { 0.05 } else { 0.0 });
+    match suspicion(slipped.read().unwrap_err()) {
+        Suspicion::Jump { column, line, from, to, others } => {
+            // one line of names, and rows from 0
+            assert_eq!((column.as_str(), line, others), ("q_link2", 702, 0));
+            assert!((to - from - 0.05).abs() < 0.02, "{from} {to}");
+        }
+        other => panic!("{other:?}"),
+    }
+    let mut twice = Made::new();
+    let again: Vec<Vec<f64>> = twice.rows[..1200].to_vec();
+    twice.rows.extend(again);
+    let joined = twice.each(|k, row| row[0] = STEP_S * k as f64);
+    match suspicion(joined.read().unwrap_err()) {
+        Suspicion::Jump { line, .. } => assert_eq!(line, 1502),
+        other => panic!("{other:?}"),
+    }
+    let mut random = denavit::simulate::Random::new(4);
+    let noise: Vec<f64> = (0..1500).map(|_| 1e-3 * random.normal()).collect();
+    Made::new().each(|k, row| row[1] += noise[k]).read().expect("noise is no jump");
+    let coarse = Made::new().each(|_, row| row[1] = (row[1] / 0.01).round() * 0.01);
+    coarse.read().expect("a coarse encoder");
+    // samples that are missing are a gap, over which a joint goes on
+    let mut gap = Made::new();
+    gap.rows.drain(600..604);
+    gap.read().expect("a short gap");
+}
+
+#[test]
+fn a_line_without_end_is_refused_before_it_fills_the_memory() {
+    let made = Made::new();
+    let text = made.text() + &"1".repeat(3 << 20);
+    let faults = made.read_as(&text, "{}").unwrap_err();
+    assert_eq!(faults, [LogFault::LongLine { line: 1502 }]);
+}

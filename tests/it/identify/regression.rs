@@ -113,3 +113,42 @@ fn columns_to_keep_are_checked() {
     let wrong = RegressionModel::new(&robot("scara"), INERTIAL, &["mass".to_owned()]);
     assert!(matches!(wrong, Err(RegressionError::Base(_))));
 }
+
+/// A centre of mass that is known to be on an axis makes columns depend on others; the rows times
+/// the values of the model are still its torques.
+#[test]
+fn numbers_of_bodies_that_are_known_to_be_0_are_no_symbols() {
+    let shipped = denavit::shipped::find("planar_2r").expect("shipped");
+    let known = |value: f64| serde_json::json!({"value": value, "known": true});
+    let com = |x: serde_json::Value, y: serde_json::Value| serde_json::json!([x, y, 0]);
+    let bodies = [
+        (com((-0.17).into(), known(0.0)), 5),
+        (com(known(-0.17), known(0.0)), 5),
+        (com(known(0.0), known(0.0)), 5),
+        // the mass of the second link is on its axis
+        (com(known(-0.4), known(0.0)), 4),
+    ];
+    for (com, rank) in bodies {
+        let mut text: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
+        text["links"][1]["body"]["com"] = com.clone();
+        let robot = denavit::model::read("arm", text.to_string().as_bytes()).expect("sound");
+        let model = RegressionModel::new(&robot, INERTIAL, &[])
+            .unwrap_or_else(|error| panic!("{com}: {error}"));
+        assert_eq!(model.rank(), rank, "{com}");
+        let motion = random_motion(2, 40, 6);
+        let phi = model.model_axes().expect("it has values");
+        let ours = torques(&model, &motion, &phi);
+        let mut plant = denavit::plants::InterpretedPlant::new(&robot, &[]).expect("values");
+        for k in 0..40 {
+            let at = |order: usize| [motion[2 * order][k], motion[2 * order + 1][k]];
+            let ([q, qd], qdd) = ([at(0), at(1)], at(2));
+            let (mut mass, mut bias) = ([0.0; 4], [0.0; 2]);
+            denavit::plants::Plant::mass_matrix(&mut plant, &q, &mut mass);
+            denavit::plants::Plant::bias(&mut plant, &q, &qd, &mut bias);
+            for joint in 0..2 {
+                let torque = mass[2 * joint] * qdd[0] + mass[2 * joint + 1] * qdd[1] + bias[joint];
+                assert!((ours[joint][k] - torque).abs() < 1e-9, "{com}: joint {joint}");
+            }
+        }
+    }
+}

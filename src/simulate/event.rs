@@ -3,7 +3,9 @@
 //! A watched value fires when it falls below zero after it was positive. Dense output brackets the
 //! crossing, steps of the very length locate it. A value that starts at zero (a contact that has
 //! just bounced) is armed by the first positive sample, which is looked for ever closer to the
-//! start; a contact may rise and fall inside one step.
+//! start; a contact may rise and fall inside one step. Bounces and transients much shorter than the
+//! step are below the error of its dense output: then a shorter step is taken in its place, until
+//! the crossing is a matter of the whole step.
 
 use super::breakdown::Breakdown;
 use super::contact::{ContactProblem, Mode};
@@ -36,15 +38,6 @@ impl Watched {
     }
 }
 
-/// How a state inside a step is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sight {
-    /// By dense output.
-    Dense,
-    /// By a step of the very length.
-    Steps,
-}
-
 /// An event: what fired, and when.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fired {
@@ -54,6 +47,13 @@ pub(super) struct Fired {
 
 /// Samples inside a step, its end included.
 const SAMPLES: usize = 8;
+/// A crossing in an earlier part of the step than this calls for a shorter one.
+const EARLY: f64 = 0.25;
+/// Where no positive value was found before a negative one, so many halvings from the end on.
+const HALVINGS: i32 = 6;
+/// Steps are shortened so often at most; and to no less than this \[s\].
+const RETAKES: usize = 24;
+const SHORTEST_S: f64 = 1e-12;
 /// The shortest look ahead \[s\].
 const AHEAD_S: f64 = 1e-6;
 /// Crossings are located to this \[s\].
@@ -115,25 +115,48 @@ impl Watch {
         list
     }
 
-    /// The earliest event of the last step.
+    /// The earliest event of the last step, which is taken anew with a shorter length where it is
+    /// too long to tell.
     pub(super) fn find(
         &mut self,
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
     ) -> Result<Option<Fired>, Breakdown> {
+        let mut retakes = 0;
+        loop {
+            let crossings = self.crossings(motion, stepper)?;
+            let Some(earliest) = first(&crossings) else {
+                self.lower_levels(motion, stepper);
+                return Ok(None);
+            };
+            let (t0, length) = (stepper.start_time(), stepper.time() - stepper.start_time());
+            let part = (earliest.t_s - t0) / length;
+            let shorter = 2.0 * part.max(0.5_f64.powi(HALVINGS + 1)) * length;
+            let tells = part >= EARLY || shorter < SHORTEST_S || retakes == RETAKES;
+            if tells || !stepper.retake(motion, t0 + shorter)? {
+                return self.pin_down(motion, stepper, crossings);
+            }
+            retakes += 1;
+        }
+    }
+
+    /// Everything that crosses zero in the last step, as dense output sees it; what is negative all
+    /// along does at its start.
+    fn crossings(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+    ) -> Result<Vec<Fired>, Breakdown> {
         let list = Self::list(motion);
         let values = self.sample(motion, stepper, &list);
         let (t0, t1) = (stepper.start_time(), stepper.time());
-        let mut first: Option<Fired> = None;
+        let mut found = Vec::new();
         for (index, &watched) in list.iter().enumerate() {
             let mut last = (t0, values[index]);
             for sample in 1..=SAMPLES {
                 let (t, value) = (sample_time(t0, t1, sample), values[sample * list.len() + index]);
                 if value < -watched.floor() {
-                    let fired = self.pin_down(motion, stepper, watched, last, (t, value))?;
-                    if first.is_none_or(|found| fired.t_s < found.t_s) {
-                        first = Some(fired);
-                    }
+                    found.push(self.bracket(motion, stepper, watched, last, (t, value))?);
                     break;
                 }
                 if value > 0.0 || last.1 <= 0.0 {
@@ -147,17 +170,11 @@ impl Watch {
             if value < 0.0 {
                 let before = (t0, self.value(motion, stepper, Watched::Margin, t0)?);
                 self.margin = before.1 - self.slack;
-                let (watched, end) = (Watched::Margin, (t1, value));
-                let fired = self.pin_down(motion, stepper, watched, before, end)?;
-                if first.is_none_or(|found| fired.t_s < found.t_s) {
-                    first = Some(fired);
-                }
+                let watched = Watched::Margin;
+                found.push(self.bracket(motion, stepper, watched, before, (t1, value))?);
             }
         }
-        if first.is_none() {
-            self.lower_levels(motion, stepper);
-        }
-        Ok(first)
+        Ok(found)
     }
 
     /// Values of all that is listed at the start of the last step and at its samples.
@@ -174,8 +191,23 @@ impl Watch {
         values
     }
 
-    /// An event between a value that may be positive and one that is negative.
+    /// The first of some crossings, by steps of the very length.
     fn pin_down(
+        &mut self,
+        motion: &mut Motion<'_>,
+        stepper: &mut Stepper,
+        mut crossings: Vec<Fired>,
+    ) -> Result<Option<Fired>, Breakdown> {
+        for fired in &mut crossings {
+            if fired.t_s > stepper.start_time() {
+                fired.t_s = self.polish(motion, stepper, fired.watched, fired.t_s)?;
+            }
+        }
+        Ok(first(&crossings))
+    }
+
+    /// A crossing between a value that may be positive and one that is negative, by dense output.
+    fn bracket(
         &mut self,
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
@@ -183,14 +215,11 @@ impl Watch {
         last: (f64, f64),
         negative: (f64, f64),
     ) -> Result<Fired, Breakdown> {
-        // just after an event dense output may miss a transient that steps resolve
-        for sight in [Sight::Dense, Sight::Steps] {
-            if let Some(positive) = self.arm(motion, stepper, (watched, sight), last, negative.0)? {
-                let t_s = self.locate(motion, stepper, (watched, sight), positive, negative)?;
-                return Ok(Fired { watched, t_s });
-            }
-        }
-        Ok(Fired { watched, t_s: stepper.start_time() })
+        let t_s = match self.arm(motion, stepper, watched, last, negative.0)? {
+            Some(positive) => self.locate(motion, stepper, watched, positive, negative)?,
+            None => stepper.start_time(),
+        };
+        Ok(Fired { watched, t_s })
     }
 
     /// Contacts that have risen count from the ground again.
@@ -208,7 +237,7 @@ impl Watch {
         &mut self,
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
-        (watched, sight): (Watched, Sight),
+        watched: Watched,
         last: (f64, f64),
         before: f64,
     ) -> Result<Option<(f64, f64)>, Breakdown> {
@@ -216,9 +245,9 @@ impl Watch {
             return Ok(Some(last));
         }
         let mut t = before;
-        for _ in 0..40 {
+        for _ in 0..HALVINGS {
             t = last.0 + 0.5 * (t - last.0);
-            let value = self.value_by(sight, motion, stepper, watched, t)?;
+            let value = self.value(motion, stepper, watched, t)?;
             if value > 0.0 {
                 return Ok(Some((t, value)));
             }
@@ -226,20 +255,20 @@ impl Watch {
         Ok(None)
     }
 
-    /// The crossing between a positive and a negative value.
+    /// The crossing of the dense output between a positive and a negative value.
     fn locate(
         &mut self,
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
-        (watched, sight): (Watched, Sight),
+        watched: Watched,
         positive: (f64, f64),
         negative: (f64, f64),
     ) -> Result<f64, Breakdown> {
         let ((mut a, mut fa), (mut b, mut fb)) = (positive, negative);
         // forces cost most, and are polished from there anyway
         let (t0, t1) = (stepper.start_time(), stepper.time());
-        let resolution = match (watched, sight) {
-            (Watched::Margin, Sight::Dense) => RESOLUTION_S.max(FORCES_SEEN * (t1 - t0)),
+        let resolution = match watched {
+            Watched::Margin => RESOLUTION_S.max(FORCES_SEEN * (t1 - t0)),
             _ => RESOLUTION_S,
         };
         // Illinois: false position that halves the value of an end that stays
@@ -249,17 +278,14 @@ impl Watch {
             }
             let guess = a + (b - a) * fa / (fa - fb);
             let t = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
-            let value = self.value_by(sight, motion, stepper, watched, t)?;
+            let value = self.value(motion, stepper, watched, t)?;
             if value > 0.0 {
                 (a, fa, fb) = (t, value, 0.5 * fb);
             } else {
                 (b, fb, fa) = (t, value, 0.5 * fa);
             }
         }
-        match sight {
-            Sight::Dense => self.polish(motion, stepper, watched, 0.5 * (a + b)),
-            Sight::Steps => Ok(0.5 * (a + b)),
-        }
+        Ok(0.5 * (a + b))
     }
 
     /// Newton's method on steps of the very length, from a root of the dense output.
@@ -279,30 +305,18 @@ impl Watch {
         for _ in 0..6 {
             let value = self.stepped_value(motion, stepper, watched, t)?;
             let change = value / slope;
-            // a crossing without slope stays where dense output saw it
-            if !change.is_finite() || change.abs() > 0.5 * (t1 - t0) {
+            // a crossing without slope stays where dense output saw it, and so does one that leads
+            // back towards the start, where what has just opened was zero
+            let near = (t - change - guess).abs() < 0.5 * (guess - t0);
+            if !near || slope >= 0.0 {
                 return Ok(guess);
             }
-            t = (t - change).clamp(t0, t1);
+            t = (t - change).min(t1);
             if change.abs() <= RESOLUTION_S {
                 break;
             }
         }
         Ok(t)
-    }
-
-    fn value_by(
-        &mut self,
-        sight: Sight,
-        motion: &mut Motion<'_>,
-        stepper: &mut Stepper,
-        watched: Watched,
-        t_s: f64,
-    ) -> Result<f64, Breakdown> {
-        match sight {
-            Sight::Dense => self.value(motion, stepper, watched, t_s),
-            Sight::Steps => self.stepped_value(motion, stepper, watched, t_s),
-        }
     }
 
     /// A watched value at the end of a step of the very length.
@@ -377,6 +391,11 @@ impl Watch {
             Watched::Margin => f64::INFINITY,
         }
     }
+}
+
+/// The earliest of some crossings.
+fn first(crossings: &[Fired]) -> Option<Fired> {
+    crossings.iter().copied().reduce(|first, next| if next.t_s < first.t_s { next } else { first })
 }
 
 fn sample_time(t0: f64, t1: f64, sample: usize) -> f64 {

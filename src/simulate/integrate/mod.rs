@@ -247,6 +247,12 @@ impl Stepper {
         // the stop exactly, so that schedules do not drift
         self.t1 = if (stop_s - end).abs() <= 1e-13 * stop_s.abs().max(1.0) { stop_s } else { end };
         self.statistics.steps += 1;
+        self.conclude(system, step)?;
+        Ok(true)
+    }
+
+    /// Rates at the end of the step that was just made, and its dense output.
+    fn conclude(&mut self, system: &mut dyn Rates, step: f64) -> Result<(), Breakdown> {
         match self.method {
             Method::DormandPrince(_) => {
                 self.prepare_dense(step);
@@ -261,7 +267,7 @@ impl Stepper {
             }
         }
         self.known = true;
-        Ok(true)
+        Ok(())
     }
 
     /// The state at a time inside the last step, by dense output.
@@ -285,21 +291,12 @@ impl Stepper {
         t_s: f64,
         y: &mut [f64],
     ) -> Result<(), Breakdown> {
-        let step = t_s - self.t0;
-        if step <= 0.0 {
+        if t_s <= self.t0 {
             y.copy_from_slice(&self.y0);
             return Ok(());
         }
         let kept = self.y1.clone();
-        let made = match self.method {
-            Method::DormandPrince(accuracy) => {
-                self.dormand_prince(system, step, accuracy).map(|_| true)
-            }
-            Method::RungeKutta { .. } => self.runge_kutta(system, step).map(|()| true),
-            Method::Radau(accuracy) => {
-                self.implicit_step(system, step, accuracy).map(|error| error.is_some())
-            }
-        };
+        let made = self.make(system, t_s - self.t0);
         y.copy_from_slice(&self.y1);
         self.y1.copy_from_slice(&kept);
         if !made? {
@@ -307,6 +304,33 @@ impl Stepper {
             self.interpolate(t_s, y);
         }
         Ok(())
+    }
+
+    /// Takes a shorter step in place of the last one, from its start to `t_s`. False if that step
+    /// was not made: the last one stays then.
+    pub fn retake(&mut self, system: &mut dyn Rates, t_s: f64) -> Result<bool, Breakdown> {
+        let kept = self.y1.clone();
+        let step = t_s - self.t0;
+        if !matches!(self.make(system, step), Ok(true)) {
+            self.y1.copy_from_slice(&kept);
+            return Ok(false);
+        }
+        self.t1 = t_s;
+        self.conclude(system, step)?;
+        Ok(true)
+    }
+
+    /// A step of any length from the start of the last one, into `y1`; false without convergence.
+    fn make(&mut self, system: &mut dyn Rates, step: f64) -> Result<bool, Breakdown> {
+        match self.method {
+            Method::DormandPrince(accuracy) => {
+                self.dormand_prince(system, step, accuracy).map(|_| true)
+            }
+            Method::RungeKutta { .. } => self.runge_kutta(system, step).map(|()| true),
+            Method::Radau(accuracy) => {
+                self.implicit_step(system, step, accuracy).map(|error| error.is_some())
+            }
+        }
     }
 
     /// Hairer, Norsett, Wanner, II.4, without its second evaluation.

@@ -190,9 +190,10 @@ impl Stepper {
         Some((sum / (3 * n) as f64).sqrt())
     }
 
-    /// Where the polynomial of the last step leads.
+    /// Where the polynomial of the last step leads, or, if that step is made again, where it was.
     fn foretell(&mut self, step: f64) {
         let n = self.y0.len();
+        let again = self.t1 > self.t0;
         let Implicit { z, w, last, .. } = &mut self.implicit;
         for ways in [&mut *z, &mut *w] {
             ways.iter_mut().for_each(|way| way.resize(n, 0.0));
@@ -201,10 +202,11 @@ impl Stepper {
             None => z.iter_mut().for_each(|way| way.fill(0.0)),
             Some((length, ways)) => {
                 for (stage, way) in z.iter_mut().enumerate() {
-                    let shares = through_stages(1.0 + NODES[stage] * step / *length);
+                    let start = if again { 0.0 } else { 1.0 };
+                    let shares = through_stages(start + NODES[stage] * step / *length);
                     for i in 0..n {
                         let reached: f64 = (0..3).map(|j| shares[j] * ways[j][i]).sum();
-                        way[i] = reached - ways[2][i];
+                        way[i] = reached - start * ways[2][i];
                     }
                 }
             }

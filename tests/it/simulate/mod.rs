@@ -3,6 +3,8 @@
 mod closed_forms;
 mod control;
 mod drift;
+mod drops;
+mod in_space;
 mod kneed_walker;
 mod scenarios;
 mod schema;

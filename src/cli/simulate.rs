@@ -170,6 +170,7 @@ fn summary(
         "scheme": scenario.scheme.word(),
         "stop": run.stop.word(),
         "message": run.stop.to_string(),
+        "hint": run.stop.hint(scenario.simulation.friction),
         "end_s": run.end.t_s,
         "events": run.events.len(),
         "steps": cost.steps,
@@ -184,6 +185,7 @@ fn summary(
             "adhesion_n": audit.adhesion_n,
             "separation_m_s": audit.separation_m_s,
             "cone_n": audit.cone_n,
+            "friction_angle_rad": audit.friction_angle_rad,
             "friction_demand": audit.friction_demand,
             "friction_total": audit.friction_total,
             "zmp_m": audit.zmp_m,
@@ -219,6 +221,9 @@ fn print(
         cost.rejected,
         cost.evaluations,
     )?;
+    if let Some(hint) = run.stop.hint(scenario.simulation.friction) {
+        writeln!(out, "hint: {hint}")?;
+    }
     writeln!(out)?;
     for (_, law, worst) in run.audit.listed(scenario.plant.model()) {
         writeln!(out, "{law:<40} {worst:>10.3e}")?;

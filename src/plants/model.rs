@@ -238,6 +238,14 @@ fn check_signs(robot: &Robot, link: &Link) -> Result<(), PlantError> {
 }
 
 impl PlantModel {
+    /// The joint of a floating base in space whose quarter turn makes its coordinates singular: the
+    /// second of three that turn, its roll.
+    pub fn singular_base_joint(&self) -> Option<usize> {
+        let base = self.joints.get(..6).filter(|base| base.iter().all(|joint| !joint.drivable))?;
+        let slides = [true, true, true, false, false, false];
+        base.iter().map(|joint| joint.slides).eq(slides).then_some(4)
+    }
+
     /// The description of a robot whose parameters are numbers.
     pub(super) fn of_baked(robot: &Robot) -> Self {
         let joints = robot.joints().map(|(link, _)| joint_model(robot, &robot.links[link]));

@@ -25,6 +25,8 @@ pub struct Tolerances {
     pub force_n: f64,
     /// Tangential force beyond the friction cone of a contact \[N\].
     pub cone_n: f64,
+    /// Angle between friction and what is opposite to the velocity of a slipping contact \[rad\].
+    pub friction_angle_rad: f64,
 }
 
 impl Tolerances {
@@ -41,6 +43,8 @@ impl Tolerances {
             zmp_m: 50.0 * step_s,
             force_n: 1e4 * step_s,
             cone_n: 1e-6,
+            // half a facet of a pyramid of 16
+            friction_angle_rad: 0.2,
         }
     }
 
@@ -70,6 +74,7 @@ impl Default for Tolerances {
             zmp_m: 1e-7,
             force_n: 1e-6,
             cone_n: 1e-6,
+            friction_angle_rad: 1e-6,
         }
     }
 }
@@ -104,6 +109,9 @@ pub struct Audit {
     pub force_n: f64,
     /// Largest tangential force of a contact beyond its friction cone; 0 within all cones \[N\].
     pub cone_n: f64,
+    /// Largest angle between friction and what is opposite to the velocity of a contact that slips
+    /// faster than errors are \[rad\].
+    pub friction_angle_rad: f64,
     /// Distance of the zero moment point from the edge of the support polygon, the least in time;
     /// negative outside, infinite if never defined \[m\].
     pub zmp_margin_m: f64,
@@ -129,10 +137,21 @@ impl Audit {
             (touches, Some("penetration_m"), "penetration [m]", self.penetration_m),
             (touches, Some("complementarity_nm"), "complementarity [N m]", self.complementarity_nm),
             (touches, Some("adhesion_n"), "adhesion [N]", self.adhesion_n),
-            (touches, None, "speed of closed contacts [m/s]", self.separation_m_s),
+            (
+                touches,
+                Some("separation_m_s"),
+                "speed of closed contacts [m/s]",
+                self.separation_m_s,
+            ),
             (free, Some("force_n"), "forces against momentum [N]", self.force_n),
             (free, Some("zmp_m"), "zero moment point against momentum [m]", self.zmp_m),
             (touches, Some("cone_n"), "friction beyond its cone [N]", self.cone_n),
+            (
+                touches,
+                Some("friction_angle_rad"),
+                "friction off slipping [rad]",
+                self.friction_angle_rad,
+            ),
             (touches, Some("friction_demand"), "friction demand of one link", self.friction_demand),
             (touches, None, "friction demand of all contacts", self.friction_total),
             (true, None, "largest torque [N m, N]", self.torque),
@@ -159,6 +178,7 @@ impl Audit {
             ("zmp", self.zmp_m, t.zmp_m),
             ("force_balance", self.force_n, t.force_n),
             ("friction_cone", self.cone_n, t.cone_n),
+            ("friction_direction", self.friction_angle_rad, t.friction_angle_rad),
         ];
         // NaN breaks a law too
         checks.into_iter().filter(|(_, found, allowed)| found.is_nan() || found > allowed).collect()
@@ -177,6 +197,9 @@ pub(super) struct Balance {
     /// Normal force \[N\].
     pub(super) normal_force: f64,
 }
+
+/// A force, or an impulse, without a direction [N, N s].
+const NO_FRICTION: f64 = 1e-9;
 
 /// Largest movement of a joint in the differences of momentum [rad, m]: rounding and what is left
 /// of the Taylor series are both about 1e-13 then.
@@ -234,6 +257,15 @@ pub(super) fn point_of_moment(
 ) -> [f64; 3] {
     let (size, arm) = (dot(normal, &force), cross(normal, moment));
     std::array::from_fn(|axis| origin[axis] + arm[axis] / size)
+}
+
+/// The angle between a force of friction and what is opposite to the velocity; 0 without force
+/// \[rad\].
+pub(super) fn friction_angle(force: &[f64], velocity: &[f64]) -> f64 {
+    let at = |vector: &[f64], axis: usize| vector.get(axis).copied().unwrap_or(0.0);
+    let [x, y] = [0, 1].map(|axis| at(force, axis));
+    let [u, v] = [0, 1].map(|axis| -at(velocity, axis));
+    if x.hypot(y) <= NO_FRICTION { 0.0 } else { (x * v - y * u).abs().atan2(x * u + y * v) }
 }
 
 /// The larger, or NaN: nothing hides behind a comparison.

@@ -1,6 +1,6 @@
 //! Why a motion cannot go on, and how a run ended.
 
-use super::contact::ContactFailure;
+use super::contact::{ContactFailure, Friction};
 use std::fmt;
 
 /// Why the equations of motion have no answer at some time.
@@ -11,6 +11,8 @@ pub enum Breakdown {
         /// The coordinate at which its factorisation failed.
         coordinate: usize,
     },
+    /// A floating base stands where its coordinates are singular: its roll is a quarter turn.
+    SingularPose,
     /// A torque, a state or a rate is not finite.
     NotFinite,
     /// The contacts have no forces, or no impulses.
@@ -26,6 +28,12 @@ impl fmt::Display for Breakdown {
         match self {
             Self::Singular { coordinate } => {
                 write!(f, "the mass matrix is singular at coordinate {}", coordinate + 1)
+            }
+            Self::SingularPose => {
+                write!(
+                    f,
+                    "the base has rolled by a quarter turn, where its coordinates are singular"
+                )
             }
             Self::NotFinite => write!(f, "a torque or a rate is not finite"),
             Self::Contact(failure) => write!(f, "{failure}"),
@@ -66,13 +74,35 @@ impl Stop {
             Self::EvaluationLimit => "evaluation_limit",
             Self::Zeno => "zeno",
             Self::Breakdown(breakdown) => match breakdown {
-                Breakdown::Singular { .. } => "singular",
+                Breakdown::Singular { .. } | Breakdown::SingularPose => "singular",
                 Breakdown::NotFinite => "not_finite",
                 Breakdown::Contact(_) => "no_solution",
                 Breakdown::Painleve => "painleve",
                 Breakdown::StepTooSmall => "step_too_small",
             },
         }
+    }
+}
+
+impl Stop {
+    /// What may help where the equations have no answer, with this law of friction.
+    pub fn hint(&self, friction: Friction) -> Option<&'static str> {
+        let Self::Breakdown(breakdown) = self else { return None };
+        Some(match (breakdown, friction) {
+            (Breakdown::Contact(_), Friction::NoSlip) => {
+                "a finite `friction`, or a `fallback_friction`, lets contacts slip"
+            }
+            (Breakdown::Painleve | Breakdown::Contact(_), _) => {
+                "less `friction`, or the scheme `time_stepping`, which jams with an impulse"
+            }
+            (Breakdown::SingularPose, _) => {
+                "lay the base frame into the robot so that it rolls less"
+            }
+            (Breakdown::StepTooSmall, _) => {
+                "the scheme `time_stepping` resolves no such transients"
+            }
+            (Breakdown::Singular { .. } | Breakdown::NotFinite, _) => return None,
+        })
     }
 }
 

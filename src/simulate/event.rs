@@ -10,7 +10,8 @@
 use super::breakdown::Breakdown;
 use super::contact::{ContactProblem, Mode};
 use super::integrate::Stepper;
-use super::motion::{Motion, slip_left};
+use super::motion::Motion;
+use super::start::quarter_turn_left;
 use crate::plants::point_positions;
 
 /// What is watched during smooth motion.
@@ -26,6 +27,8 @@ pub(super) enum Watched {
     SlipSpeed(usize),
     /// A guard of the plant.
     Guard(usize),
+    /// Distance of a coordinate from those at which the base has no unique coordinates.
+    QuarterTurn(usize),
 }
 
 impl Watched {
@@ -98,7 +101,7 @@ impl Watch {
         2.0 * (self.slack - spare.min(self.margin).min(0.0)).max(LEAST_SLACK_N)
     }
 
-    /// Everything to be watched with the contacts as they are, but for their forces.
+    /// Everything to be watched with the contacts as they are.
     fn list(motion: &Motion<'_>) -> Vec<Watched> {
         let model = motion.plant.model();
         let mut list: Vec<Watched> = (0..model.contacts.len())
@@ -112,6 +115,8 @@ impl Watch {
             _ => None,
         };
         list.extend(motion.closed.iter().enumerate().filter_map(slips));
+        list.extend(model.singular_base_joint().map(Watched::QuarterTurn));
+        list.extend((!motion.closed.is_empty()).then_some(Watched::Margin));
         list
     }
 
@@ -122,9 +127,10 @@ impl Watch {
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
     ) -> Result<Option<Fired>, Breakdown> {
+        let mut list = Self::list(motion);
         let mut retakes = 0;
         loop {
-            let crossings = self.crossings(motion, stepper)?;
+            let crossings = self.crossings(motion, stepper, &list, retakes > 0)?;
             let Some(earliest) = first(&crossings) else {
                 self.lower_levels(motion, stepper);
                 return Ok(None);
@@ -136,26 +142,30 @@ impl Watch {
             if tells || !stepper.retake(motion, t0 + shorter)? {
                 return self.pin_down(motion, stepper, crossings);
             }
+            list = crossings.iter().map(|fired| fired.watched).collect();
             retakes += 1;
         }
     }
 
-    /// Everything that crosses zero in the last step, as dense output sees it; what is negative all
-    /// along does at its start.
+    /// What of a list crosses zero in the last step, as dense output sees it; what is negative all
+    /// along does at its start. What is known to cross soon after this step does so in it even by
+    /// as little as rounding.
     fn crossings(
         &mut self,
         motion: &mut Motion<'_>,
         stepper: &mut Stepper,
+        list: &[Watched],
+        known: bool,
     ) -> Result<Vec<Fired>, Breakdown> {
-        let list = Self::list(motion);
-        let values = self.sample(motion, stepper, &list);
+        let values = self.sample(motion, stepper, list);
         let (t0, t1) = (stepper.start_time(), stepper.time());
         let mut found = Vec::new();
         for (index, &watched) in list.iter().enumerate() {
+            let floor = if known { 0.0 } else { watched.floor() };
             let mut last = (t0, values[index]);
             for sample in 1..=SAMPLES {
                 let (t, value) = (sample_time(t0, t1, sample), values[sample * list.len() + index]);
-                if value < -watched.floor() {
+                if value < -floor {
                     found.push(self.bracket(motion, stepper, watched, last, (t, value))?);
                     break;
                 }
@@ -164,8 +174,8 @@ impl Watch {
                 }
             }
         }
-        if !motion.closed.is_empty() {
-            // forces last, and at the end of the step alone: they cost most
+        if list.contains(&Watched::Margin) {
+            // forces at the end of the step alone: they cost most
             let value = self.value(motion, stepper, Watched::Margin, t1)?;
             if value < 0.0 {
                 let before = (t0, self.value(motion, stepper, Watched::Margin, t0)?);
@@ -388,6 +398,7 @@ impl Watch {
             Watched::FallPoint(point) => motion.ground.gap(&self.points[3 * point..3 * point + 3]),
             Watched::Guard(guard) => motion.plant.guard(guard, parts.q, parts.qd),
             Watched::SlipSpeed(index) => slip_speed(motion, index),
+            Watched::QuarterTurn(joint) => quarter_turn_left(parts.q[joint]),
             Watched::Margin => f64::INFINITY,
         }
     }
@@ -403,9 +414,9 @@ fn sample_time(t0: f64, t1: f64, sample: usize) -> f64 {
 }
 
 fn slip_speed(motion: &Motion<'_>, index: usize) -> f64 {
-    let Mode::Slip(direction) = motion.closed[index].mode else { return 0.0 };
-    let rows = motion.ground.rows();
-    slip_left(&motion.work.velocity[index * rows..(index + 1) * rows - 1], direction)
+    let (closed, rows) = (&motion.closed[index], motion.ground.rows());
+    let velocity = &motion.work.velocity[index * rows..(index + 1) * rows - 1];
+    motion.holding.slips.slip_left(velocity, closed)
 }
 
 /// Least force to spare, and what counts as none: adhesion of that size is rounding \[N\].

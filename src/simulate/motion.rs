@@ -4,9 +4,11 @@
 mod laws;
 mod manifold;
 mod moved;
+mod slipping;
 
 use self::laws::solve_laws;
 use self::moved::MovedMemory;
+pub(super) use self::slipping::SlipMemory;
 use super::breakdown::Breakdown;
 use super::contact::delassus::Delassus;
 use super::contact::solver::ContactSolver;
@@ -29,6 +31,8 @@ pub(super) struct Closed {
     pub(super) law: Friction,
     /// Where it stands along the tangents, if it sticks \[m\].
     pub(super) anchor: [f64; 2],
+    /// Whether it has slipped faster than what counts as rest, and so may come to rest.
+    pub(super) runs: bool,
 }
 
 impl Closed {
@@ -44,35 +48,7 @@ pub(super) struct Holding {
     /// Errors of position and velocity of a closed contact decay at this rate (Baumgarte) [1/s].
     pub(super) drift_rate: f64,
     pub(super) tolerance: Tolerance,
-}
-
-/// The direction of slower slipping in space remembers that in which it began [m/s].
-pub(super) const DIRECTED_SPEED: f64 = 1e-4;
-
-/// The cosine of the angle by which fast slipping turns before its direction is remembered anew.
-const FOLLOWED: f64 = 0.8;
-
-/// How far slipping is from its end [m/s]: the speed along its direction, and in space half the
-/// speed that it remembers more. A point about which its foot turns has no direction of its own: it
-/// creeps at less than that until its forces balance, where it would begin and end to slip without
-/// end.
-pub(super) fn slip_left(velocity: &[f64], direction: [f64; 2]) -> f64 {
-    let along: f64 = velocity.iter().zip(direction).map(|(v, d)| v * d).sum();
-    along + if velocity.len() == 2 { 0.5 * DIRECTED_SPEED } else { 0.0 }
-}
-
-/// The direction of slipping at a velocity, after `last`: that of v + v_s d.
-///
-/// In a plane it is d, and changes by events alone. In space v / |v| has no value where slipping
-/// begins and ends, and turns infinitely fast beside that; this one is d where slipping begins,
-/// passes a stop along d without a change, and forgets d by v_s / |v|.
-pub(super) fn slip_direction(velocity: &[f64], last: [f64; 2]) -> [f64; 2] {
-    if velocity.len() < 2 || last == [0.0; 2] {
-        return last;
-    }
-    let [x, y] = [0, 1].map(|axis| velocity[axis] + DIRECTED_SPEED * last[axis]);
-    let size = x.hypot(y);
-    if size > 0.0 { [x / size, y / size] } else { last }
+    pub(super) slips: SlipMemory,
 }
 
 /// The smooth motion of a plant under control, with the contacts as they are.
@@ -371,7 +347,7 @@ impl<'a> Motion<'a> {
                     }
                 }
                 Mode::Slip(direction) => {
-                    *direction = slip_direction(&speed[..tangents], *direction);
+                    *direction = self.holding.slips.direction(&speed[..tangents], *direction);
                     contact.slipping = Some(*direction);
                 }
                 Mode::Open => {}
@@ -379,32 +355,6 @@ impl<'a> Motion<'a> {
             contacts.push(contact);
             modes.push(mode);
         }
-    }
-
-    /// Lets the directions of what slips in space follow its motion, at a state of the smooth
-    /// motion. Says if one did: rates have changed by a little then, those known of this state too.
-    pub(super) fn follow_slips(&mut self, y: &[f64]) -> bool {
-        let rows = self.ground.rows();
-        if rows < 3 || self.closed.iter().all(|closed| closed.mode == Mode::Stick) {
-            return false;
-        }
-        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
-        self.follow_points(y, &listed);
-        let mut any = false;
-        for (index, closed) in self.closed.iter_mut().enumerate() {
-            let speed = &self.work.velocity[index * rows..index * rows + 2];
-            let size = speed[0].hypot(speed[1]);
-            match &mut closed.mode {
-                Mode::Slip(direction) if *direction != [0.0; 2] && size > 50.0 * DIRECTED_SPEED => {
-                    let now = [speed[0] / size, speed[1] / size];
-                    if now[0] * direction[0] + now[1] * direction[1] < FOLLOWED {
-                        (*direction, any) = (now, true);
-                    }
-                }
-                _ => {}
-            }
-        }
-        any
     }
 
     /// Gaps of all contact points \[m\], after `positions` of `work` are those of `y`.

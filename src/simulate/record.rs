@@ -1,6 +1,6 @@
 //! Writes a run down: rows of the log, and the worst of every audit.
 
-use super::audit::{Audit, balance, support_margin, worst};
+use super::audit::{Audit, balance, friction_angle, support_margin, worst};
 use super::breakdown::Breakdown;
 use super::contact::{Friction, Mode};
 use super::control::Control;
@@ -43,6 +43,27 @@ impl Recorder {
         self.audit.impact_gain_j = self.audit.impact_gain_j.max(energy_j);
     }
 
+    /// Writes the row of the end. Where a run stops because nothing goes on from there, the row has
+    /// no forces.
+    pub(super) fn note_end(&mut self, motion: &mut Motion<'_>, t_s: f64, y: &[f64]) {
+        if self.note(motion, t_s, y, true).is_ok() {
+            return;
+        }
+        motion.place(y);
+        let rows = motion.ground.rows() * motion.closed.len();
+        motion.work.force.clear();
+        motion.work.force.resize(rows, f64::NAN);
+        let energy = motion.energy(y);
+        let undefined = self.free.then_some([[f64::NAN; 3]; 2]);
+        self.write(motion, t_s, y, undefined, [energy, energy - self.expected_energy(motion, y)]);
+    }
+
+    /// The energy that the books say.
+    fn expected_energy(&self, motion: &Motion<'_>, y: &[f64]) -> f64 {
+        let parts = motion.layout.parts(y);
+        self.start_energy + parts.work_in - parts.lost + self.impact_energy
+    }
+
     /// Evaluates the motion at a state, audits it, and writes a row if wanted.
     pub(super) fn note(
         &mut self,
@@ -57,8 +78,7 @@ impl Recorder {
         }
         let energy = motion.energy(y);
         let parts = motion.layout.parts(y);
-        let expected = self.start_energy + parts.work_in - parts.lost + self.impact_energy;
-        let energy_error = energy - expected;
+        let energy_error = energy - self.expected_energy(motion, y);
         let audit = &mut self.audit;
         audit.energy_j = worst(audit.energy_j, energy_error.abs());
         let exchanged = parts.work_in.abs() + parts.lost.abs() + self.lost_in_impacts;
@@ -106,6 +126,12 @@ impl Recorder {
             if let Friction::Coulomb(mu) = motion.friction[closed.contact] {
                 let along = work.force[index * rows..normal].iter().map(|f| f * f).sum::<f64>();
                 audit.cone_n = worst(audit.cone_n, along.sqrt() - mu * force);
+            }
+            let tangents = index * rows..normal;
+            let velocity = &work.velocity[tangents.clone()];
+            if closed.mode != Mode::Stick && motion.holding.slips.is_left_by(velocity) {
+                let angle = friction_angle(&work.force[tangents], velocity);
+                audit.friction_angle_rad = worst(audit.friction_angle_rad, angle);
             }
         }
         // of the forces on one link together: redundant ones are shared out arbitrarily

@@ -2,73 +2,20 @@
 
 use super::audit::Audit;
 use super::breakdown::{Breakdown, Stop};
-use super::contact::{Friction, Tolerance};
+use super::contact::Tolerance;
 use super::control::Control;
-use super::drive::{DriveModelling, Drives, STICTION_RATE};
+use super::drive::Drives;
 use super::event::{Fired, Watch, Watched, look_ahead};
-use super::integrate::{Method, Statistics, Stepper};
+use super::integrate::{Statistics, Stepper};
 use super::log::Log;
-use super::measure::{Instrument, Measurement};
-use super::motion::{Holding, Motion};
+use super::measure::Instrument;
+use super::motion::{Holding, Motion, SlipMemory};
 use super::record::Recorder;
-use super::settle::{Scuffing, Settler, TOUCH_M, Touching};
-use super::start::{StartError, check};
+use super::settle::{Scuffing, Settled, Settler, TOUCH_M};
+use super::simulation::Simulation;
+use super::start::{DEPTH_M, StartError, check, check_steps};
 use super::state::State;
 use crate::plants::{LawMoment, Plant};
-
-/// How a run is made.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Simulation {
-    /// When it ends \[s\].
-    pub end_s: f64,
-    /// The method of integration.
-    pub method: Method,
-    /// How drives are modelled.
-    pub drives: DriveModelling,
-    /// Below this rate of a joint Coulomb friction is a steep line through 0 [rad/s, m/s].
-    pub stiction_rate: f64,
-    /// What a sampled controller sees.
-    pub measurement: Measurement,
-    /// Seed of the measurement's noise.
-    pub seed: u64,
-    /// Friction of all contacts.
-    pub friction: Friction,
-    /// Laws of impacts.
-    pub touching: Touching,
-    /// Errors of closed contacts decay at this rate [1/s].
-    pub drift_rate: f64,
-    /// Period of the log's rows \[s\].
-    pub log_period_s: f64,
-    /// More events end the run.
-    pub max_events: usize,
-    /// More evaluations of the equations of motion end the run; of time stepping sweeps and pivots
-    /// of its contact problems count too.
-    pub max_evaluations: usize,
-}
-
-impl Default for Simulation {
-    fn default() -> Self {
-        Self {
-            end_s: 1.0,
-            method: Method::default(),
-            drives: DriveModelling::default(),
-            stiction_rate: STICTION_RATE,
-            measurement: Measurement::default(),
-            seed: 0,
-            friction: Friction::NoSlip,
-            touching: Touching {
-                restitution: 0.0,
-                rest_speed: 1e-4,
-                fallback_friction: None,
-                scuffing: Scuffing::Counts,
-            },
-            drift_rate: 50.0,
-            log_period_s: 0.01,
-            max_events: 100_000,
-            max_evaluations: 50_000_000,
-        }
-    }
-}
 
 /// What happened at an instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,6 +108,7 @@ pub fn simulate_believing(
     let mut drives = Drives::new(plant.model(), simulation.drives);
     drives.stiction_rate = simulation.stiction_rate;
     check(plant, control, &mut state, simulation, &drives)?;
+    check_steps(&state, simulation, "integrator", simulation.method.longest_step())?;
     if state.laws.len() != plant.law_states() {
         let rest = vec![0.0; state.q.len()];
         let (q, qd) = (&state.q, &state.qd);
@@ -171,6 +119,7 @@ pub fn simulate_believing(
     let holding = Holding {
         drift_rate: simulation.drift_rate,
         tolerance: Tolerance { force: 1e-9, response: 1e-9, relative: 1e-10 },
+        slips: SlipMemory::of(simulation.method),
     };
     let model = plant.model();
     let (points, links, falls) = (model.contacts.len(), model.links.len(), model.fall_points.len());
@@ -187,8 +136,10 @@ pub fn simulate_believing(
         recent: Vec::new(),
         sample: 0,
         row: 0,
+        written_s: f64::NEG_INFINITY,
         start_s: state.t_s,
         audited_s: state.t_s,
+        t_s: state.t_s,
         simulation,
         motion,
         y,
@@ -215,9 +166,13 @@ struct Runner<'a> {
     /// Number of the controller's next sample, and of the log's next row.
     sample: u64,
     row: u64,
+    /// Time of the last row.
+    written_s: f64,
     start_s: f64,
     /// Time of the last audit between rows.
     audited_s: f64,
+    /// Time and state.
+    t_s: f64,
     y: Vec<f64>,
 }
 
@@ -230,7 +185,7 @@ impl Runner<'_> {
             .collect();
         for &contact in &touching {
             let depth = -self.motion.gap(contact);
-            if depth > START_TOUCH_M {
+            if depth > DEPTH_M {
                 let name = self.motion.plant.model().contacts[contact].name.clone();
                 return Err(StartError::Penetration(name, depth));
             }
@@ -244,8 +199,8 @@ impl Runner<'_> {
     }
 
     fn go(&mut self) -> Result<Stop, Breakdown> {
-        let mut t = self.start_s;
         loop {
+            let t = self.t_s;
             self.sample_control(t);
             self.write_rows(t)?;
             if t >= self.simulation.end_s {
@@ -257,7 +212,6 @@ impl Runner<'_> {
             if let Some(stop) = self.smooth(stop)? {
                 return Ok(stop);
             }
-            t = self.stepper.time();
         }
     }
 
@@ -276,15 +230,15 @@ impl Runner<'_> {
             }
             if let Some(fired) = self.watch.find(&mut self.motion, &mut self.stepper)? {
                 self.stepper.restep(&mut self.motion, fired.t_s, &mut self.y)?;
+                self.t_s = fired.t_s;
                 let stop = self.respond(fired)?;
                 self.audited_s = f64::NEG_INFINITY;
                 self.stepper.restart(fired.t_s, &self.y);
                 return Ok(stop);
             }
             self.y.copy_from_slice(self.stepper.state());
-            if self.motion.follow_slips(&self.y) {
-                self.stepper.forget_rates();
-            }
+            self.t_s = self.stepper.time();
+            self.motion.remember_slips(&self.y);
             if self.stepper.time() - self.audited_s > AUDIT_S {
                 self.audited_s = self.stepper.time();
                 self.recorder.note(&mut self.motion, self.audited_s, &self.y, false)?;
@@ -309,11 +263,16 @@ impl Runner<'_> {
                 self.happen(EventKind::Touch(contact), t_s, &touching)?;
             }
             Watched::Margin => self.happen(EventKind::Limit, t_s, &[])?,
+            Watched::SlipSpeed(index) if self.motion.slips_on(index, &self.y) => {
+                self.motion.remember_slips(&self.y);
+                return Ok(None);
+            }
             Watched::SlipSpeed(index) => {
                 let contact = self.motion.closed[index].contact;
                 self.happen(EventKind::SlipEnds(contact), t_s, &[])?;
             }
             Watched::Guard(guard) => self.jump(guard, t_s),
+            Watched::QuarterTurn(_) => return Err(Breakdown::SingularPose),
         }
         self.recent.push(t_s);
         if self.events.len() >= self.simulation.max_events {
@@ -362,19 +321,21 @@ impl Runner<'_> {
         let before = self.y[rates.clone()].to_vec();
         let energy = self.motion.energy(&self.y);
         let was: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
-        let (motion, law) = (&mut self.motion, &self.simulation.touching);
-        let settled = if kind == EventKind::Limit {
-            let mut ahead = self.y.clone();
-            let (ahead_s, spare) = look_ahead(motion, &mut self.stepper, t_s, &mut ahead)?;
-            let before = motion.closed.clone();
-            let settled = self.settler.switch(motion, law, (ahead_s, &ahead), &mut self.y)?;
-            let same = before.len() == motion.closed.len()
-                && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
-            self.watch.slack = if same { self.watch.more_slack(spare) } else { 0.0 };
-            settled
+        let start = self.y.clone();
+        let outcome = if kind == EventKind::Limit {
+            self.reach_limit(t_s)
         } else {
             self.watch.slack = 0.0;
-            self.settler.settle(motion, law, touching, t_s, &mut self.y)?
+            let law = &self.simulation.touching;
+            self.settler.settle(&mut self.motion, law, touching, t_s, &mut self.y)
+        };
+        let settled = match outcome {
+            Ok(settled) => settled,
+            Err(breakdown) => {
+                // the end is what was before an event that has no answer
+                self.y = start;
+                return Err(breakdown);
+            }
         };
         let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
         self.motion.place(&self.y);
@@ -398,6 +359,19 @@ impl Runner<'_> {
         let event = Event { t_s, kind, closed, impulses, energy_j, q, before, after, fell_back };
         self.events.push(event);
         Ok(())
+    }
+
+    /// What comes after the forces of the closed contacts have reached a limit.
+    fn reach_limit(&mut self, t_s: f64) -> Result<Settled, Breakdown> {
+        let (motion, law) = (&mut self.motion, &self.simulation.touching);
+        let mut ahead = self.y.clone();
+        let (ahead_s, spare) = look_ahead(motion, &mut self.stepper, t_s, &mut ahead)?;
+        let before = motion.closed.clone();
+        let settled = self.settler.switch(motion, law, (ahead_s, &ahead), &mut self.y)?;
+        let same = before.len() == motion.closed.len()
+            && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
+        self.watch.slack = if same { self.watch.more_slack(spare) } else { 0.0 };
+        Ok(settled)
     }
 
     fn audit_momentum(&mut self, before: &[f64], after: &[f64], impulses: &[(usize, [f64; 3])]) {
@@ -479,12 +453,17 @@ impl Runner<'_> {
             let row_s = self.row_time().min(t_s);
             self.recorder.note(&mut self.motion, row_s, &self.y, true)?;
             self.row += 1;
+            self.written_s = row_s;
         }
         Ok(())
     }
 
-    fn finish(self, stop: Stop) -> Run {
-        let end = self.motion.layout.unpack(self.stepper.time(), &self.y);
+    fn finish(mut self, stop: Stop) -> Run {
+        if self.t_s > self.written_s + SAME_TIME_S {
+            // a run that ends between two rows ends with one more
+            self.recorder.note_end(&mut self.motion, self.t_s, &self.y);
+        }
+        let end = self.motion.layout.unpack(self.t_s, &self.y);
         Run {
             stop,
             end,

@@ -6,7 +6,7 @@ use super::contact::solver::Search;
 use super::contact::{
     Contact, ContactFailure, ContactProblem, ContactSolution, Friction, Mode, Tolerance,
 };
-use super::motion::{Closed, Motion, slip_direction, slip_left};
+use super::motion::{Closed, Motion};
 
 /// Laws of impacts and of touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -217,21 +217,39 @@ impl Settler {
             motion.closed.clear();
             return Ok(());
         }
-        motion.free_motion(t_s, y)?;
         motion.project(y, &candidates);
         self.describe(motion, touching, &candidates, settled.fell_back);
         for _ in 0..HELD_ROUNDS {
-            motion.free_response(y, &candidates);
+            let at_rest = self.at_rest(motion, y);
+            motion.free_motion(t_s, &at_rest)?;
+            motion.project(&at_rest, &candidates);
+            motion.free_response(&at_rest, &candidates);
             self.decide(motion, touching, settled)?;
+            motion.project(y, &candidates);
             let stilled = self.adopt(motion, &candidates, y);
             settled.impulses.extend(stilled);
             if !self.release_held(motion, &candidates, y) {
                 break;
             }
-            motion.free_motion(t_s, y)?;
-            motion.project(y, &candidates);
         }
         Ok(())
+    }
+
+    /// The state without the rates that contacts at rest still have: what is left of infinitely
+    /// many bounces would ask for accelerations, towards the axis that they turn about, which
+    /// points of one body at rest cannot have.
+    fn at_rest(&self, motion: &mut Motion<'_>, y: &[f64]) -> Vec<f64> {
+        let rows = motion.ground.rows();
+        let mut held = Vec::new();
+        for (index, contact) in self.contacts.iter().enumerate() {
+            if contact.slipping.is_none() && contact.friction != Friction::Coulomb(0.0) {
+                held.extend(index * rows..index * rows + rows - 1);
+            }
+            held.push(index * rows + rows - 1);
+        }
+        let mut at_rest = y.to_vec();
+        let _ = motion.still(&held, &mut at_rest);
+        at_rest
     }
 
     /// What slid, until other points of its foot were decided to stick, is at rest with them: lets
@@ -262,18 +280,21 @@ impl Settler {
         candidates: &[usize],
         fell_back: bool,
     ) {
-        let (rows, work) = (motion.ground.rows(), &motion.work);
+        let (rows, work, slips) = (motion.ground.rows(), &motion.work, motion.holding.slips);
         self.contacts.clear();
         for (index, contact) in candidates.iter().enumerate() {
             let before = motion.closed.iter().find(|closed| closed.contact == *contact);
             let sliding = &work.velocity[index * rows..index * rows + rows - 1];
             let speed = sliding.iter().map(|v| v * v).sum::<f64>().sqrt();
             // what slid until now and is about to turn round has come to rest
-            let slides = match before.map(|before| before.mode) {
-                Some(Mode::Slip(direction)) if speed < touching.rest_speed => {
-                    speed > SLIP_SPEED && slip_left(sliding, direction) > SLIP_SPEED
+            let slides = match before {
+                Some(before) if matches!(before.mode, Mode::Slip(_)) && rows == 2 => {
+                    let turns = speed < touching.rest_speed
+                        && slips.slip_left(sliding, before) <= SLIP_SPEED;
+                    speed > SLIP_SPEED && !turns
                 }
-                _ => speed > SLIP_SPEED,
+                _ if rows == 2 => speed > SLIP_SPEED,
+                _ => speed > SLIP_SPEED.max(1.001 * slips.rests_below()),
             };
             let mut law = motion.friction[*contact];
             if let (true, Friction::NoSlip) = (slides, law) {
@@ -286,7 +307,7 @@ impl Settler {
             if slides && matches!(law, Friction::Coulomb(mu) if mu > 0.0) {
                 let direction = [sliding[0] / speed, sliding.get(1).map_or(0.0, |v| v / speed)];
                 described.slipping = Some(match before.map(|before| before.mode) {
-                    Some(Mode::Slip(last)) if rows == 3 => slip_direction(sliding, last),
+                    Some(Mode::Slip(last)) if rows == 3 => slips.direction(sliding, last),
                     _ => direction,
                 });
             }
@@ -359,7 +380,8 @@ impl Settler {
             motion.ground.append(&motion.work.positions[3 * contact..3 * contact + 3], &mut along);
             let anchor = [along[0], if rows == 3 { along[1] } else { 0.0 }];
             let law = self.contacts[index].friction;
-            motion.closed.push(Closed { contact, mode, law, anchor });
+            let runs = self.contacts[index].slipping.is_some();
+            motion.closed.push(Closed { contact, mode, law, anchor, runs });
         }
         let impulses = motion.still(&held, y).unwrap_or_default();
         let blocks = impulses.chunks_exact(rows).map(<[f64]>::to_vec);

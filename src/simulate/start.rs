@@ -4,7 +4,7 @@ use super::breakdown::Breakdown;
 use super::control::Control;
 use super::drive::Drives;
 use super::ground::Ground;
-use super::run::Simulation;
+use super::simulation::Simulation;
 use super::state::State;
 use crate::plants::Plant;
 use std::fmt;
@@ -22,6 +22,9 @@ pub enum StartError {
     EventSchemeOnly(&'static str),
     /// What Moreau's scheme alone can do.
     MoreauOnly(&'static str),
+    /// Steps as short as they are to be take more evaluations to the end than are allowed: the
+    /// part of a scenario that says so, needed at least, allowed.
+    Steps(&'static str, f64, usize),
     /// The equations of motion have no answer at the start.
     Breakdown(Breakdown),
 }
@@ -42,6 +45,10 @@ impl fmt::Display for StartError {
             Self::MoreauOnly(what) => {
                 write!(f, "{what}: Anitescu's scheme constrains gaps and has none")
             }
+            Self::Steps(_, needed, allowed) => write!(
+                f,
+                "steps this short take {needed:.1e} evaluations to the end: {allowed} are allowed"
+            ),
             Self::Breakdown(breakdown) => write!(f, "at the start: {breakdown}"),
         }
     }
@@ -80,6 +87,10 @@ pub(super) fn check(
     if !all.into_iter().flatten().all(|entry| entry.is_finite()) {
         return Err(StartError::Number("a position or rate of the initial state"));
     }
+    let roll = plant.model().singular_base_joint().map(|joint| state.q[joint]);
+    if roll.is_some_and(|roll| quarter_turn_left(roll) <= 0.0) {
+        return Err(StartError::Breakdown(Breakdown::SingularPose));
+    }
     let positive = |value: f64| value > 0.0 && value.is_finite();
     if !positive(simulation.log_period_s) {
         return Err(StartError::Number("the period of the log"));
@@ -93,8 +104,29 @@ pub(super) fn check(
     Ok(())
 }
 
-/// A contact point this far below the ground at the start is a fault \[m\].
-const DEPTH_M: f64 = 1e-6;
+/// How far the angle between the first and the last axis of a floating base is from where these are
+/// one: rates of both are 100 times those of the base there, and its coordinates count as singular.
+pub(super) fn quarter_turn_left(roll: f64) -> f64 {
+    roll.cos().abs() - 1e-2
+}
+
+/// Checks that a run can come to its end within the evaluations that are allowed, with steps of
+/// this length at most, of so many evaluations each.
+pub(super) fn check_steps(
+    state: &State,
+    simulation: &Simulation,
+    part: &'static str,
+    (step_s, evaluations): (f64, f64),
+) -> Result<(), StartError> {
+    let needed = (simulation.end_s - state.t_s) / step_s * evaluations;
+    let allowed = simulation.max_evaluations;
+    let ends = needed <= allowed as f64;
+    if ends { Ok(()) } else { Err(StartError::Steps(part, needed, allowed)) }
+}
+
+/// A contact point this far below the ground at the start is a fault; less is rounding, and taken
+/// out \[m\].
+pub(super) const DEPTH_M: f64 = 1e-8;
 
 /// Checks that no contact point starts below the ground.
 pub(super) fn check_gaps(plant: &mut dyn Plant, q: &[f64]) -> Result<(), StartError> {

@@ -37,6 +37,12 @@ pub fn solve(problem: &ContactProblem<'_>, force: &mut [f64]) -> bool {
     COMPLIANCE.iter().any(|compliance| solve_compliant(problem, *compliance, force))
 }
 
+/// As `solve`, from forces that obey the laws already: only how redundant contacts share them may
+/// change.
+pub fn improve(problem: &ContactProblem<'_>, force: &mut [f64]) -> bool {
+    solve_compliant(problem, COMPLIANCE[0], force)
+}
+
 /// Points that give way alike; what that changes of the motion is taken back afterwards.
 fn solve_compliant(problem: &ContactProblem<'_>, relative: f64, force: &mut [f64]) -> bool {
     let n = problem.rows();
@@ -120,6 +126,7 @@ fn iterate(
 pub fn modes(problem: &ContactProblem<'_>, force: &[f64], response: &[f64], modes: &mut Vec<Mode>) {
     modes.clear();
     let zero = 10.0 * problem.response_zero();
+    let no_force = problem.force_zero(force.iter().fold(0.0_f64, |most, f| most.max(f.abs())));
     for (index, contact) in problem.contacts.iter().enumerate() {
         let (block, tangents) = (problem.block(index), problem.space.tangents());
         let (f, w) = (&force[block.clone()], &response[block]);
@@ -129,7 +136,7 @@ pub fn modes(problem: &ContactProblem<'_>, force: &[f64], response: &[f64], mode
             || contact
                 .coefficient()
                 .is_none_or(|mu| length(&f[..tangents]) < mu * f[tangents] * (1.0 - 1e-9));
-        modes.push(if contact.released || (f[tangents] <= 0.0 && w[tangents] > zero) {
+        modes.push(if contact.released || (f[tangents] <= no_force && w[tangents] > zero) {
             Mode::Open
         } else if contact.has_slip_law() || grips {
             closed_mode(contact)

@@ -78,6 +78,17 @@ impl Default for Method {
     }
 }
 
+impl Method {
+    /// The longest step \[s\], and how many evaluations one takes at least.
+    pub(super) fn longest_step(self) -> (f64, f64) {
+        match self {
+            Self::DormandPrince(accuracy) => (accuracy.max_step_s, 6.0),
+            Self::Radau(accuracy) => (accuracy.max_step_s, 4.0),
+            Self::RungeKutta { step_s } => (step_s, 4.0),
+        }
+    }
+}
+
 /// What integration cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
@@ -148,11 +159,6 @@ impl Stepper {
         self.y1.copy_from_slice(y);
         self.y0.copy_from_slice(y);
         self.implicit.forget();
-        self.known = false;
-    }
-
-    /// The rates at the end of the last step are not those of the next one's start.
-    pub fn forget_rates(&mut self) {
         self.known = false;
     }
 

@@ -3,6 +3,7 @@
 
 use super::ranges::{Range, short};
 use crate::plants::PlantError;
+use crate::simulate::breakdown::Breakdown;
 use crate::simulate::log::LogError;
 use crate::simulate::start::StartError;
 use crate::trajectory::TrajectoryError;
@@ -197,6 +198,15 @@ fn start_hint(error: &StartError) -> &'static str {
         StartError::Penetration(..) => "raise the robot, or give `on_ground` in `initial`",
         StartError::EventSchemeOnly(_) => "take the scheme `event`, or leave this out",
         StartError::MoreauOnly(_) => "take the method `moreau`, or leave this out",
+        StartError::Steps(..) => {
+            "take longer steps (`max_step_s`, `step_s`), or allow more `evaluations` in `limits`"
+        }
+        StartError::Breakdown(Breakdown::SingularPose) => {
+            "start in another pose, or let the file's base frame stand otherwise in the robot"
+        }
+        StartError::Breakdown(Breakdown::Painleve) => {
+            "less friction, or the scheme `time_stepping`, which jams with an impulse"
+        }
         StartError::Breakdown(_) => {
             "start in the air or at rest, or give `contact` a finite friction"
         }

@@ -26,7 +26,8 @@ pub use trajectory::{TRAJECTORY_FORMAT, Trajectory, read_trajectory, trajectory_
 use super::audit::Tolerances;
 use super::control::Control;
 use super::measured_log::measured_log;
-use super::run::{Run, Simulation, simulate};
+use super::run::{Run, simulate};
+use super::simulation::Simulation;
 use super::state::State;
 use super::time_stepping::{Scheme, Stepping, simulate_by_steps};
 use crate::plants::Plant;

@@ -8,8 +8,8 @@ use crate::simulate::contact::Friction;
 use crate::simulate::drive::DriveModelling;
 use crate::simulate::integrate::{Accuracy, Method};
 use crate::simulate::measure::Measurement;
-use crate::simulate::run::Simulation;
 use crate::simulate::settle::Scuffing;
+use crate::simulate::simulation::Simulation;
 
 /// A log with more rows would not fit into memory.
 const MAX_ROWS: f64 = 1e6;
@@ -158,12 +158,13 @@ pub(super) fn tolerances(
         "zmp_m",
         "force_n",
         "cone_n",
+        "friction_angle_rad",
     ];
     let Some(given) = fields.get("tolerances").and_then(|node| node.fields(known, report)) else {
         return tolerances;
     };
     let t = &mut tolerances;
-    let entries: [&mut f64; 9] = [
+    let entries: [&mut f64; 10] = [
         &mut t.energy_j,
         &mut t.momentum_ns,
         &mut t.penetration_m,
@@ -173,6 +174,7 @@ pub(super) fn tolerances(
         &mut t.zmp_m,
         &mut t.force_n,
         &mut t.cone_n,
+        &mut t.friction_angle_rad,
     ];
     for (key, entry) in known.iter().zip(entries) {
         *entry = given.number(key, ranges::TOLERANCE, *entry, report);

@@ -15,7 +15,7 @@ use crate::simulate::audit::Tolerances;
 use crate::simulate::control::{Control, Feedback};
 use crate::simulate::drive::DriveModelling;
 use crate::simulate::ground::Ground;
-use crate::simulate::run::Simulation;
+use crate::simulate::simulation::Simulation;
 use crate::simulate::state::State;
 use denavit_codegen::effect;
 use denavit_codegen::expr::text::nearest;

@@ -48,6 +48,7 @@ impl Origin {
             StartError::EventSchemeOnly(_) => &["contact", "scuffing"],
             StartError::MoreauOnly(_) => &["contact", "restitution"],
             StartError::Penetration(..) | StartError::Breakdown(_) => &["initial"],
+            StartError::Steps(part, ..) => &[part],
             StartError::Length(..) | StartError::Number(_) => &[],
         };
         let root = json::parse(&self.source).ok();

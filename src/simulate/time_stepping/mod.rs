@@ -15,6 +15,7 @@
 //! that a step asks of a system; [`TimeStepper`] makes the steps, and allocates nothing once it has
 //! seen the largest number of contacts.
 
+mod alike;
 mod plant;
 mod record;
 mod run;
@@ -173,6 +174,9 @@ pub struct StepReport {
     pub contact_work_j: f64,
     /// How far contacts with an impulse miss the law that the scheme holds them by [m/s].
     pub law_error_m_s: f64,
+    /// Largest angle between friction and what is opposite to the velocity after the step, of
+    /// contacts that slip \[rad\].
+    pub friction_angle_rad: f64,
 }
 
 /// Why a step could not be made; the state stays that before it.

@@ -140,6 +140,8 @@ impl StepRecorder {
         audit.impact_gain_j = worst(audit.impact_gain_j, contact_work);
         audit.penetration_m = worst(audit.penetration_m, made.report.penetration_m);
         audit.separation_m_s = worst(audit.separation_m_s, made.report.law_error_m_s);
+        let angle = made.report.friction_angle_rad;
+        audit.friction_angle_rad = worst(audit.friction_angle_rad, angle);
         for torque in &system.step.torque {
             audit.torque = worst(audit.torque, torque.abs());
         }

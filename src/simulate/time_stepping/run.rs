@@ -11,9 +11,10 @@ use crate::simulate::drive::Drives;
 use crate::simulate::ground::Ground;
 use crate::simulate::integrate::Statistics;
 use crate::simulate::measure::Instrument;
-use crate::simulate::run::{Run, Simulation};
+use crate::simulate::run::Run;
 use crate::simulate::settle::Scuffing;
-use crate::simulate::start::{StartError, check, check_gaps};
+use crate::simulate::simulation::Simulation;
+use crate::simulate::start::{StartError, check, check_gaps, check_steps, quarter_turn_left};
 use crate::simulate::state::State;
 
 /// Runs a plant under control from a state by steps; deterministic.
@@ -32,6 +33,7 @@ pub fn simulate_by_steps(
     let drives = Drives::new(plant.model(), simulation.drives);
     check(plant, control, &mut state, simulation, &drives)?;
     check_stepping(simulation, stepping)?;
+    check_steps(&state, simulation, "time_stepping", (stepping.step_s, 1.0))?;
     if plant.law_states() > 0 || plant.has_accelerated_laws() {
         let what = "effects with states, or that depend on the load";
         return Err(StartError::EventSchemeOnly(what));
@@ -174,11 +176,19 @@ impl Runner<'_> {
 
     fn step(&mut self, end_s: f64) -> Option<Stop> {
         self.before.copy_from_slice(&self.qd);
+        let base = self.system.plant().model().singular_base_joint();
+        let start = self.q.clone();
         let made = self.stepper.step(&mut self.system, self.t_s, &mut self.q, &mut self.qd);
         let report = match made {
             Ok(report) => report,
             Err(failure) => return Some(Stop::Breakdown(breakdown(failure))),
         };
+        if base.is_some_and(|joint| nears_quarter_turn(start[joint], self.q[joint])) {
+            // the last state that steps of this length resolve is that before
+            self.q = start;
+            self.qd.copy_from_slice(&self.before);
+            return Some(Stop::Breakdown(Breakdown::SingularPose));
+        }
         self.t_s = end_s;
         self.statistics.steps += 1;
         self.statistics.evaluations += report.passes;
@@ -224,6 +234,13 @@ impl Runner<'_> {
     }
 }
 
+/// Whether a step brought the roll of a base within a few of its length of a quarter turn, or past
+/// it.
+fn nears_quarter_turn(before: f64, now: f64) -> bool {
+    let left = quarter_turn_left(now).min(now.cos().abs() - STEPS_LEFT * (now - before).abs());
+    left <= 0.0 || (before.cos() < 0.0) != (now.cos() < 0.0)
+}
+
 fn breakdown(failure: StepFailure) -> Breakdown {
     match failure {
         StepFailure::Singular(error) => Breakdown::Singular { coordinate: error.coordinate },
@@ -231,6 +248,9 @@ fn breakdown(failure: StepFailure) -> Breakdown {
         StepFailure::NoImpulses => Breakdown::Contact(ContactFailure::NoSolution),
     }
 }
+
+/// So many steps away from where its coordinates are singular a base counts as there.
+const STEPS_LEFT: f64 = 5.0;
 
 /// Watches for points that must not touch the ground.
 struct FallWatch {

@@ -1,7 +1,9 @@
 //! The steps.
 
+use super::alike::AlikeSharing;
 use super::{Instant, Scheme, StepFailure, StepReport, StepSolver, Stepping, Terms};
 use super::{StepLaw, TimeSteppingModel};
+use crate::simulate::audit::{friction_angle, worst};
 use crate::simulate::contact::cholesky::dot;
 use crate::simulate::contact::delassus::Delassus;
 use crate::simulate::contact::gauss_seidel;
@@ -14,6 +16,9 @@ use crate::simulate::contact::{Contact, ContactProblem, Friction, Space, Toleran
 const FALLBACK_FACETS: usize = 16;
 /// What is added to the diagonal of their problem, relative to its mean, in turn.
 const GIVE: [f64; 4] = [0.0, 1e-11, 1e-9, 1e-7];
+
+/// Slower contacts have no direction of slipping that a solver finds [m/s].
+const SLIPS: f64 = 1e-4;
 
 /// Makes steps; holds the impulses of the last one, from which the next one starts.
 #[derive(Clone, Debug)]
@@ -38,6 +43,7 @@ pub struct TimeStepper {
     scratch: Vec<f64>,
     hold: Hold,
     pyramid: Pyramid,
+    alike: AlikeSharing,
 }
 
 impl TimeStepper {
@@ -65,6 +71,7 @@ impl TimeStepper {
             scratch: vec![0.0; n],
             hold: Hold::new(),
             pyramid: Pyramid::new(),
+            alike: AlikeSharing::default(),
         }
     }
 
@@ -140,6 +147,7 @@ impl TimeStepper {
             }
         }
         (report.contact_work_j, report.law_error_m_s) = self.contact_figures(qd);
+        report.friction_angle_rad = self.friction_angle(n);
         for ((q, middle), rate) in q.iter_mut().zip(&self.middle).zip(&self.rates) {
             *q = middle + (h - ahead) * rate;
         }
@@ -187,6 +195,23 @@ impl TimeStepper {
             }
         }
         (work, error)
+    }
+
+    /// The largest angle between friction and what is opposite to the velocity after the step.
+    fn friction_angle(&self, n: usize) -> f64 {
+        let rows = self.space.rows();
+        let mut largest = 0.0_f64;
+        let mut velocity = [0.0; 2];
+        for place in 0..self.closed.len() {
+            let tangents = place * rows..(place + 1) * rows - 1;
+            for (speed, row) in velocity.iter_mut().zip(tangents.clone()) {
+                *speed = dot(&self.terms.jacobian[row * n..(row + 1) * n], &self.rates);
+            }
+            if velocity[0].hypot(velocity[1]) > SLIPS {
+                largest = worst(largest, friction_angle(&self.force[tangents], &velocity));
+            }
+        }
+        largest
     }
 
     fn find_closed(&mut self, model: &mut impl TimeSteppingModel) {
@@ -255,13 +280,13 @@ impl TimeStepper {
             free: &self.free,
             tolerance: Tolerance::default(),
         };
+        let memory = &mut self.softened;
         let limits = match self.stepping.solver {
             StepSolver::Pivots { facets } => {
-                let report = self.pyramid.solve(&problem, facets, &mut self.force);
-                return match report.outcome {
-                    LcpOutcome::Solved => Ok((report.pivots, false)),
-                    _ => Err(StepFailure::NoImpulses),
-                };
+                let (pivots, solved) =
+                    pivot(&mut self.pyramid, &problem, facets, &mut self.force, memory);
+                self.alike.share(&problem, &mut self.force);
+                return if solved { Ok((pivots, false)) } else { Err(StepFailure::NoImpulses) };
             }
             StepSolver::Sweeps(limits) => limits,
         };
@@ -269,33 +294,22 @@ impl TimeStepper {
             return Ok((0, false));
         }
         let report = gauss_seidel::solve(&problem, limits, &mut self.force);
-        if report.converged {
-            return Ok((report.sweeps, false));
+        let mut spent = report.sweeps;
+        let mut converged = report.converged;
+        if !converged {
+            let damped = gauss_seidel::solve_damped(&problem, limits, &mut self.force, memory);
+            spent += damped.sweeps;
+            converged = damped.converged;
         }
-        let damped =
-            gauss_seidel::solve_damped(&problem, limits, &mut self.force, &mut self.softened);
-        let mut spent = report.sweeps + damped.sweeps;
-        if damped.converged {
-            return Ok((spent, false));
+        let mut solved = converged;
+        if !converged {
+            let pivots;
+            (pivots, solved) =
+                pivot(&mut self.pyramid, &problem, FALLBACK_FACETS, &mut self.force, memory);
+            spent += pivots;
         }
-        // where friction locks redundant contacts, rounding decides whether pivots end, and a
-        // little give, which moves them by as little, lets them
-        for give in GIVE {
-            self.softened.clear();
-            self.softened.extend_from_slice(problem.delassus);
-            let size = self.force.len();
-            let mean = (0..size).map(|i| problem.delassus[i * (size + 1)]).sum::<f64>();
-            for i in 0..size {
-                self.softened[i * (size + 1)] += give * mean / size as f64;
-            }
-            let softened = ContactProblem { delassus: &self.softened, ..problem };
-            let report = self.pyramid.solve(&softened, FALLBACK_FACETS, &mut self.force);
-            spent += report.pivots;
-            if report.outcome == LcpOutcome::Solved {
-                return Ok((spent, true));
-            }
-        }
-        Err(StepFailure::NoImpulses)
+        self.alike.share(&problem, &mut self.force);
+        if solved { Ok((spent, !converged)) } else { Err(StepFailure::NoImpulses) }
     }
 
     fn keep_impulses(&mut self) {
@@ -305,6 +319,34 @@ impl TimeStepper {
             self.impulses[contact * rows..(contact + 1) * rows].copy_from_slice(force);
         }
     }
+}
+
+/// Pivots, by a pyramid of this many facets; says how many, and whether they found impulses. Where
+/// friction locks redundant contacts, rounding decides whether pivots end, and a little give, which
+/// moves them by as little, lets them.
+fn pivot(
+    pyramid: &mut Pyramid,
+    problem: &ContactProblem<'_>,
+    facets: usize,
+    force: &mut [f64],
+    softened: &mut Vec<f64>,
+) -> (usize, bool) {
+    let (size, mut spent) = (force.len(), 0);
+    for give in GIVE {
+        softened.clear();
+        softened.extend_from_slice(problem.delassus);
+        let mean = (0..size).map(|i| problem.delassus[i * (size + 1)]).sum::<f64>();
+        for i in 0..size {
+            softened[i * (size + 1)] += give * mean / size as f64;
+        }
+        let report =
+            pyramid.solve(&ContactProblem { delassus: softened, ..*problem }, facets, force);
+        spent += report.pivots;
+        if report.outcome == LcpOutcome::Solved {
+            return (spent, true);
+        }
+    }
+    (spent, false)
 }
 
 impl Terms {

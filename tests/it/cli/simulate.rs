@@ -119,8 +119,17 @@ fn torques_that_are_no_numbers_are_refused() {
 fn no_run_goes_on_without_end() {
     let text = arm(r#" "log_period_s": 1e-9"#);
     refused(&text, &["/log_period_s: the log would have more than 1000000 rows"]);
-    let limited = arm(r#" "limits": {"evaluations": 2000}, "control": {"period_s": 1e-8},
-  "time_stepping": {"step_s": 1e-9}, "integrator": {"method": "runge_kutta", "step_s": 1e-9}"#);
+    for integrator in [r#""method": "runge_kutta", "step_s": 1e-9"#, r#""max_step_s": 1e-9"#] {
+        let text = format!(
+            r#" "integrator": {{{integrator}}},
+ "time_stepping": {{"step_s": 1e-9}}"#
+        );
+        refused(
+            &arm(&text),
+            &["steps this short take ", "0e9 evaluations", "hint: take longer steps"],
+        );
+    }
+    let limited = arm(r#" "limits": {"evaluations": 2000}, "control": {"period_s": 1e-8}"#);
     for scheme in ["event", "time-stepping"] {
         let directory = Directory::new("endless");
         let run = simulate(&directory, &limited, &["--scheme", scheme, "--json"]);

@@ -2,9 +2,12 @@
 
 use super::in_space::{Body, tetrahedral};
 use denavit::simulate::contact::Friction;
-use denavit::simulate::{Control, Random, Run, Simulation, State, Stop, simulate};
+use denavit::simulate::{
+    Breakdown, Control, Random, Run, Simulation, State, Stop, Tolerances, simulate,
+};
 
-/// A body of this many corners in a random pose above the ground, with random laws of contact.
+/// A body with three, four or eight corners in a random pose above the ground, and random laws of
+/// contact.
 struct Drop {
     body: Body,
     initial: State,
@@ -25,14 +28,7 @@ impl Drop {
         let friction = [0.0, 0.3, 0.8][(3.0 * within(0.0, 1.0)) as usize];
         let restitution = [0.0, 0.3, 0.5, 0.7][(4.0 * within(0.0, 1.0)) as usize];
         // z, x, y, yaw, roll, pitch
-        let q = vec![
-            within(0.3, 0.6),
-            0.0,
-            0.0,
-            0.0,
-            within(-0.3, 0.3),
-            within(-0.3, 0.3),
-        ];
+        let q = vec![within(0.3, 0.6), 0.0, 0.0, 0.0, within(-0.3, 0.3), within(-0.3, 0.3)];
         let qd = vec![0.0, within(-0.5, 0.5), 0.0, within(-1.0, 1.0), 0.0, within(-1.0, 1.0)];
         Self { body, initial: State { qd, ..State::resting(q) }, friction, restitution }
     }
@@ -60,17 +56,19 @@ fn faults(seed: u64) -> Vec<String> {
         drop.restitution
     );
     for run in &runs {
-        if run.stop != Stop::End {
+        let turned = run.stop == Stop::Breakdown(Breakdown::SingularPose);
+        if run.stop != Stop::End && !turned {
             faults.push(format!("{what}: {} at {} s", run.stop, run.end.t_s));
         }
-        let broken = run.audit.broken(&denavit::simulate::Tolerances::default());
+        let broken = run.audit.broken(&Tolerances::default());
         if !broken.is_empty() {
             faults.push(format!("{what}: {broken:?}"));
         }
     }
-    // errors grow by impacts, so that the first ones are compared
+    // errors grow by impacts, so that the first ones are compared; forces that vanish slowly have
+    // no better time
     for (index, (a, b)) in runs[0].events.iter().zip(&runs[1].events).take(12).enumerate() {
-        if (a.t_s - b.t_s).abs() > 1e-6 {
+        if (a.t_s - b.t_s).abs() > 1e-5 {
             faults.push(format!("{what}: event {index} at {} and {} s", a.t_s, b.t_s));
             break;
         }
@@ -80,7 +78,7 @@ fn faults(seed: u64) -> Vec<String> {
 
 #[test]
 fn drops_do_not_depend_on_the_log() {
-    let faults: Vec<String> = (0..12).flat_map(faults).collect();
+    let faults: Vec<String> = (0..24).flat_map(faults).collect();
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
@@ -88,8 +86,7 @@ fn drops_do_not_depend_on_the_log() {
 #[test]
 #[ignore = "takes a minute"]
 fn six_hundred_drops_do_not_depend_on_the_log() {
-    let from = std::env::var("DROPS_FROM").map_or(0, |text| text.parse().unwrap());
-    let faults: Vec<String> = (from..from + 600)
+    let faults: Vec<String> = (0..600)
         .flat_map(|seed| {
             let faults = faults(seed);
             faults.iter().for_each(|fault| println!("{fault}"));

@@ -142,6 +142,7 @@ fn the_schema_states_the_tolerances() {
             ("zmp_m", own.zmp_m),
             ("force_n", own.force_n),
             ("cone_n", own.cone_n),
+            ("friction_angle_rad", own.friction_angle_rad),
         ] {
             let stated = stated["default"][key].as_f64().expect("a default");
             assert!((stated - value).abs() <= 1e-12 * value, "{key}: {stated}, {value}");

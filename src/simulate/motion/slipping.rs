@@ -1,0 +1,109 @@
+//! The direction of slipping: that of the velocity, but where that is no more than an error.
+//!
+//! In space v / |v| has no value where slipping begins and ends, and turns infinitely fast beside
+//! that. Below a speed that the accuracy of the motion sets, the direction therefore is that of
+//! v + v_s w d, where d is the direction remembered, of faster slipping or of that in which it
+//! began, and the weight w(|v| / v_s) falls smoothly from 1 at rest to 0 at a few v_s. Faster
+//! slipping has the direction of its velocity, exactly. In a plane the direction is d, and changes
+//! by events alone.
+
+use super::{Closed, Motion};
+use crate::simulate::contact::Mode;
+use crate::simulate::integrate::Method;
+
+/// v_s in units of the absolute accuracy of rates, and within which limits [m/s].
+const ERRORS: f64 = 1e4;
+const SPEEDS: [f64; 2] = [1e-7, 1e-4];
+/// From this many v_s on nothing is remembered.
+const FORGETS: f64 = 4.0;
+
+/// How directions of slipping in space are remembered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::simulate) struct SlipMemory {
+    /// v_s [m/s].
+    speed: f64,
+}
+
+impl SlipMemory {
+    /// As the errors of a method ask for.
+    pub(in crate::simulate) fn of(method: Method) -> Self {
+        let speed = match method {
+            Method::DormandPrince(accuracy) | Method::Radau(accuracy) => ERRORS * accuracy.absolute,
+            Method::RungeKutta { .. } => SPEEDS[1],
+        };
+        Self { speed: speed.clamp(SPEEDS[0], SPEEDS[1]) }
+    }
+
+    /// Whether slipping is so fast that its direction is that of its velocity.
+    pub(in crate::simulate) fn is_left_by(self, velocity: &[f64]) -> bool {
+        size(velocity) >= FORGETS * self.speed
+    }
+
+    /// Slower contacts are at rest, once they have slipped faster than twice that [m/s].
+    pub(in crate::simulate) fn rests_below(self) -> f64 {
+        0.5 * self.speed
+    }
+
+    /// How far slipping is from its end [m/s]: in a plane the speed along its direction. In space
+    /// the speed down to which it is at rest, and once more what is left along the direction that
+    /// is remembered, lest a stop be overlooked.
+    pub(in crate::simulate) fn slip_left(self, velocity: &[f64], closed: &Closed) -> f64 {
+        let Mode::Slip(direction) = closed.mode else { return 0.0 };
+        let along: f64 = velocity.iter().zip(direction).map(|(v, d)| v * d).sum();
+        if velocity.len() < 2 {
+            return along;
+        }
+        let back = along + self.rests_below();
+        if closed.runs { back.min(size(velocity) - self.rests_below()) } else { back }
+    }
+
+    /// The direction of slipping at a velocity, after `last`.
+    pub(in crate::simulate) fn direction(self, velocity: &[f64], last: [f64; 2]) -> [f64; 2] {
+        if velocity.len() < 2 || last == [0.0; 2] {
+            return last;
+        }
+        let share = (size(velocity) / (FORGETS * self.speed)).min(1.0);
+        let kept = self.speed * (1.0 - share * share).powi(3);
+        let [x, y] = [0, 1].map(|axis| velocity[axis] + kept * last[axis]);
+        let size = x.hypot(y);
+        if size > 0.0 { [x / size, y / size] } else { last }
+    }
+}
+
+fn size(velocity: &[f64]) -> f64 {
+    velocity.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+impl Motion<'_> {
+    /// Remembers the directions of what slips fast in space: rates do not change by it.
+    pub(in crate::simulate) fn remember_slips(&mut self, y: &[f64]) {
+        let rows = self.ground.rows();
+        if rows < 3 || self.closed.iter().all(|closed| closed.mode == Mode::Stick) {
+            return;
+        }
+        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        self.follow_points(y, &listed);
+        for (index, closed) in self.closed.iter_mut().enumerate() {
+            let velocity = &self.work.velocity[index * rows..index * rows + 2];
+            closed.runs |= size(velocity) >= 2.0 * self.holding.slips.rests_below();
+            match &mut closed.mode {
+                Mode::Slip(direction)
+                    if *direction != [0.0; 2] && self.holding.slips.is_left_by(velocity) =>
+                {
+                    *direction = [0, 1].map(|axis| velocity[axis] / size(velocity));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether a closed contact slips on in space where its speed along the direction that is
+    /// remembered ended: it has only turned away from that.
+    pub(in crate::simulate) fn slips_on(&mut self, index: usize, y: &[f64]) -> bool {
+        let rows = self.ground.rows();
+        let listed: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        self.follow_points(y, &listed);
+        let velocity = &self.work.velocity[index * rows..(index + 1) * rows - 1];
+        rows == 3 && self.holding.slips.is_left_by(velocity)
+    }
+}

@@ -5,7 +5,7 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{open_log, own_effects, read_file, read_model, write_whole};
+use super::files::{given_effects, open_log, read_file, read_model, write_whole};
 use super::identify::IdentifyFailure;
 use super::progress::Progress;
 use clap::Args;
@@ -107,8 +107,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         progress.show(&format!("{} effects, held-out gap {:.2} %", taken.len(), 100.0 * gap));
     });
     progress.clear();
-    let file = arguments.train[0].display().to_string();
-    let found = found.map_err(|error| IdentifyFailure::Condition(file, error))?;
+    let found = found.map_err(Failure::Diagnose)?;
     let shown = Shown {
         robot: &robot,
         model: &model,
@@ -164,7 +163,7 @@ fn log(
 /// The catalogue, with the files of a folder.
 fn effects(folder: Option<&Path>) -> Result<Vec<Effect>, Failure> {
     let mut all = effect::catalogue().to_vec();
-    for own in folder.map_or_else(|| Ok(Vec::new()), own_effects)? {
+    for own in folder.map_or_else(|| Ok(Vec::new()), given_effects)? {
         all.retain(|known| known.name != own.name);
         all.push(own);
     }

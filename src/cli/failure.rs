@@ -1,6 +1,7 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
 use super::identify::IdentifyFailure;
+use denavit::diagnose::DiagnosisError;
 use denavit::emit::rust::EmitError;
 use denavit::identify::excite::ExciteError;
 use denavit::model::{BakeError, ModelError};
@@ -70,6 +71,8 @@ pub(crate) enum Failure {
     Excite(ExciteError),
     /// Nothing is identified.
     Identify(IdentifyFailure),
+    /// Nothing is diagnosed.
+    Diagnose(DiagnosisError),
     /// A step was given for the scheme that chooses its own.
     StepOfEventScheme,
     /// The answer cannot be written to standard output.
@@ -155,6 +158,7 @@ impl Failure {
             | Self::Scenario(_)
             | Self::Excite(_)
             | Self::Identify(_)
+            | Self::Diagnose(_)
             | Self::Base(_)
             | Self::Decompose(..)
             | Self::Equations(_)
@@ -228,6 +232,7 @@ impl fmt::Display for Failure {
             Self::Scenario(error) => write!(f, "{error}")?,
             Self::Excite(error) => write!(f, "{error}")?,
             Self::Identify(error) => write!(f, "{error}")?,
+            Self::Diagnose(error) => write!(f, "{error}")?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }

@@ -34,17 +34,23 @@ pub(crate) fn read_model_with_effects(
     let (name, bytes) = read_named(place, &[shipped::MODELS])?;
     let beside = place.parent().filter(|_| place.is_file()).map(|parent| parent.join("effects"));
     let own = match folder {
-        Some(folder) if !folder.is_dir() => {
-            let (file, error) = (folder.display().to_string(), io::ErrorKind::NotADirectory);
-            return Err(Failure::Read { file, error: error.into() });
-        }
-        Some(folder) => own_effects(folder)?,
+        Some(folder) => given_effects(folder)?,
         None => beside.map_or_else(|| Ok(Vec::new()), |folder| own_effects(&folder))?,
     };
     effect::read_model(&name, &bytes, &own).map_err(Failure::Model)
 }
 
-pub(crate) fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
+/// The effects of a folder that was asked for.
+pub(crate) fn given_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
+    if folder.is_dir() {
+        return own_effects(folder);
+    }
+    let (file, error) = (folder.display().to_string(), io::ErrorKind::NotADirectory);
+    Err(Failure::Read { file, error: error.into() })
+}
+
+/// The effects of a folder, if there is one.
+fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
     let files = effect::files(folder)
         .map_err(|error| Failure::Read { file: folder.display().to_string(), error })?;
     let read = |path: &PathBuf| {

@@ -3,6 +3,7 @@
 use super::candidate::Candidate;
 use super::data::Data;
 use super::family::{Alternative, family};
+use super::fault::DiagnosisError;
 use super::floor::NoiseFloor;
 use super::gap::{Gap, share_closed};
 use super::nominal::{Nominal, Uncertainty};
@@ -135,16 +136,20 @@ const UNREPEATABLE: f64 = 3.0;
 pub fn diagnose(
     request: Request<'_>,
     watch: &mut dyn FnMut(&[usize], f64),
-) -> Result<Diagnosis, ConditionError> {
+) -> Result<Diagnosis, DiagnosisError> {
+    DiagnosisError::check(&request)?;
     let nominal = Nominal::new(request.model, request.uncertainty);
     let filters = match request.filters {
         Some(filters) => filters,
-        None => quiet_filters(&nominal, &request.train)?,
+        None => quiet_filters(&nominal, &request.train)
+            .map_err(|error| DiagnosisError::condition(&request.train[0], error))?,
     };
-    let read = |logs: Vec<MeasuredLog>| -> Result<Data<'_>, ConditionError> {
-        let signals: Result<Vec<Signals>, _> =
-            logs.into_iter().map(|log| Signals::new(log, filters)).collect();
-        Ok(Data::new(&nominal, signals?))
+    let read = |logs: Vec<MeasuredLog>| -> Result<Data<'_>, DiagnosisError> {
+        let signals = logs.into_iter().map(|log| {
+            let file = log.file.clone();
+            Signals::new(log, filters).map_err(|error| DiagnosisError::Condition { file, error })
+        });
+        Ok(Data::new(&nominal, signals.collect::<Result<Vec<Signals>, _>>()?))
     };
     let (train, held_out) = (read(request.train)?, read(request.held_out)?);
     let train_floor = NoiseFloor::of_logs(&nominal, &train.signals);

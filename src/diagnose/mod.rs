@@ -15,6 +15,7 @@ mod data;
 mod diagnosis;
 mod evidence;
 mod family;
+mod fault;
 mod floor;
 mod gap;
 mod joint_law;
@@ -33,6 +34,7 @@ pub use data::{Data, ModelTorques, RowResponse, Stretch};
 pub use diagnosis::{Diagnosis, EffectValue, FoundEffect, Gaps, Request, Verdict, diagnose};
 pub use evidence::{block_costs, by_ranks, paired};
 pub use family::{Alternative, family};
+pub use fault::DiagnosisError;
 pub use floor::{NoiseFloor, rms};
 pub use gap::{Gap, share_closed};
 pub use law::{Law, Motion, Response};
@@ -40,8 +42,6 @@ pub use nominal::{Nominal, Uncertain, Uncertainty};
 pub use problem::{Fitted, Found, Problem, View};
 pub use regime::{Part, Regime, Where, where_left};
 pub use rows::PerJoint;
-pub use search::{
-    Outcome, Scored, Screen, SearchOptions, Step, Stop, score, search, share_explained,
-};
+pub use search::{Outcome, Scored, Screen, SearchOptions, Step, Stop, score, search};
 pub use signals::{Filters, Signals};
 pub use state::{Setting, State, Taken, Trial};

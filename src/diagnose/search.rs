@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, starts};
 use super::data::RowResponse;
 use super::evidence::{by_ranks, paired};
-use super::gap::{Gap, share_closed};
+use super::gap::Gap;
 use super::problem::{Fitted, Problem};
 use super::state::{Setting, State, Taken, Trial};
 
@@ -46,9 +46,9 @@ pub struct Step {
     pub added: usize,
     /// Whether it was added: the last one of a search may not have been.
     pub is_taken: bool,
-    /// Gain of the best candidate and of the best decoy.
+    /// By how much the weighted squares that are left of the training logs fall.
     pub gain: f64,
-    /// That of the best decoy.
+    /// The same of the best decoy, to first order.
     pub decoy: f64,
     /// Standard errors by which held-out logs are better.
     pub significance: f64,
@@ -101,8 +101,12 @@ pub fn search(
     let (mut steps, mut idle) = (Vec::new(), Vec::new());
     let stop = loop {
         watch(&state);
-        if state.taken.len() >= options.most_effects || idle.len() > options.refined {
+        if state.taken.len() >= options.most_effects {
             break Stop::MostEffects;
+        }
+        // Exchanges and removals must not lead round in circles.
+        if idle.len() > options.refined || steps.len() >= 2 * options.most_effects {
+            break Stop::NothingLeft;
         }
         if state.held_out_gap.all <= floor {
             break Stop::Floor;
@@ -295,16 +299,12 @@ fn swap(
         let trials = refine(setting, options.refined, &rest, (&problem, &scored));
         let Some(best) = best(setting, &trials) else { continue };
         let is_other = best.taken.last().is_some_and(|last| last.candidate != own.candidate);
-        let is_better = paired(&concat(&now), &concat(best)) > options.significance;
+        let is_better = paired(&now.blocks.concat(), &best.blocks.concat()) > options.significance;
         if is_other && is_better && best.score(samples) < now.score(samples) {
-            state = setting.state(&best.taken.clone());
+            state = setting.state(&best.taken);
         }
     }
     state
-}
-
-fn concat(trial: &Trial) -> Vec<f64> {
-    trial.blocks.concat()
 }
 
 /// Takes effects out that the others have made idle.
@@ -333,10 +333,4 @@ fn without_idle(setting: &Setting<'_>, mut state: State) -> State {
 fn unit(seed: u64, round: usize) -> f64 {
     let mut random = crate::simulate::Random::new(seed);
     (0..=round).map(|_| random.uniform()).last().unwrap_or(0.5)
-}
-
-/// The share of what can be explained that a search explained, on the logs that were held out.
-pub fn share_explained(setting: &Setting<'_>, outcome: &Outcome) -> Option<f64> {
-    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
-    share_closed(outcome.before.held_out_gap.all, outcome.after.held_out_gap.all, floor)
 }

@@ -91,8 +91,7 @@ impl Signals {
         let stride = ((0.2 / (filters.torque_hz * step_s)) as usize * 2).max(1);
         let cut = edge + filter.settling();
         if samples < 2 * cut + 64 * stride {
-            let samples_left = samples.saturating_sub(2 * cut);
-            return Err(ConditionError::TooShort { samples: samples_left, needed: 64 * stride });
+            return Err(ConditionError::TooShort { samples, needed: 2 * cut + 64 * stride });
         }
         let kept = edge..samples - edge;
         // Rows are where a coarse view of the motion has samples.
@@ -306,4 +305,44 @@ fn between(signal: &[f64], within: usize) -> Vec<f64> {
         }
     }
     fine
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn what_is_between_samples_of_a_cubic_is_on_it() {
+        let cubic = |x: f64| 0.3 - 1.1 * x + 0.7 * x * x - 0.05 * x * x * x;
+        let signal: Vec<f64> = (0..12).map(|k| cubic(f64::from(k))).collect();
+        for (k, value) in between(&signal, 3).iter().enumerate().skip(6).take(24) {
+            let x = (k as f64 - 1.0) / 3.0;
+            assert!((value - cubic(x)).abs() < 1e-12, "{k}: {value} {}", cubic(x));
+        }
+    }
+
+    /// A torque that a signal of the motion explains whole, seen from all sides: rows of the log,
+    /// of the motion, and of a coarse view of it.
+    #[test]
+    fn rows_of_log_motion_and_coarse_view_agree() {
+        let step_s = 0.002;
+        let at = |k: usize| (TAU * 1.3 * step_s * k as f64).sin();
+        let q: Vec<f64> = (0..6000).map(at).collect();
+        let joint = JointSignals { tau: Some(q.clone()), q, ..JointSignals::default() };
+        let (file, joints) = ("made".to_owned(), vec![joint]);
+        let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
+        let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
+        let coarse = signals.coarse().expect("there is something to save");
+        let measured = signals.torque[0].as_ref().expect("measured");
+        let rows = signals.rows_of(&signals.q[0]);
+        let seen = coarse.rows_of(&coarse.q[0]);
+        assert_eq!((rows.len(), seen.len()), (measured.len(), measured.len()));
+        for ((a, b), c) in measured.iter().zip(&rows).zip(&seen) {
+            assert!((a - b).abs() < 1e-4 && (a - c).abs() < 1e-3, "{a} {b} {c}");
+        }
+        let rate = TAU * 1.3;
+        let steepest = signals.qd[0].iter().fold(0.0_f64, |most, qd| most.max(qd.abs()));
+        assert!((steepest - rate).abs() < 1e-3 * rate, "{steepest} {rate}");
+    }
 }

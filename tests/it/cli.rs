@@ -3,6 +3,7 @@
 mod answers;
 mod base;
 mod decompose;
+mod diagnose;
 mod effects;
 mod errors;
 mod excite;

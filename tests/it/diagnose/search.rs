@@ -2,8 +2,8 @@
 
 use super::laws::{Handwritten, Sample, kinds};
 use denavit::diagnose::{
-    Candidate, Data, Filters, NoiseFloor, Nominal, SearchOptions, Setting, Signals, Uncertainty,
-    search, share_explained,
+    Candidate, Data, Filters, Gap, NoiseFloor, Nominal, SearchOptions, Setting, Signals,
+    Uncertainty, search, share_closed,
 };
 use denavit::identify::log::{JointSignals, MeasuredLog};
 use denavit::plants::regression::RegressionModel;
@@ -125,7 +125,9 @@ fn found(hidden: impl Fn(usize, Sample) -> f64, seed: u64) -> (Vec<String>, Opti
     }
     let taken = outcome.after.taken.iter();
     let names = taken.map(|one| candidates[one.candidate].name()).collect();
-    (names, share_explained(&setting, &outcome))
+    let floor = Gap::of_floor(&held_out, &held_out_floor).all;
+    let [before, after] = [&outcome.before, &outcome.after].map(|state| state.held_out_gap.all);
+    (names, share_closed(before, after, floor))
 }
 
 #[test]

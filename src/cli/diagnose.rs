@@ -10,7 +10,8 @@ use super::identify::IdentifyFailure;
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    Candidate, Diagnosis, Request, SearchOptions, Uncertainty, Verdict, candidates, diagnose,
+    Candidate, Diagnosis, DiagnosisError, Request, SearchOptions, Uncertainty, Verdict, candidates,
+    diagnose,
 };
 use denavit::effect::{self, Effect};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
@@ -82,6 +83,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let robot = read_model(&arguments.model)?;
     let model = RegressionModel::new(&robot, modelled(&robot), &[])
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
+    // Before its logs are asked for columns of a base.
+    DiagnosisError::check_model(&model).map_err(Failure::Diagnose)?;
     let mut remarks = Vec::new();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<MeasuredLog>, Failure> {
         paths.iter().map(|path| log(arguments, &robot, &model, path, &mut remarks)).collect()

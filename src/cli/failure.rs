@@ -240,9 +240,7 @@ impl fmt::Display for Failure {
                 write!(f, "{name}: there is no such file, and no shipped scenario of that name")?;
             }
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
-            Self::Window([from, to]) => {
-                write!(f, "--window: the run is from {from} to {to} s")?;
-            }
+            Self::Window([from, to]) => write!(f, "--window: the run is from {from} to {to} s")?,
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;
             }

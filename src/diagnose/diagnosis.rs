@@ -11,7 +11,6 @@ use super::regime::{Where, where_left};
 use super::search::{Screen, SearchOptions, Step, Stop, search};
 use super::signals::{Filters, Signals};
 use super::state::{Setting, State};
-use crate::identify::condition::ConditionError;
 use crate::identify::log::MeasuredLog;
 use crate::plants::regression::RegressionModel;
 
@@ -139,11 +138,7 @@ pub fn diagnose(
 ) -> Result<Diagnosis, DiagnosisError> {
     DiagnosisError::check(&request)?;
     let nominal = Nominal::new(request.model, request.uncertainty);
-    let filters = match request.filters {
-        Some(filters) => filters,
-        None => quiet_filters(&nominal, &request.train)
-            .map_err(|error| DiagnosisError::condition(&request.train[0], error))?,
-    };
+    let filters = request.filters.map_or_else(|| quiet_filters(&nominal, &request.train), Ok)?;
     let read = |logs: Vec<MeasuredLog>| -> Result<Data<'_>, DiagnosisError> {
         let signals = logs.into_iter().map(|log| {
             let file = log.file.clone();
@@ -207,15 +202,16 @@ pub fn diagnose(
 }
 
 /// The widest filters with which the steps of the encoders make less of a torque than its noise.
-fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters, ConditionError> {
-    let Some(log) = logs.first() else { return Ok(Filters::new(1.0, SHARES[0])) };
-    let mut last = Err(ConditionError::NoPeriod);
+fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
+    let log = logs.first().ok_or(DiagnosisError::NoLog)?;
+    let mut last = Err(DiagnosisError::NoLog);
     for share in SHARES {
         let filters = Filters::new(log.step_s, share);
         let signals = match Signals::new(log.clone(), filters) {
             Ok(signals) => signals,
             Err(error) => {
-                last = last.or(Err(error));
+                let file = log.file.clone();
+                last = last.or(Err(DiagnosisError::Condition { file, error }));
                 break;
             }
         };

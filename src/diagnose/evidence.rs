@@ -16,10 +16,9 @@ pub fn block_costs(data: &Data<'_>, residual: &[f64], deviation: &[f64]) -> Vec<
         let count = by_time.max(LEAST_BLOCKS).min(rows.max(1));
         let mut of_log = vec![0.0; count];
         for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
-            let weight = deviation[stretch.joint].powi(2).recip();
-            let part = &residual[stretch.first..stretch.first + stretch.rows];
-            for (row, left) in part.iter().enumerate() {
-                of_log[row * count / stretch.rows] += weight * left * left;
+            for row in 0..stretch.rows {
+                let at = stretch.first + row;
+                of_log[row * count / stretch.rows] += (residual[at] / deviation[at]).powi(2);
             }
         }
         costs.extend(of_log);

@@ -36,7 +36,7 @@ pub fn family(
     let mut others = state.taken.clone();
     let own = others.remove(place);
     let rest = State { taken: others.clone(), ..state.clone() };
-    let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+    let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
     let scored = score(setting, screen, &rest, None);
     let chosen = {
         let mut taken = others;

@@ -3,6 +3,7 @@
 use super::diagnosis::Request;
 use crate::identify::condition::ConditionError;
 use crate::identify::log::MeasuredLog;
+use crate::plants::regression::RegressionModel;
 use std::fmt;
 
 /// Why nothing is diagnosed.
@@ -29,9 +30,7 @@ impl DiagnosisError {
         if request.train.is_empty() || request.held_out.is_empty() {
             return Err(Self::NoLog);
         }
-        if request.model.joints.iter().any(|joint| joint.is_base) {
-            return Err(Self::FloatingBase(request.model.model.clone()));
-        }
+        Self::check_model(request.model)?;
         let is_mute = |log: &&MeasuredLog| log.joints.iter().all(|joint| joint.tau.is_none());
         match request.train.iter().chain(&request.held_out).find(is_mute) {
             Some(log) => Err(Self::NoTorque(log.file.clone())),
@@ -39,8 +38,15 @@ impl DiagnosisError {
         }
     }
 
-    pub(super) fn condition(log: &MeasuredLog, error: ConditionError) -> Self {
-        Self::Condition { file: log.file.clone(), error }
+    /// What keeps a model from being diagnosed, whatever the logs.
+    ///
+    /// # Errors
+    /// [`Self::FloatingBase`].
+    pub fn check_model(model: &RegressionModel) -> Result<(), Self> {
+        match model.joints.iter().any(|joint| joint.is_base) {
+            true => Err(Self::FloatingBase(model.model.clone())),
+            false => Ok(()),
+        }
     }
 }
 
@@ -55,8 +61,8 @@ impl fmt::Display for DiagnosisError {
             ),
             Self::NoTorque(file) => write!(
                 f,
-                "{file}: no joint has a torque\n  hint: give columns `tau_JOINT`, or name them with \
-                 --columns"
+                "{file}: no joint has a torque\n  hint: give columns `tau_JOINT`, or name them \
+                 with --columns"
             ),
             Self::Condition { file, error: ConditionError::TooShort { samples, needed } } => {
                 write!(

@@ -27,6 +27,7 @@ mod rows;
 mod search;
 mod signals;
 mod state;
+mod turning;
 
 pub use candidate::{Candidate, starts};
 pub use catalogue::candidates;

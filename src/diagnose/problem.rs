@@ -51,7 +51,7 @@ pub struct Found {
 const ITERATIONS: usize = 12;
 
 impl<'a> Problem<'a> {
-    /// A problem with a deviation for each joint. Entries of z that are `held` are not eliminated
+    /// A problem with a deviation for each row. Entries of z that are `held` are not eliminated
     /// but have their values. Laws that are `given` are taken away, and what they are linear in
     /// near their values is eliminated too.
     pub fn new(
@@ -60,11 +60,7 @@ impl<'a> Problem<'a> {
         held: &[Option<f64>],
         given: &[RowResponse],
     ) -> Self {
-        let mut weights = vec![0.0; data.rows()];
-        for stretch in &data.stretches {
-            weights[stretch.first..stretch.first + stretch.rows]
-                .fill(1.0 / deviation[stretch.joint]);
-        }
+        let weights: Vec<f64> = deviation.iter().map(|deviation| 1.0 / deviation).collect();
         let (rows, own) = (data.rows(), data.columns.len());
         let of_given = |response: &RowResponse| response.gradient.first().map_or(0, Vec::len);
         let width = own + given.iter().map(of_given).sum::<usize>();
@@ -85,7 +81,7 @@ impl<'a> Problem<'a> {
         for response in given {
             for (place, stretch) in response.stretches.iter().enumerate() {
                 for k in 0..stretch.rows {
-                    let (row, weight) = (stretch.first + k, weights[stretch.first]);
+                    let (row, weight) = (stretch.first + k, weights[stretch.first + k]);
                     residual[row] -= weight * response.torque[place][k];
                     for (parameter, gradient) in response.gradient[place].iter().enumerate() {
                         stacked[(row, begin + parameter)] = weight * gradient[k];
@@ -132,13 +128,15 @@ impl<'a> Problem<'a> {
             let begin = columns.len();
             columns.resize(begin + parameters, Vec::new());
             for (place, stretch) in response.stretches.iter().enumerate() {
-                let weight = self.weights[stretch.first];
-                let part = &mut rho.as_mut_slice()[stretch.first..stretch.first + stretch.rows];
-                for (row, torque) in part.iter_mut().zip(&response.torque[place]) {
+                let rows = stretch.first..stretch.first + stretch.rows;
+                let weights = &self.weights[rows.clone()];
+                let part = rho.as_mut_slice()[rows].iter_mut();
+                for ((row, torque), weight) in part.zip(&response.torque[place]).zip(weights) {
                     *row -= weight * torque;
                 }
                 for (parameter, gradient) in response.gradient[place].iter().enumerate() {
-                    let weighted = gradient.iter().map(|entry| weight * entry).collect();
+                    let weighted =
+                        gradient.iter().zip(weights).map(|(entry, w)| w * entry).collect();
                     columns[begin + parameter].push((stretch.first, weighted));
                 }
             }

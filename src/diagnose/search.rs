@@ -148,7 +148,7 @@ fn forward(
     scored.retain(|one| !idle.contains(&one.candidate));
     let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
     let decoy = score(setting, screen, state, Some(turn)).first().map_or(0.0, |best| best.gain);
-    let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+    let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
     let trials = refine(setting, options.refined, state, (&problem, &scored));
     let best = best(setting, &trials)?;
     let idle = setting.trial(&problem, state, &state.taken);
@@ -188,10 +188,10 @@ pub fn score(
     turn: Option<f64>,
 ) -> Vec<Scored> {
     let given = {
-        let plain = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let plain = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
         plain.responses(&setting.fitted(&state.taken), &state.torques[0])
     };
-    let problem = Problem::new(setting.train, &state.deviation, &state.held, &given);
+    let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &given);
     let own_cost = problem.own_cost();
     let best_of = |(candidate, starts): (usize, &Vec<(Vec<f64>, RowResponse)>)| {
         if state.taken.iter().any(|taken| taken.candidate == candidate) {
@@ -219,7 +219,7 @@ pub struct Screen {
 impl Screen {
     /// Evaluates all candidates on the motion, or coarse views of it.
     pub fn new(setting: &Setting<'_>, state: &State) -> Self {
-        let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
         let (problem, torques) = match &setting.coarse {
             Some(coarse) => (problem.coarse(coarse), &state.coarse),
             None => (problem.coarse(&setting.train.signals), &state.torques[0]),
@@ -294,7 +294,7 @@ fn swap(
         let own = others.remove(place);
         let rest = setting.state(&others);
         let scored = score(setting, screen, &rest, None);
-        let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
         let now = setting.trial(&problem, &state, &state.taken);
         let trials = refine(setting, options.refined, &rest, (&problem, &scored));
         let Some(best) = best(setting, &trials) else { continue };
@@ -314,7 +314,7 @@ fn without_idle(setting: &Setting<'_>, mut state: State) -> State {
     while place < state.taken.len() && state.taken.len() > 1 {
         let mut others = state.taken.clone();
         others.remove(place);
-        let problem = Problem::new(setting.train, &state.deviation, &state.held, &[]);
+        let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
         let now = setting.trial(&problem, &state, &state.taken);
         let less = setting.trial(&problem, &state, &others);
         // Rows are weighted by what is left of them: squares count as those of unit noise.

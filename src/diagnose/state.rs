@@ -8,6 +8,7 @@ use super::floor::{NoiseFloor, rms};
 use super::gap::Gap;
 use super::problem::{Fitted, Found, Problem};
 use super::signals::Signals;
+use super::turning::turning;
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,8 +45,11 @@ pub struct State {
     /// The entries of z that are at a bound: beyond it the logs, but not the model's uncertainty,
     /// would have them.
     pub held: Vec<Option<f64>>,
-    /// The deviation by which each joint's rows are weighted [N m, N].
-    pub deviation: Vec<f64>,
+    /// The deviation by which each row is weighted [N m, N]: of the logs that are fitted, and of
+    /// the others.
+    pub deviation: [Vec<f64>; 2],
+    /// What of it is not known of friction while joints turn around.
+    pub turning: [Vec<f64>; 2],
     /// What is left of the logs that were fitted [N m, N].
     pub residual: Vec<f64>,
     /// What is left of the others.
@@ -105,6 +109,9 @@ impl Trial {
 /// Entries of z beyond which the model's own parameters are not moved.
 const MOST_Z: f64 = 3.0;
 
+/// Rounds in which a joint's deviation is found from rows that are weighted by it.
+const ROUNDS_OF_LEVEL: usize = 3;
+
 /// Rounds in which entries of z are held.
 const MOST_HELD: usize = 8;
 
@@ -124,18 +131,22 @@ impl<'a> Setting<'a> {
         let floor = self.floor_of_joints(joints);
         let mut z = vec![0.0; self.train.columns.len()];
         let mut taken = taken.to_vec();
-        let mut deviation = self.deviation(&self.train.residual, &floor);
-        let mut found = None;
+        let (mut levels, mut found) = (floor.clone(), None);
         let mut held = vec![None; z.len()];
+        let mut residual = self.train.residual.clone();
         for _ in 0..2 {
             let torques = self.train.model_torques(&z);
+            let unsure = turning(self.train, &torques, &self.fitted(&taken));
+            levels = self.levels(&residual, &floor, &unsure);
             held.fill(None);
             for _ in 0..MOST_HELD {
+                let deviation = of_rows(self.train, &levels, &unsure);
                 let problem = Problem::new(self.train, &deviation, &held, &[]);
                 let best = problem.fit(&self.fitted(&taken), &torques);
                 let is_within = best.z.iter().all(|z| z.abs() <= MOST_Z);
                 taken.iter_mut().zip(&best.values).for_each(|(t, v)| t.values.clone_from(v));
-                deviation = self.deviation(&best.residual, &floor);
+                residual.clone_from(&best.residual);
+                levels = self.levels(&residual, &floor, &unsure);
                 z.clone_from(&best.z);
                 found = Some(best);
                 if is_within {
@@ -149,6 +160,8 @@ impl<'a> Setting<'a> {
         let found = found.expect("two rounds were made");
         let torques = [self.train.model_torques(&z), self.held_out.model_torques(&z)];
         let held_out_residual = self.left(&taken, &z, &torques[1]);
+        let [train, held_out] = [(self.train, &torques[0]), (self.held_out, &torques[1])]
+            .map(|(data, torques)| turning(data, torques, &self.fitted(&taken)));
         let coarse = self
             .coarse
             .iter()
@@ -164,7 +177,11 @@ impl<'a> Setting<'a> {
             taken,
             z,
             held,
-            deviation,
+            deviation: [
+                of_rows(self.train, &levels, &train),
+                of_rows(self.held_out, &levels, &held_out),
+            ],
+            turning: [train, held_out],
             held_out_residual,
             torques,
         }
@@ -187,8 +204,8 @@ impl<'a> Setting<'a> {
         taken.iter_mut().zip(&found.values).for_each(|(t, v)| t.values.clone_from(v));
         let held_out_residual = self.left(&taken, &found.z, &state.torques[1]);
         let blocks = [
-            block_costs(self.train, &found.residual, &state.deviation),
-            block_costs(self.held_out, &held_out_residual, &state.deviation),
+            block_costs(self.train, &found.residual, &state.deviation[0]),
+            block_costs(self.held_out, &held_out_residual, &state.deviation[1]),
         ];
         Trial { taken, found, held_out_residual, blocks }
     }
@@ -223,16 +240,32 @@ impl<'a> Setting<'a> {
         (0..joints).map(of_joint).collect()
     }
 
-    /// The deviation of each joint: what is left of it, at least the floor. A joint that misses
-    /// something counts less, and does not bend the model elsewhere.
-    fn deviation(&self, residual: &[f64], floor: &[f64]) -> Vec<f64> {
+    /// The deviation of each joint where it does not turn around: what is left of it, at least the
+    /// floor. A joint that misses something counts less, and does not bend the model elsewhere.
+    fn levels(&self, residual: &[f64], floor: &[f64], unsure: &[f64]) -> Vec<f64> {
         let of_joint = |(joint, floor): (usize, &f64)| {
-            let own = self.train.stretches.iter().filter(|stretch| stretch.joint == joint);
-            let parts: Vec<f64> = own
-                .map(|stretch| rms(&residual[stretch.first..stretch.first + stretch.rows]))
-                .collect();
-            rms(&parts).max(*floor)
+            let own = || self.train.stretches.iter().filter(|stretch| stretch.joint == joint);
+            let rows = || own().flat_map(|stretch| stretch.first..stretch.first + stretch.rows);
+            let mut level = rms(&rows().map(|row| residual[row]).collect::<Vec<f64>>()).max(*floor);
+            for _ in 0..ROUNDS_OF_LEVEL {
+                let weight = |row: usize| 1.0 / (1.0 + (unsure[row] / level).powi(2));
+                let sum: f64 = rows().map(weight).sum();
+                let squares: f64 = rows().map(|row| weight(row) * residual[row].powi(2)).sum();
+                level = (squares / sum.max(f64::MIN_POSITIVE)).sqrt().max(*floor);
+            }
+            level
         };
         floor.iter().enumerate().map(of_joint).collect()
     }
+}
+
+/// The deviation of each row: its joint's, and what is not known of it.
+fn of_rows(data: &Data<'_>, levels: &[f64], unsure: &[f64]) -> Vec<f64> {
+    let mut rows = unsure.to_vec();
+    for stretch in &data.stretches {
+        for row in &mut rows[stretch.first..stretch.first + stretch.rows] {
+            *row = row.hypot(levels[stretch.joint]);
+        }
+    }
+    rows
 }

@@ -27,17 +27,28 @@ impl Candidate {
 /// Most points from which one law's parameters are searched.
 const MOST_STARTS: usize = 12;
 
+/// Where a position that may be anywhere is looked for first, as shares of a joint's range.
+const PLACES: [f64; 7] = [0.03, 0.2, 0.35, 0.5, 0.65, 0.8, 0.97];
+
 /// Where searches of a law's parameters begin: what it is linear in and what switches it off, where
-/// it is off; every combination of the values that the other parameters begin with.
-pub fn starts(parameters: &[LawParameter]) -> Vec<Vec<f64>> {
-    let is_off = |parameter: &LawParameter| parameter.nominal.filter(|_| parameter.linear);
+/// it is off; every combination of the values that the other parameters begin with. Positions
+/// without bounds begin within `range`, what the joint covers.
+pub fn starts(parameters: &[LawParameter], range: Option<[f64; 2]>) -> Vec<Vec<f64>> {
+    let values_of = |parameter: &LawParameter| -> Vec<f64> {
+        let is_anywhere = parameter.bounds.iter().all(|end| end.is_infinite())
+            && ["rad", "m"].contains(&parameter.unit.as_str());
+        match (parameter.nominal, range) {
+            (Some(off), _) if parameter.linear => vec![off],
+            (None, Some([low, high])) if is_anywhere => {
+                PLACES.iter().map(|share| low + share * (high - low)).collect()
+            }
+            (nominal, _) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
+            _ => parameter.start.clone(),
+        }
+    };
     let mut all = vec![Vec::new()];
     for parameter in parameters {
-        let values = match is_off(parameter) {
-            Some(off) => vec![off],
-            None if parameter.start.is_empty() => vec![parameter.nominal.unwrap_or(0.0)],
-            None => parameter.start.clone(),
-        };
+        let values = values_of(parameter);
         let longer = |start: &Vec<f64>| -> Vec<Vec<f64>> {
             values.iter().map(|&value| [start.as_slice(), &[value]].concat()).collect()
         };
@@ -46,4 +57,30 @@ pub fn starts(parameters: &[LawParameter]) -> Vec<Vec<f64>> {
     // Thinned evenly, so that the same ones are left for the same law.
     let stride = all.len().div_ceil(MOST_STARTS).max(1);
     all.into_iter().step_by(stride).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_position_that_may_be_anywhere_is_looked_for_where_the_joint_moves() {
+        let of = |unit: &str, nominal, bounds, linear| LawParameter {
+            name: String::new(),
+            unit: unit.to_owned(),
+            nominal,
+            bounds,
+            start: vec![5.0],
+            linear,
+        };
+        let open = [f64::NEG_INFINITY, f64::INFINITY];
+        let stiffness = of("N m/rad", Some(0.0), [0.0, f64::INFINITY], true);
+        let place = of("rad", None, open, false);
+        let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]));
+        assert_eq!(within.len(), PLACES.len());
+        assert!(within.iter().all(|start| start[0] == 0.0 && 1.0 < start[1] && start[1] < 3.0));
+        assert_eq!(starts(&[stiffness.clone(), place], None), [[0.0, 5.0]]);
+        let bounded = of("rad", None, [0.0, 9.0], false);
+        assert_eq!(starts(&[stiffness, bounded], Some([1.0, 3.0])), [[0.0, 5.0]]);
+    }
 }

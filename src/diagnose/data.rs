@@ -4,6 +4,7 @@ use super::law::{Motion, Response, derivative};
 use super::nominal::Nominal;
 use super::rows::{LogRows, PerJoint, torques};
 use super::signals::Signals;
+use super::turning::late_friction;
 
 /// A stretch of rows: those of one joint in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +30,8 @@ pub struct Data<'a> {
     pub stretches: Vec<Stretch>,
     /// Torque less what the model gives with z = 0, per row [N m, N].
     pub residual: Vec<f64>,
-    /// For each entry of z its column; the last one is of the time between torque and motion.
+    /// For each entry of z its column: the numbers of the model, the time between torque and
+    /// motion, and for each joint friction that keeps its sign behind a reversal.
     pub columns: Vec<Vec<f64>>,
     /// The measured torque of every row, filtered [N m, N].
     pub torque: Vec<f64>,
@@ -52,12 +54,13 @@ impl<'a> Data<'a> {
     /// The rows of logs.
     pub fn new(nominal: &'a Nominal<'a>, signals: Vec<Signals>) -> Self {
         let rows: Vec<LogRows> = signals.iter().map(|log| LogRows::new(nominal, log)).collect();
+        let joints = nominal.model.joints.len();
         let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
         let mut data = Self {
             nominal,
             stretches: Vec::new(),
             residual: Vec::new(),
-            columns: vec![Vec::new(); nominal.len() + 1],
+            columns: vec![Vec::new(); nominal.len() + 1 + joints],
             torque: Vec::new(),
             signals,
         };
@@ -71,7 +74,9 @@ impl<'a> Data<'a> {
             torques(nominal, signals, &given).iter().map(shifted).collect()
         };
         let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
-        for joint in 0..nominal.model.joints.len() {
+        let late: Vec<PerJoint> =
+            data.signals.iter().map(|signals| late_friction(nominal, signals, &given)).collect();
+        for joint in 0..joints {
             for (log, rows) in rows.iter().enumerate() {
                 let Some(target) = &rows.target[joint] else { continue };
                 let (first, count) = (data.residual.len(), target.len());
@@ -83,6 +88,11 @@ impl<'a> Data<'a> {
                     column.extend(rows.torque(nominal, joint, direction));
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
+                let late = data.signals[log].rows_of(&late[log][joint]);
+                for (other, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
+                    let own = late.iter().map(|late| if other == joint { *late } else { 0.0 });
+                    column.extend(own);
+                }
             }
         }
         data

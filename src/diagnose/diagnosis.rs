@@ -125,7 +125,7 @@ pub struct Diagnosis {
 /// Shares of the rate of sampling that the filter of positions may pass.
 const SHARES: [f64; 6] = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018];
 
-/// A gap within so many times that of noise is one of noise.
+/// What is left within so many times the deviation of noise is noise.
 const NOISE: f64 = 1.6;
 
 /// Laps that differ by so many times their noise do not repeat.
@@ -169,7 +169,11 @@ pub fn diagnose(
         let both = state.held.iter().zip(&nominal.uncertain);
         both.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect::<Vec<String>>()
     };
-    let floors = [Gap::of_floor(&train, &train_floor), Gap::of_floor(&held_out, &held_out_floor)];
+    let turning = &outcome.after.turning;
+    let floors = [
+        Gap::of_floor(&train, &train_floor, &turning[0]),
+        Gap::of_floor(&held_out, &held_out_floor, &turning[1]),
+    ];
     let effects = found_effects(
         (&setting, &outcome.screen),
         &request.options,
@@ -197,7 +201,7 @@ pub fn diagnose(
         driven: [driven(before), driven(after)],
         steps: outcome.steps,
     };
-    diagnosis.judge(&setting, outcome.stop);
+    diagnosis.judge(&setting, outcome.stop, &outcome.after);
     Ok(diagnosis)
 }
 
@@ -233,7 +237,7 @@ fn found_effects(
     options: &SearchOptions,
     [before, after]: [&State; 2],
 ) -> Vec<FoundEffect> {
-    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
+    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &after.turning[1]).all;
     let mut at = 0;
     let mut found = Vec::new();
     for (place, taken) in after.taken.iter().enumerate() {
@@ -270,14 +274,10 @@ impl Diagnosis {
         share_closed(before.all, after.all, floor.all)
     }
 
-    fn judge(&mut self, setting: &Setting<'_>, stop: Stop) {
-        let Gaps { before, after, floor } = &self.held_out;
+    fn judge(&mut self, setting: &Setting<'_>, stop: Stop, state: &State) {
         let joints = &setting.train.nominal.model.joints;
-        let is_noise = |gap: &Gap| {
-            let both = gap.per_joint.iter().zip(&floor.per_joint);
-            both.filter_map(|(gap, floor)| Some(gap.as_ref()? / floor.as_ref()?))
-                .all(|ratio| ratio < NOISE)
-        };
+        let squares = setting.held_out_squares(state, &state.held_out_residual);
+        let is_noise = squares.iter().all(|[left, noise]| *left <= NOISE * NOISE * noise);
         let unrepeatable = setting
             .train_floor
             .iter()
@@ -298,7 +298,7 @@ impl Diagnosis {
             ));
             Verdict::CannotTell
         } else if self.effects.is_empty() {
-            match is_noise(before) {
+            match is_noise {
                 true => Verdict::NothingMissing,
                 false => {
                     reasons.push("nothing in the catalogue explains what is left".to_owned());
@@ -308,7 +308,7 @@ impl Diagnosis {
         } else if !ambiguous.is_empty() {
             reasons.push(format!("alias: others would do as well as {}", ambiguous.join(", ")));
             Verdict::CannotTell
-        } else if is_noise(after) || self.share_closed().is_some_and(|share| share > 0.95) {
+        } else if is_noise || self.share_closed().is_some_and(|share| share > 0.95) {
             Verdict::Explained
         } else {
             reasons.push("more than noise is left".to_owned());

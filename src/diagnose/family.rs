@@ -3,7 +3,7 @@
 use super::evidence::paired;
 use super::gap::Gap;
 use super::problem::Problem;
-use super::search::{ALIKE, Screen, SearchOptions, refine, score};
+use super::search::{ALIKE, DISTINCT, Screen, SearchOptions, refine, score};
 use super::state::{Setting, State, Taken};
 
 /// An effect that would do as well in the place of one that was found.
@@ -22,9 +22,6 @@ pub struct Alternative {
     pub cosine: f64,
 }
 
-/// Standard errors from which on one name is worse than another.
-const DISTINCT: f64 = 2.5;
-
 /// The effects that would do as well as the one in a place of `state.taken`, with the others as
 /// they are, best first. Laws with more parameters that are no better are no alternatives.
 pub fn family(
@@ -36,15 +33,15 @@ pub fn family(
     let mut others = state.taken.clone();
     let own = others.remove(place);
     let rest = State { taken: others.clone(), ..state.clone() };
-    let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
-    let scored = score(setting, screen, &rest, None);
+    let problem = Problem::new(setting.train, &state.deviation[0], &[]);
+    let scored = score(setting, screen, (&rest, &rest.taken), None);
     let chosen = {
         let mut taken = others;
         taken.push(own.clone());
         setting.trial(&problem, &rest, &taken)
     };
     let gap = |residual: &[f64]| Gap::new(setting.held_out, residual).all;
-    let best = gap(&chosen.held_out_residual);
+    let most = (1.0 + ALIKE).powi(2) * chosen.held_out_cost();
     let mut found = Vec::new();
     for trial in refine(setting, 2 * options.refined, &rest, (&problem, &scored)) {
         let Some(other) = trial.taken.last().cloned() else { continue };
@@ -52,9 +49,9 @@ pub fn family(
         if candidate == own.candidate || values.len() > own.values.len() {
             continue;
         }
-        let held_out_gap = gap(&trial.held_out_residual);
         let worse_by = paired(&trial.blocks.concat(), &chosen.blocks.concat());
-        if held_out_gap <= best * (1.0 + ALIKE) && worse_by < DISTINCT {
+        if trial.held_out_cost() <= most && worse_by < DISTINCT {
+            let held_out_gap = gap(&trial.held_out_residual);
             let cosine = cosine(setting, &problem, &rest, [&own, &other]);
             found.push(Alternative { candidate, values, held_out_gap, worse_by, cosine });
         }

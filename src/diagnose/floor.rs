@@ -13,7 +13,7 @@ pub struct NoiseFloor {
     pub deviation: Vec<f64>,
     /// From white noise alone.
     pub white: Vec<f64>,
-    /// From the steps of the encoders, through the model.
+    /// From the steps of the encoders, through the model, where joints do not turn around.
     pub positions: Vec<f64>,
     /// From laps, where the motion repeats.
     pub laps: Option<Vec<f64>>,
@@ -48,7 +48,7 @@ impl NoiseFloor {
         let both = computed.iter().zip(disturbed);
         let positions: Vec<f64> = both
             .map(|(a, b)| {
-                rms(&signals.rows_of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()))
+                usual(signals.rows_of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>()))
             })
             .collect();
         let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
@@ -94,16 +94,21 @@ fn white_noise(signal: &[f64]) -> f64 {
     let Some(filter) = Butterworth::new(4, 0.25, 1.0) else { return 0.0 };
     let mut smooth = signal.to_vec();
     filter.zero_phase(&mut smooth);
-    let mut sizes: Vec<f64> = signal.iter().zip(&smooth).map(|(a, b)| (a - b).abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let rough = usual(signal.iter().zip(&smooth).map(|(a, b)| a - b).collect());
     let mut impulse = vec![0.0; 129];
     impulse[64] = 1.0;
     filter.zero_phase(&mut impulse);
     impulse[64] -= 1.0;
     let gain = impulse.iter().map(|x| x * x).sum::<f64>().sqrt();
-    // The median of the absolute value of a normal variable is 0.6745 of its deviation.
-    median / (0.6745 * gain)
+    rough / gain
+}
+
+/// The deviation of a normal variable whose largest values may be something else: the median of its
+/// absolute value is 0.6745 of that.
+fn usual(values: Vec<f64>) -> f64 {
+    let mut sizes: Vec<f64> = values.into_iter().map(f64::abs).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(sizes.len() / 2).copied().unwrap_or(0.0) / 0.6745
 }
 
 /// Deviation of a signal, from the differences of laps that follow each other.

@@ -22,10 +22,12 @@ impl Gap {
         Self::of(data, |stretch| square(residual, stretch), |stretch| square(&data.torque, stretch))
     }
 
-    /// The gap that noise alone leaves.
-    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
-        let noise = |stretch: &Stretch| {
-            stretch.rows as f64 * floors[stretch.log].deviation[stretch.joint].powi(2)
+    /// The gap that noise leaves, and what is not known of friction where joints turn around.
+    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor], turning: &[f64]) -> Self {
+        let noise = |stretch: &Stretch| -> f64 {
+            let floor = floors[stretch.log].deviation[stretch.joint];
+            let rows = &turning[stretch.first..stretch.first + stretch.rows];
+            rows.iter().map(|unsure| floor * floor + unsure * unsure).sum()
         };
         let torque = |stretch: &Stretch| {
             let part = &data.torque[stretch.first..stretch.first + stretch.rows];

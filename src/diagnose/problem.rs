@@ -8,6 +8,7 @@ use super::data::{Data, ModelTorques, RowResponse};
 use super::law::Law;
 use super::signals::Signals;
 use nalgebra::{DMatrix, DVector};
+use std::rc::Rc;
 
 /// A law with the values of its parameters.
 #[derive(Clone)]
@@ -19,6 +20,7 @@ pub struct Fitted<'l> {
 }
 
 /// Rows with their weights, and what of them z explains.
+#[derive(Clone)]
 pub struct Problem<'a> {
     /// The rows.
     pub data: &'a Data<'a>,
@@ -26,10 +28,47 @@ pub struct Problem<'a> {
     pub signals: &'a [Signals],
     /// One over the deviation of each row.
     pub weights: Vec<f64>,
-    held: Vec<Option<f64>>,
+    factors: Rc<Factors>,
+    held: Held,
+    residual: DVector<f64>,
+}
+
+/// [A; I] = Q R, of Q the rows of A.
+struct Factors {
     q: DMatrix<f64>,
     r: DMatrix<f64>,
-    residual: DVector<f64>,
+}
+
+/// Entries of z that have values: in the coordinates u of Q, where z = R^-1 u, they are W' u = w.
+#[derive(Clone)]
+struct Held {
+    /// For each entry of z its value, if it is held.
+    values: Vec<Option<f64>>,
+    /// W, orthonormal.
+    across: DMatrix<f64>,
+    /// The shortest u with these values, W w.
+    offset: DVector<f64>,
+}
+
+impl Held {
+    fn new(r: &DMatrix<f64>, values: &[Option<f64>]) -> Self {
+        let width = r.ncols();
+        let (places, given): (Vec<usize>, Vec<f64>) =
+            values.iter().enumerate().filter_map(|(k, value)| Some((k, (*value)?))).unzip();
+        let mut rows = DMatrix::zeros(width, places.len());
+        places.iter().enumerate().for_each(|(column, &place)| rows[(place, column)] = 1.0);
+        let rows = r.tr_solve_upper_triangular(&rows).unwrap_or(rows);
+        let (across, triangle) = rows.qr().unpack();
+        let given = DVector::from_vec(given);
+        let along = triangle.tr_solve_upper_triangular(&given).unwrap_or(given);
+        let offset = &across * along;
+        Self { values: values.to_vec(), across, offset }
+    }
+
+    /// The part of coordinates that is free.
+    fn free(&self, coordinates: &mut DMatrix<f64>) {
+        *coordinates -= &self.across * self.across.tr_mul(coordinates);
+    }
 }
 
 /// What was found of effects.
@@ -51,30 +90,20 @@ pub struct Found {
 const ITERATIONS: usize = 12;
 
 impl<'a> Problem<'a> {
-    /// A problem with a deviation for each row. Entries of z that are `held` are not eliminated
-    /// but have their values. Laws that are `given` are taken away, and what they are linear in
-    /// near their values is eliminated too.
-    pub fn new(
-        data: &'a Data<'a>,
-        deviation: &[f64],
-        held: &[Option<f64>],
-        given: &[RowResponse],
-    ) -> Self {
+    /// A problem with a deviation for each row. Laws that are `given` are taken away, and what
+    /// they are linear in near their values is eliminated too.
+    pub fn new(data: &'a Data<'a>, deviation: &[f64], given: &[RowResponse]) -> Self {
         let weights: Vec<f64> = deviation.iter().map(|deviation| 1.0 / deviation).collect();
         let (rows, own) = (data.rows(), data.columns.len());
         let of_given = |response: &RowResponse| response.gradient.first().map_or(0, Vec::len);
         let width = own + given.iter().map(of_given).sum::<usize>();
         let mut stacked = DMatrix::zeros(rows + width, width);
-        let given_z: Vec<f64> = held.iter().map(|z| z.unwrap_or(0.0)).collect();
-        let left = data.residual_of(&given_z);
-        let mut residual =
-            DVector::from_iterator(rows, left.iter().zip(&weights).map(|(r, w)| r * w));
+        let residual = data.residual.iter().zip(&weights).map(|(r, w)| r * w);
+        let mut residual = DVector::from_iterator(rows, residual);
         for (place, column) in data.columns.iter().enumerate() {
             stacked[(rows + place, place)] = 1.0;
-            if held[place].is_none() {
-                for (row, (entry, weight)) in column.iter().zip(&weights).enumerate() {
-                    stacked[(row, place)] = entry * weight;
-                }
+            for (row, (entry, weight)) in column.iter().zip(&weights).enumerate() {
+                stacked[(row, place)] = entry * weight;
             }
         }
         let mut begin = own;
@@ -95,13 +124,19 @@ impl<'a> Problem<'a> {
             let length = stacked.column(place).norm();
             stacked[(rows + place, place)] = 1e-6 * length.max(1e-6);
         }
-        let (q, r) = if width == 0 {
-            (DMatrix::zeros(rows, 0), DMatrix::zeros(0, 0))
-        } else {
-            let qr = stacked.qr();
-            (qr.q().rows(0, rows).into_owned(), qr.r())
-        };
-        Self { data, signals: &data.signals, weights, held: held.to_vec(), q, r, residual }
+        let qr = stacked.qr();
+        let (q, r) = (qr.q().rows(0, rows).into_owned(), qr.r());
+        let held = Held::new(&r, &vec![None; width]);
+        let factors = Rc::new(Factors { q, r });
+        Self { data, signals: &data.signals, weights, factors, held, residual }
+    }
+
+    /// The same problem with entries of z that have values: the first ones of `held`, others are
+    /// free.
+    pub fn holding(&self, held: &[Option<f64>]) -> Self {
+        let mut values = held.to_vec();
+        values.resize(self.factors.r.ncols(), None);
+        Self { held: Held::new(&self.factors.r, &values), ..self.clone() }
     }
 
     /// The responses of laws to all logs, in the rows.
@@ -141,33 +176,29 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        View::new(&self.q, rho, &columns)
+        View::new(&self.factors.q, &self.held, rho, &columns)
     }
 
     /// The same problem with laws evaluated on coarse views.
-    pub fn coarse<'c>(&'c self, signals: &'c [Signals]) -> Problem<'c> {
-        Problem {
-            data: self.data,
-            signals,
-            weights: self.weights.clone(),
-            held: self.held.clone(),
-            q: self.q.clone(),
-            r: self.r.clone(),
-            residual: self.residual.clone(),
-        }
+    pub fn coarse<'c>(&self, signals: &'c [Signals]) -> Problem<'c>
+    where
+        'a: 'c,
+    {
+        Problem { signals, ..self.clone() }
     }
 
     /// The part of rows that z cannot explain, weighted.
     pub fn outside(&self, rows: &[f64]) -> DVector<f64> {
         let weighted = rows.iter().zip(&self.weights).map(|(row, weight)| row * weight);
         let weighted = DVector::from_iterator(rows.len(), weighted);
-        let inside = &self.q * self.q.tr_mul(&weighted);
+        let q = &self.factors.q;
+        let inside = q * q.tr_mul(&weighted);
         weighted - inside
     }
 
     /// What is left without any further law.
     pub fn own_cost(&self) -> f64 {
-        self.residual.norm_squared() - self.q.tr_mul(&self.residual).norm_squared()
+        self.look(&[]).cost
     }
 
     /// The cost of laws and how it changes, without their values' search.
@@ -228,9 +259,9 @@ impl<'a> Problem<'a> {
     /// z of Q' rho.
     fn z(&self, explained: &DVector<f64>) -> Vec<f64> {
         let own = self.data.columns.len();
-        let solved = self.r.solve_upper_triangular(explained);
+        let solved = self.factors.r.solve_upper_triangular(&(explained + &self.held.offset));
         let mut z = solved.map_or_else(|| vec![0.0; own], |z| z.as_slice()[..own].to_vec());
-        for (z, held) in z.iter_mut().zip(&self.held) {
+        for (z, held) in z.iter_mut().zip(&self.held.values) {
             *z = held.unwrap_or(*z);
         }
         z
@@ -252,8 +283,14 @@ pub struct View {
 }
 
 impl View {
-    fn new(q: &DMatrix<f64>, rho: DVector<f64>, columns: &[Vec<(usize, Vec<f64>)>]) -> Self {
-        let explained = q.tr_mul(&rho);
+    fn new(
+        q: &DMatrix<f64>,
+        held: &Held,
+        rho: DVector<f64>,
+        columns: &[Vec<(usize, Vec<f64>)>],
+    ) -> Self {
+        let all = q.tr_mul(&rho);
+        let explained = &all - &held.across * held.across.tr_mul(&all);
         let count = columns.len();
         let mut inside = DMatrix::zeros(q.ncols(), count);
         let mut gradient = DVector::zeros(count);
@@ -266,6 +303,8 @@ impl View {
                 gradient[place] += entries.dot(&rho.rows(*first, entries.len()));
             }
         }
+        gradient -= inside.tr_mul(&held.offset);
+        held.free(&mut inside);
         gradient -= inside.tr_mul(&explained);
         let mut normal = -inside.tr_mul(&inside);
         let mut lengths = vec![0.0; count];
@@ -286,7 +325,8 @@ impl View {
                 normal[(b, a)] = normal[(a, b)];
             }
         }
-        let cost = rho.norm_squared() - explained.norm_squared();
+        let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&all);
+        let cost = rho.norm_squared() - explained.norm_squared() + offset;
         Self { cost, gradient, normal, lengths, explained }
     }
 

@@ -1,7 +1,7 @@
 //! Which effects: forward, with swaps and removals, judged by logs that were not fitted.
 
 use super::candidate::{Candidate, starts};
-use super::data::RowResponse;
+use super::data::{Data, RowResponse};
 use super::evidence::{by_ranks, paired};
 use super::gap::Gap;
 use super::problem::{Fitted, Problem};
@@ -96,7 +96,6 @@ pub fn search(
 ) -> Outcome {
     let before = setting.state(&[]);
     let screen = Screen::new(setting, &before);
-    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
     let mut state = before.clone();
     let (mut steps, mut idle) = (Vec::new(), Vec::new());
     let stop = loop {
@@ -108,11 +107,12 @@ pub fn search(
         if idle.len() > options.refined || steps.len() >= 2 * options.most_effects {
             break Stop::NothingLeft;
         }
-        if state.held_out_gap.all <= floor {
+        let left = setting.held_out_squares(&state, &state.held_out_residual);
+        if left.iter().all(|[left, noise]| left <= noise) {
             break Stop::Floor;
         }
         let Some((next, step)) =
-            forward((setting, &screen), options, (&state, &idle), (before.held_out_gap.all, floor))
+            forward((setting, &screen), options, (&state, &idle), &before.held_out_residual)
         else {
             break Stop::NothingLeft;
         };
@@ -137,31 +137,51 @@ pub fn search(
 /// A share of what can be explained that is found at two standard errors.
 const LARGE: f64 = 0.2;
 
+/// A joint with less than so many times the squares of noise has nothing to explain.
+const QUIET: f64 = 1.3;
+
+/// The shares that are closed of what could be explained in the beginning, and now, at the joints
+/// that this is about: those with a tenth of what one of them has.
+fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
+    let closed: Vec<f64> = now.iter().zip(then).map(|(now, then)| now[0] - then[0]).collect();
+    let most = closed.iter().copied().fold(0.0, f64::max);
+    let own = || (0..closed.len()).filter(|&joint| closed[joint] > 0.1 * most);
+    let sum: f64 = own().map(|joint| closed[joint]).sum();
+    [from, now].map(|all| {
+        let excess: f64 = own().map(|joint| (all[joint][0] - all[joint][1]).max(0.0)).sum();
+        sum / excess.max(f64::MIN_POSITIVE)
+    })
+}
+
 /// The effect that explains most of what is left, if it is more than chance.
 fn forward(
     (setting, screen): (&Setting<'_>, &Screen),
     options: &SearchOptions,
     (state, idle): (&State, &[usize]),
-    (before, floor): (f64, f64),
+    before: &[f64],
 ) -> Option<(Trial, Step)> {
-    let mut scored = score(setting, screen, state, None);
+    let mut scored = score(setting, screen, (state, &state.taken), None);
     scored.retain(|one| !idle.contains(&one.candidate));
     let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
-    let decoy = score(setting, screen, state, Some(turn)).first().map_or(0.0, |best| best.gain);
-    let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
+    let problem = Problem::new(setting.train, &state.deviation[0], &[]);
     let trials = refine(setting, options.refined, state, (&problem, &scored));
-    let best = best(setting, &trials)?;
+    let best = best(&trials)?;
+    // What chance explains: of what would be left with the effect, since turned by some share of
+    // the log it may still be like itself.
+    let decoys = score(setting, screen, (state, &best.taken), Some(turn));
+    let decoy = decoys.first().map_or(0.0, |best| best.gain);
     let idle = setting.trial(&problem, state, &state.taken);
     let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
     let significance = paired(worse, better).max(by_ranks(worse, better));
     let added = best.taken.last().expect("an effect was added").candidate;
     let gain = idle.found.cost - best.found.cost;
     let after = Gap::new(setting.held_out, &best.held_out_residual).all;
-    let energy = |gap: f64| gap * gap;
-    let now = energy(state.held_out_gap.all);
-    let closed = now - energy(after);
-    let share = closed / (energy(before) - energy(floor));
-    let of_rest = closed / (now - energy(floor));
+    let of = |left: &[f64]| setting.held_out_squares(state, left);
+    let [from, now, then] = [before, &idle.held_out_residual, &best.held_out_residual].map(of);
+    let [share, of_rest] = closed(&from, &now, &then);
+    let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
+    let most = (0..now.len())
+        .max_by(|&a, &b| (now[a][0] - then[a][0]).total_cmp(&(now[b][0] - then[b][0])));
     let mut runners_up: Vec<(usize, f64)> = trials
         .iter()
         .filter_map(|trial| {
@@ -173,28 +193,32 @@ fn forward(
     runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Blocks in which another missing effect weighs scatter much: a large share needs less.
     let asked = if share > LARGE { 2.0 } else { options.significance };
-    let is_more = gain > decoy && significance > asked;
+    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
+    let parameters = (best.parameters() - idle.parameters()) as f64;
+    let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
+        && significance > asked
+        && !most.is_some_and(is_noise);
     let is_taken = is_more && of_rest >= options.least_share;
     let gaps = [Gap::new(setting.train, &best.found.residual).all, after];
     let step = Step { added, is_taken, gain, decoy, significance, share, gaps, runners_up };
     Some((best.clone(), step))
 }
 
-/// All candidates that a state has not, by what they would explain; as decoys, if they are turned.
+/// All candidates that are not `taken`, by what they would explain; as decoys, if they are turned.
 pub fn score(
     setting: &Setting<'_>,
     screen: &Screen,
-    state: &State,
+    (state, taken): (&State, &[Taken]),
     turn: Option<f64>,
 ) -> Vec<Scored> {
     let given = {
-        let plain = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
-        plain.responses(&setting.fitted(&state.taken), &state.torques[0])
+        let plain = Problem::new(setting.train, &state.deviation[0], &[]);
+        plain.responses(&setting.fitted(taken), &state.torques[0])
     };
-    let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &given);
+    let problem = Problem::new(setting.train, &state.deviation[0], &given).holding(&state.held);
     let own_cost = problem.own_cost();
     let best_of = |(candidate, starts): (usize, &Vec<(Vec<f64>, RowResponse)>)| {
-        if state.taken.iter().any(|taken| taken.candidate == candidate) {
+        if taken.iter().any(|taken| taken.candidate == candidate) {
             return None;
         }
         let of_start = |(values, response): &(Vec<f64>, RowResponse)| {
@@ -219,7 +243,7 @@ pub struct Screen {
 impl Screen {
     /// Evaluates all candidates on the motion, or coarse views of it.
     pub fn new(setting: &Setting<'_>, state: &State) -> Self {
-        let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
+        let problem = Problem::new(setting.train, &state.deviation[0], &[]);
         let (problem, torques) = match &setting.coarse {
             Some(coarse) => (problem.coarse(coarse), &state.coarse),
             None => (problem.coarse(&setting.train.signals), &state.torques[0]),
@@ -230,10 +254,17 @@ impl Screen {
                 let fitted = [Fitted { law, values: values.clone() }];
                 (values, problem.responses(&fitted, torques).remove(0))
             };
-            starts(law.parameters()).into_iter().map(of_start).collect()
+            let range = candidate.joint.map(|joint| range(setting.train, joint));
+            starts(law.parameters(), range).into_iter().map(of_start).collect()
         };
         Self { responses: setting.candidates.iter().map(of).collect() }
     }
+}
+
+/// The least and the largest position of a joint.
+fn range(data: &Data<'_>, joint: usize) -> [f64; 2] {
+    let all = data.signals.iter().flat_map(|signals| &signals.q[joint]);
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
 }
 
 /// How many are fitted to the whole motion, of all that are fitted roughly.
@@ -267,19 +298,19 @@ pub(super) fn refine(
 /// By which share a held-out gap may be larger for a law with fewer parameters.
 pub(super) const ALIKE: f64 = 0.03;
 
-/// The trial that explains most, or nearly that with fewer parameters.
-fn best<'t>(setting: &Setting<'_>, trials: &'t [Trial]) -> Option<&'t Trial> {
-    let gap = |trial: &Trial| Gap::new(setting.held_out, &trial.held_out_residual).all;
-    let gaps: Vec<f64> = trials.iter().map(gap).collect();
-    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    let alike = trials.iter().zip(&gaps).filter(|(_, gap)| **gap <= (1.0 + ALIKE) * least);
-    let by_size = |(trial, gap): &(&Trial, &f64)| (trial.parameters(), **gap);
-    alike
-        .min_by(|a, b| {
-            let (a, b) = (by_size(a), by_size(b));
-            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-        })
-        .map(|(trial, _)| trial)
+/// Standard errors from which on one name is worse than another.
+pub(super) const DISTINCT: f64 = 2.5;
+
+/// The trial that explains most of held-out logs, or nearly that with fewer parameters.
+fn best(trials: &[Trial]) -> Option<&Trial> {
+    let by_cost = |a: &&Trial, b: &&Trial| a.held_out_cost().total_cmp(&b.held_out_cost());
+    let least = trials.iter().min_by(by_cost)?;
+    let most = (1.0 + ALIKE).powi(2) * least.held_out_cost();
+    let alike = trials.iter().filter(|trial| {
+        trial.held_out_cost() <= most
+            && paired(&trial.blocks.concat(), &least.blocks.concat()) < DISTINCT
+    });
+    alike.min_by(|a, b| a.parameters().cmp(&b.parameters()).then(by_cost(a, b)))
 }
 
 /// Exchanges effects for candidates that explain more in their place, until none does.
@@ -293,11 +324,11 @@ fn swap(
         let mut others = state.taken.clone();
         let own = others.remove(place);
         let rest = setting.state(&others);
-        let scored = score(setting, screen, &rest, None);
-        let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
+        let scored = score(setting, screen, (&rest, &rest.taken), None);
+        let problem = Problem::new(setting.train, &state.deviation[0], &[]);
         let now = setting.trial(&problem, &state, &state.taken);
         let trials = refine(setting, options.refined, &rest, (&problem, &scored));
-        let Some(best) = best(setting, &trials) else { continue };
+        let Some(best) = best(&trials) else { continue };
         let is_other = best.taken.last().is_some_and(|last| last.candidate != own.candidate);
         let is_better = paired(&now.blocks.concat(), &best.blocks.concat()) > options.significance;
         if is_other && is_better && best.score(samples) < now.score(samples) {
@@ -314,7 +345,7 @@ fn without_idle(setting: &Setting<'_>, mut state: State) -> State {
     while place < state.taken.len() && state.taken.len() > 1 {
         let mut others = state.taken.clone();
         others.remove(place);
-        let problem = Problem::new(setting.train, &state.deviation[0], &state.held, &[]);
+        let problem = Problem::new(setting.train, &state.deviation[0], &[]);
         let now = setting.trial(&problem, &state, &state.taken);
         let less = setting.trial(&problem, &state, &others);
         // Rows are weighted by what is left of them: squares count as those of unit noise.

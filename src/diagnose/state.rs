@@ -48,7 +48,7 @@ pub struct State {
     /// The deviation by which each row is weighted [N m, N]: of the logs that are fitted, and of
     /// the others.
     pub deviation: [Vec<f64>; 2],
-    /// What of it is not known of friction while joints turn around.
+    /// What of it is friction that is not known while joints turn around.
     pub turning: [Vec<f64>; 2],
     /// What is left of the logs that were fitted [N m, N].
     pub residual: Vec<f64>,
@@ -99,6 +99,11 @@ impl Trial {
         self.taken.iter().map(|taken| taken.values.len()).sum()
     }
 
+    /// Weighted squares of what is left of held-out logs.
+    pub fn held_out_cost(&self) -> f64 {
+        self.blocks[1].iter().sum()
+    }
+
     /// The same, for the number of parameters that it took (Schwarz 1978); `samples` are those
     /// that are independent.
     pub fn score(&self, samples: f64) -> f64 {
@@ -110,7 +115,11 @@ impl Trial {
 const MOST_Z: f64 = 3.0;
 
 /// Rounds in which a joint's deviation is found from rows that are weighted by it.
-const ROUNDS_OF_LEVEL: usize = 3;
+const ROUNDS_OF_SPREAD: usize = 5;
+
+/// A drive sticks for longer than a filter blurs: most of what is left there, in squares, of what
+/// is not known.
+const MOST_TURNING: f64 = 9.0;
 
 /// Rounds in which entries of z are held.
 const MOST_HELD: usize = 8;
@@ -131,37 +140,35 @@ impl<'a> Setting<'a> {
         let floor = self.floor_of_joints(joints);
         let mut z = vec![0.0; self.train.columns.len()];
         let mut taken = taken.to_vec();
-        let (mut levels, mut found) = (floor.clone(), None);
+        let (mut spreads, mut found) = (Vec::new(), None);
         let mut held = vec![None; z.len()];
         let mut residual = self.train.residual.clone();
         for _ in 0..2 {
             let torques = self.train.model_torques(&z);
             let unsure = turning(self.train, &torques, &self.fitted(&taken));
-            levels = self.levels(&residual, &floor, &unsure);
+            spreads = self.spreads(&residual, &floor, &unsure);
             held.fill(None);
             for _ in 0..MOST_HELD {
-                let deviation = of_rows(self.train, &levels, &unsure);
-                let problem = Problem::new(self.train, &deviation, &held, &[]);
+                let [_, deviation] = of_rows(self.train, &spreads, &unsure);
+                let problem = Problem::new(self.train, &deviation, &[]).holding(&held);
                 let best = problem.fit(&self.fitted(&taken), &torques);
-                let is_within = best.z.iter().all(|z| z.abs() <= MOST_Z);
                 taken.iter_mut().zip(&best.values).for_each(|(t, v)| t.values.clone_from(v));
                 residual.clone_from(&best.residual);
-                levels = self.levels(&residual, &floor, &unsure);
+                spreads = self.spreads(&residual, &floor, &unsure);
                 z.clone_from(&best.z);
                 found = Some(best);
-                if is_within {
+                if !hold(&mut held, &z) {
                     break;
-                }
-                for (held, z) in held.iter_mut().zip(&z).filter(|(_, z)| z.abs() > MOST_Z) {
-                    *held = Some(MOST_Z.copysign(*z));
                 }
             }
         }
         let found = found.expect("two rounds were made");
         let torques = [self.train.model_torques(&z), self.held_out.model_torques(&z)];
         let held_out_residual = self.left(&taken, &z, &torques[1]);
-        let [train, held_out] = [(self.train, &torques[0]), (self.held_out, &torques[1])]
-            .map(|(data, torques)| turning(data, torques, &self.fitted(&taken)));
+        let [train, held_out] =
+            [(self.train, &torques[0]), (self.held_out, &torques[1])].map(|(data, torques)| {
+                of_rows(data, &spreads, &turning(data, torques, &self.fitted(&taken)))
+            });
         let coarse = self
             .coarse
             .iter()
@@ -177,11 +184,8 @@ impl<'a> Setting<'a> {
             taken,
             z,
             held,
-            deviation: [
-                of_rows(self.train, &levels, &train),
-                of_rows(self.held_out, &levels, &held_out),
-            ],
-            turning: [train, held_out],
+            turning: [train[0].clone(), held_out[0].clone()],
+            deviation: [train, held_out].map(|[_, deviation]| deviation),
             held_out_residual,
             torques,
         }
@@ -189,7 +193,7 @@ impl<'a> Setting<'a> {
 
     /// Fits a set of effects as they would stand in a state, whose weights and torques it keeps.
     pub fn trial(&self, problem: &Problem<'_>, state: &State, taken: &[Taken]) -> Trial {
-        let found = problem.fit(&self.fitted(taken), &state.torques[0]);
+        let found = within(problem, &mut self.fitted(taken), &state.torques[0]);
         self.judge(state, taken, found)
     }
 
@@ -213,7 +217,7 @@ impl<'a> Setting<'a> {
     /// Searches the values of effects on coarse views, where there are any.
     pub fn roughly(&self, problem: &Problem<'_>, state: &State, taken: &[Taken]) -> Vec<Taken> {
         let Some(coarse) = &self.coarse else { return taken.to_vec() };
-        let found = problem.coarse(coarse).fit(&self.fitted(taken), &state.coarse);
+        let found = within(&problem.coarse(coarse), &mut self.fitted(taken), &state.coarse);
         let both = taken.iter().zip(found.values);
         both.map(|(one, values)| Taken { candidate: one.candidate, values }).collect()
     }
@@ -232,6 +236,21 @@ impl<'a> Setting<'a> {
         residual
     }
 
+    /// Weighted squares of what is `left` of held-out logs, for each joint, and those of noise
+    /// alone.
+    pub fn held_out_squares(&self, state: &State, left: &[f64]) -> Vec<[f64; 2]> {
+        let mut squares = vec![[0.0; 2]; self.train.nominal.model.joints.len()];
+        for stretch in &self.held_out.stretches {
+            let floor = self.held_out_floor[stretch.log].deviation[stretch.joint];
+            for row in stretch.first..stretch.first + stretch.rows {
+                let weight = state.deviation[1][row].powi(-2);
+                squares[stretch.joint][0] += weight * left[row].powi(2);
+                squares[stretch.joint][1] += weight * floor.powi(2);
+            }
+        }
+        squares
+    }
+
     fn floor_of_joints(&self, joints: usize) -> Vec<f64> {
         let of_joint = |joint: usize| {
             let all: Vec<f64> = self.train_floor.iter().map(|log| log.deviation[joint]).collect();
@@ -240,32 +259,76 @@ impl<'a> Setting<'a> {
         (0..joints).map(of_joint).collect()
     }
 
-    /// The deviation of each joint where it does not turn around: what is left of it, at least the
-    /// floor. A joint that misses something counts less, and does not bend the model elsewhere.
-    fn levels(&self, residual: &[f64], floor: &[f64], unsure: &[f64]) -> Vec<f64> {
+    /// How far each joint is off where it does not turn around, at least the floor, and the share
+    /// of what is not known where it does. A joint that misses something counts less, and does not
+    /// bend the model elsewhere.
+    fn spreads(&self, residual: &[f64], floor: &[f64], unsure: &[f64]) -> Vec<Spread> {
         let of_joint = |(joint, floor): (usize, &f64)| {
-            let own = || self.train.stretches.iter().filter(|stretch| stretch.joint == joint);
-            let rows = || own().flat_map(|stretch| stretch.first..stretch.first + stretch.rows);
-            let mut level = rms(&rows().map(|row| residual[row]).collect::<Vec<f64>>()).max(*floor);
-            for _ in 0..ROUNDS_OF_LEVEL {
-                let weight = |row: usize| 1.0 / (1.0 + (unsure[row] / level).powi(2));
-                let sum: f64 = rows().map(weight).sum();
-                let squares: f64 = rows().map(|row| weight(row) * residual[row].powi(2)).sum();
-                level = (squares / sum.max(f64::MIN_POSITIVE)).sqrt().max(*floor);
+            let own = self.train.stretches.iter().filter(|stretch| stretch.joint == joint);
+            let rows: Vec<usize> =
+                own.flat_map(|stretch| stretch.first..stretch.first + stretch.rows).collect();
+            let all: Vec<f64> = rows.iter().map(|&row| residual[row]).collect();
+            let mut spread = Spread { level: rms(&all).max(*floor), turning: 1.0 };
+            for _ in 0..ROUNDS_OF_SPREAD {
+                let Spread { level, turning } = spread;
+                let weight = |row: usize| 1.0 / (1.0 + (turning * unsure[row] / level).powi(2));
+                let sum: f64 = rows.iter().map(|&row| weight(row)).sum();
+                let squares = rows.iter().map(|&row| weight(row) * residual[row].powi(2));
+                let level = (squares.sum::<f64>() / sum.max(f64::MIN_POSITIVE)).sqrt().max(*floor);
+                let near = || rows.iter().filter(|&&row| unsure[row] > level);
+                let most: f64 = near().map(|&row| unsure[row].powi(2)).sum();
+                let more: f64 = near().map(|&row| residual[row].powi(2) - level.powi(2)).sum();
+                let turning = (more / most.max(f64::MIN_POSITIVE)).clamp(0.0, MOST_TURNING).sqrt();
+                spread = Spread { level, turning };
             }
-            level
+            spread
         };
         floor.iter().enumerate().map(of_joint).collect()
     }
 }
 
-/// The deviation of each row: its joint's, and what is not known of it.
-fn of_rows(data: &Data<'_>, levels: &[f64], unsure: &[f64]) -> Vec<f64> {
-    let mut rows = unsure.to_vec();
+/// Fits laws with every entry of z free until it is at a bound.
+fn within(problem: &Problem<'_>, laws: &mut [Fitted<'_>], torques: &[ModelTorques]) -> Found {
+    let mut held = vec![None; problem.data.columns.len()];
+    let mut found = problem.fit(laws, torques);
+    for _ in 0..MOST_HELD {
+        if !hold(&mut held, &found.z) {
+            break;
+        }
+        laws.iter_mut().zip(&found.values).for_each(|(law, values)| law.values.clone_from(values));
+        found = problem.holding(&held).fit(laws, torques);
+    }
+    found
+}
+
+/// Holds what is beyond the bound at it; whether anything was.
+fn hold(held: &mut [Option<f64>], z: &[f64]) -> bool {
+    let mut is_more = false;
+    for (held, z) in held.iter_mut().zip(z).filter(|(_, z)| z.abs() > MOST_Z) {
+        *held = Some(MOST_Z.copysign(*z));
+        is_more = true;
+    }
+    is_more
+}
+
+/// How far a joint is off.
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    /// Where it does not turn around [N m, N].
+    level: f64,
+    /// The share of what is not known where it does.
+    turning: f64,
+}
+
+/// What is not known of each row, and its deviation with that.
+fn of_rows(data: &Data<'_>, spreads: &[Spread], unsure: &[f64]) -> [Vec<f64>; 2] {
+    let (mut turning, mut deviation) = (unsure.to_vec(), unsure.to_vec());
     for stretch in &data.stretches {
-        for row in &mut rows[stretch.first..stretch.first + stretch.rows] {
-            *row = row.hypot(levels[stretch.joint]);
+        let Spread { level, turning: share } = spreads[stretch.joint];
+        for row in stretch.first..stretch.first + stretch.rows {
+            turning[row] *= share;
+            deviation[row] = turning[row].hypot(level);
         }
     }
-    rows
+    [turning, deviation]
 }

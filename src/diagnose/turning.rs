@@ -5,46 +5,79 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
+use super::nominal::Nominal;
 use super::problem::Fitted;
-use super::rows::torques as torques_of;
+use super::rows::{PerJoint, torques as torques_of};
+use super::signals::Signals;
 
 /// The time by which the filter of positions moves a corner of a rate, times the cutoff of torques.
 const CORNER: f64 = 0.05;
 
-/// What is between two torques is anywhere between them: the deviation of that.
+/// The deviation of what is anywhere between two values, over their distance.
 const BETWEEN: f64 = 0.288_675_134_594_812_9;
+
+/// The share of an event that the filter rings with beside it.
+const RINGING: f64 = 0.3;
 
 /// For each row the deviation of torques whose rates are not known better than corners of the
 /// filter leave them, by the model and by laws [N m, N].
 pub(super) fn turning(data: &Data<'_>, torques: &[ModelTorques], laws: &[Fitted<'_>]) -> Vec<f64> {
     let mut unsure = vec![0.0; data.rows()];
     for (log, (signals, torques)) in data.signals.iter().zip(torques).enumerate() {
-        let corner_s = CORNER / signals.torque_hz;
-        let moved = |sign: f64| {
-            let mut moved = signals.clone();
-            for (rates, accelerations) in moved.qd.iter_mut().zip(&signals.qdd) {
-                let by = sign * corner_s * rms(accelerations);
-                rates.iter_mut().for_each(|rate| *rate += by);
-            }
-            let mut sum = torques_of(data.nominal, &moved, &torques.phi);
+        let bends = bends(signals, |moved| {
+            let mut sum = torques_of(data.nominal, moved, &torques.phi);
             for fitted in laws {
-                let response =
-                    fitted.law.response(torques.motion(data.nominal, &moved), &fitted.values);
+                let motion = torques.motion(data.nominal, moved);
+                let response = fitted.law.response(motion, &fitted.values);
                 for (&joint, torque) in response.joints.iter().zip(&response.torque) {
                     sum[joint].iter_mut().zip(torque).for_each(|(sum, torque)| *sum += torque);
                 }
             }
             sum
-        };
-        let (faster, slower) = (moved(1.0), moved(-1.0));
+        });
         for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
-            let both = faster[stretch.joint].iter().zip(&slower[stretch.joint]);
-            let apart: Vec<f64> = both.map(|(a, b)| BETWEEN * (a - b)).collect();
+            let sizes: Vec<f64> = bends[stretch.joint].iter().map(|b| BETWEEN * b.abs()).collect();
+            let apart = signals.rows_of(&sizes);
             let rows = &mut unsure[stretch.first..stretch.first + stretch.rows];
-            for (row, apart) in rows.iter_mut().zip(signals.rows_of(&apart)) {
-                *row = apart.abs();
+            for (k, row) in rows.iter_mut().enumerate() {
+                // The filter rings, and what is unsure of its input shifts where it has no output.
+                let beside = [k.saturating_sub(1), (k + 1).min(apart.len() - 1)];
+                let beside = beside.iter().fold(0.0_f64, |most, &k| most.max(apart[k].abs()));
+                *row = apart[k].abs().max(RINGING * beside);
             }
         }
     }
     unsure
+}
+
+/// What torques would be less if friction kept its sign until a reversal has left the corner
+/// behind it: for each joint at the samples of the motion [N m, N].
+pub(super) fn late_friction(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
+    let mut bends = bends(signals, |moved| torques_of(nominal, moved, phi));
+    for (bends, accelerations) in bends.iter_mut().zip(&signals.qdd) {
+        for (bend, acceleration) in bends.iter_mut().zip(accelerations) {
+            *bend = -bend.abs() * acceleration.signum();
+        }
+    }
+    bends
+}
+
+/// The second difference of torques by rates over what a corner of the filter hides of them: of a
+/// step its height, and nothing of a slope.
+fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint {
+    let corner_s = CORNER / signals.torque_hz;
+    let moved = |sign: f64| {
+        let mut moved = signals.clone();
+        for (rates, accelerations) in moved.qd.iter_mut().zip(&signals.qdd) {
+            let by = sign * corner_s * rms(accelerations);
+            rates.iter_mut().for_each(|rate| *rate += by);
+        }
+        torques(&moved)
+    };
+    let [slower, as_is, faster] = [-1.0, 0.0, 1.0].map(moved);
+    let of_joint = |joint: usize| {
+        let [a, b, c] = [&slower, &as_is, &faster].map(|all| &all[joint]);
+        (0..b.len()).map(|k| a[k] - 2.0 * b[k] + c[k]).collect()
+    };
+    (0..as_is.len()).map(of_joint).collect()
 }

@@ -15,6 +15,7 @@ struct DiagnosisJson<'a> {
     reasons: &'a [String],
     r#where: Vec<WhereJson<'a>>,
     effects: Vec<EffectJson<'a>>,
+    rounds: Vec<RoundJson<'a>>,
     noise_floor: f64,
     gap: GapJson,
     share_closed: Option<f64>,
@@ -54,6 +55,25 @@ struct OtherJson<'a> {
     at: &'a str,
     gap: f64,
     cosine: f64,
+}
+
+#[derive(Serialize)]
+struct RoundJson<'a> {
+    effect: &'a str,
+    at: &'a str,
+    is_taken: bool,
+    gain: f64,
+    decoy: f64,
+    significance: f64,
+    share: f64,
+    runners_up: Vec<RunnerUpJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct RunnerUpJson<'a> {
+    effect: &'a str,
+    at: &'a str,
+    gap: f64,
 }
 
 #[derive(Serialize)]
@@ -120,12 +140,27 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
             indistinguishable: others.collect(),
         }
     });
+    let rounds = found.steps.iter().map(|step| RoundJson {
+        effect: &candidates[step.added].effect,
+        at: &candidates[step.added].at,
+        is_taken: step.is_taken,
+        gain: step.gain,
+        decoy: step.decoy,
+        significance: step.significance,
+        share: step.share,
+        runners_up: step
+            .runners_up
+            .iter()
+            .map(|&(other, gap)| runner_up(shown, other, gap))
+            .collect(),
+    });
     let json = DiagnosisJson {
         model: &robot.name,
         verdict: found.verdict.word(),
         reasons: &found.reasons,
         r#where: places.collect(),
         effects: effects.collect(),
+        rounds: rounds.collect(),
         noise_floor: found.held_out.floor.all,
         gap: GapJson { train: (&found.train).into(), validate: (&found.held_out).into() },
         share_closed: found.share_closed(),
@@ -133,4 +168,9 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
     };
     write_json(out, &json)
+}
+
+fn runner_up<'a>(shown: &Shown<'a>, candidate: usize, gap: f64) -> RunnerUpJson<'a> {
+    let other = &shown.candidates[candidate];
+    RunnerUpJson { effect: &other.effect, at: &other.at, gap }
 }

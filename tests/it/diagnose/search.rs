@@ -120,12 +120,23 @@ fn found(hidden: impl Fn(usize, Sample) -> f64, seed: u64) -> (Vec<String>, Opti
         held_out_floor: &held_out_floor,
     };
     let outcome = search(&setting, &SearchOptions::default(), &mut |_| ());
+    let f = |s: &denavit::diagnose::State| Gap::of_floor(&held_out, &held_out_floor, &s.turning[1]);
+    eprintln!(
+        "stop {:?}\n before {:?}\n after {:?}\n floor before {:?}\n floor after {:?} {:?}",
+        outcome.stop,
+        outcome.before.held_out_gap,
+        outcome.after.held_out_gap,
+        f(&outcome.before),
+        f(&outcome.after),
+        held_out_floor
+    );
+    eprintln!(" held {:?}", outcome.before.held);
     for step in &outcome.steps {
         eprintln!("{} {step:?}", candidates[step.added].name());
     }
     let taken = outcome.after.taken.iter();
     let names = taken.map(|one| candidates[one.candidate].name()).collect();
-    let floor = Gap::of_floor(&held_out, &held_out_floor).all;
+    let floor = Gap::of_floor(&held_out, &held_out_floor, &outcome.after.turning[1]).all;
     let [before, after] = [&outcome.before, &outcome.after].map(|state| state.held_out_gap.all);
     (names, share_closed(before, after, floor))
 }

@@ -10,8 +10,8 @@ use super::identify::IdentifyFailure;
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    Candidate, Diagnosis, DiagnosisError, Request, SearchOptions, Uncertainty, Verdict, candidates,
-    diagnose,
+    Candidate, Diagnosis, DiagnosisError, Request, SearchOptions, Uncertainty, Verdict,
+    before_springs, candidates, diagnose,
 };
 use denavit::effect::{self, Effect};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
@@ -81,15 +81,22 @@ struct Shown<'a> {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let robot = read_model(&arguments.model)?;
-    let model = RegressionModel::new(&robot, modelled(&robot), &[])
-        .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
+    let model = regression(&robot)?;
     // Before its logs are asked for columns of a base.
     DiagnosisError::check_model(&model).map_err(Failure::Diagnose)?;
     let mut remarks = Vec::new();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<MeasuredLog>, Failure> {
         paths.iter().map(|path| log(arguments, &robot, &model, path, &mut remarks)).collect()
     };
-    let (train, held_out) = (read(&arguments.train)?, read(&arguments.validate)?);
+    let (mut train, mut held_out) = (read(&arguments.train)?, read(&arguments.validate)?);
+    let before = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);
+    let (robot, model) = match before {
+        Some(robot) => {
+            let model = regression(&robot)?;
+            (robot, model)
+        }
+        None => (robot, model),
+    };
     let effects = effects(arguments.effects.as_deref())?;
     let candidates = candidates(&effects, &robot, &model.joints);
     let progress = Progress::new();
@@ -133,6 +140,11 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Verdict::NothingMissing | Verdict::Explained => Answer::Done,
         _ => Answer::Negative,
     })
+}
+
+fn regression(robot: &Robot) -> Result<RegressionModel, Failure> {
+    let model = RegressionModel::new(robot, modelled(robot), &[]);
+    Ok(model.map_err(|error| IdentifyFailure::Regression(Box::new(error)))?)
 }
 
 fn log(

@@ -1,8 +1,8 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
 use super::law::{Motion, Response, derivative};
-use super::nominal::Nominal;
-use super::rows::{LogRows, PerJoint, torques};
+use super::nominal::{Nominal, Phi};
+use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
 use super::turning::late_friction;
 
@@ -41,7 +41,7 @@ pub struct Data<'a> {
 #[derive(Clone, Debug)]
 pub struct ModelTorques {
     /// phi of the model's parameters.
-    pub phi: Vec<f64>,
+    pub phi: Phi,
     /// Rigid bodies alone.
     pub load: PerJoint,
     /// Their rates.
@@ -95,7 +95,32 @@ impl<'a> Data<'a> {
                 }
             }
         }
+        data.move_drives(&given, &directions);
         data
+    }
+
+    /// Lets drives before springs move with their motors.
+    fn move_drives(&mut self, given: &Phi, directions: &[Phi]) {
+        for stretch in self.stretches.clone() {
+            let signals = &self.signals[stretch.log];
+            if signals.motor[stretch.joint].is_none() {
+                continue;
+            }
+            let more = |phi: &Phi| -> Option<Vec<f64>> {
+                let all = behind_springs(self.nominal, signals, phi);
+                let (_, own) = all.iter().find(|(joint, _)| *joint == stretch.joint)?;
+                Some(signals.rows_of(own))
+            };
+            let rows = stretch.first..stretch.first + stretch.rows;
+            if let Some(more) = more(given) {
+                self.residual[rows.clone()].iter_mut().zip(more).for_each(|(row, m)| *row -= m);
+            }
+            for (column, direction) in self.columns.iter_mut().zip(directions) {
+                if let Some(more) = more(direction) {
+                    column[rows.clone()].iter_mut().zip(more).for_each(|(row, m)| *row += m);
+                }
+            }
+        }
     }
 
     /// Number of rows.

@@ -159,7 +159,7 @@ pub fn diagnose(
     };
     let outcome = search(&setting, &request.options, &mut |state| {
         let taken: Vec<usize> = state.taken.iter().map(|one| one.candidate).collect();
-        watch(&taken, state.held_out_gap.all);
+        watch(&taken, Gap::new(&held_out, &state.held_out_residual, &state.trust()[1]).all);
     });
     let filter_s = 0.35 / filters.torque_hz;
     let left = |state: &State| {
@@ -169,18 +169,13 @@ pub fn diagnose(
         let both = state.held.iter().zip(&nominal.uncertain);
         both.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect::<Vec<String>>()
     };
-    let turning = &outcome.after.turning;
-    let floors = [
-        Gap::of_floor(&train, &train_floor, &turning[0]),
-        Gap::of_floor(&held_out, &held_out_floor, &turning[1]),
-    ];
     let effects = found_effects(
         (&setting, &outcome.screen),
         &request.options,
         [&outcome.before, &outcome.after],
     );
     let (before, after) = (&outcome.before, &outcome.after);
-    let [train_floor_gap, held_out_floor_gap] = floors;
+    let trust = after.trust();
     let mut diagnosis = Diagnosis {
         verdict: Verdict::CannotTell,
         reasons: Vec::new(),
@@ -188,14 +183,14 @@ pub fn diagnose(
         after: left(after),
         effects,
         train: Gaps {
-            before: before.gap.clone(),
-            after: after.gap.clone(),
-            floor: train_floor_gap,
+            before: Gap::new(&train, &before.residual, &trust[0]),
+            after: Gap::new(&train, &after.residual, &trust[0]),
+            floor: Gap::of_floor(&train, &train_floor, &trust[0]),
         },
         held_out: Gaps {
-            before: before.held_out_gap.clone(),
-            after: after.held_out_gap.clone(),
-            floor: held_out_floor_gap,
+            before: Gap::new(&held_out, &before.held_out_residual, &trust[1]),
+            after: Gap::new(&held_out, &after.held_out_residual, &trust[1]),
+            floor: Gap::of_floor(&held_out, &held_out_floor, &trust[1]),
         },
         filters,
         driven: [driven(before), driven(after)],
@@ -237,7 +232,9 @@ fn found_effects(
     options: &SearchOptions,
     [before, after]: [&State; 2],
 ) -> Vec<FoundEffect> {
-    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &after.turning[1]).all;
+    let [_, trust] = after.trust();
+    let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
+    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &trust).all;
     let mut at = 0;
     let mut found = Vec::new();
     for (place, taken) in after.taken.iter().enumerate() {
@@ -254,12 +251,11 @@ fn found_effects(
         let values = taken.values.iter().zip(parameters).enumerate().map(value).collect();
         let mut others = after.taken.clone();
         others.remove(place);
-        let without = setting.state(&others).held_out_gap.all;
-        let whole = before.held_out_gap.all - floor;
+        let whole = gap(before) - floor;
         found.push(FoundEffect {
             candidate: taken.candidate,
             parameters: values,
-            share: (without - after.held_out_gap.all) / whole.max(f64::MIN_POSITIVE),
+            share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
             alternatives: family((setting, screen), options, after, place),
         });
         at += taken.values.len();
@@ -281,6 +277,7 @@ impl Diagnosis {
         let unrepeatable = setting
             .train_floor
             .iter()
+            .chain(setting.held_out_floor)
             .filter_map(NoiseFloor::unrepeatable)
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|(_, ratio)| *ratio > UNREPEATABLE);

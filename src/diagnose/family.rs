@@ -40,7 +40,8 @@ pub fn family(
         taken.push(own.clone());
         setting.trial(&problem, &rest, &taken)
     };
-    let gap = |residual: &[f64]| Gap::new(setting.held_out, residual).all;
+    let [_, trust] = state.trust();
+    let gap = |residual: &[f64]| Gap::new(setting.held_out, residual, &trust).all;
     let most = (1.0 + ALIKE).powi(2) * chosen.held_out_cost();
     let mut found = Vec::new();
     for trial in refine(setting, 2 * options.refined, &rest, (&problem, &scored)) {

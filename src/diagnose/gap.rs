@@ -4,6 +4,9 @@ use super::data::{Data, Stretch};
 use super::floor::{NoiseFloor, rms};
 
 /// gap = sqrt(mean over joints of (rms of what is left / rms of the torque)^2).
+///
+/// A row counts for the share of its variance that does not come from friction that turns around:
+/// its trust, from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// Over all joints.
@@ -14,38 +17,27 @@ pub struct Gap {
 
 impl Gap {
     /// The gap of what is left in the rows of data.
-    pub fn new(data: &Data<'_>, residual: &[f64]) -> Self {
-        let square = |values: &[f64], stretch: &Stretch| -> f64 {
-            let part = &values[stretch.first..stretch.first + stretch.rows];
-            part.iter().map(|value| value * value).sum()
-        };
-        Self::of(data, |stretch| square(residual, stretch), |stretch| square(&data.torque, stretch))
+    pub fn new(data: &Data<'_>, residual: &[f64], trust: &[f64]) -> Self {
+        Self::of(data, trust, |row, _| residual[row].powi(2))
     }
 
-    /// The gap that noise leaves, and what is not known of friction where joints turn around.
-    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor], turning: &[f64]) -> Self {
-        let noise = |stretch: &Stretch| -> f64 {
-            let floor = floors[stretch.log].deviation[stretch.joint];
-            let rows = &turning[stretch.first..stretch.first + stretch.rows];
-            rows.iter().map(|unsure| floor * floor + unsure * unsure).sum()
-        };
-        let torque = |stretch: &Stretch| {
-            let part = &data.torque[stretch.first..stretch.first + stretch.rows];
-            stretch.rows as f64 * rms(part).powi(2)
-        };
-        Self::of(data, noise, torque)
+    /// The gap that noise alone leaves.
+    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor], trust: &[f64]) -> Self {
+        Self::of(data, trust, |_, stretch| floors[stretch.log].deviation[stretch.joint].powi(2))
     }
 
-    fn of(
-        data: &Data<'_>,
-        left: impl Fn(&Stretch) -> f64,
-        torque: impl Fn(&Stretch) -> f64,
-    ) -> Self {
+    fn of(data: &Data<'_>, trust: &[f64], left: impl Fn(usize, &Stretch) -> f64) -> Self {
         let of_joint = |joint: usize| {
-            let own = || data.stretches.iter().filter(|stretch| stretch.joint == joint);
-            let torque: f64 = own().map(&torque).sum();
-            let left: f64 = own().map(&left).sum();
-            (torque > 0.0).then(|| (left / torque).sqrt())
+            let own = data.stretches.iter().filter(|stretch| stretch.joint == joint);
+            let rows = own.flat_map(|stretch| {
+                (stretch.first..stretch.first + stretch.rows).map(move |row| (row, stretch))
+            });
+            let (mut over, mut under) = (0.0, 0.0);
+            for (row, stretch) in rows {
+                over += trust[row] * left(row, stretch);
+                under += trust[row] * data.torque[row].powi(2);
+            }
+            (under > 0.0).then(|| (over / under).sqrt())
         };
         let joints = data.nominal.model.joints.len();
         let per_joint: Vec<Option<f64>> = (0..joints).map(of_joint).collect();

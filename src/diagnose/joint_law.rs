@@ -19,11 +19,12 @@ pub(super) struct JointLaw {
 /// The samples of a joint in a motion.
 fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> JointSamples<'m> {
     let signals = motion.signals;
+    let [qd, qdd] = signals.of_drive(joint);
     let mut samples = JointSamples {
         t: &signals.t,
         q: &signals.q[joint],
-        qd: &signals.qd[joint],
-        qdd: &signals.qdd[joint],
+        qd,
+        qdd,
         tau_load: &motion.load[joint],
         tau_load_rate: &motion.load_rate[joint],
         tau: &motion.total[joint],
@@ -31,8 +32,7 @@ fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> Joint
     };
     if let Some(other) = other {
         samples.q_2 = &signals.q[other];
-        samples.qd_2 = &signals.qd[other];
-        samples.qdd_2 = &signals.qdd[other];
+        [samples.qd_2, samples.qdd_2] = signals.of_drive(other).map(Vec::as_slice);
         samples.tau_load_2 = &motion.load[other];
     }
     samples

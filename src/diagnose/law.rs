@@ -1,6 +1,6 @@
 //! What an effect does to the torques of a log: its law on numbers.
 
-use super::nominal::Nominal;
+use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques};
 use super::signals::Signals;
 use crate::plants::effect::LawParameter;
@@ -10,7 +10,7 @@ use crate::plants::effect::LawParameter;
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
     /// The nominal model, and phi of its present parameters.
-    pub model: (&'a Nominal<'a>, &'a [f64]),
+    pub model: (&'a Nominal<'a>, &'a Phi),
     /// Positions, rates and accelerations at the full rate.
     pub signals: &'a Signals,
     /// Torques of rigid bodies, without friction [N m, N].

@@ -4,7 +4,7 @@
 //! theta0 each within its standard deviation; a unit of z moves one of them by one deviation, so
 //! that z has the prior N(0, 1) in all its entries.
 
-use crate::plants::regression::{ModelParameter, RegressionModel};
+use crate::plants::regression::{ModelParameter, RegressionModel, StandardParameter};
 
 /// How far numbers of a model may be off that say nothing of it, as a share of their value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +48,19 @@ pub struct Nominal<'a> {
     /// What a unit of each entry of z adds to theta0.
     directions: Vec<Vec<f64>>,
 }
+
+/// What the torques are linear in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Phi {
+    /// On the joint axes, as the model has it.
+    pub axes: Vec<f64>,
+    /// The same of rotors and friction alone, which move with the motor where a spring is between
+    /// it and the joint.
+    pub drives: Vec<f64>,
+}
+
+/// What begins the names of parameters of a drive.
+const DRIVE: [&str; 3] = ["fv", "fc", "Ia"];
 
 /// What begins the names of parameters that no rigid body has, but for the rotor's inertia.
 const FRICTION: [&str; 3] = ["fv", "fc", "off"];
@@ -101,24 +114,39 @@ impl<'a> Nominal<'a> {
     }
 
     /// phi of z.
-    pub fn phi(&self, z: &[f64]) -> Vec<f64> {
-        self.model.axes_of_standard(&self.theta(z))
+    pub fn phi(&self, z: &[f64]) -> Phi {
+        self.phi_of(&self.theta(z))
+    }
+
+    fn phi_of(&self, theta: &[f64]) -> Phi {
+        let is_drive = |prefix: &str| DRIVE.contains(&prefix);
+        let drives = self.only(theta, |owner| is_drive(owner));
+        Phi {
+            axes: self.model.axes_of_standard(theta),
+            drives: self.model.axes_of_standard(&drives),
+        }
+    }
+
+    /// theta0 with 0 for what does not belong to a joint by a prefix that is asked for.
+    fn only(&self, theta: &[f64], asked: impl Fn(&str) -> bool) -> Vec<f64> {
+        let of = |(value, standard): (&f64, &StandardParameter)| {
+            let is_asked = standard.owner.as_ref().is_some_and(|(_, prefix)| asked(prefix));
+            if is_asked { *value } else { 0.0 }
+        };
+        theta.iter().zip(&self.model.standard).map(of).collect()
     }
 
     /// phi of z without friction and offsets: what moves and carries the bodies.
-    pub fn load_phi(&self, z: &[f64]) -> Vec<f64> {
+    pub fn load_phi(&self, z: &[f64]) -> Phi {
         let mut theta = self.theta(z);
-        for (value, standard) in theta.iter_mut().zip(&self.model.standard) {
-            if standard.owner.as_ref().is_some_and(|(_, prefix)| FRICTION.contains(prefix)) {
-                *value = 0.0;
-            }
-        }
-        self.model.axes_of_standard(&theta)
+        let friction = self.only(&theta, |prefix| FRICTION.contains(&prefix));
+        theta.iter_mut().zip(friction).for_each(|(value, friction)| *value -= friction);
+        self.phi_of(&theta)
     }
 
     /// What a unit of each entry of z adds to phi.
-    pub fn directions(&self) -> Vec<Vec<f64>> {
-        self.directions.iter().map(|direction| self.model.axes_of_standard(direction)).collect()
+    pub fn directions(&self) -> Vec<Phi> {
+        self.directions.iter().map(|direction| self.phi_of(direction)).collect()
     }
 }
 

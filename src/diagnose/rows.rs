@@ -1,7 +1,7 @@
 //! The rows that a diagnosis regresses: for each joint and log what the torques are linear in, and
 //! what was measured.
 
-use super::nominal::Nominal;
+use super::nominal::{Nominal, Phi};
 use super::signals::Signals;
 use crate::plants::regression::{RegressionEvaluator, RegressionRows};
 
@@ -54,11 +54,11 @@ impl LogRows {
     }
 
     /// The torque of a joint that phi adds, in the rows.
-    pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, phi: &[f64]) -> Vec<f64> {
+    pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, phi: &Phi) -> Vec<f64> {
         let samples = self.columns[joint].first().map_or(0, Vec::len);
         let mut torque = vec![0.0; samples];
         for (column, &place) in self.columns[joint].iter().zip(&nominal.model.pattern()[joint]) {
-            let factor = phi[place];
+            let factor = phi.axes[place];
             if factor != 0.0 {
                 torque.iter_mut().zip(column).for_each(|(sum, entry)| *sum += factor * entry);
             }
@@ -68,7 +68,41 @@ impl LogRows {
 }
 
 /// The torque of every joint by phi and by what is known, at the samples of the motion.
-pub(super) fn torques(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
+pub(super) fn torques(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
+    let mut torques = of_axes(nominal, signals, &phi.axes);
+    for (joint, more) in behind_springs(nominal, signals, phi) {
+        torques[joint].iter_mut().zip(more).for_each(|(torque, more)| *torque += more);
+    }
+    torques
+}
+
+/// What rotors and friction before springs take more than they would with the motion of their
+/// joints, for each joint that has a motion of its motor.
+pub(super) fn behind_springs(
+    nominal: &Nominal<'_>,
+    signals: &Signals,
+    phi: &Phi,
+) -> Vec<(usize, Vec<f64>)> {
+    let sprung: Vec<usize> =
+        (0..signals.joints()).filter(|&joint| signals.motor[joint].is_some()).collect();
+    if sprung.is_empty() || phi.drives.iter().all(|value| *value == 0.0) {
+        return Vec::new();
+    }
+    let mut moved = signals.clone();
+    for &joint in &sprung {
+        if let Some([rates, accelerations]) = &signals.motor[joint] {
+            moved.qd[joint].clone_from(rates);
+            moved.qdd[joint].clone_from(accelerations);
+        }
+    }
+    let there = of_axes(nominal, &moved, &phi.drives);
+    let here = of_axes(nominal, signals, &phi.drives);
+    let more = |joint: usize| there[joint].iter().zip(&here[joint]).map(|(a, b)| a - b).collect();
+    sprung.into_iter().map(|joint| (joint, more(joint))).collect()
+}
+
+/// The torque of every joint by phi on the joint axes and by what is known.
+fn of_axes(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
     let joints = nominal.model.joints.len();
     let of_joint: Vec<Vec<f64>> = nominal
         .model

@@ -129,7 +129,7 @@ pub fn search(
         }
         idle.clear();
         state = next;
-        steps.push(Step { gaps: [state.gap.all, state.held_out_gap.all], ..step });
+        steps.push(step);
     };
     Outcome { before, after: state, screen, steps, stop }
 }
@@ -175,7 +175,9 @@ fn forward(
     let significance = paired(worse, better).max(by_ranks(worse, better));
     let added = best.taken.last().expect("an effect was added").candidate;
     let gain = idle.found.cost - best.found.cost;
-    let after = Gap::new(setting.held_out, &best.held_out_residual).all;
+    let trust = state.trust();
+    let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust[1]).all;
+    let after = held_out_gap(&best.held_out_residual);
     let of = |left: &[f64]| setting.held_out_squares(state, left);
     let [from, now, then] = [before, &idle.held_out_residual, &best.held_out_residual].map(of);
     let [share, of_rest] = closed(&from, &now, &then);
@@ -186,8 +188,7 @@ fn forward(
         .iter()
         .filter_map(|trial| {
             let last = trial.taken.last()?.candidate;
-            (last != added)
-                .then(|| (last, Gap::new(setting.held_out, &trial.held_out_residual).all))
+            (last != added).then(|| (last, held_out_gap(&trial.held_out_residual)))
         })
         .collect();
     runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -199,7 +200,7 @@ fn forward(
         && significance > asked
         && !most.is_some_and(is_noise);
     let is_taken = is_more && of_rest >= options.least_share;
-    let gaps = [Gap::new(setting.train, &best.found.residual).all, after];
+    let gaps = [Gap::new(setting.train, &best.found.residual, &trust[0]).all, after];
     let step = Step { added, is_taken, gain, decoy, significance, share, gaps, runners_up };
     Some((best.clone(), step))
 }

@@ -50,6 +50,8 @@ pub struct Signals {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations [rad/s^2, m/s^2].
     pub qdd: Vec<Vec<f64>>,
+    /// Rate and acceleration of the motor of a joint behind a spring, on the joint's side.
+    pub motor: Vec<Option<[Vec<f64>; 2]>>,
     /// Torques of the rows, through the filter [N m, N]; none where none was measured.
     pub torque: Vec<Option<Vec<f64>>>,
     /// What the steps of the encoders are of the positions after their filter, drawn at random
@@ -106,7 +108,7 @@ impl Signals {
             .collect();
         let (q, qd, qdd) = (Vec::new(), Vec::new(), Vec::new());
         let (torque, measured) = (Vec::new(), Vec::new());
-        let position_noise = Vec::new();
+        let (position_noise, motor) = (Vec::new(), Vec::new());
         let mut signals = Self {
             file,
             torque_hz: filters.torque_hz,
@@ -116,6 +118,7 @@ impl Signals {
             q,
             qd,
             qdd,
+            motor,
             position_noise,
             torque,
             measured,
@@ -136,13 +139,20 @@ impl Signals {
     }
 
     fn push(&mut self, joint: JointSignals, wide: &Butterworth, kept: Range<usize>) {
-        let JointSignals { mut q, tau, .. } = joint;
+        let JointSignals { mut q, tau, motor, .. } = joint;
         wide.zero_phase(&mut q);
         let h = self.log_step_s;
         let within = self.rows.within;
         let fine = |signal: Vec<f64>| between(&signal, within);
-        self.qd.push(fine(kept.clone().map(|k| rate(&q, k) / h).collect()));
-        self.qdd.push(fine(kept.clone().map(|k| acceleration(&q, k) / (h * h)).collect()));
+        let rates = |q: &[f64]| fine(kept.clone().map(|k| rate(q, k) / h).collect());
+        let accelerations =
+            |q: &[f64]| fine(kept.clone().map(|k| acceleration(q, k) / (h * h)).collect());
+        self.qd.push(rates(&q));
+        self.qdd.push(accelerations(&q));
+        self.motor.push(motor.map(|mut motor| {
+            wide.zero_phase(&mut motor);
+            [rates(&motor), accelerations(&motor)]
+        }));
         self.q.push(fine(q[kept.clone()].to_vec()));
         let measured = tau.map(|tau| tau[kept].to_vec());
         let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
@@ -209,6 +219,11 @@ impl Signals {
             q: all(&self.q),
             qd: all(&self.qd),
             qdd: all(&self.qdd),
+            motor: self
+                .motor
+                .iter()
+                .map(|m| m.as_ref().map(|m| m.each_ref().map(thinned)))
+                .collect(),
             position_noise: Vec::new(),
             torque: Vec::new(),
             measured: Vec::new(),
@@ -223,6 +238,15 @@ impl Signals {
         let within = fine.rows.within;
         let thin = (self.step_s / fine.log_step_s).round() as usize;
         signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
+    }
+
+    /// Rate and acceleration of a joint's drive, on the joint's side: those of the joint, unless a
+    /// spring is between them.
+    pub fn of_drive(&self, joint: usize) -> [&Vec<f64>; 2] {
+        match &self.motor[joint] {
+            Some([rates, accelerations]) => [rates, accelerations],
+            None => [&self.qd[joint], &self.qdd[joint]],
+        }
     }
 
     /// Number of joints.

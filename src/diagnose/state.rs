@@ -5,7 +5,6 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::evidence::block_costs;
 use super::floor::{NoiseFloor, rms};
-use super::gap::Gap;
 use super::problem::{Fitted, Found, Problem};
 use super::signals::Signals;
 use super::turning::turning;
@@ -54,10 +53,6 @@ pub struct State {
     pub residual: Vec<f64>,
     /// What is left of the others.
     pub held_out_residual: Vec<f64>,
-    /// The gap of the first.
-    pub gap: Gap,
-    /// The gap of the others.
-    pub held_out_gap: Gap,
     /// Torques that the model gives the motion of the logs.
     pub torques: [Vec<ModelTorques>; 2],
     /// Those of coarse views of the first.
@@ -80,6 +75,14 @@ pub struct Trial {
 }
 
 impl State {
+    /// For each row how far it counts in a gap.
+    pub fn trust(&self) -> [Vec<f64>; 2] {
+        [0, 1].map(|set| {
+            let both = self.turning[set].iter().zip(&self.deviation[set]);
+            both.map(|(turning, deviation)| 1.0 - (turning / deviation).powi(2)).collect()
+        })
+    }
+
     /// The numbers of the effects' candidates, in order.
     pub fn candidates(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.taken.iter().map(|one| one.candidate).collect();
@@ -119,7 +122,7 @@ const ROUNDS_OF_SPREAD: usize = 5;
 
 /// A drive sticks for longer than a filter blurs: most of what is left there, in squares, of what
 /// is not known.
-const MOST_TURNING: f64 = 9.0;
+const MOST_TURNING: f64 = 2.0;
 
 /// Rounds in which entries of z are held.
 const MOST_HELD: usize = 8;
@@ -177,8 +180,6 @@ impl<'a> Setting<'a> {
             .map(|(log, coarse)| torques[0][log].thinned(&self.train.signals[log], coarse));
         State {
             coarse: coarse.collect(),
-            gap: Gap::new(self.train, &found.residual),
-            held_out_gap: Gap::new(self.held_out, &held_out_residual),
             residual: found.residual,
             covariance: found.covariance,
             taken,

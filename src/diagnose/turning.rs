@@ -5,7 +5,7 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
-use super::nominal::Nominal;
+use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
@@ -52,9 +52,10 @@ pub(super) fn turning(data: &Data<'_>, torques: &[ModelTorques], laws: &[Fitted<
 
 /// What torques would be less if friction kept its sign until a reversal has left the corner
 /// behind it: for each joint at the samples of the motion [N m, N].
-pub(super) fn late_friction(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
+pub(super) fn late_friction(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let mut bends = bends(signals, |moved| torques_of(nominal, moved, phi));
-    for (bends, accelerations) in bends.iter_mut().zip(&signals.qdd) {
+    for (joint, bends) in bends.iter_mut().enumerate() {
+        let [_, accelerations] = signals.of_drive(joint);
         for (bend, acceleration) in bends.iter_mut().zip(accelerations) {
             *bend = -bend.abs() * acceleration.signum();
         }
@@ -68,9 +69,12 @@ fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint 
     let corner_s = CORNER / signals.torque_hz;
     let moved = |sign: f64| {
         let mut moved = signals.clone();
-        for (rates, accelerations) in moved.qd.iter_mut().zip(&signals.qdd) {
-            let by = sign * corner_s * rms(accelerations);
-            rates.iter_mut().for_each(|rate| *rate += by);
+        for joint in 0..signals.joints() {
+            let by = sign * corner_s * rms(signals.of_drive(joint)[1]);
+            let motor = moved.motor[joint].iter_mut().map(|[rates, _]| rates);
+            for rates in motor.chain([&mut moved.qd[joint]]) {
+                rates.iter_mut().for_each(|rate| *rate += by);
+            }
         }
         torques(&moved)
     };

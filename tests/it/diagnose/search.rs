@@ -2,7 +2,7 @@
 
 use super::laws::{Handwritten, Sample, kinds};
 use denavit::diagnose::{
-    Candidate, Data, Filters, Gap, NoiseFloor, Nominal, SearchOptions, Setting, Signals,
+    Candidate, Data, Filters, Gap, NoiseFloor, Nominal, SearchOptions, Setting, Signals, State,
     Uncertainty, search, share_closed,
 };
 use denavit::identify::log::{JointSignals, MeasuredLog};
@@ -96,8 +96,12 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
     all
 }
 
-/// The names that are found where `hidden` is in the data.
-fn found(hidden: impl Fn(usize, Sample) -> f64, seed: u64) -> (Vec<String>, Option<f64>) {
+/// The names that are found where `hidden` is in the data, and the share of a joint's gap that is
+/// closed.
+fn found(
+    hidden: impl Fn(usize, Sample) -> f64,
+    (seed, joint): (u64, usize),
+) -> (Vec<String>, Option<f64>) {
     let model = puma();
     let nominal = Nominal::new(&model, Uncertainty::default());
     let mut random = Random::new(seed);
@@ -105,7 +109,7 @@ fn found(hidden: impl Fn(usize, Sample) -> f64, seed: u64) -> (Vec<String>, Opti
     let phi = nominal.phi(&truth);
     let filters = Filters::new(STEP_S, 0.03);
     let read =
-        |seed| Signals::new(log(&model, (seed, 7500), &phi, &hidden), filters).expect("long");
+        |seed| Signals::new(log(&model, (seed, 7500), &phi.axes, &hidden), filters).expect("long");
     let (train, held_out) = (read(seed + 1), read(seed + 2));
     let [train, held_out] = [train, held_out].map(|log| Data::new(&nominal, vec![log]));
     let candidates = candidates(&model);
@@ -120,25 +124,17 @@ fn found(hidden: impl Fn(usize, Sample) -> f64, seed: u64) -> (Vec<String>, Opti
         held_out_floor: &held_out_floor,
     };
     let outcome = search(&setting, &SearchOptions::default(), &mut |_| ());
-    let f = |s: &denavit::diagnose::State| Gap::of_floor(&held_out, &held_out_floor, &s.turning[1]);
-    eprintln!(
-        "stop {:?}\n before {:?}\n after {:?}\n floor before {:?}\n floor after {:?} {:?}",
-        outcome.stop,
-        outcome.before.held_out_gap,
-        outcome.after.held_out_gap,
-        f(&outcome.before),
-        f(&outcome.after),
-        held_out_floor
-    );
-    eprintln!(" held {:?}", outcome.before.held);
     for step in &outcome.steps {
         eprintln!("{} {step:?}", candidates[step.added].name());
     }
     let taken = outcome.after.taken.iter();
     let names = taken.map(|one| candidates[one.candidate].name()).collect();
-    let floor = Gap::of_floor(&held_out, &held_out_floor, &outcome.after.turning[1]).all;
-    let [before, after] = [&outcome.before, &outcome.after].map(|state| state.held_out_gap.all);
-    (names, share_closed(before, after, floor))
+    let [_, trust] = outcome.after.trust();
+    let floor = Gap::of_floor(&held_out, &held_out_floor, &trust);
+    let gap = |state: &State| Gap::new(&held_out, &state.held_out_residual, &trust);
+    let (before, after) = (gap(&outcome.before), gap(&outcome.after));
+    let at = |gap: &Gap| gap.per_joint[joint].expect("measured");
+    (names, share_closed(at(&before), at(&after), at(&floor)))
 }
 
 #[test]
@@ -147,7 +143,7 @@ fn a_hidden_law_is_named() {
         |joint, s| {
             if joint == 2 { 1.5 * (-(s.qd / 0.1).powi(2)).exp() * s.qd.signum() } else { 0.0 }
         },
-        7,
+        (7, 2),
     );
     assert_eq!(names, ["stribeck at elbow"]);
     assert!(share.is_some_and(|share| share > 0.9), "{share:?}");
@@ -155,7 +151,7 @@ fn a_hidden_law_is_named() {
 
 #[test]
 fn nothing_is_found_where_nothing_is_hidden() {
-    let (names, _) = found(|_, _| 0.0, 21);
+    let (names, _) = found(|_, _| 0.0, (21, 2));
     assert_eq!(names, [""; 0]);
 }
 
@@ -167,7 +163,7 @@ fn two_laws_are_named() {
             4 => 0.8 * s.qd * s.qd.abs(),
             _ => 0.0,
         },
-        40,
+        (40, 4),
     );
     names.sort();
     assert_eq!(names, ["quadratic_drag at wrist_pitch", "stribeck at elbow"]);

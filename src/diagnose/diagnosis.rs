@@ -4,13 +4,15 @@ use super::candidate::Candidate;
 use super::data::Data;
 use super::family::{Alternative, family};
 use super::fault::DiagnosisError;
-use super::floor::NoiseFloor;
+use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
 use super::nominal::{Nominal, Uncertainty};
 use super::regime::{Where, where_left};
+use super::repeat::unrepeatable;
 use super::search::{Screen, SearchOptions, Step, Stop, search};
 use super::signals::{Filters, Signals};
 use super::state::{Setting, State};
+use super::structure::{Structure, describe};
 use crate::identify::log::MeasuredLog;
 use crate::plants::regression::RegressionModel;
 
@@ -82,6 +84,8 @@ pub struct FoundEffect {
     pub parameters: Vec<EffectValue>,
     /// The share of what can be explained that is open again without it, on held-out logs.
     pub share: f64,
+    /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
+    pub is_named: bool,
     /// Effects that would do as well in its place.
     pub alternatives: Vec<Alternative>,
 }
@@ -110,6 +114,8 @@ pub struct Diagnosis {
     pub after: Vec<Where>,
     /// The effects, in the order in which they were found.
     pub effects: Vec<FoundEffect>,
+    /// What is left at joints that no effect explains.
+    pub structures: Vec<Structure>,
     /// How they were found.
     pub steps: Vec<Step>,
     /// Gaps of the logs that were fitted.
@@ -125,11 +131,13 @@ pub struct Diagnosis {
 /// Shares of the rate of sampling that the filter of positions may pass.
 const SHARES: [f64; 6] = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018];
 
+/// A law that closes less than this share of what a joint leaves does not fit it, if more than so
+/// many times the deviation of noise stays.
+const FITS: f64 = 0.9;
+const MISFIT: f64 = 2.5;
+
 /// What is left within so many times the deviation of noise is noise.
 const NOISE: f64 = 1.6;
-
-/// Laps that differ by so many times their noise do not repeat.
-const UNREPEATABLE: f64 = 3.0;
 
 /// Diagnoses. `watch` hears of the effects that were found so far.
 pub fn diagnose(
@@ -192,6 +200,7 @@ pub fn diagnose(
             after: Gap::new(&held_out, &after.held_out_residual, &trust[1]),
             floor: Gap::of_floor(&held_out, &held_out_floor, &trust[1]),
         },
+        structures: structures(&setting, after),
         filters,
         driven: [driven(before), driven(after)],
         steps: outcome.steps,
@@ -226,6 +235,14 @@ fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters,
     last
 }
 
+/// What joints still lack that are left with more than noise.
+fn structures(setting: &Setting<'_>, state: &State) -> Vec<Structure> {
+    let squares = setting.held_out_squares(state, &state.held_out_residual);
+    let is_left = |joint: &usize| squares[*joint][0] > NOISE * NOISE * squares[*joint][1];
+    let joints = (0..squares.len()).filter(is_left);
+    joints.filter_map(|joint| describe(setting, state, joint)).collect()
+}
+
 /// The effects of a state, each with its share, its errors and what would do as well.
 fn found_effects(
     (setting, screen): (&Setting<'_>, &Screen),
@@ -235,6 +252,12 @@ fn found_effects(
     let [_, trust] = after.trust();
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
     let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &trust).all;
+    let squares = |left: &[f64]| setting.held_out_squares(after, left);
+    let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
+    let fits = |joint: usize| {
+        let ([from, _], [to, noise]) = (from[joint], to[joint]);
+        to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
+    };
     let mut at = 0;
     let mut found = Vec::new();
     for (place, taken) in after.taken.iter().enumerate() {
@@ -256,6 +279,7 @@ fn found_effects(
             candidate: taken.candidate,
             parameters: values,
             share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
+            is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
             alternatives: family((setting, screen), options, after, place),
         });
         at += taken.values.len();
@@ -274,18 +298,26 @@ impl Diagnosis {
         let joints = &setting.train.nominal.model.joints;
         let squares = setting.held_out_squares(state, &state.held_out_residual);
         let is_noise = squares.iter().all(|[left, noise]| *left <= NOISE * NOISE * noise);
-        let unrepeatable = setting
-            .train_floor
-            .iter()
-            .chain(setting.held_out_floor)
-            .filter_map(NoiseFloor::unrepeatable)
+        let trust = state.trust();
+        let unrepeatable = [
+            unrepeatable(setting.train, setting.train_floor, &state.residual, &trust[0]),
+            unrepeatable(
+                setting.held_out,
+                setting.held_out_floor,
+                &state.held_out_residual,
+                &trust[1],
+            ),
+        ];
+        let unrepeatable = unrepeatable
+            .into_iter()
+            .flatten()
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|(_, ratio)| *ratio > UNREPEATABLE);
         let mut reasons = Vec::new();
         let ambiguous: Vec<String> = self
             .effects
             .iter()
-            .filter(|one| one.alternatives.len() > 2)
+            .filter(|one| one.is_named && one.alternatives.len() > 2)
             .map(|one| setting.candidates[one.candidate].name())
             .collect();
         self.verdict = if let Some((joint, ratio)) = unrepeatable {
@@ -302,6 +334,12 @@ impl Diagnosis {
                     Verdict::Unexplained
                 }
             }
+        } else if self.effects.iter().all(|one| !one.is_named) {
+            let nearest: Vec<String> =
+                self.effects.iter().map(|one| setting.candidates[one.candidate].name()).collect();
+            reasons
+                .push(format!("no effect of the catalogue fits; nearest: {}", nearest.join(", ")));
+            Verdict::Unexplained
         } else if !ambiguous.is_empty() {
             reasons.push(format!("alias: others would do as well as {}", ambiguous.join(", ")));
             Verdict::CannotTell

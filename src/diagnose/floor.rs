@@ -21,6 +21,9 @@ pub struct NoiseFloor {
     pub period_s: Option<f64>,
 }
 
+/// Laps that differ by so many times their noise do not repeat.
+pub(super) const UNREPEATABLE: f64 = 3.0;
+
 /// The least share of a torque that its floor is taken to be: logs without noise have digits.
 const LEAST: f64 = 1e-6;
 
@@ -66,7 +69,10 @@ impl NoiseFloor {
         });
         let deviation = (0..white.len()).map(|joint| {
             let of_log = white[joint].hypot(positions[joint]);
-            let seen = of_laps.as_ref().map_or(of_log, |laps| laps[joint].max(of_log));
+            // What differs much more from lap to lap than it shakes is not noise.
+            let laps = of_laps.as_ref().map(|laps| laps[joint]);
+            let laps = laps.filter(|laps| *laps < UNREPEATABLE * of_log);
+            let seen = laps.map_or(of_log, |laps| laps.max(of_log));
             let rms = signals.torque[joint].as_ref().map_or(0.0, |torque| rms(torque));
             seen.max(LEAST * rms).max(f64::MIN_POSITIVE)
         });
@@ -77,14 +83,6 @@ impl NoiseFloor {
             period_s: laps.map(|laps| laps.samples as f64 * signals.log_step_s),
             laps: of_laps,
         }
-    }
-
-    /// How much more laps differ than white noise lets them, at the joint where that is most.
-    pub fn unrepeatable(&self) -> Option<(usize, f64)> {
-        let laps = self.laps.as_ref()?;
-        let own = self.white.iter().zip(&self.positions).map(|(a, b)| a.hypot(*b));
-        let ratios = laps.iter().zip(own).enumerate().filter(|(_, (_, own))| *own > 0.0);
-        ratios.map(|(joint, (lap, own))| (joint, lap / own)).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
@@ -111,13 +109,11 @@ fn usual(values: Vec<f64>) -> f64 {
     sizes.get(sizes.len() / 2).copied().unwrap_or(0.0) / 0.6745
 }
 
-/// Deviation of a signal, from the differences of laps that follow each other.
+/// Usual deviation of a signal, from the differences of laps that follow each other.
 fn lap_noise(signal: &[f64], laps: Laps) -> f64 {
     let Laps { start, samples, count } = laps;
     let pairs = start..start + (count - 1) * samples;
-    let count = pairs.len().max(1);
-    let squares: f64 = pairs.map(|k| (signal[k + samples] - signal[k]).powi(2)).sum();
-    (squares / (2 * count) as f64).sqrt()
+    usual(pairs.map(|k| signal[k + samples] - signal[k]).collect()) / 2.0_f64.sqrt()
 }
 
 /// Root of the mean square.

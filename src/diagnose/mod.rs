@@ -24,10 +24,12 @@ mod law;
 mod nominal;
 mod problem;
 mod regime;
+mod repeat;
 mod rows;
 mod search;
 mod signals;
 mod state;
+mod structure;
 mod turning;
 
 pub use candidate::{Candidate, starts};
@@ -48,3 +50,4 @@ pub use rows::PerJoint;
 pub use search::{Outcome, Scored, Screen, SearchOptions, Step, Stop, score, search};
 pub use signals::{Filters, Signals};
 pub use state::{Setting, State, Taken, Trial};
+pub use structure::Structure;

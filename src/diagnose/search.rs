@@ -121,7 +121,7 @@ pub fn search(
             break Stop::NothingLeft;
         }
         let swapped = swap((setting, &screen), options, setting.state(&next.taken));
-        let next = without_idle(setting, swapped);
+        let next = without_idle(setting, &before.held_out_residual, swapped);
         // An effect that the model's own uncertainty makes idle is not tried again.
         if next.candidates() == state.candidates() {
             idle.push(step.added);
@@ -339,24 +339,33 @@ fn swap(
     state
 }
 
-/// Takes effects out that the others have made idle.
-fn without_idle(setting: &Setting<'_>, mut state: State) -> State {
+/// The least share of what could be explained at its joints that an effect must close.
+const IDLE: f64 = 0.05;
+
+/// Takes effects out that the others have made idle, the idlest first.
+fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> State {
     let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    let mut place = 0;
-    while place < state.taken.len() && state.taken.len() > 1 {
-        let mut others = state.taken.clone();
-        others.remove(place);
+    while state.taken.len() > 1 {
         let problem = Problem::new(setting.train, &state.deviation[0], &[]);
         let now = setting.trial(&problem, &state, &state.taken);
-        let less = setting.trial(&problem, &state, &others);
-        // Rows are weighted by what is left of them: squares count as those of unit noise.
-        let worth = (less.cost() - now.cost()) / ROWS_PER_SAMPLE;
-        let parameters = (now.parameters() - less.parameters()) as f64;
-        if worth <= parameters * samples.ln() {
-            state = setting.state(&others);
-        } else {
-            place += 1;
+        let squares = |left: &[f64]| setting.held_out_squares(&state, left);
+        let (from, then) = (squares(before), squares(&now.held_out_residual));
+        let mut idlest: Option<(f64, Vec<Taken>)> = None;
+        for place in 0..state.taken.len() {
+            let mut others = state.taken.clone();
+            others.remove(place);
+            let less = setting.trial(&problem, &state, &others);
+            // Rows are weighted by what is left of them: squares count as those of unit noise.
+            let worth = (less.cost() - now.cost()) / ROWS_PER_SAMPLE;
+            let parameters = (now.parameters() - less.parameters()) as f64;
+            let [share, _] = closed(&from, &squares(&less.held_out_residual), &then);
+            let is_idle = worth <= parameters * samples.ln() || share < IDLE;
+            if is_idle && idlest.as_ref().is_none_or(|(least, _)| worth < *least) {
+                idlest = Some((worth, others));
+            }
         }
+        let Some((_, others)) = idlest else { break };
+        state = setting.state(&others);
     }
     state
 }

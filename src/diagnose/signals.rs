@@ -320,15 +320,17 @@ fn between(signal: &[f64], within: usize) -> Vec<f64> {
             let x = (part as f64 - middle) / within as f64;
             // From the sample before a place to the one after.
             let (from, u) = if x < 0.0 { (k - 1, x + 1.0) } else { (k, x) };
-            let [a, b, c, d] = [-1, 0, 1, 2].map(|offset| at(from + offset));
-            fine.push(
-                -a * u * (u - 1.0) * (u - 2.0) / 6.0 + b * (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0
-                    - c * (u + 1.0) * u * (u - 2.0) / 2.0
-                    + d * (u + 1.0) * u * (u - 1.0) / 6.0,
-            );
+            fine.push(cubic([-1, 0, 1, 2].map(|offset| at(from + offset)), u));
         }
     }
     fine
+}
+
+/// The cubic through values at -1, 0, 1 and 2, between 0 and 1.
+pub(super) fn cubic([a, b, c, d]: [f64; 4], u: f64) -> f64 {
+    -a * u * (u - 1.0) * (u - 2.0) / 6.0 + b * (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0
+        - c * (u + 1.0) * u * (u - 2.0) / 2.0
+        + d * (u + 1.0) * u * (u - 1.0) / 6.0
 }
 
 #[cfg(test)]

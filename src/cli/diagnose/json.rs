@@ -3,7 +3,7 @@
 use super::Shown;
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
-use denavit::diagnose::{Gaps, Where};
+use denavit::diagnose::{Gaps, Step, Where};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -15,6 +15,7 @@ struct DiagnosisJson<'a> {
     reasons: &'a [String],
     r#where: Vec<WhereJson<'a>>,
     effects: Vec<EffectJson<'a>>,
+    unnamed: Vec<StructureJson<'a>>,
     rounds: Vec<RoundJson<'a>>,
     noise_floor: f64,
     gap: GapJson,
@@ -36,6 +37,8 @@ struct WhereJson<'a> {
 #[derive(Serialize)]
 struct EffectJson<'a> {
     effect: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nearest: Option<&'a str>,
     at: &'a str,
     share: f64,
     parameters: BTreeMap<&'a str, ValueJson<'a>>,
@@ -55,6 +58,13 @@ struct OtherJson<'a> {
     at: &'a str,
     gap: f64,
     cosine: f64,
+}
+
+#[derive(Serialize)]
+struct StructureJson<'a> {
+    joint: &'a str,
+    formula: String,
+    share: f64,
 }
 
 #[derive(Serialize)]
@@ -133,26 +143,18 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
             cosine: other.cosine,
         });
         EffectJson {
-            effect: &own.effect,
+            effect: if one.is_named { &own.effect } else { "unnamed" },
+            nearest: (!one.is_named).then_some(own.effect.as_str()),
             at: &own.at,
             share: one.share,
             parameters: values.collect(),
             indistinguishable: others.collect(),
         }
     });
-    let rounds = found.steps.iter().map(|step| RoundJson {
-        effect: &candidates[step.added].effect,
-        at: &candidates[step.added].at,
-        is_taken: step.is_taken,
-        gain: step.gain,
-        decoy: step.decoy,
-        significance: step.significance,
-        share: step.share,
-        runners_up: step
-            .runners_up
-            .iter()
-            .map(|&(other, gap)| runner_up(shown, other, gap))
-            .collect(),
+    let structures = found.structures.iter().map(|one| StructureJson {
+        joint: &shown.model.joints[one.joint].name,
+        formula: one.formula(),
+        share: one.share,
     });
     let json = DiagnosisJson {
         model: &robot.name,
@@ -160,7 +162,8 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         reasons: &found.reasons,
         r#where: places.collect(),
         effects: effects.collect(),
-        rounds: rounds.collect(),
+        unnamed: structures.collect(),
+        rounds: found.steps.iter().map(|step| round(shown, step)).collect(),
         noise_floor: found.held_out.floor.all,
         gap: GapJson { train: (&found.train).into(), validate: (&found.held_out).into() },
         share_closed: found.share_closed(),
@@ -168,6 +171,21 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
     };
     write_json(out, &json)
+}
+
+fn round<'a>(shown: &Shown<'a>, step: &Step) -> RoundJson<'a> {
+    let added = &shown.candidates[step.added];
+    let others = step.runners_up.iter();
+    RoundJson {
+        effect: &added.effect,
+        at: &added.at,
+        is_taken: step.is_taken,
+        gain: step.gain,
+        decoy: step.decoy,
+        significance: step.significance,
+        share: step.share,
+        runners_up: others.map(|&(other, gap)| runner_up(shown, other, gap)).collect(),
+    }
 }
 
 fn runner_up<'a>(shown: &Shown<'a>, candidate: usize, gap: f64) -> RunnerUpJson<'a> {

@@ -24,7 +24,8 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     }
     for one in &found.effects {
         let own = &candidates[one.candidate];
-        writeln!(out, "\n{} at {}: closes {}", own.title, own.at, percent(one.share))?;
+        let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
+        writeln!(out, "\n{doubt}{} at {}: closes {}", own.title, own.at, percent(one.share))?;
         for value in &one.parameters {
             writeln!(
                 out,
@@ -35,6 +36,11 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         for other in &one.alternatives {
             writeln!(out, "  or {}", candidates[other.candidate].name())?;
         }
+    }
+    for one in &found.structures {
+        let name = &model.joints[one.joint].name;
+        let share = percent(one.share);
+        writeln!(out, "\n{name} still lacks, without a name: {} ({share} of it)", one.formula())?;
     }
     if let Some(step) = found.steps.last().filter(|step| !step.is_taken) {
         writeln!(

@@ -1,0 +1,184 @@
+//! What no effect explains, as a formula without a name: a few terms of a general library that
+//! explain most of what a joint leaves, judged by held-out logs.
+
+use super::data::{Data, ModelTorques};
+use super::signals::Signals;
+use super::state::{Setting, State};
+use nalgebra::{DMatrix, DVector};
+
+/// What one joint leaves, described.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Structure {
+    /// The joint.
+    pub joint: usize,
+    /// The terms with their coefficients [N m, N per unit of the term], the largest share first.
+    pub terms: Vec<(String, f64)>,
+    /// The share of the weighted squares of held-out logs that they explain.
+    pub share: f64,
+}
+
+impl Structure {
+    /// The sum of its terms.
+    pub fn formula(&self) -> String {
+        let term = |(name, factor): &(String, f64)| format!("{factor:.3e} {name}");
+        self.terms.iter().map(term).collect::<Vec<String>>().join(" + ").replace("+ -", "- ")
+    }
+}
+
+/// Most terms of a formula.
+const MOST_TERMS: usize = 4;
+
+/// The least share of squares of held-out logs that a term must explain.
+const LEAST_SHARE: f64 = 0.05;
+
+/// Describes what is left of a joint; none if no term explains a twentieth of it.
+pub(super) fn describe(setting: &Setting<'_>, state: &State, joint: usize) -> Option<Structure> {
+    let sets = [(setting.train, 0), (setting.held_out, 1)];
+    let [train, held_out] = sets.map(|(data, set)| {
+        let left = if set == 0 { &state.residual } else { &state.held_out_residual };
+        Rows::new(data, &state.torques[set], (joint, left, &state.deviation[set]))
+    });
+    let whole = held_out.left.norm_squared();
+    let (mut places, mut found, mut least) = (Vec::new(), DVector::zeros(0), whole);
+    while places.len() < MOST_TERMS {
+        let tried = (0..train.names.len()).filter(|place| !places.contains(place));
+        let fits = tried.filter_map(|place| {
+            let all = [places.as_slice(), &[place]].concat();
+            let (factors, cost) = train.fit(&all)?;
+            Some((place, factors, cost))
+        });
+        let Some((place, factors, _)) = fits.min_by(|a, b| a.2.total_cmp(&b.2)) else { break };
+        let all = [places.as_slice(), &[place]].concat();
+        let cost = held_out.cost(&all, &factors);
+        if least - cost < LEAST_SHARE * whole {
+            break;
+        }
+        (places, found, least) = (all, factors, cost);
+    }
+    let terms = places.iter().zip(found.iter());
+    let terms: Vec<(String, f64)> =
+        terms.map(|(&place, &factor)| (train.names[place].clone(), factor)).collect();
+    (!terms.is_empty()).then(|| Structure { joint, terms, share: 1.0 - least / whole })
+}
+
+/// What a joint leaves and the library, weighted.
+struct Rows {
+    names: Vec<String>,
+    columns: Vec<DVector<f64>>,
+    left: DVector<f64>,
+}
+
+impl Rows {
+    fn new(
+        data: &Data<'_>,
+        torques: &[ModelTorques],
+        (joint, left, deviation): (usize, &[f64], &[f64]),
+    ) -> Self {
+        let mut rows = Self { names: Vec::new(), columns: Vec::new(), left: DVector::zeros(0) };
+        let (mut columns, mut all_left): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
+        for stretch in data.stretches.iter().filter(|stretch| stretch.joint == joint) {
+            let range = stretch.first..stretch.first + stretch.rows;
+            let weights: Vec<f64> = deviation[range.clone()].iter().map(|one| 1.0 / one).collect();
+            let weighted = |values: &[f64]| -> Vec<f64> {
+                values.iter().zip(&weights).map(|(value, weight)| value * weight).collect()
+            };
+            all_left.extend(weighted(&left[range]));
+            let signals = &data.signals[stretch.log];
+            let names = data.nominal.model.joints.iter().map(|one| one.name.as_str());
+            let names: Vec<&str> = names.collect();
+            let library = library(signals, &torques[stretch.log].load[joint], joint, &names);
+            columns.resize(library.len(), Vec::new());
+            rows.names = library.iter().map(|(name, _)| name.clone()).collect();
+            for (column, (_, values)) in columns.iter_mut().zip(&library) {
+                column.extend(weighted(&signals.rows_of(values)));
+            }
+        }
+        rows.columns = columns.into_iter().map(DVector::from_vec).collect();
+        rows.left = DVector::from_vec(all_left);
+        rows
+    }
+
+    fn matrix(&self, places: &[usize]) -> DMatrix<f64> {
+        let columns: Vec<DVector<f64>> =
+            places.iter().map(|&place| self.columns[place].clone()).collect();
+        DMatrix::from_columns(&columns)
+    }
+
+    /// The best factors of some terms and what they leave; none if they depend on each other.
+    fn fit(&self, places: &[usize]) -> Option<(DVector<f64>, f64)> {
+        let matrix = self.matrix(places);
+        let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
+        if lengths.iter().any(|length| *length <= 0.0) {
+            return None;
+        }
+        let scaled =
+            DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |r, c| matrix[(r, c)] / lengths[c]);
+        let normal = scaled.tr_mul(&scaled);
+        let factor = normal
+            .cholesky()
+            .filter(|factor| factor.l_dirty().diagonal().iter().all(|pivot| *pivot > 1e-3))?;
+        let solved = factor.solve(&scaled.tr_mul(&self.left));
+        let factors = DVector::from_fn(lengths.len(), |k, _| solved[k] / lengths[k]);
+        let cost = self.cost(places, &factors);
+        Some((factors, cost))
+    }
+
+    fn cost(&self, places: &[usize], factors: &DVector<f64>) -> f64 {
+        (&self.left - self.matrix(places) * factors).norm_squared()
+    }
+}
+
+/// General functions of a joint's motion and of its neighbours', at the samples of the motion.
+fn library(
+    signals: &Signals,
+    load: &[f64],
+    joint: usize,
+    names: &[&str],
+) -> Vec<(String, Vec<f64>)> {
+    let mut all: Vec<(String, Vec<f64>)> = Vec::new();
+    let of_one = |values: &[f64], of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        values.iter().map(|value| of(*value)).collect()
+    };
+    let product = |a: &[f64], b: &[f64], of: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+        a.iter().zip(b).map(|(a, b)| of(*a, *b)).collect()
+    };
+    let [rates, accelerations] = signals.of_drive(joint);
+    let (q, name) = (&signals.q[joint], names[joint]);
+    all.push(("1".to_owned(), vec![1.0; q.len()]));
+    let powers: [(&str, &dyn Fn(f64) -> f64); 5] = [
+        ("q", &|q| q),
+        ("q^2", &|q| q * q),
+        ("q^3", &|q| q * q * q),
+        ("sin q", &f64::sin),
+        ("cos q", &f64::cos),
+    ];
+    all.extend(powers.map(|(text, of)| (format!("{text}_{name}"), of_one(q, of))));
+    let of_rates: [(&str, &dyn Fn(f64) -> f64); 6] = [
+        ("qd", &|v| v),
+        ("|qd|", &f64::abs),
+        ("sgn qd", &f64::signum),
+        ("qd |qd|", &|v| v * v.abs()),
+        ("qd^3", &|v| v * v * v),
+        ("sgn qd |qd|^1/2", &|v| v.signum() * v.abs().sqrt()),
+    ];
+    all.extend(of_rates.map(|(text, of)| (format!("{text}_{name}"), of_one(rates, of))));
+    all.push((format!("qdd_{name}"), accelerations.clone()));
+    all.push((format!("load_{name}"), load.to_vec()));
+    let with_sign: &dyn Fn(f64, f64) -> f64 = &|a, v| a * v.signum();
+    all.push((format!("|load| sgn qd_{name}"), product(load, rates, &|a, v| a.abs() * v.signum())));
+    all.push((format!("q sgn qd_{name}"), product(q, rates, with_sign)));
+    all.push((format!("q qd_{name}"), product(q, rates, &|a, v| a * v)));
+    all.push(("t".to_owned(), signals.t.clone()));
+    all.push((format!("t sgn qd_{name}"), product(&signals.t, rates, with_sign)));
+    for other in (0..names.len()).filter(|other| *other != joint) {
+        let [v, a] = signals.of_drive(other);
+        let text = names[other];
+        all.push((format!("q_{text}"), signals.q[other].clone()));
+        all.push((format!("qd_{text}"), v.clone()));
+        all.push((format!("qd_{text}^2"), of_one(v, &|v| v * v)));
+        all.push((format!("sgn qd_{text}"), of_one(v, &f64::signum)));
+        all.push((format!("qd_{name} qd_{text}"), product(rates, v, &|a, b| a * b)));
+        all.push((format!("qdd_{text}"), a.clone()));
+    }
+    all
+}

@@ -2,9 +2,11 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
-use denavit::identify::excite::{Check, Excited, Extremes, JointUse, Stack, StartReport};
+use denavit::identify::excite::{
+    Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport,
+};
 use denavit::model::Robot;
-use denavit::report::{Align, Table, paragraph};
+use denavit::report::{Align, Table, paragraph, short};
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -35,6 +37,9 @@ pub(super) fn write_json_answer(
             "point": point, "height_m": finite(*height),
             "clearance_m": finite(check.clearance_m),
         })),
+        "assumed_limits": check.assumed.iter().map(|(joint, limit, value)| json!({
+            "joint": joint, "limit": limit.key(), "value": value,
+        })).collect::<Vec<_>>(),
     });
     if let Some(excited) = excited {
         answer["start"] = json!(excited.best + 1);
@@ -90,6 +95,17 @@ pub(super) fn write_text(
     )?;
     if !found.stack.left_out.is_empty() {
         let text = format!("not excited by what moves: {}", found.stack.left_out.join(", "));
+        writeln!(out, "{}", paragraph("", "  ", &text))?;
+    }
+    if !check.assumed.is_empty() {
+        let of = |(joint, limit, value): &(String, LimitKind, f64)| {
+            format!("{} of {joint} {}", limit.key(), short(*value))
+        };
+        let listed: Vec<String> = check.assumed.iter().map(of).collect();
+        let text = format!(
+            "limits that the model does not give, those of one sine a lap over the whole range: {}",
+            listed.join(", ")
+        );
         writeln!(out, "{}", paragraph("", "  ", &text))?;
     }
     writeln!(out, "\n{}", uses(check))?;

@@ -1,7 +1,8 @@
 //! Whether a trajectory keeps the limits: its references at many more times than the solver saw,
 //! with Coulomb friction as it is.
 
-use super::model::{Evaluators, ExcitedModel};
+use super::fault::LimitKind;
+use super::model::{Evaluators, ExcitedModel, JointLimits};
 use super::objective::{Excitation, Stacked};
 use super::stack::{Signs, Stack};
 use crate::trajectory::Reference;
@@ -57,6 +58,8 @@ pub struct Check {
     pub lowest: Option<(String, f64)>,
     /// The height that points must keep \[m\].
     pub clearance_m: f64,
+    /// Limits that the model does not give, by joint [rad/s, m/s; per s^2].
+    pub assumed: Vec<(String, LimitKind, f64)>,
 }
 
 impl Check {
@@ -101,7 +104,7 @@ pub(super) fn check(
     let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
     let torques = model.torque_columns(evaluators, &columns);
     let limited = model.limited();
-    let joint = |(index, limits): (usize, &super::model::JointLimits)| {
+    let joint = |(index, limits): (usize, &JointLimits)| {
         let moves = limits.held.is_none();
         let of = |order: usize, range: [f64; 2]| {
             moves.then(|| Extremes::of(&motion[order * n + index], range))
@@ -134,7 +137,17 @@ pub(super) fn check(
     let lowest = gaps.iter().enumerate().map(lowest).min_by(|a, b| a.1.total_cmp(&b.1));
     let w = stack.w(model, evaluators, &columns, Signs::Exact);
     let excitation = Stacked::new(w).excitation();
-    Check { excitation, joints, lowest, clearance_m: lap.clearance_m }
+    let assumed = model.joints.iter().flat_map(assumed).collect();
+    Check { excitation, joints, lowest, clearance_m: lap.clearance_m, assumed }
+}
+
+/// The limits of a joint that the model does not give.
+fn assumed(limits: &JointLimits) -> Vec<(String, LimitKind, f64)> {
+    let of = |kind: &LimitKind| match kind {
+        LimitKind::Velocity => limits.velocity,
+        _ => limits.acceleration,
+    };
+    limits.assumed.iter().map(|kind| (limits.name.clone(), *kind, of(kind))).collect()
 }
 
 /// What a trajectory is checked over.

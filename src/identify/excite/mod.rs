@@ -138,6 +138,7 @@ pub fn check_trajectory(
     trajectory: &Trajectory,
 ) -> Result<(Check, Stack), ExciteError> {
     let mut options = options.clone();
+    options.duration_s = trajectory.duration_s;
     for joint in robot.joints().map(|(link, _)| &robot.links[link].name) {
         let is_held = options.hold.iter().any(|(held, _)| held == joint);
         if trajectory.find(joint).is_none() && !is_held {

@@ -1,6 +1,6 @@
 //! The robot of an excitation: regressor, torques and points in batches, and the limits of joints.
 
-use super::fault::ExciteFault;
+use super::fault::{ExciteFault, LimitKind};
 use crate::plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use crate::plants::{GroundModel, PointModel, point_positions};
 use denavit_codegen::arena::Handle;
@@ -37,6 +37,9 @@ pub struct JointLimits {
     pub torque: Option<[f64; 2]>,
     /// Where the joint is held; none if it moves.
     pub held: Option<f64>,
+    /// The limits among these that the model does not give: those of one sine a lap over the whole
+    /// range of positions.
+    pub assumed: Vec<LimitKind>,
 }
 
 impl JointLimits {

@@ -78,6 +78,7 @@ impl Default for ExciteOptions {
 const MOST_FUNCTIONS: usize = 101;
 const MOST_STEPS: usize = 5_000;
 const MOST_STARTS: usize = 10_000;
+const MOST_EVALUATIONS: usize = 100_000;
 
 impl ExciteOptions {
     /// Steps of the solver's grid.
@@ -117,6 +118,12 @@ impl ExciteOptions {
         }
         if self.starts == 0 {
             faults.push(ExciteFault::TooFewOf("starts", 1));
+        }
+        if self.evaluations == 0 {
+            faults.push(ExciteFault::TooFewOf("evaluations", 1));
+        }
+        if self.evaluations > MOST_EVALUATIONS {
+            faults.push(ExciteFault::TooMany("evaluations", MOST_EVALUATIONS));
         }
         if self.starts > MOST_STARTS {
             faults.push(ExciteFault::TooMany("starts", MOST_STARTS));
@@ -204,6 +211,7 @@ impl ExciteOptions {
             acceleration: joint.acceleration_limit.unwrap_or(0.0),
             torque: joint.torque_limits,
             held,
+            assumed: Vec::new(),
         };
         if let Some(position) = held {
             let inside =
@@ -214,19 +222,32 @@ impl ExciteOptions {
             (limits.velocity, limits.acceleration) = (0.0, 0.0);
             return limits;
         }
+        // what the model does not say: one sine a lap over the whole range
+        let turn = std::f64::consts::TAU / self.duration_s;
+        if joint.velocity_limit.is_none() {
+            limits.velocity = limits.half() * turn;
+            limits.assumed.push(LimitKind::Velocity);
+        }
+        if joint.acceleration_limit.is_none() {
+            limits.acceleration = limits.half() * turn * turn;
+            limits.assumed.push(LimitKind::Acceleration);
+        }
+        let room = match joint.position_limits {
+            None => {
+                let (joint, limit) = (name.clone(), LimitKind::Position);
+                faults.push(ExciteFault::MissingLimit { joint, limit });
+                return limits;
+            }
+            Some([low, high]) => high - low,
+        };
         let given = [
-            (LimitKind::Position, joint.position_limits.map(|[low, high]| high - low)),
+            (LimitKind::Position, Some(room)),
             (LimitKind::Velocity, joint.velocity_limit),
             (LimitKind::Acceleration, joint.acceleration_limit),
         ];
         for (limit, room) in given {
-            let joint = name.clone();
-            match room {
-                None => faults.push(ExciteFault::MissingLimit { joint, limit }),
-                Some(room) if !(room > 0.0 && room.is_finite()) => {
-                    faults.push(ExciteFault::NoRoom { joint, limit });
-                }
-                Some(_) => {}
+            if room.is_some_and(|room| !(room > 0.0 && room.is_finite())) {
+                faults.push(ExciteFault::NoRoom { joint: name.clone(), limit });
             }
         }
         if joint.torque_limits.is_some_and(|[low, high]| low >= high || !(high - low).is_finite()) {

@@ -64,7 +64,7 @@ fn bad_input_is_told_all_at_once_and_exits_with_2() {
         "planar_2r: a duration of -1 s is not from 0.01 s to 10000 s",
         "planar_2r: --hold: no joint is called `knee`",
         "planar_2r: `link1` has no position limit",
-        "hint: add `\"limits\": {\"velocity\": 2}` to the link `link2` of the model",
+        "hint: add `\"limits\": {\"position\": [-0.5, 0.5]}` to the link `link2` of the model",
     ] {
         assert!(run.stderr.contains(text), "{text} is not in\n{}", run.stderr);
     }
@@ -74,6 +74,8 @@ fn bad_input_is_told_all_at_once_and_exits_with_2() {
         (vec!["tulip_leg_table34", "--basis", "polynomial", "--degree", "2"], "moves and ends"),
         (vec!["tulip_leg_table34", "--basis", "free-fourier", "--harmonics", "2"], "moves and"),
         (vec!["tulip_leg_table34", "--starts", "0"], "at least 1 starts"),
+        (vec!["tulip_leg_table34", "--evaluations", "0"], "at least 1 evaluations"),
+        (vec!["tulip_leg_table34", "--evaluations", "1000000"], "at most 100000 evaluations"),
         (vec!["tulip_leg_table34", "--reach", "-1"], "--reach"),
         (vec!["tulip_leg_table34", "--hold", "knee=9"], "outside its position limits"),
         (vec!["tulip_leg_table34", "--check", "none.json"], "none.json: cannot be read"),
@@ -82,4 +84,22 @@ fn bad_input_is_told_all_at_once_and_exits_with_2() {
         assert_eq!(run.code, Some(2), "{words:?}: {}", run.stdout);
         assert!(run.stderr.contains(text), "{words:?}: {}", run.stderr);
     }
+}
+
+/// The PUMA's file has positions alone: rates are those of one sine a lap over the whole range.
+#[test]
+fn limits_that_the_model_lacks_are_chosen_and_said() {
+    let directory = Directory::new("excite-puma");
+    let words = ["puma560", "--starts", "1", "--evaluations", "20", "--harmonics", "2", "--json"];
+    let run = excite(&directory, &words);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let found: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let assumed = found["assumed_limits"].as_array().expect("a list");
+    assert_eq!(assumed.len(), 12, "{assumed:?}");
+    let range = 320.0_f64.to_radians();
+    let waist = assumed.iter().find(|one| one["limit"] == "velocity").expect("a velocity");
+    let velocity = waist["value"].as_f64().expect("a number");
+    assert!((velocity - std::f64::consts::PI * range / 10.0).abs() < 1e-9, "{waist}");
+    let told = excite(&directory, &["tulip_leg_table34", "--starts", "1", "--evaluations", "5"]);
+    assert!(!told.stdout.contains("does not give"), "{}", told.stdout);
 }

@@ -172,12 +172,12 @@ fn all_faults_are_found_at_once() {
             nearest: Some("link1".to_owned()),
         },
         missing("link1", LimitKind::Position),
-        missing("link2", LimitKind::Acceleration),
+        missing("link2", LimitKind::Position),
         ExciteFault::Weight { joint: "link1".to_owned(), weight: -1.0 },
     ] {
         assert!(error.faults.contains(&fault), "{fault:?} is not in {error:?}");
     }
-    assert_eq!(error.faults.len(), 9, "{error:?}");
+    assert_eq!(error.faults.len(), 5, "{error:?}");
     let narrow = excite(&arm("[0.5, 0.5]", ""), &options(), &|_| {}).expect_err("no room");
     let limit = LimitKind::Position;
     assert_eq!(narrow.faults, [ExciteFault::NoRoom { joint: "link2".to_owned(), limit }]);

@@ -69,9 +69,10 @@ pub struct LeftOutRows {
     pub of: usize,
 }
 
-/// The share of a torque from which on noise of the positions is said to bias parameters: its
-/// square, a thousandth, is what standard errors of a good log are.
-const BIASING: f64 = 0.03;
+/// The share of a torque from which on noise of the positions is said to bias parameters: columns
+/// have as much, so that its square is their bias, and standard errors of a good log are a
+/// thousandth.
+const BIASING: f64 = 0.01;
 
 /// The share of the torques that an estimate of exchanged columns leaves, at least.
 const MISFIT: f64 = 0.05;

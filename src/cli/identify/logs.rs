@@ -20,7 +20,7 @@ pub(super) struct Conditions {
     /// or none. A tenth of the rate of sampling if nothing is said
     #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter)]
     filter: Option<FilterChoice>,
-    /// Leave one sample in so many; as many as the filter allows if nothing is said
+    /// Leave one sample in so many; if nothing is said, as the filter allows and 1000 are left
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     decimate: Option<u32>,
     /// Average laps of this period [s], or of the one that is found
@@ -37,6 +37,10 @@ pub(super) struct Conditions {
 /// Halvings of the cutoff, at most, and periods of it that a log must have.
 const MOST_HALVINGS: u32 = 4;
 const FEWEST_PERIODS: f64 = 40.0;
+
+/// Samples that are left, if nothing is said: standard errors are found from parts of a log, of
+/// which few say little.
+const FEWEST_LEFT: f64 = 1000.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FilterChoice {
@@ -81,15 +85,21 @@ impl Conditions {
         Self { filter, ..Self::default() }
     }
 
-    pub(super) fn of(&self, step_s: f64) -> Conditioning {
+    fn filter(&self, step_s: f64) -> Option<Filter> {
         let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s / f64::from(1 << self.halvings) };
-        let filter = match self.filter {
+        match self.filter {
             Some(FilterChoice::None) => None,
             Some(FilterChoice::Some(filter)) => Some(filter),
             None => Some(tenth),
-        };
+        }
+    }
+
+    /// What is done with a log of so many samples at this distance \[s\].
+    pub(super) fn of(&self, step_s: f64, samples: usize) -> Conditioning {
+        let filter = self.filter(step_s);
         // The decimator passes up to 0.4 of what is left of the rate.
         let allowed = filter.map_or(1.0, |filter| 0.4 / (filter.cutoff_hz * step_s));
+        let allowed = allowed.min(samples as f64 / FEWEST_LEFT);
         let decimation = self.decimate.map_or(allowed.max(1.0) as usize, |n| n as usize);
         Conditioning {
             filter,
@@ -112,7 +122,7 @@ impl Conditions {
         }
         let lower = Self { halvings: self.halvings + 1, ..*self };
         let is_long = |log: &Conditioned| {
-            let cutoff_hz = lower.of(log.step_s).filter.map_or(0.0, |filter| filter.cutoff_hz);
+            let cutoff_hz = lower.filter(log.step_s).map_or(0.0, |filter| filter.cutoff_hz);
             log.range.len() as f64 * log.step_s * cutoff_hz > FEWEST_PERIODS
         };
         (logs.iter().all(is_long) && self.average.is_none()).then_some(lower)
@@ -267,7 +277,7 @@ impl Reader<'_> {
             let step = joint.step.or(self.arguments.resolution).unwrap_or(0.0);
             *noise = noise.max(step / 12.0_f64.sqrt());
         }
-        let how = self.conditions.of(log.step_s);
+        let how = self.conditions.of(log.step_s, log.samples());
         if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, self.conditions.halvings) {
             self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
         }

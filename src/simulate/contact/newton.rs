@@ -19,6 +19,8 @@ const COMPLIANCE: [f64; 4] = [1e-9, 1e-7, 1e-5, 1e-3];
 const CORRECTIONS: usize = 30;
 /// Steps at most.
 const STEPS: usize = 80;
+/// Where steps cease to get nearer than this, relative to the largest force, sweeps go on.
+const NEAR: f64 = 1e-6;
 /// Halvings of a step that does not get nearer.
 const HALVINGS: usize = 12;
 /// By how much the laws are missed at most, relative to the largest force; and how little is enough
@@ -34,17 +36,27 @@ struct Scales {
 
 /// Improves `force` (the start) until it obeys the laws; says if it does. No contact is `NoSlip`.
 pub fn solve(problem: &ContactProblem<'_>, force: &mut [f64]) -> bool {
-    COMPLIANCE.iter().any(|compliance| solve_compliant(problem, *compliance, force))
+    let solves =
+        |compliance: &f64| solve_compliant(problem, *compliance, RESIDUAL[0], force).is_some();
+    COMPLIANCE.iter().any(solves)
 }
 
 /// As `solve`, from forces that obey the laws already: only how redundant contacts share them may
-/// change.
-pub fn improve(problem: &ContactProblem<'_>, force: &mut [f64]) -> bool {
-    solve_compliant(problem, COMPLIANCE[0], force)
+/// change. Says whether the new forces obey the laws exactly, or nearly; none, with `force` as it
+/// was, if no steps lead there.
+pub fn improve(problem: &ContactProblem<'_>, force: &mut [f64]) -> Option<bool> {
+    let missed = solve_compliant(problem, COMPLIANCE[0], NEAR, force)?;
+    Some(missed <= RESIDUAL[0])
 }
 
-/// Points that give way alike; what that changes of the motion is taken back afterwards.
-fn solve_compliant(problem: &ContactProblem<'_>, relative: f64, force: &mut [f64]) -> bool {
+/// Points that give way alike; what that changes of the motion is taken back afterwards. Returns by
+/// how much the laws are missed, relative to the largest force; none if that is too much.
+fn solve_compliant(
+    problem: &ContactProblem<'_>,
+    relative: f64,
+    enough: f64,
+    force: &mut [f64],
+) -> Option<f64> {
     let n = problem.rows();
     let trace: f64 = (0..n).map(|i| problem.delassus[i * n + i]).sum();
     let compliance = relative * trace / n.max(1) as f64;
@@ -63,43 +75,50 @@ fn solve_compliant(problem: &ContactProblem<'_>, relative: f64, force: &mut [f64
     let mut f = DVector::from_column_slice(force);
     let mut given_way = DVector::zeros(n);
     for _ in 0..CORRECTIONS {
-        if !iterate(problem, &scales, &g, &(&free - &given_way), &mut f) {
-            return false;
+        let missed = iterate(problem, &scales, &g, &(&free - &given_way), enough, &mut f);
+        if missed.is_nan() || missed > enough {
+            return None;
         }
         let before = std::mem::replace(&mut given_way, compliance * &f);
         // the distribution of forces stays as the compliance made it
         if (&given_way - before).amax() <= 1e-2 * problem.response_zero() {
             force.copy_from_slice(f.as_slice());
-            return true;
+            return Some(missed);
         }
     }
-    false
+    None
 }
 
-/// Newton's method on w = g f + b.
+/// Newton's method on w = g f + b; returns by how much the laws are missed, relative to the largest
+/// force.
 fn iterate(
     problem: &ContactProblem<'_>,
     scales: &[Scales],
     g: &DMatrix<f64>,
     b: &DVector<f64>,
+    enough: f64,
     f: &mut DVector<f64>,
-) -> bool {
+) -> f64 {
     let mut w = g * &*f + b;
     let mut missed = laws(problem, scales, f, &w);
     let mut last = f64::INFINITY;
     for _ in 0..STEPS {
         let size = missed.norm();
         if !size.is_finite() {
-            return false;
+            return f64::INFINITY;
         }
         let scale = f.amax() + 1e-9;
         // one more step, once it is near: convergence is quadratic there
         if size <= RESIDUAL[1] * scale || (size <= RESIDUAL[0] * scale && size >= 0.1 * last) {
-            return true;
+            return (size / scale).min(RESIDUAL[0]);
+        }
+        // at the edge of a case steps go to and fro
+        if size <= enough * scale && size >= 0.5 * last {
+            return size / scale;
         }
         last = size;
         let slope = slopes(problem, scales, g, f, &w);
-        let Some(step) = slope.lu().solve(&missed) else { return false };
+        let Some(step) = slope.lu().solve(&missed) else { return f64::INFINITY };
         let mut share = 1.0;
         for _ in 0..HALVINGS {
             let trial = &*f - share * &step;
@@ -118,7 +137,7 @@ fn iterate(
             missed = laws(problem, scales, f, &w);
         }
     }
-    false
+    missed.norm() / (f.amax() + 1e-9)
 }
 
 /// The modes that forces which obey the laws belong to; closed is what does not leave the ground,

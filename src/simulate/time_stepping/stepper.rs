@@ -207,7 +207,7 @@ impl TimeStepper {
             for (speed, row) in velocity.iter_mut().zip(tangents.clone()) {
                 *speed = dot(&self.terms.jacobian[row * n..(row + 1) * n], &self.rates);
             }
-            if velocity[0].hypot(velocity[1]) > SLIPS {
+            if velocity.iter().map(|v| v * v).sum::<f64>() > SLIPS * SLIPS {
                 largest = worst(largest, friction_angle(&self.force[tangents], &velocity));
             }
         }
@@ -290,6 +290,9 @@ impl TimeStepper {
             }
             StepSolver::Sweeps(limits) => limits,
         };
+        if self.alike.follow(&problem, &mut self.force) {
+            return Ok((1, false));
+        }
         if self.hold.solve(&problem, limits.response, &mut self.force) {
             return Ok((0, false));
         }

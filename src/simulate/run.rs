@@ -321,7 +321,7 @@ impl Runner<'_> {
         let before = self.y[rates.clone()].to_vec();
         let energy = self.motion.energy(&self.y);
         let was: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
-        let start = self.y.clone();
+        let start = (self.y.clone(), self.motion.closed.clone());
         let outcome = if kind == EventKind::Limit {
             self.reach_limit(t_s)
         } else {
@@ -333,7 +333,7 @@ impl Runner<'_> {
             Ok(settled) => settled,
             Err(breakdown) => {
                 // the end is what was before an event that has no answer
-                self.y = start;
+                (self.y, self.motion.closed) = start;
                 return Err(breakdown);
             }
         };

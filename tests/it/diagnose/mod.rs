@@ -1,4 +1,6 @@
 //! What a model lacks.
 
+mod elastic;
+mod held;
 mod laws;
 mod search;

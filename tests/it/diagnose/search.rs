@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 const STEP_S: f64 = 0.002;
 
-fn puma() -> RegressionModel {
+pub(super) fn puma() -> RegressionModel {
     let robot = crate::identify::robot("puma560");
     let options = RegressorOptions {
         friction: true,
@@ -78,6 +78,10 @@ fn log(
         });
     }
     MeasuredLog { file: "made".to_owned(), step_s: STEP_S, joints, ..MeasuredLog::default() }
+}
+
+pub(super) fn puma_log(model: &RegressionModel, phi: &[f64]) -> MeasuredLog {
+    log(model, (3, 3000), phi, |_, _| 0.0)
 }
 
 fn candidates(model: &RegressionModel) -> Vec<Candidate> {

@@ -327,7 +327,8 @@ fn swap(
         let rest = setting.state(&others);
         let scored = score(setting, screen, (&rest, &rest.taken), None);
         let problem = Problem::new(setting.train, &state.deviation[0], &[]);
-        let now = setting.trial(&problem, &state, &state.taken);
+        // Weighed as the others are: by what is left without it.
+        let now = setting.trial(&problem, &rest, &state.taken);
         let trials = refine(setting, options.refined, &rest, (&problem, &scored));
         let Some(best) = best(&trials) else { continue };
         let is_other = best.taken.last().is_some_and(|last| last.candidate != own.candidate);

@@ -2,6 +2,7 @@
 
 mod answers;
 mod base;
+mod blind;
 mod decompose;
 mod diagnose;
 mod effects;

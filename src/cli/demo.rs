@@ -4,6 +4,7 @@ mod checks;
 mod compiled;
 mod counts;
 mod decomposed;
+mod diagnosed;
 mod identified;
 mod simulated;
 mod states;
@@ -26,6 +27,7 @@ use denavit::function::FunctionName;
 use denavit::model::Robot;
 use denavit::regressor::{Certificate, RegressorOptions, base_parameters};
 use denavit::report::{Align, Pose, Table, picture};
+use diagnosed::Diagnosed;
 use identified::Identified;
 use serde::Serialize;
 use simulated::Simulated;
@@ -33,11 +35,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Derive, emit, draw, check, simulate and identify TUlip, PUMA 560 and a walking biped
+/// Derive, emit, draw, check, simulate, identify and diagnose TUlip, PUMA 560 and a biped
 ///
 /// Needs no file: the models are part of the command. Its functions were generated when it was
 /// built; they are run at random states against equations of motion that are derived in another
-/// way. The exit code is 1 if they disagree.
+/// way. The exit code is 1 if they disagree. In the end an effect that the seed draws is hidden in a
+/// simulated leg, diagnosed from logs alone, and revealed beside the answer, right or wrong.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -45,7 +48,7 @@ Examples:
   denavit demo --seed 7 --out demo_7
   denavit demo --json")]
 pub(crate) struct Arguments {
-    /// Where the random states begin
+    /// Draws the random states and what is hidden in the blind diagnosis
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Directory for the files that are written
@@ -101,6 +104,7 @@ struct DemoJson<'a> {
     decomposed: &'a Decomposed,
     simulated: &'a [Simulated],
     identified: &'a Identified,
+    diagnosed: &'a Diagnosed,
     seconds: f64,
     passed: bool,
 }
@@ -127,12 +131,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     progress.show("simulating");
     let simulated = Simulated::all(directory)?;
     let identified = Identified::new(arguments.seed, directory, &progress)?;
+    let diagnosed = Diagnosed::new(arguments.seed, directory, &progress)?;
     drop(progress);
     let decomposed = Decomposed::new(directory)?;
     if !arguments.json {
         decomposed.write(out)?;
         simulated::write_all(&simulated, out)?;
         identified.write(out)?;
+        diagnosed.write(out)?;
     }
     let checked = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
     let walked = simulated.iter().all(Simulated::passed);
@@ -151,6 +157,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             decomposed,
             simulated,
             identified: &identified,
+            diagnosed: &diagnosed,
             seconds,
             passed,
         };

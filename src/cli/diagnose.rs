@@ -1,23 +1,31 @@
 //! `denavit diagnose`: what a model lacks, from logs.
 
 mod json;
+mod model;
+mod page;
 mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{given_effects, open_log, read_file, read_model, write_whole};
+use super::files::{
+    check_outputs, given_effects, make_directory, open_log, read_file, read_model_text, write_whole,
+};
 use super::identify::IdentifyFailure;
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    Candidate, Diagnosis, DiagnosisError, Request, SearchOptions, Uncertainty, Verdict,
-    before_springs, candidates, diagnose,
+    Candidate, Diagnosis, DiagnosisError, FoundEffect, Request, SearchOptions, Uncertainty,
+    Verdict, before_springs, candidates, diagnose,
 };
 use denavit::effect::{self, Effect};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::regression::RegressionModel;
 use denavit::regressor::functions::modelled;
+use denavit::report::verdict_paragraph;
+use model::Completed;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +39,7 @@ use std::path::{Path, PathBuf};
 Examples:
   denavit simulate tulip_leg_identification -o leg.csv
   denavit diagnose tulip_leg_table34 --train leg.csv --validate leg.csv
-  denavit diagnose tulip_leg_table34 --train leg.csv --validate leg.csv --json")]
+  denavit diagnose tulip_leg_table34 --train leg.csv --validate leg.csv --out found")]
 pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL")]
@@ -62,7 +70,8 @@ pub(crate) struct Arguments {
     /// Take logs as they are, however wrong they look
     #[arg(long)]
     accept_suspicious: bool,
-    /// Write all of it into a folder
+    /// Write all of it into a folder: diagnosis.json, the model with its effects as model.json,
+    /// and a page, report.html
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON
@@ -70,17 +79,143 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What is shown.
-struct Shown<'a> {
-    robot: &'a Robot,
-    model: &'a RegressionModel,
-    candidates: &'a [Candidate],
-    found: &'a Diagnosis,
-    remarks: &'a [(String, LogRemark)],
+/// A diagnosis with what it is about.
+pub(super) struct Shown {
+    robot: Robot,
+    model: RegressionModel,
+    candidates: Vec<Candidate>,
+    effects: Vec<Effect>,
+    /// What was found.
+    pub(super) found: Diagnosis,
+    remarks: Vec<(String, LogRemark)>,
+    /// The text of the model's file.
+    source: String,
+    written: Option<Written>,
+}
+
+/// An effect in its place, as it was named.
+#[derive(Serialize)]
+pub(super) struct Named {
+    /// The effect.
+    pub(super) effect: String,
+    /// Its place.
+    pub(super) at: String,
+    /// Values of its parameters.
+    pub(super) parameters: BTreeMap<String, f64>,
+    /// Effects with their places that would do as well.
+    pub(super) or: Vec<[String; 2]>,
+}
+
+/// What was written into a folder.
+struct Written {
+    folder: PathBuf,
+    /// Whether the model with its effects is there; the reason if it could not be.
+    model: Result<bool, String>,
+}
+
+/// The files of a folder.
+const DIAGNOSIS: &str = "diagnosis.json";
+const MODEL: &str = "model.json";
+const REPORT: &str = "report.html";
+
+impl Shown {
+    /// What was found, in order.
+    pub(super) fn named(&self) -> Vec<Named> {
+        let name = |candidate: usize| {
+            let own = &self.candidates[candidate];
+            [own.effect.clone(), own.at.clone()]
+        };
+        let of = |one: &FoundEffect| {
+            let [mut effect, at] = name(one.candidate);
+            if !one.is_named {
+                effect = "unnamed".to_owned();
+            }
+            let values = one.parameters.iter().map(|value| (value.name.clone(), value.value));
+            let or = one.alternatives.iter().map(|other| name(other.candidate)).collect();
+            Named { effect, at, parameters: values.collect(), or }
+        };
+        self.found.effects.iter().map(of).collect()
+    }
+
+    /// The answer in a paragraph.
+    pub(super) fn paragraph(&self) -> String {
+        verdict_paragraph(&self.found, &self.candidates)
+    }
+
+    /// The files that were written, each with what it is.
+    pub(super) fn files(&self) -> Vec<(PathBuf, &'static str)> {
+        let Some(written) = &self.written else { return Vec::new() };
+        let has_model = written.model == Ok(true);
+        let all = [
+            (DIAGNOSIS, "the diagnosis as JSON"),
+            (MODEL, "the model with the effects that were found"),
+            (REPORT, "the diagnosis as a page"),
+        ];
+        let there = all.into_iter().filter(|(name, _)| has_model || *name != MODEL);
+        there.map(|(name, what)| (written.folder.join(name), what)).collect()
+    }
+
+    /// Why the folder has no model, if it has none.
+    fn about_model(&self) -> Option<String> {
+        match &self.written.as_ref()?.model {
+            Ok(true) => None,
+            Ok(false) => Some(format!("no {MODEL}: no effect was named that could be added")),
+            Err(reason) => Some(format!("no {MODEL}: {reason}")),
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let robot = read_model(&arguments.model)?;
+    if let Some(folder) = &arguments.out {
+        make_directory(folder)?;
+        let files = [DIAGNOSIS, MODEL, REPORT].map(|name| folder.join(name));
+        check_outputs(&files.each_ref().map(Some))?;
+    }
+    let progress = Progress::new();
+    let mut shown = of_logs(arguments, &progress)?;
+    progress.clear();
+    if let Some(folder) = &arguments.out {
+        write_folder(arguments, folder, &mut shown)?;
+    }
+    match arguments.json {
+        true => json::write(out, &shown)?,
+        false => text::write(out, &shown)?,
+    }
+    Ok(match shown.found.verdict {
+        Verdict::NothingMissing | Verdict::Explained => Answer::Done,
+        _ => Answer::Negative,
+    })
+}
+
+/// Diagnoses a model from the logs of two motions, of which it searches the first, and writes all
+/// of it into a folder.
+pub(super) fn of_motions(
+    model: &str,
+    logs: &[PathBuf],
+    folder: &Path,
+    progress: &Progress,
+) -> Result<Shown, Failure> {
+    let (train, validate) = logs.split_at(1.min(logs.len()));
+    let arguments = Arguments {
+        model: PathBuf::from(model),
+        train: train.to_vec(),
+        validate: validate.to_vec(),
+        columns: None,
+        effects: None,
+        most: 3,
+        seed: 1,
+        accept_suspicious: false,
+        out: Some(folder.to_owned()),
+        json: false,
+    };
+    let mut shown = of_logs(&arguments, progress)?;
+    write_folder(&arguments, folder, &mut shown)?;
+    Ok(shown)
+}
+
+/// Reads model and logs, and diagnoses.
+fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure> {
+    let (robot, source) = read_model_text(&arguments.model)?;
     let model = regression(&robot)?;
     // Before its logs are asked for columns of a base.
     DiagnosisError::check_model(&model).map_err(Failure::Diagnose)?;
@@ -99,7 +234,6 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     };
     let effects = effects(arguments.effects.as_deref())?;
     let candidates = candidates(&effects, &robot, &model.joints);
-    let progress = Progress::new();
     let request = Request {
         model: &model,
         train,
@@ -116,30 +250,30 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let found = diagnose(request, &mut |taken, gap| {
         progress.show(&format!("{} effects, held-out gap {:.2} %", taken.len(), 100.0 * gap));
     });
-    progress.clear();
     let found = found.map_err(Failure::Diagnose)?;
-    let shown = Shown {
-        robot: &robot,
-        model: &model,
-        candidates: &candidates,
-        found: &found,
-        remarks: &remarks,
+    Ok(Shown { robot, model, candidates, effects, found, remarks, source, written: None })
+}
+
+/// Writes answer, model and page.
+fn write_folder(arguments: &Arguments, folder: &Path, shown: &mut Shown) -> Result<(), Failure> {
+    make_directory(folder)?;
+    let completed = model::complete(&shown.source, shown, &shown.effects);
+    let model = match &completed {
+        Completed::Text(text) => {
+            if let Some(own) = &arguments.effects {
+                model::write_definitions(own, folder, shown)?;
+            }
+            write_whole(&folder.join(MODEL), text.as_bytes())?;
+            Ok(true)
+        }
+        Completed::NothingFound => Ok(false),
+        Completed::Refused(reason) => Err(reason.clone()),
     };
-    if let Some(folder) = &arguments.out {
-        let failure = |error| Failure::Write { file: folder.display().to_string(), error };
-        std::fs::create_dir_all(folder).map_err(failure)?;
-        let mut bytes = Vec::new();
-        json::write(&mut bytes, &shown)?;
-        write_whole(&folder.join("diagnosis.json"), &bytes)?;
-    }
-    match arguments.json {
-        true => json::write(out, &shown)?,
-        false => text::write(out, &shown)?,
-    }
-    Ok(match found.verdict {
-        Verdict::NothingMissing | Verdict::Explained => Answer::Done,
-        _ => Answer::Negative,
-    })
+    shown.written = Some(Written { folder: folder.to_owned(), model });
+    write_whole(&folder.join(REPORT), page::of(arguments, shown).render().as_bytes())?;
+    let mut bytes = Vec::new();
+    json::write(&mut bytes, shown)?;
+    write_whole(&folder.join(DIAGNOSIS), &bytes)
 }
 
 fn regression(robot: &Robot) -> Result<RegressionModel, Failure> {

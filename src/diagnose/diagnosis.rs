@@ -1,6 +1,7 @@
 //! The whole of it: logs and a model in, what is missing out, as data.
 
 use super::candidate::Candidate;
+use super::curve::{Curve, curves};
 use super::data::Data;
 use super::family::{Alternative, family};
 use super::fault::DiagnosisError;
@@ -122,6 +123,8 @@ pub struct Diagnosis {
     pub train: Gaps,
     /// Gaps of the logs that were held out.
     pub held_out: Gaps,
+    /// Torques of held-out logs over time.
+    pub curves: Vec<Curve>,
     /// The filters.
     pub filters: Filters,
     /// Numbers of the model that the logs would move beyond their uncertainty, before and after.
@@ -201,6 +204,7 @@ pub fn diagnose(
             floor: Gap::of_floor(&held_out, &held_out_floor, &trust[1]),
         },
         structures: structures(&setting, after),
+        curves: curves(&held_out, [&before.held_out_residual, &after.held_out_residual]),
         filters,
         driven: [driven(before), driven(after)],
         steps: outcome.steps,

@@ -11,6 +11,7 @@
 
 mod candidate;
 mod catalogue;
+mod curve;
 mod data;
 mod diagnosis;
 mod elastic;
@@ -34,6 +35,7 @@ mod turning;
 
 pub use candidate::{Candidate, starts};
 pub use catalogue::candidates;
+pub use curve::Curve;
 pub use data::{Data, ModelTorques, RowResponse, Stretch};
 pub use diagnosis::{Diagnosis, EffectValue, FoundEffect, Gaps, Request, Verdict, diagnose};
 pub use elastic::before_springs;

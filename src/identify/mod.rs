@@ -29,7 +29,7 @@ mod updated_model;
 
 pub use contact_forces::add_contact_forces;
 pub use identification::{Identification, LeftOutRows, Request, identify};
-pub use model_text::{NewValue, updated as updated_text};
+pub use model_text::{NewEffect, NewPlace, NewValue, updated as updated_text, with_effects};
 pub use model_values::{model_values, with_effect};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdateError, UpdatedModel, updated_model};

@@ -162,10 +162,78 @@ pub fn updated(text: &str, values: &[NewValue<'_>]) -> Option<String> {
     Some(result)
 }
 
+/// Where an effect goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NewPlace<'a> {
+    /// On the whole model.
+    Model,
+    /// On a link, or on the joint that has its name.
+    Link(&'a str),
+    /// On a joint, with a second one.
+    Pair(&'a str, &'a str),
+}
+
+/// An effect that the model is to have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewEffect<'a> {
+    /// The name of its definition.
+    pub effect: &'a str,
+    /// Its place.
+    pub at: NewPlace<'a>,
+    /// Its parameters: name, value, standard error if it is known.
+    pub parameters: Vec<(&'a str, f64, Option<f64>)>,
+}
+
+/// The text with more effects; none if it is not the JSON of a model.
+pub fn with_effects(text: &str, effects: &[NewEffect<'_>]) -> Option<String> {
+    let root = Scanner { text: text.as_bytes(), at: 0 }.value()?;
+    let lines: Vec<String> = effects.iter().map(effect_text).collect();
+    let (at, inserted) = match root.get("effects") {
+        Some(known) => match known.items().last() {
+            Some(last) => (last.span.end, format!(", {}", lines.join(", "))),
+            None => (known.span.start + 1, lines.join(", ")),
+        },
+        None => {
+            let blanks = indent(text.get(..root.end())?);
+            let list = match blanks {
+                Some(blanks) => {
+                    let line = format!(",\n{blanks}{blanks}");
+                    format!("[\n{blanks}{blanks}{}\n{blanks}]", lines.join(&line))
+                }
+                None => format!("[{}]", lines.join(", ")),
+            };
+            let separator = blanks.map_or(", ".to_owned(), |blanks| format!(",\n{blanks}"));
+            (root.end(), format!("{separator}\"effects\": {list}"))
+        }
+    };
+    Some([text.get(..at)?, &inserted, text.get(at..)?].concat())
+}
+
+fn effect_text(new: &NewEffect<'_>) -> String {
+    let quoted = |name: &str| serde_json::Value::from(name).to_string();
+    let at = match new.at {
+        NewPlace::Model => quoted("model"),
+        NewPlace::Link(link) => format!("{{\"link\": {}}}", quoted(link)),
+        NewPlace::Pair(link, second) => {
+            format!("{{\"link\": {}, \"second\": {}}}", quoted(link), quoted(second))
+        }
+    };
+    let values = new.parameters.iter();
+    let values = values
+        .map(|&(name, value, std)| format!("{}: {}", quoted(name), value_with_error(value, std)));
+    let values: Vec<String> = values.collect();
+    let effect = quoted(new.effect);
+    format!("{{\"effect\": {effect}, \"at\": {at}, \"parameters\": {{{}}}}}", values.join(", "))
+}
+
 fn written(new: &NewValue<'_>) -> String {
-    match new.std {
-        Some(std) => format!("{{\"value\": {}, \"std\": {}}}", number(new.value), number(std)),
-        None => number(new.value),
+    value_with_error(new.value, new.std)
+}
+
+fn value_with_error(value: f64, std: Option<f64>) -> String {
+    match std {
+        Some(std) => format!("{{\"value\": {}, \"std\": {}}}", number(value), number(std)),
+        None => number(value),
     }
 }
 

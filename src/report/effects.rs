@@ -101,7 +101,7 @@ fn row(page: &mut String, parameter: &EffectParameter) {
 }
 
 /// The law, line by line, as LaTeX.
-fn formulas(effect: &Effect) -> Vec<String> {
+pub(super) fn formulas(effect: &Effect) -> Vec<String> {
     let dag = &effect.dag;
     let notation = Notation::of_names(dag);
     let text = |expr: ExprId| write_expression(dag, expr, &notation);

@@ -10,10 +10,12 @@
 //! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
 //!   [`convergence_picture`]: how an
 //!   estimate came about; [`IdentificationPage`]: all of it
+//! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
 //!
 //! Nothing here prints; text is handed to whoever does.
 
 mod camera;
+mod diagnosis;
 mod effects;
 pub mod html;
 mod identification;
@@ -29,14 +31,15 @@ mod svg;
 mod table;
 mod values;
 
+pub use diagnosis::{DiagnosisPage, verdict_paragraph};
 pub use effects::effects_page;
 pub use identification::{IdentificationPage, SimulationPart};
 pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
 pub use run::{
-    ExcitationPicture, RunPicture, TorquePicture, convergence_picture, excitation_picture,
-    motion_picture, run_picture, torque_picture,
+    ExcitationPicture, RunPicture, TorquePicture, convergence_picture, diagnosis_picture,
+    excitation_picture, motion_picture, run_picture, torque_picture,
 };
 pub use table::{Align, Table};
-pub use values::{Values, short};
+pub use values::{Values, percent, short};

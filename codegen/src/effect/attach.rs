@@ -8,8 +8,8 @@ use crate::expr::text::nearest;
 use crate::expr::{Dag, ExprId, Symbol, SymbolClass, import};
 use crate::model::json;
 use crate::model::{
-    About, AddedEffect, Body, Cause, EffectPlace, Joint, JointKind, JointLaw, LawState, Limits,
-    Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read,
+    About, AddedEffect, AddedValue, Body, Cause, EffectPlace, Joint, JointKind, JointLaw, LawState,
+    Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read,
 };
 use crate::number::Rational;
 
@@ -93,7 +93,7 @@ fn links(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Result<Vec<Link
 
 fn values_at_fault(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Vec<Cause> {
     let mut faults = Vec::new();
-    for (name, value) in &added.parameters {
+    for AddedValue { name, value, .. } in &added.parameters {
         let Some(parameter) = effect.parameter(name) else {
             let hint = nearest(name, effect.parameters.iter().map(|known| known.name.as_str()));
             let hint = hint.map(str::to_owned);
@@ -334,15 +334,15 @@ impl Attaching<'_> {
         for parameter in &self.effect.parameters {
             let name = format!("{}{}", parameter.name, self.suffix);
             let symbol = robot.dag.symbol(&name, SymbolClass::Drive);
-            let given = added.parameters.iter().find(|(name, _)| *name == parameter.name);
+            let given = added.parameters.iter().find(|given| given.name == parameter.name);
             let doc = format!("{} ({})", parameter.description, self.effect.title);
             robot.parameters.push(Parameter {
                 name,
                 symbol,
                 role: Role::Effect(self.place),
                 known: true,
-                default: given.map(|(_, value)| *value),
-                std: None,
+                default: given.map(|given| given.value),
+                std: given.and_then(|given| given.std),
                 unit: Some(parameter.unit.of(kind).clone()),
                 doc,
             });

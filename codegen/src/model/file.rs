@@ -5,7 +5,7 @@
 //! if no fault was noted.
 
 use super::fault::Cause;
-use super::json::Json;
+use super::json::{Json, Value};
 use super::message::EFFECT_PLACE;
 use super::reader::{Fields, Word};
 use super::report::Report;
@@ -148,7 +148,8 @@ pub(super) struct EffectFile<'a> {
     pub(super) place: usize,
     pub(super) effect: String,
     pub(super) at: PlaceFile<'a>,
-    pub(super) parameters: Vec<(String, Scalar<'a>)>,
+    /// Name, value, standard deviation.
+    pub(super) parameters: Vec<(String, Scalar<'a>, Option<Scalar<'a>>)>,
 }
 
 /// The whole file.
@@ -449,6 +450,19 @@ fn read_ground<'a>(json: &Json<'a>, report: &mut Report) -> GroundFile<'a> {
     }
 }
 
+/// A value, or an object of a value and its standard deviation.
+fn value_with_std<'a>(
+    json: &Json<'a>,
+    report: &mut Report,
+) -> Option<(Scalar<'a>, Option<Scalar<'a>>)> {
+    if !matches!(json.value, Value::Object(_)) {
+        return Some((Fields::scalar_of(json, report)?, None));
+    }
+    let fields = Fields::of(json, &["value", "std"], report)?;
+    let value = fields.require("value", report)?;
+    Some((Fields::scalar_of(value, report)?, fields.scalar("std", report)))
+}
+
 fn read_effect<'a>(json: &Json<'a>, report: &mut Report) -> Option<EffectFile<'a>> {
     let fields = Fields::of(json, &["effect", "at", "parameters"], report)?;
     let place = json.start;
@@ -478,7 +492,8 @@ fn read_effect<'a>(json: &Json<'a>, report: &mut Report) -> Option<EffectFile<'a
         effect: fields.name("effect", report).text.into_owned(),
         at,
         parameters: fields.members("parameters", report, |name, json, report| {
-            Some((name.text.into_owned(), Fields::scalar_of(json, report)?))
+            let (value, std) = value_with_std(json, report)?;
+            Some((name.text.into_owned(), value, std))
         }),
     })
 }

@@ -32,9 +32,9 @@ pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};
 pub use reader::find_duplicate_keys;
 pub use report::Report;
 pub use robot::{
-    About, AddedEffect, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace, Ground,
-    Joint, JointKind, JointLaw, JointSpring, JointVariables, LawState, Limits, Link, LinkId,
-    ReturnSpring, Robot, SeriesElastic, Side, Terms, TorqueSide,
+    About, AddedEffect, AddedValue, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace,
+    Ground, Joint, JointKind, JointLaw, JointSpring, JointVariables, LawState, Limits, Link,
+    LinkId, ReturnSpring, Robot, SeriesElastic, Side, Terms, TorqueSide,
 };
 pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};

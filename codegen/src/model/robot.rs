@@ -278,10 +278,21 @@ pub struct AddedEffect {
     pub effect: String,
     /// Where it acts.
     pub at: EffectPlace,
-    /// Its parameters, by name; symbol-free values.
-    pub parameters: Vec<(String, ExprId)>,
+    /// Its parameters.
+    pub parameters: Vec<AddedValue>,
     /// Where the file says so: byte offset.
     pub place: usize,
+}
+
+/// A value that a file gives a parameter of an effect.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AddedValue {
+    /// The parameter's name in the effect's definition.
+    pub name: String,
+    /// Its value, without symbols.
+    pub value: ExprId,
+    /// Its standard deviation, if it is stated.
+    pub std: Option<ExprId>,
 }
 
 /// A state of a law.

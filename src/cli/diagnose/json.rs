@@ -22,6 +22,10 @@ struct DiagnosisJson<'a> {
     share_closed: Option<f64>,
     driven: [&'a [String]; 2],
     remarks: Vec<String>,
+    /// Files in the folder, and why the model is none of them.
+    model_file: Option<&'static str>,
+    model_refused: Option<&'a str>,
+    report: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -113,7 +117,7 @@ impl From<&Gaps> for OneGapJson {
     }
 }
 
-pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
+pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     let Shown { robot, candidates, found, remarks, .. } = shown;
     let of_joint = |one: &'_ Where| -> (Option<String>, Option<f64>) {
         let part = one.parts.first();
@@ -156,6 +160,8 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         formula: one.formula(),
         share: one.share,
     });
+    let written = shown.written.as_ref();
+    let has_model = written.is_some_and(|written| written.model == Ok(true));
     let json = DiagnosisJson {
         model: &robot.name,
         verdict: found.verdict.word(),
@@ -169,11 +175,14 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         share_closed: found.share_closed(),
         driven: [&found.driven[0], &found.driven[1]],
         remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
+        model_file: has_model.then_some(super::MODEL),
+        model_refused: written.and_then(|w| w.model.as_ref().err()).map(String::as_str),
+        report: written.map(|_| super::REPORT),
     };
     write_json(out, &json)
 }
 
-fn round<'a>(shown: &Shown<'a>, step: &Step) -> RoundJson<'a> {
+fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {
     let added = &shown.candidates[step.added];
     let others = step.runners_up.iter();
     RoundJson {
@@ -188,7 +197,7 @@ fn round<'a>(shown: &Shown<'a>, step: &Step) -> RoundJson<'a> {
     }
 }
 
-fn runner_up<'a>(shown: &Shown<'a>, candidate: usize, gap: f64) -> RunnerUpJson<'a> {
+fn runner_up<'a>(shown: &'a Shown, candidate: usize, gap: f64) -> RunnerUpJson<'a> {
     let other = &shown.candidates[candidate];
     RunnerUpJson { effect: &other.effect, at: &other.at, gap }
 }

@@ -2,72 +2,101 @@
 
 use super::Shown;
 use crate::cli::failure::Failure;
-use denavit::report::{Align, Table};
+use denavit::diagnose::{FoundEffect, Gap, Gaps};
+use denavit::report::{Align, Table, paragraph, percent, short};
 use std::io::Write;
 
-fn percent(value: f64) -> String {
-    format!("{:.2} %", 100.0 * value)
-}
-
-pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let Shown { robot, model, candidates, found, remarks } = shown;
-    for (file, remark) in *remarks {
+pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+    let Shown { robot, candidates, found, remarks, .. } = shown;
+    for (file, remark) in remarks {
         writeln!(out, "{file}: {remark}")?;
     }
     writeln!(out, "{}: {}", robot.name, found.verdict.word().replace('_', " "))?;
-    for reason in &found.reasons {
-        writeln!(out, "  {reason}")?;
+    writeln!(out, "{}", paragraph("", "", &shown.paragraph()))?;
+    let places: Vec<String> = found
+        .before
+        .iter()
+        .filter(|one| one.share > 0.05)
+        .map(|one| format!("  {}", one.sentence()))
+        .collect();
+    if !places.is_empty() {
+        writeln!(out, "\nwhere\n{}", places.join("\n"))?;
     }
-    writeln!(out, "\nwhere")?;
-    for one in found.before.iter().filter(|one| one.share > 0.05) {
-        writeln!(out, "  {}", one.sentence())?;
-    }
-    for one in &found.effects {
-        let own = &candidates[one.candidate];
-        let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
-        writeln!(out, "\n{doubt}{} at {}: closes {}", own.title, own.at, percent(one.share))?;
-        for value in &one.parameters {
-            writeln!(
-                out,
-                "  {} = {:.5} +- {:.2} {}",
-                value.name, value.value, value.std, value.unit
-            )?;
-        }
-        for other in &one.alternatives {
-            writeln!(out, "  or {}", candidates[other.candidate].name())?;
-        }
-    }
+    found.effects.iter().try_for_each(|one| effect(out, shown, one))?;
     for one in &found.structures {
-        let name = &model.joints[one.joint].name;
+        let name = &shown.model.joints[one.joint].name;
         let share = percent(one.share);
         writeln!(out, "\n{name} still lacks, without a name: {} ({share} of it)", one.formula())?;
     }
     if let Some(step) = found.steps.last().filter(|step| !step.is_taken) {
         writeln!(
             out,
-            "\nnot taken: {}, which would close {} ({:.1} standard errors, decoys {:.0} % as much)",
+            "\nnot taken: {}, which would close {} ({:.1} standard errors; the best decoy does {} \
+             as much)",
             candidates[step.added].name(),
             percent(step.share),
             step.significance,
-            100.0 * step.decoy / step.gain
+            percent(step.decoy / step.gain)
         )?;
     }
-    let mut table = Table::new(&[
-        ("joint", Align::Left),
-        ("before", Align::Right),
-        ("after", Align::Right),
-        ("floor", Align::Right),
-    ]);
-    let shown = |gap: Option<f64>| gap.map_or_else(String::new, percent);
-    let gaps = &found.held_out;
-    for (joint, described) in model.joints.iter().enumerate() {
-        let cells = [&gaps.before, &gaps.after, &gaps.floor].map(|gap| shown(gap.per_joint[joint]));
-        let [before, after, floor] = cells;
-        table.push(vec![described.name.clone(), before, after, floor]);
+    gaps(out, shown)?;
+    files(out, shown)
+}
+
+fn effect(out: &mut dyn Write, shown: &Shown, one: &FoundEffect) -> Result<(), Failure> {
+    let own = &shown.candidates[one.candidate];
+    let closes = percent(one.share);
+    let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
+    writeln!(out, "\n{doubt}{} ({}) at {}: closes {closes}", own.title, own.effect, own.at)?;
+    for value in &one.parameters {
+        let std = match value.std.is_finite() {
+            true => format!("+- {:.1e}", value.std),
+            false => "(not determined)".to_owned(),
+        };
+        let line = format!("  {} = {} {std} {}", value.name, short(value.value), value.unit);
+        writeln!(out, "{}", line.trim_end())?;
     }
-    let all = [&gaps.before, &gaps.after, &gaps.floor].map(|gap| percent(gap.all));
-    let [before, after, floor] = all;
-    table.push(vec!["all".to_owned(), before, after, floor]);
-    writeln!(out, "\ngap of held-out torques\n{table}")?;
+    for other in &one.alternatives {
+        let name = shown.candidates[other.candidate].name();
+        writeln!(out, "  or {name}, which would leave {}", percent(other.held_out_gap))?;
+    }
+    Ok(())
+}
+
+fn gaps(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+    use Align::{Left, Right};
+    let mut table = Table::new(&[
+        ("joint", Left),
+        ("train before", Right),
+        ("after", Right),
+        ("noise", Right),
+        ("held out before", Right),
+        ("after", Right),
+        ("noise", Right),
+    ]);
+    let found = &shown.found;
+    let row = |name: &str, value: &dyn Fn(&Gap) -> Option<f64>| -> Vec<String> {
+        let sets = [&found.train, &found.held_out];
+        let gaps =
+            sets.into_iter().flat_map(|Gaps { before, after, floor }| [before, after, floor]);
+        let cells = gaps.map(|gap| value(gap).map_or_else(String::new, percent));
+        std::iter::once(name.to_owned()).chain(cells).collect()
+    };
+    for (joint, described) in shown.model.joints.iter().enumerate() {
+        let of_joint = |gap: &Gap| gap.per_joint.get(joint).copied().flatten();
+        table.push(row(&described.name, &of_joint));
+    }
+    table.push(row("all", &|gap| Some(gap.all)));
+    writeln!(out, "\ngap: what is left of the torques, over the torques\n{table}")?;
+    Ok(())
+}
+
+fn files(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+    for (path, what) in shown.files() {
+        writeln!(out, "wrote {}: {what}", path.display())?;
+    }
+    if let Some(remark) = shown.about_model() {
+        writeln!(out, "{remark}")?;
+    }
     Ok(())
 }

@@ -248,6 +248,24 @@ fn emit_writes_a_module_with_the_functions_asked_for() {
     assert!(!some.contains("pub fn inverse_dynamics<") && !some.contains("ModelParameters"));
 }
 
+/// The answer names what was hidden, which stands in the file of the robot that was simulated.
+fn assert_diagnosed(directory: &Directory, diagnosed: &Value) {
+    let truth = directory.path.join("here/blind_truth.json");
+    let truth = std::fs::read_to_string(truth).expect("the robot that was simulated");
+    let truth: Value = serde_json::from_str(&truth).expect("JSON");
+    let (hidden, answer) = (&truth["effects"][0], &diagnosed["answer"]);
+    assert_eq!(answer.as_array().map(Vec::len), Some(1), "{answer}");
+    assert_eq!(answer[0]["effect"], hidden["effect"], "{answer}");
+    assert_eq!(answer[0]["at"], hidden["at"]["link"], "{answer}");
+    assert_eq!(diagnosed["outcome"], "right");
+    for (name, value) in hidden["parameters"].as_object().expect("parameters") {
+        let found = answer[0]["parameters"][name].as_f64().expect("a number");
+        let value = value.as_f64().expect("a number");
+        assert!((found - value).abs() < 0.1 * value.abs(), "{name}: {found} {value}");
+    }
+    assert!(directory.path.join("here/blind/report.html").is_file());
+}
+
 #[test]
 fn the_demo_writes_its_files_and_passes_its_checks() {
     let directory = Directory::new("demo");
@@ -294,7 +312,10 @@ fn the_demo_writes_its_files_and_passes_its_checks() {
             assert_eq!(file["bytes"], std::fs::metadata(&path).expect("a file").len(), "{path:?}");
         }
     }
+    assert_diagnosed(&directory, &demo["diagnosed"]);
     let another = run_in(&directory.path, &["demo", "--out", "here"]);
     assert_eq!(another.code, Some(0));
+    // that seed hides another effect, which is told too
+    assert!(another.stdout.contains("right: effect and joint"), "{}", another.stdout);
     assert!(another.stdout.contains("seed 1") && another.stdout.contains("all checks passed"));
 }

@@ -1,7 +1,8 @@
 //! `denavit diagnose` as a user meets it.
 
-use super::{Directory, run_in};
+use super::{Directory, command, run_in};
 use std::fs;
+use std::path::Path;
 
 const MODEL: &str = "tulip_leg_table34";
 
@@ -47,6 +48,7 @@ fn a_drag_that_is_added_to_a_log_is_named_with_its_joint() {
     let dragged = with_torque(&log, "knee", |rate| drag * rate * rate.abs());
     fs::write(directory.path.join("drag.csv"), dragged).unwrap();
     let words = ["diagnose", MODEL, "--train", "drag.csv", "--validate", "drag.csv", "--json"];
+    let words = [&words[..], &["--out", "found"]].concat();
     let run = run_in(&directory.path, &words);
     let json: serde_json::Value = serde_json::from_str(&run.stdout).expect(&run.stderr);
     let effect = &json["effects"][0];
@@ -55,6 +57,110 @@ fn a_drag_that_is_added_to_a_log_is_named_with_its_joint() {
     let found = value["value"].as_f64().unwrap();
     assert!((found - drag).abs() < 0.05 * drag, "{found}");
     assert_eq!(json["where"][0]["joint"], "knee");
+    let effect = json["effects"][0]["parameters"]["c"].clone();
+    the_model_has_the_effect(&directory, &effect);
+    the_model_is_used(&directory);
+    the_page_tells_it(&directory);
+
+    // From standard input, and again: the same bytes.
+    let first =
+        ["model.json", "report.html"].map(|name| read(&directory, &format!("found/{name}")));
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(MODEL);
+    let input = fs::File::open(shipped.with_extension("json")).unwrap();
+    let mut words = words;
+    words[1] = "-";
+    let output = command(&directory.path).args(&words).stdin(input).output().unwrap();
+    assert_eq!(output.stdout, run.stdout.as_bytes());
+    let second =
+        ["model.json", "report.html"].map(|name| read(&directory, &format!("found/{name}")));
+    assert!(first == second);
+}
+
+fn read(directory: &Directory, name: &str) -> String {
+    fs::read_to_string(directory.path.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// But for the effect the file is the one that was given, line by line.
+fn the_model_has_the_effect(directory: &Directory, c: &serde_json::Value) {
+    let text = read(directory, "found/model.json");
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(MODEL);
+    let shipped = fs::read_to_string(shipped.with_extension("json")).unwrap();
+    let is_kept = |line: &&str| text.contains(line.trim_end_matches([',', '\r']));
+    assert_eq!(shipped.lines().find(|line| !is_kept(line)), None);
+    let model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let effects = model["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1);
+    assert_eq!(effects[0]["effect"], "quadratic_drag");
+    assert_eq!(effects[0]["at"], serde_json::json!({"link": "knee"}));
+    for part in ["value", "std"] {
+        let [written, told] = [&effects[0]["parameters"]["c"], c].map(|one| one[part].as_f64());
+        let (written, told) = (written.unwrap(), told.unwrap());
+        assert!(told > 0.0 && (written - told).abs() < 1e-9 * told, "{part}: {written} {told}");
+    }
+}
+
+/// Equations, code and simulation have the term.
+fn the_model_is_used(directory: &Directory) {
+    let derived = |model: &str, file: &str| {
+        let run = run_in(&directory.path, &["derive", model, "--latex", file]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        read(directory, file)
+    };
+    let [with, without] =
+        [("found/model.json", "with.tex"), (MODEL, "without.tex")].map(|(a, b)| derived(a, b));
+    assert!(with.contains("quadratic") && !without.contains("quadratic"), "{with}");
+    let run = run_in(&directory.path, &["emit", "found/model.json", "-o", "leg.rs"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(read(directory, "leg.rs").contains("c_quadratic_drag_knee"));
+    let path = "models/scenarios/tulip_leg_identification.json";
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    let mut scenario: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    scenario["duration_s"] = 1.into();
+    let torque = |model: &str| {
+        let mut scenario = scenario.clone();
+        scenario["model"] = model.into();
+        fs::write(directory.path.join("scenario.json"), scenario.to_string()).unwrap();
+        let run = run_in(&directory.path, &["simulate", "scenario.json", "-o", "again.csv"]);
+        assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+        read(directory, "again.csv").lines().last().map(str::to_owned)
+    };
+    assert_ne!(torque("found/model.json"), torque(MODEL));
+}
+
+/// One page with a verdict, pictures and the new term, that loads nothing.
+fn the_page_tells_it(directory: &Directory) {
+    let page = read(directory, "found/report.html");
+    let said = [
+        "What the model lacks is named",
+        "quadratic drag at knee",
+        "<svg",
+        "<math",
+        "knee, drag.csv",
+        "left of it after",
+        "Round 1",
+        "best decoy",
+        "N m s^2/rad^2",
+    ];
+    for words in said {
+        assert!(page.contains(words), "{words}");
+    }
+    let without_names = page.replace("http://www.w3.org/", "");
+    assert!(!without_names.contains("http"), "the page loads something");
+}
+
+#[test]
+fn where_nothing_is_found_no_model_is_written_and_numbers_stay_short() {
+    let (directory, _) = leg("diagnose_nothing");
+    let words =
+        ["diagnose", MODEL, "--train", "leg.csv", "--validate", "leg.csv", "--out", "found"];
+    let run = run_in(&directory.path, &words);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("no model.json"), "{}", run.stdout);
+    assert!(!directory.path.join("found/model.json").exists());
+    assert!(read(&directory, "found/report.html").contains("Nothing is missing"));
+    let longest = run.stdout.split_whitespace().map(|word| word.chars().count()).max();
+    assert!(longest.unwrap() < 60, "{}", run.stdout);
 }
 
 #[test]

@@ -5,7 +5,9 @@ use crate::arena::Handle;
 use crate::expr::text::nearest;
 use crate::model::fault::Cause;
 use crate::model::file::{GroundFile, ModelFile, Name, PlaceFile, PointFile};
-use crate::model::robot::{AddedEffect, Contact, ContactId, EffectPlace, Ground, LinkId};
+use crate::model::robot::{
+    AddedEffect, AddedValue, Contact, ContactId, EffectPlace, Ground, LinkId,
+};
 use crate::model::spelling::is_identifier;
 use crate::model::unit::Dimension;
 use num_traits::Zero;
@@ -68,9 +70,15 @@ impl Check<'_> {
         let mut effects = Vec::new();
         for effect in &file.effects {
             let mut parameters = Vec::new();
-            for (name, scalar) in &effect.parameters {
+            for (name, scalar, std) in &effect.parameters {
                 let value = self.scope.number(scalar, self.report);
-                parameters.extend(value.map(|value| (name.clone(), value)));
+                let std = std.as_ref().and_then(|std| {
+                    let value = self.scope.number(std, self.report)?;
+                    self.require_not_negative(value, "a standard deviation", std.at);
+                    Some(value)
+                });
+                let name = name.clone();
+                parameters.extend(value.map(|value| AddedValue { name, value, std }));
             }
             if let Some(at) = self.effect_place(&effect.at, &contacts) {
                 let place = effect.place;

@@ -130,7 +130,7 @@ fn limits_points_and_effects_are_kept() {
     assert_eq!(robot.effects[0].at, EffectPlace::Link(robot.find_link("arm").expect("a link")));
     assert!(matches!(robot.effects[1].at, EffectPlace::Contact(_)));
     assert_eq!(robot.effects[2].at, EffectPlace::Model);
-    let roll = robot.effects[2].parameters[0].1;
+    let roll = robot.effects[2].parameters[0].value;
     assert_eq!(robot.dag.as_constant(roll), Some(&ratio(1, 100)));
 }
 

@@ -1,0 +1,66 @@
+//! The model with the effects that were found, as a file.
+
+use super::{Failure, Shown};
+use crate::cli::files::{make_directory, read_file, write_whole};
+use denavit::effect::{self, Effect, EffectSite};
+use denavit::identify::{NewEffect, NewPlace, with_effects};
+use std::path::Path;
+
+/// What became of the model.
+pub(super) enum Completed {
+    /// Nothing was found that could be added.
+    NothingFound,
+    /// Its file with the effects.
+    Text(String),
+    /// The reason why a model has no place for an effect.
+    Refused(String),
+}
+
+/// The model's file, `source`, with what was found. Numbers that it has stay as they are: those of
+/// the effects were estimated with the others free within their uncertainty. Laws that are only
+/// the nearest to something without a name are no part of it.
+pub(super) fn complete(source: &str, shown: &Shown, effects: &[Effect]) -> Completed {
+    let named = || shown.found.effects.iter().filter(|one| one.is_named);
+    if named().next().is_none() {
+        return Completed::NothingFound;
+    }
+    let added: Vec<NewEffect<'_>> = named()
+        .map(|one| {
+            let candidate = &shown.candidates[one.candidate];
+            let known = effects.iter().find(|effect| effect.name == candidate.effect);
+            let at = match (known.map(|effect| effect.at), candidate.at.split_once(" with ")) {
+                (Some(EffectSite::Model), _) => NewPlace::Model,
+                (_, Some((joint, second))) => NewPlace::Pair(joint, second),
+                _ => NewPlace::Link(&candidate.at),
+            };
+            let values = one.parameters.iter().map(|value| {
+                (value.name.as_str(), value.value, Some(value.std).filter(|std| std.is_finite()))
+            });
+            NewEffect { effect: &candidate.effect, at, parameters: values.collect() }
+        })
+        .collect();
+    let Some(text) = with_effects(source, &added) else {
+        return Completed::Refused("its file is no object of JSON".to_owned());
+    };
+    match effect::read_model("model.json", text.as_bytes(), effects) {
+        Ok(_) => Completed::Text(text),
+        Err(error) => Completed::Refused(error.to_string()),
+    }
+}
+
+/// Writes the definitions of the user's own effects that were found into a folder `effects` beside
+/// the model, where commands look for them.
+pub(super) fn write_definitions(own: &Path, folder: &Path, shown: &Shown) -> Result<(), Failure> {
+    let failure = |error| Failure::Read { file: own.display().to_string(), error };
+    for path in effect::files(own).map_err(failure)? {
+        let bytes = read_file(&path)?;
+        let known = effect::read(&path.display().to_string(), &bytes).map_err(Failure::Model)?;
+        let is_found = |candidate: usize| shown.candidates[candidate].effect == known.name;
+        if shown.found.effects.iter().any(|one| is_found(one.candidate)) {
+            let beside = folder.join("effects");
+            make_directory(&beside)?;
+            write_whole(&beside.join(format!("{}.json", known.name)), &bytes)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,41 @@
+//! A diagnosis as a page of HTML.
+
+use super::{Arguments, Shown};
+use denavit::report::DiagnosisPage;
+use denavit::report::html::{Fact, Page};
+use std::path::PathBuf;
+
+pub(super) fn of(arguments: &Arguments, shown: &Shown) -> Page {
+    let list = |paths: &[PathBuf]| {
+        let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        names.join(", ")
+    };
+    let filters = shown.found.filters;
+    let facts = [
+        ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
+        ("model", format!("{}, content {:016x}", shown.robot.name, shown.robot.hash)),
+        ("searched", list(&arguments.train)),
+        ("judged with", list(&arguments.validate)),
+        ("effects tried", format!("{} in all places", shown.candidates.len())),
+        (
+            "filters",
+            format!("motion {:.3} Hz, torques {:.3} Hz", filters.motion_hz, filters.torque_hz),
+        ),
+        ("seed", arguments.seed.to_string()),
+    ];
+    let facts = facts.map(|(name, value)| Fact { name: name.to_owned(), value });
+    let mut remarks: Vec<String> =
+        shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
+    remarks.extend(shown.about_model());
+    let joints: Vec<&str> = shown.model.joints.iter().map(|joint| joint.name.as_str()).collect();
+    DiagnosisPage {
+        model: &shown.robot.name,
+        facts: &facts,
+        remarks: &remarks,
+        joints: &joints,
+        candidates: &shown.candidates,
+        effects: &shown.effects,
+        found: &shown.found,
+    }
+    .page()
+}

@@ -1,0 +1,37 @@
+//! Torques of held-out logs over time, to be looked at.
+
+use super::data::Data;
+
+/// A joint's torque in one log, through the filter: measured, and what is left of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The log.
+    pub file: String,
+    /// The joint.
+    pub joint: usize,
+    /// Times \[s\].
+    pub t_s: Vec<f64>,
+    /// What was measured [N m, N].
+    pub measured: Vec<f64>,
+    /// What the nominal model, re-estimated, leaves of it [N m, N].
+    pub before: Vec<f64>,
+    /// What the model with the effects leaves [N m, N].
+    pub after: Vec<f64>,
+}
+
+/// The curves of all logs, joint by joint, from what is left in the rows.
+pub(super) fn curves(data: &Data<'_>, [before, after]: [&[f64]; 2]) -> Vec<Curve> {
+    let of_stretch = |stretch: &super::Stretch| {
+        let signals = &data.signals[stretch.log];
+        let rows = stretch.first..stretch.first + stretch.rows;
+        Curve {
+            file: signals.file.clone(),
+            joint: stretch.joint,
+            t_s: signals.at_rows(&signals.t),
+            measured: data.torque[rows.clone()].to_vec(),
+            before: before[rows.clone()].to_vec(),
+            after: after[rows].to_vec(),
+        }
+    };
+    data.stretches.iter().map(of_stretch).collect()
+}

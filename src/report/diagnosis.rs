@@ -1,0 +1,296 @@
+//! What a model lacks, as a page.
+
+use super::effects::formulas;
+use super::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section, mathml};
+use super::{diagnosis_picture, percent, short};
+use crate::diagnose::{Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, Step, Verdict, Where};
+use denavit_codegen::effect::{Effect, Law};
+
+/// Joints whose torques are drawn, at most.
+const DRAWN: usize = 3;
+
+/// What a page about a diagnosis says.
+#[derive(Clone, Copy)]
+pub struct DiagnosisPage<'a> {
+    /// The model's name.
+    pub model: &'a str,
+    /// What it was made of: version, hash of the model, logs, seed.
+    pub facts: &'a [Fact],
+    /// What was noticed of the logs, and of the files that were written.
+    pub remarks: &'a [String],
+    /// Names of the joints.
+    pub joints: &'a [&'a str],
+    /// What may be missing.
+    pub candidates: &'a [Candidate],
+    /// The laws of these.
+    pub effects: &'a [Effect],
+    /// What was found.
+    pub found: &'a Diagnosis,
+}
+
+/// The answer in a paragraph: verdict, what was found, the gap before and after, reasons.
+pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String {
+    let mut text = match found.verdict {
+        Verdict::NothingMissing => "Nothing is missing: what is left is noise.",
+        Verdict::Explained => "What the model lacks is named, and explains the disagreement.",
+        Verdict::PartlyExplained => "A part of what the model lacks is named.",
+        Verdict::Unexplained => "The model lacks something that is not in the catalogue.",
+        Verdict::CannotTell => "The logs do not tell what the model lacks.",
+    }
+    .to_owned();
+    for (is_named, word) in [(true, "Found"), (false, "Nearest to what has no name")] {
+        let all = found.effects.iter().filter(|one| one.is_named == is_named);
+        let names = all.map(|one| &candidates[one.candidate]);
+        let names: Vec<String> = names.map(|own| format!("{} at {}", own.title, own.at)).collect();
+        if !names.is_empty() {
+            text += &format!(" {word}: {}.", names.join("; "));
+        }
+    }
+    let Gaps { before, after, floor } = &found.held_out;
+    text += &format!(
+        " On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
+         alone leaves {}",
+        percent(before.all),
+        percent(after.all),
+        percent(floor.all)
+    );
+    if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
+        text += &format!(": {} of what can be explained is closed", percent(share));
+    }
+    text.push('.');
+    for reason in &found.reasons {
+        let mut letters = reason.chars();
+        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+        text += &format!(" {first}{}.", letters.as_str());
+    }
+    text
+}
+
+impl DiagnosisPage<'_> {
+    /// The page.
+    pub fn page(&self) -> Page {
+        let mut sections = vec![self.gaps(), self.torques()];
+        sections.extend(self.terms());
+        sections.push(self.regimes());
+        sections.extend(self.evidence());
+        if !self.remarks.is_empty() {
+            let parts = self.remarks.iter().map(paragraph).collect();
+            sections.push(Section { heading: "Remarks".to_owned(), parts });
+        }
+        Page {
+            title: format!("Diagnosis of {}", self.model.replace('_', " ")),
+            lead: verdict_paragraph(self.found, self.candidates),
+            facts: self.facts.to_vec(),
+            sections,
+        }
+    }
+
+    fn gaps(&self) -> Section {
+        let columns = headings(&[
+            ("joint", false),
+            ("train before", true),
+            ("after", true),
+            ("noise", true),
+            ("held out before", true),
+            ("after", true),
+            ("noise", true),
+        ]);
+        let sets = [&self.found.train, &self.found.held_out];
+        let of = |value: &dyn Fn(&Gap) -> Option<f64>| -> Vec<Cell> {
+            let gaps = sets.iter().flat_map(|set| [&set.before, &set.after, &set.floor]);
+            gaps.map(|gap| value(gap).map_or_else(|| Cell::text(""), share)).collect()
+        };
+        let mut rows: Vec<Row> = Vec::new();
+        for (joint, name) in self.joints.iter().enumerate() {
+            let numbers = of(&|gap| gap.per_joint.get(joint).copied().flatten());
+            let cells = [vec![Cell::text(*name)], numbers].concat();
+            rows.push(Row { cells, is_marked: false });
+        }
+        let cells = [vec![Cell::text("all")], of(&|gap| Some(gap.all))].concat();
+        rows.push(Row { cells, is_marked: true });
+        let caption =
+            "What is left of the torques, over the torques (root of mean square), before \
+                       and after the effects, and what noise alone leaves. All: root of mean \
+                       square over the joints."
+                .to_owned();
+        let parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
+        Section { heading: "Gap".to_owned(), parts }
+    }
+
+    /// The joints that leave most, each in the held-out log where it does.
+    fn torques(&self) -> Section {
+        let squares = |curve: &Curve| curve.before.iter().map(|left| left * left).sum::<f64>();
+        let of_joint = |one: &Where| -> Option<(&str, &Curve)> {
+            let joint = self.joints.iter().position(|name| *name == one.joint)?;
+            let own = self.found.curves.iter().filter(|curve| curve.joint == joint);
+            let most = own.max_by(|a, b| squares(a).total_cmp(&squares(b)))?;
+            Some((self.joints[joint], most))
+        };
+        let shown: Vec<(&str, &Curve)> =
+            self.found.before.iter().filter_map(of_joint).take(DRAWN).collect();
+        let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
+        let caption = "Held-out logs, the joints that leave most: torques that were measured, and \
+                       that both models compute; below, what they leave. All through one filter."
+            .to_owned();
+        let parts = vec![Part::Figure { svg, caption }];
+        Section { heading: "Torques".to_owned(), parts }
+    }
+
+    /// What was found: law, parameters, what would do as well.
+    fn terms(&self) -> Option<Section> {
+        if self.found.effects.is_empty() {
+            return None;
+        }
+        let parts = self.found.effects.iter().flat_map(|one| self.term(one)).collect();
+        Some(Section { heading: "New terms".to_owned(), parts })
+    }
+
+    fn term(&self, one: &FoundEffect) -> Vec<Part> {
+        let own = &self.candidates[one.candidate];
+        let doubt = if one.is_named { "New" } else { "Nearest to something without a name" };
+        let text = format!(
+            "{doubt}: {} at {}. It closes {} of the gap.",
+            own.title,
+            own.at,
+            percent(one.share)
+        );
+        let mut parts = vec![Part::Paragraph { text }];
+        if let Some(effect) = self.effects.iter().find(|effect| effect.name == own.effect) {
+            let new = formulas(effect).into_iter().map(|formula| marked(effect, &own.at, formula));
+            parts.extend(new.map(|latex| match mathml(&latex, true) {
+                Ok(mathml) => Part::Formula { mathml },
+                Err(_) => Part::Paragraph { text: latex },
+            }));
+        }
+        let columns = headings(&[
+            ("parameter", false),
+            ("value", true),
+            ("standard error", true),
+            ("unit", false),
+        ]);
+        let rows = one.parameters.iter().map(|value| {
+            let std = match value.std.is_finite() {
+                true => Cell::number(value.std, format!("{:.1e}", value.std)),
+                false => Cell::text("not determined"),
+            };
+            let cells = vec![
+                Cell::text(&value.name),
+                Cell::number(value.value, short(value.value)),
+                std,
+                Cell::text(&value.unit),
+            ];
+            Row { cells, is_marked: false }
+        });
+        let caption = format!("Parameters of {}.", own.name());
+        parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
+        for other in &one.alternatives {
+            let text = format!(
+                "These logs do not tell it from {}, which would leave {} (cosine of the two: {:.2}).",
+                self.candidates[other.candidate].name(),
+                percent(other.held_out_gap),
+                other.cosine
+            );
+            parts.push(Part::Paragraph { text });
+        }
+        parts
+    }
+
+    fn regimes(&self) -> Section {
+        let columns = headings(&[
+            ("joint", false),
+            ("state of motion", false),
+            ("share of time", true),
+            ("share of squares before", true),
+            ("left of it after", true),
+        ]);
+        let mut rows = Vec::new();
+        for one in self.found.before.iter().take(DRAWN) {
+            let after = self.found.after.iter().find(|other| other.joint == one.joint);
+            // both are over the same noise
+            let kept = after.map(|after| (after.over_noise / one.over_noise).powi(2));
+            for part in &one.parts {
+                let same = after
+                    .and_then(|after| after.parts.iter().find(|other| other.regime == part.regime));
+                let left = same.zip(kept).map(|(same, kept)| kept * same.share / part.share);
+                let cells = vec![
+                    Cell::text(&one.joint),
+                    Cell::text(part.regime.to_string()),
+                    share(part.time),
+                    share(part.share),
+                    left.map_or_else(|| Cell::text(""), share),
+                ];
+                rows.push(Row { cells, is_marked: part.excess() > 0.15 });
+            }
+        }
+        let sentences = self.found.before.iter().filter(|one| one.share > 0.05);
+        let mut parts: Vec<Part> =
+            sentences.map(|one| Part::Paragraph { text: one.sentence() + "." }).collect();
+        let caption = "Squares of what is left of a joint's torque in the logs for training, by \
+                       states of its motion, which overlap. Marked: more than their time has."
+            .to_owned();
+        parts.push(Part::Table(HtmlTable { caption, columns, rows }));
+        Section { heading: "Where".to_owned(), parts }
+    }
+
+    fn evidence(&self) -> Option<Section> {
+        if self.found.steps.is_empty() {
+            return None;
+        }
+        let mut parts = Vec::new();
+        for (round, step) in self.found.steps.iter().enumerate() {
+            parts.push(Part::Paragraph { text: self.round(round, step) });
+            let columns = headings(&[("candidate", false), ("held-out gap", true)]);
+            let winner = (step.added, step.gaps[1], true);
+            let others = step.runners_up.iter().map(|&(other, gap)| (other, gap, false));
+            let rows = std::iter::once(winner).chain(others).map(|(candidate, gap, is_marked)| {
+                let name = Cell::text(self.candidates[candidate].name());
+                Row { cells: vec![name, share(gap)], is_marked }
+            });
+            let caption = "The best of the round, marked, and those that came next.".to_owned();
+            parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
+        }
+        Some(Section { heading: "Evidence".to_owned(), parts })
+    }
+
+    fn round(&self, round: usize, step: &Step) -> String {
+        format!(
+            "Round {}: {} {}. It lowers the weighted squares of the logs for training by {}, the \
+             best decoy by {}; held-out logs are better by {:.1} standard errors; it closes {} of \
+             what can be explained.",
+            round + 1,
+            self.candidates[step.added].name(),
+            if step.is_taken { "was taken" } else { "was not taken" },
+            short(step.gain),
+            short(step.decoy),
+            step.significance,
+            percent(step.share),
+        )
+    }
+}
+
+/// A line of a law as a new term of the equation that it is part of.
+fn marked(effect: &Effect, at: &str, formula: String) -> String {
+    match (&effect.law, formula.strip_prefix(r"\tau = ")) {
+        (Law::Torque(_) | Law::Term(_), Some(law)) => {
+            let at = at.replace('_', r"\ ");
+            format!(
+                r"\tau_{{\mathrm{{{at}}}}} = \tau_{{\mathrm{{nominal}}}} + \underbrace{{{law}}}_{{\mathrm{{new}}}}"
+            )
+        }
+        _ => formula,
+    }
+}
+
+fn paragraph(text: &String) -> Part {
+    Part::Paragraph { text: text.clone() }
+}
+
+fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
+    let heading =
+        |&(text, is_number): &(&str, bool)| Heading { heading: text.to_owned(), is_number };
+    list.iter().map(heading).collect()
+}
+
+fn share(value: f64) -> Cell {
+    Cell::number(value, percent(value))
+}

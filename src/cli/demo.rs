@@ -39,8 +39,8 @@ use std::time::Instant;
 ///
 /// Needs no file: the models are part of the command. Its functions were generated when it was
 /// built; they are run at random states against equations of motion that are derived in another
-/// way. The exit code is 1 if they disagree. In the end an effect that the seed draws is hidden in a
-/// simulated leg, diagnosed from logs alone, and revealed beside the answer, right or wrong.
+/// way. The exit code is 1 if they disagree. In the end an effect that the seed draws is hidden in
+/// a simulated leg, diagnosed from logs alone, and revealed beside the answer, right or wrong.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:

@@ -9,6 +9,9 @@ use denavit_codegen::effect::{Effect, Law};
 /// Joints whose torques are drawn, at most.
 const DRAWN: usize = 3;
 
+/// The share of all that is left from which a joint is drawn.
+const LEAST: f64 = 0.02;
+
 /// What a page about a diagnosis says.
 #[derive(Clone, Copy)]
 pub struct DiagnosisPage<'a> {
@@ -71,6 +74,7 @@ impl DiagnosisPage<'_> {
     pub fn page(&self) -> Page {
         let mut sections = vec![self.gaps(), self.torques()];
         sections.extend(self.terms());
+        sections.extend(self.unnamed());
         sections.push(self.regimes());
         sections.extend(self.evidence());
         if !self.remarks.is_empty() {
@@ -117,7 +121,13 @@ impl DiagnosisPage<'_> {
         Section { heading: "Gap".to_owned(), parts }
     }
 
-    /// The joints that leave most, each in the held-out log where it does.
+    /// The joints that leave most, at least one.
+    fn worst(&self) -> impl Iterator<Item = &Where> {
+        let count = self.found.before.iter().filter(|one| one.share > LEAST).count();
+        self.found.before.iter().take(count.clamp(1, DRAWN))
+    }
+
+    /// Torques of these joints, each in the held-out log where it does.
     fn torques(&self) -> Section {
         let squares = |curve: &Curve| curve.before.iter().map(|left| left * left).sum::<f64>();
         let of_joint = |one: &Where| -> Option<(&str, &Curve)> {
@@ -126,8 +136,7 @@ impl DiagnosisPage<'_> {
             let most = own.max_by(|a, b| squares(a).total_cmp(&squares(b)))?;
             Some((self.joints[joint], most))
         };
-        let shown: Vec<(&str, &Curve)> =
-            self.found.before.iter().filter_map(of_joint).take(DRAWN).collect();
+        let shown: Vec<(&str, &Curve)> = self.worst().filter_map(of_joint).collect();
         let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
         let caption = "Held-out logs, the joints that leave most: torques that were measured, and \
                        that both models compute; below, what they leave. All through one filter."
@@ -185,7 +194,7 @@ impl DiagnosisPage<'_> {
         parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
         for other in &one.alternatives {
             let text = format!(
-                "These logs do not tell it from {}, which would leave {} (cosine of the two: {:.2}).",
+                "These logs do not tell it from {}, which would leave {} (cosine: {:.2}).",
                 self.candidates[other.candidate].name(),
                 percent(other.held_out_gap),
                 other.cosine
@@ -193,6 +202,21 @@ impl DiagnosisPage<'_> {
             parts.push(Part::Paragraph { text });
         }
         parts
+    }
+
+    /// What joints still lack, as formulas without a name.
+    fn unnamed(&self) -> Option<Section> {
+        let of = |one: &crate::diagnose::Structure| {
+            let joint = self.joints.get(one.joint).copied().unwrap_or_default();
+            let (share, formula) = (percent(one.share), one.formula());
+            let text = format!(
+                "{joint} still lacks something without a name; {formula} explains {share} of \
+                 its squares."
+            );
+            Part::Paragraph { text }
+        };
+        let parts: Vec<Part> = self.found.structures.iter().map(of).collect();
+        (!parts.is_empty()).then(|| Section { heading: "Without a name".to_owned(), parts })
     }
 
     fn regimes(&self) -> Section {
@@ -204,7 +228,7 @@ impl DiagnosisPage<'_> {
             ("left of it after", true),
         ]);
         let mut rows = Vec::new();
-        for one in self.found.before.iter().take(DRAWN) {
+        for one in self.worst() {
             let after = self.found.after.iter().find(|other| other.joint == one.joint);
             // both are over the same noise
             let kept = after.map(|after| (after.over_noise / one.over_noise).powi(2));
@@ -272,10 +296,13 @@ impl DiagnosisPage<'_> {
 fn marked(effect: &Effect, at: &str, formula: String) -> String {
     match (&effect.law, formula.strip_prefix(r"\tau = ")) {
         (Law::Torque(_) | Law::Term(_), Some(law)) => {
-            let at = at.replace('_', r"\ ");
-            format!(
-                r"\tau_{{\mathrm{{{at}}}}} = \tau_{{\mathrm{{nominal}}}} + \underbrace{{{law}}}_{{\mathrm{{new}}}}"
-            )
+            // nothing of a name is a command
+            let is_plain = |letter: &char| letter.is_alphanumeric() || " _".contains(*letter);
+            let at: String = at.chars().filter(is_plain).collect();
+            let at = at.replace(['_', ' '], r"\ ");
+            let nominal = r"\tau_{\mathrm{nominal}}";
+            let new = format!(r"\underbrace{{{law}}}_{{\mathrm{{new}}}}");
+            format!(r"\tau_{{\mathrm{{{at}}}}} = {nominal} + {new}")
         }
         _ => formula,
     }

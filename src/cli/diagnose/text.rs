@@ -8,9 +8,6 @@ use std::io::Write;
 
 pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     let Shown { robot, candidates, found, remarks, .. } = shown;
-    for (file, remark) in remarks {
-        writeln!(out, "{file}: {remark}")?;
-    }
     writeln!(out, "{}: {}", robot.name, found.verdict.word().replace('_', " "))?;
     writeln!(out, "{}", paragraph("", "", &shown.paragraph()))?;
     let places: Vec<String> = found
@@ -40,6 +37,9 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         )?;
     }
     gaps(out, shown)?;
+    for (file, remark) in remarks {
+        writeln!(out, "{file}: {remark}")?;
+    }
     files(out, shown)
 }
 

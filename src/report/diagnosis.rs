@@ -78,7 +78,8 @@ impl DiagnosisPage<'_> {
         sections.push(self.regimes());
         sections.extend(self.evidence());
         if !self.remarks.is_empty() {
-            let parts = self.remarks.iter().map(paragraph).collect();
+            let parts =
+                self.remarks.iter().map(|text| Part::Paragraph { text: text.clone() }).collect();
             sections.push(Section { heading: "Remarks".to_owned(), parts });
         }
         Page {
@@ -306,10 +307,6 @@ fn marked(effect: &Effect, at: &str, formula: String) -> String {
         }
         _ => formula,
     }
-}
-
-fn paragraph(text: &String) -> Part {
-    Part::Paragraph { text: text.clone() }
 }
 
 fn headings(list: &[(&str, bool)]) -> Vec<Heading> {

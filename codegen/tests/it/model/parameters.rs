@@ -135,6 +135,31 @@ fn limits_points_and_effects_are_kept() {
 }
 
 #[test]
+fn values_of_effects_may_state_how_sure_they_are() {
+    let arm = |value: &str| {
+        let text = format!(
+            r#"{{"format": "denavit-model/1", "name": "arm", "convention": "standard",
+                "gravity": [0, 0, -10], "links": [{{"name": "a", "joint": {{"type": "revolute"}}}}],
+                "effects": [{{"effect": "viscous", "at": {{"link": "a"}},
+                              "parameters": {{"fv": {value}}}}}]}}"#
+        );
+        denavit_codegen::effect::read_model("arm.json", text.as_bytes(), &[])
+    };
+    let robot = arm(r#"{"value": "1/2", "std": 0.25}"#).expect("a sound model");
+    let own = robot.parameters.values().find(|one| one.name == "fv_viscous_a").expect("it");
+    let number = |value: Option<_>| robot.dag.as_constant(value.expect("a number")).cloned();
+    assert_eq!([own.default, own.std].map(number), [Some(ratio(1, 2)), Some(ratio(1, 4))]);
+    for (value, said) in [
+        (r#"{"value": 1, "std": -0.25}"#, "standard deviation"),
+        (r#"{"std": 0.25}"#, "value"),
+        (r#"{"value": 1, "known": true}"#, "known"),
+    ] {
+        let error = arm(value).expect_err(value).to_string();
+        assert!(error.contains(said), "{error}");
+    }
+}
+
+#[test]
 fn the_hash_follows_the_content() {
     let text = std::fs::read_to_string(fixture("broken/base.json")).expect("the base");
     let reference = crane().hash;

@@ -136,7 +136,7 @@ const SHARES: [f64; 6] = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018];
 
 /// A law that closes less than this share of what a joint leaves does not fit it, if more than so
 /// many times the deviation of noise stays.
-const FITS: f64 = 0.75;
+const FITS: f64 = 0.5;
 const MISFIT: f64 = 2.5;
 
 /// What is left within so many times the deviation of noise is noise.

@@ -165,12 +165,12 @@ fn forward(
     let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
     let problem = Problem::new(setting.train, &state.deviation[0], &[]);
     let trials = refine(setting, options.refined, state, (&problem, &scored));
-    let best = best(&trials)?;
+    let idle = setting.trial(&problem, state, &state.taken);
+    let best = best(&trials, &idle)?;
     // What chance explains: of what would be left with the effect, since turned by some share of
     // the log it may still be like itself.
     let decoys = score(setting, screen, (state, &best.taken), Some(turn));
     let decoy = decoys.first().map_or(0.0, |best| best.gain);
-    let idle = setting.trial(&problem, state, &state.taken);
     let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
     let significance = paired(worse, better).max(by_ranks(worse, better));
     let added = best.taken.last().expect("an effect was added").candidate;
@@ -302,11 +302,18 @@ pub(super) const ALIKE: f64 = 0.03;
 /// Standard errors from which on one name is worse than another.
 pub(super) const DISTINCT: f64 = 2.5;
 
-/// The trial that explains most of held-out logs, or nearly that with fewer parameters.
-fn best(trials: &[Trial]) -> Option<&Trial> {
+/// The share of what the best trial explains that one with fewer parameters may leave.
+const LEAVES: f64 = 0.1;
+
+/// The trial that explains most of held-out logs, or nearly that with fewer parameters; `idle` is
+/// without it.
+fn best<'t>(trials: &'t [Trial], idle: &Trial) -> Option<&'t Trial> {
     let by_cost = |a: &&Trial, b: &&Trial| a.held_out_cost().total_cmp(&b.held_out_cost());
     let least = trials.iter().min_by(by_cost)?;
-    let most = (1.0 + ALIKE).powi(2) * least.held_out_cost();
+    let [none, least_cost] = [idle, least].map(Trial::held_out_cost);
+    let most = (1.0 + ALIKE).powi(2) * least_cost;
+    // Joints that this is not about weigh in the whole, but not in what is explained.
+    let most = most.min(least_cost + LEAVES * (none - least_cost).max(0.0));
     let alike = trials.iter().filter(|trial| {
         trial.held_out_cost() <= most
             && paired(&trial.blocks.concat(), &least.blocks.concat()) < DISTINCT
@@ -330,7 +337,8 @@ fn swap(
         // Weighed as the others are: by what is left without it.
         let now = setting.trial(&problem, &rest, &state.taken);
         let trials = refine(setting, options.refined, &rest, (&problem, &scored));
-        let Some(best) = best(&trials) else { continue };
+        let idle = setting.trial(&problem, &rest, &rest.taken);
+        let Some(best) = best(&trials, &idle) else { continue };
         let is_other = best.taken.last().is_some_and(|last| last.candidate != own.candidate);
         let is_better = paired(&now.blocks.concat(), &best.blocks.concat()) > options.significance;
         if is_other && is_better && best.score(samples) < now.score(samples) {

@@ -12,6 +12,7 @@ mod gears;
 mod help;
 mod identify;
 mod identify_procedures;
+mod landings;
 mod readme;
 mod simulate;
 mod simulated_again;

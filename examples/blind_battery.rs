@@ -15,7 +15,6 @@ use blind::case::Case;
 use blind::score::Answer;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const USAGE: &str = "--case N|suite|reported --out DIR [--count K] [--diagnose DENAVIT]";
 
@@ -69,17 +68,8 @@ fn run(command: &Path, files: Files<'_>) -> Answer {
     if let Some(before) = std::fs::read(&said).ok().and_then(|bytes| parsed(&bytes)) {
         return before;
     }
-    let output = Command::new(command)
-        .arg("diagnose")
-        .arg(files.model)
-        .arg("--train")
-        .arg(files.train)
-        .arg("--validate")
-        .arg(files.validate)
-        .arg("--out")
-        .arg(files.model.with_file_name("diagnosis"))
-        .arg("--json")
-        .output();
+    let folder = files.model.with_file_name("diagnosis");
+    let output = blind::battery::command(command, files).arg("--out").arg(folder).output();
     let failed = |why: &str| {
         eprintln!("{}: {why}", files.model.display());
         Answer { verdict: "failed".into(), ..Answer::default() }

@@ -35,7 +35,8 @@ use std::path::PathBuf;
 /// A log is CSV with the columns t, q_JOINT, tau_JOINT (qd_, qdd_, ref_, f_CONTACT_x|y|z if there
 /// are any); --columns maps those of other logs. Positions and torques pass one zero-phase filter,
 /// torques and regressor one decimator. Base parameters are exact; what the motion does not show
-/// keeps the model's value and is said to. Exits with 1 if what is found explains nothing.
+/// keeps the model's value and is said to. Exits with 1 if what is found leaves as much of the
+/// torques as nothing would.
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:

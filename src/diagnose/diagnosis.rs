@@ -353,6 +353,18 @@ impl Diagnosis {
             reasons.push("more than noise is left".to_owned());
             Verdict::PartlyExplained
         };
+        self.reasons = reasons;
+        self.add_doubts(setting, stop);
+    }
+
+    /// What else must be known to trust the answer.
+    fn add_doubts(&mut self, setting: &Setting<'_>, stop: Stop) {
+        let reasons = &mut self.reasons;
+        let is_searched =
+            |log: &Signals| setting.train.signals.iter().any(|other| other.q == log.q);
+        if setting.held_out.signals.iter().any(is_searched) {
+            reasons.push("judged with a log that was searched: nothing is held out".to_owned());
+        }
         if stop == Stop::MostEffects {
             reasons.push("as many effects were found as are allowed".to_owned());
         }
@@ -362,6 +374,5 @@ impl Diagnosis {
                 self.driven[1].join(", ")
             ));
         }
-        self.reasons = reasons;
     }
 }

@@ -201,11 +201,6 @@ impl<'a> Problem<'a> {
         self.look(&[]).cost
     }
 
-    /// The cost of laws and how it changes, without their values' search.
-    pub fn cost(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> View {
-        self.look(&self.responses(laws, torques))
-    }
-
     /// Searches the values of laws from those given: Levenberg and Marquardt's steps within bounds.
     pub fn fit(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
         let mut laws = laws.to_vec();

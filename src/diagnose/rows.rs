@@ -53,7 +53,7 @@ impl LogRows {
         Self { columns, target: target.collect() }
     }
 
-    /// The torque of a joint that phi adds, in the rows.
+    /// The torque of a joint that phi adds, in the rows; drives move with their joints.
     pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, phi: &Phi) -> Vec<f64> {
         let samples = self.columns[joint].first().map_or(0, Vec::len);
         let mut torque = vec![0.0; samples];

@@ -54,8 +54,8 @@ pub struct Step {
     pub significance: f64,
     /// The share of what can be explained that it closes.
     pub share: f64,
-    /// The gaps after the step: of the logs that are fitted, and held out.
-    pub gaps: [f64; 2],
+    /// The gap of held-out logs with it.
+    pub held_out_gap: f64,
     /// The candidates that came next, with the held-out gap that each would have left.
     pub runners_up: Vec<(usize, f64)>,
 }
@@ -175,9 +175,8 @@ fn forward(
     let significance = paired(worse, better).max(by_ranks(worse, better));
     let added = best.taken.last().expect("an effect was added").candidate;
     let gain = idle.found.cost - best.found.cost;
-    let trust = state.trust();
-    let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust[1]).all;
-    let after = held_out_gap(&best.held_out_residual);
+    let [_, trust] = state.trust();
+    let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust).all;
     let of = |left: &[f64]| setting.held_out_squares(state, left);
     let [from, now, then] = [before, &idle.held_out_residual, &best.held_out_residual].map(of);
     let [share, of_rest] = closed(&from, &now, &then);
@@ -200,8 +199,8 @@ fn forward(
         && significance > asked
         && !most.is_some_and(is_noise);
     let is_taken = is_more && of_rest >= options.least_share;
-    let gaps = [Gap::new(setting.train, &best.found.residual, &trust[0]).all, after];
-    let step = Step { added, is_taken, gain, decoy, significance, share, gaps, runners_up };
+    let held_out_gap = held_out_gap(&best.held_out_residual);
+    let step = Step { added, is_taken, gain, decoy, significance, share, held_out_gap, runners_up };
     Some((best.clone(), step))
 }
 

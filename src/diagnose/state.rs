@@ -107,8 +107,8 @@ impl Trial {
         self.blocks[1].iter().sum()
     }
 
-    /// The same, for the number of parameters that it took (Schwarz 1978); `samples` are those
-    /// that are independent.
+    /// The cost of all logs, for the number of parameters that it took (Schwarz 1978); `samples`
+    /// are those that are independent.
     pub fn score(&self, samples: f64) -> f64 {
         samples * self.cost().ln() + self.parameters() as f64 * samples.ln()
     }

@@ -265,7 +265,7 @@ impl DiagnosisPage<'_> {
         for (round, step) in self.found.steps.iter().enumerate() {
             parts.push(Part::Paragraph { text: self.round(round, step) });
             let columns = headings(&[("candidate", false), ("held-out gap", true)]);
-            let winner = (step.added, step.gaps[1], true);
+            let winner = (step.added, step.held_out_gap, true);
             let others = step.runners_up.iter().map(|&(other, gap)| (other, gap, false));
             let rows = std::iter::once(winner).chain(others).map(|(candidate, gap, is_marked)| {
                 let name = Cell::text(self.candidates[candidate].name());

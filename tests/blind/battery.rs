@@ -9,6 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
+use std::process::Command;
 
 /// The files of a case that a diagnosis sees.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +55,14 @@ pub(crate) fn report(scores: &[Score]) -> String {
                    |---:|---|---|---|---|---:|---:|\n";
     let missed: String = missed.collect();
     format!("{}\n{}\n{heading}{missed}", table(scores), confusion(scores))
+}
+
+/// The command for a case.
+pub(crate) fn command(denavit: &Path, files: Files<'_>) -> Command {
+    let mut command = Command::new(denavit);
+    command.arg("diagnose").arg(files.model).arg("--json");
+    command.arg("--train").arg(files.train).arg("--validate").arg(files.validate);
+    command
 }
 
 /// An answer from the JSON that the command prints: effects without a name of the catalogue are

@@ -1,26 +1,18 @@
 //! Cases of the blind battery, through the command: it gets files alone.
 
 use super::Directory;
-use crate::blind::battery::{Files, answer, examine};
+use crate::blind::battery::{Files, answer, command, examine};
 use crate::blind::score::Answer;
-use std::process::Command;
+use std::path::Path;
 
 /// Small robots, quick to diagnose: nothing hidden in four of them, a leg behind springs among
 /// these; in the others Coulomb friction (twice, weak and medium), viscous friction, both kinds of
 /// its asymmetry, presliding and Stribeck friction, an offset.
 const CASES: [u64; 12] = [14, 28, 42, 3, 17, 34, 45, 166, 22, 30, 41, 44];
 
-fn command(files: Files<'_>) -> Answer {
-    let output = Command::new(env!("CARGO_BIN_EXE_denavit"))
-        .arg("diagnose")
-        .arg(files.model)
-        .arg("--train")
-        .arg(files.train)
-        .arg("--validate")
-        .arg(files.validate)
-        .arg("--json")
-        .output()
-        .expect("the command runs");
+fn diagnosed(files: Files<'_>) -> Answer {
+    let denavit = Path::new(env!("CARGO_BIN_EXE_denavit"));
+    let output = command(denavit, files).output().expect("the command runs");
     let said = serde_json::from_slice(&output.stdout);
     answer(&said.unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr))))
 }
@@ -33,7 +25,7 @@ fn what_is_hidden_is_named_and_nothing_else() {
         let of_half = |half: &'static [u64]| {
             let path = directory.path.clone();
             scope.spawn(move || {
-                let examined = half.iter().map(|&case| examine(case, &path, command).unwrap());
+                let examined = half.iter().map(|&case| examine(case, &path, diagnosed).unwrap());
                 let wrong = examined.filter(|score| !score.right);
                 wrong
                     .map(|s| format!("{}: {:?} -> {:?}", s.number, s.truth, s.said))

@@ -57,6 +57,8 @@ fn a_drag_that_is_added_to_a_log_is_named_with_its_joint() {
     let found = value["value"].as_f64().unwrap();
     assert!((found - drag).abs() < 0.05 * drag, "{found}");
     assert_eq!(json["where"][0]["joint"], "knee");
+    // One log for both: nothing is held out, and that is said.
+    assert!(json["reasons"].to_string().contains("nothing is held out"), "{}", json["reasons"]);
     let effect = json["effects"][0]["parameters"]["c"].clone();
     the_model_has_the_effect(&directory, &effect);
     the_model_is_used(&directory);

@@ -194,8 +194,8 @@ impl Runner<'_> {
             return Ok(());
         }
         // from here on what touches is held where it is
-        self.motion.set_down(&touching, &mut self.y).map_err(StartError::Breakdown)?;
-        self.happen(EventKind::Start, self.start_s, &touching).map_err(StartError::Breakdown)
+        let down = self.motion.set_down(&touching, &mut self.y).map_err(StartError::Breakdown)?;
+        self.happen(EventKind::Start, self.start_s, &down).map_err(StartError::Breakdown)
     }
 
     fn go(&mut self) -> Result<Stop, Breakdown> {
@@ -285,21 +285,16 @@ impl Runner<'_> {
         Ok(None)
     }
 
-    /// The contact that touches, with others that do at the same time; none if it does not count.
+    /// The contact that touches, with all others that are on the ground, lest the impact makes
+    /// them sink; none if it does not count.
     fn touching(&mut self, contact: usize) -> Vec<usize> {
         let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
-        let open = (0..self.watch.level.len()).filter(|c| !closed.contains(c));
-        let open: Vec<usize> = open.collect();
-        self.motion.project(&self.y, &open);
-        let rows = self.motion.ground.rows();
-        let mut touching = Vec::new();
-        for (index, &other) in open.iter().enumerate() {
-            let falls = self.motion.work.velocity[index * rows + rows - 1] < 1e-6;
-            let near = self.motion.gap(other) - self.watch.level[other] < TOUCH_M;
-            if other == contact || (near && falls) {
-                touching.push(other);
-            }
-        }
+        self.motion.place(&self.y);
+        let near = |other: &usize| {
+            let height = self.motion.gap(*other) - self.watch.level[*other];
+            *other == contact || (!closed.contains(other) && height < TOUCH_M)
+        };
+        let mut touching: Vec<usize> = (0..self.watch.level.len()).filter(near).collect();
         if self.simulation.touching.scuffing == Scuffing::IgnoredBehind {
             let forward = self.motion.ground.tangents()[0];
             let place = |contact: usize| {

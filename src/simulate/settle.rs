@@ -89,7 +89,7 @@ impl Settler {
         if hits {
             self.collide(motion, touching, &candidates, y, &mut settled)?;
         }
-        self.rest(motion, touching, candidates, t_s, y, &mut settled)?;
+        self.rest(motion, touching, &candidates, t_s, y, &mut settled)?;
         Ok(settled)
     }
 
@@ -112,8 +112,7 @@ impl Settler {
         self.contacts.clone_from(&motion.work.contacts);
         for _ in 0..HELD_ROUNDS {
             self.decide(motion, touching, &mut settled)?;
-            motion.project(y, &candidates);
-            settled.impulses.extend(self.adopt(motion, &candidates, y));
+            settled.impulses.extend(self.adopt(motion, &candidates, &candidates, y));
             if !self.release_held(motion, &candidates, y) {
                 break;
             }
@@ -124,8 +123,7 @@ impl Settler {
             && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
         if same && self.let_go(motion, &before, ahead)? {
             self.decide(motion, touching, &mut settled)?;
-            motion.project(y, &candidates);
-            settled.impulses.extend(self.adopt(motion, &candidates, y));
+            settled.impulses.extend(self.adopt(motion, &candidates, &candidates, y));
         }
         Ok(settled)
     }
@@ -192,63 +190,86 @@ impl Settler {
         self.impact.solve(&impact, Search::First, &mut self.solution).map(|_| ())
     }
 
-    /// Decides, on accelerations, which of the contacts that do not part carry force, and takes out
-    /// the rest of the rates that these forbid.
+    /// Decides which of the contacts carry force from now on, and takes out the rest of the rates
+    /// that these forbid.
+    ///
+    /// What is left of infinitely many bounces is decided with the forces, as one problem: with the
+    /// rates v of what does not part, after the shortest flight tau that counts,
+    ///
+    /// > 0 <= f_n  _|_  v_n / tau + w_n >= 0,  w = G f + b.
+    ///
+    /// A contact rests if others' forces and its own weight bring it back within tau, in which a
+    /// fall from the largest acceleration of all gains `rest_speed`. One near to the line about
+    /// which its body turns away is slow, but does not come back, and stays open.
     fn rest(
         &mut self,
         motion: &mut Motion<'_>,
         touching: &Touching,
-        mut candidates: Vec<usize>,
+        candidates: &[usize],
         t_s: f64,
         y: &mut [f64],
         settled: &mut Settled,
     ) -> Result<(), Breakdown> {
         let rows = motion.ground.rows();
-        motion.project(y, &candidates);
-        let parting: Vec<bool> = (0..candidates.len())
-            .map(|i| motion.work.velocity[i * rows + rows - 1] > touching.rest_speed)
-            .collect();
-        let mut index = 0;
-        candidates.retain(|_| {
-            index += 1;
-            !parting[index - 1]
-        });
-        if candidates.is_empty() {
+        motion.project(y, candidates);
+        let normal = |index: usize| motion.work.velocity[index * rows + rows - 1];
+        let slow = (0..candidates.len()).filter(|index| normal(*index) <= touching.rest_speed);
+        let (slow, parting): (Vec<usize>, Vec<f64>) =
+            slow.map(|index| (candidates[index], normal(index))).unzip();
+        if slow.is_empty() {
             motion.closed.clear();
             return Ok(());
         }
-        motion.project(y, &candidates);
-        self.describe(motion, touching, &candidates, settled.fell_back);
+        motion.project(y, &slow);
+        self.describe(motion, touching, &slow, settled.fell_back);
+        let before = y.to_vec();
+        let mut carries = vec![true; slow.len()];
+        let mut stilled = Vec::new();
         for _ in 0..HELD_ROUNDS {
-            let at_rest = self.at_rest(motion, y);
+            let at_rest = self.at_rest(motion, &slow, &carries, &before);
             motion.free_motion(t_s, &at_rest)?;
-            motion.project(&at_rest, &candidates);
-            motion.free_response(&at_rest, &candidates);
+            motion.project(&at_rest, &slow);
+            motion.free_response(&at_rest, &slow);
+            let normals = || (0..slow.len()).map(|index| index * rows + rows - 1);
+            let fall = normals().map(|row| -motion.work.free[row]).fold(0.0, f64::max);
+            for (row, speed) in normals().zip(&parting) {
+                motion.work.free[row] += speed * fall / touching.rest_speed;
+            }
             self.decide(motion, touching, settled)?;
-            motion.project(y, &candidates);
-            let stilled = self.adopt(motion, &candidates, y);
-            settled.impulses.extend(stilled);
-            if !self.release_held(motion, &candidates, y) {
+            y.copy_from_slice(&before);
+            stilled = self.adopt(motion, &slow, candidates, y);
+            let held = self.release_held(motion, &slow, y);
+            let decided: Vec<bool> = self.solution.modes.iter().map(|m| m.is_closed()).collect();
+            if !held && decided == carries {
                 break;
             }
+            carries = decided;
         }
+        settled.impulses.extend(stilled);
         Ok(())
     }
 
-    /// The state without the rates that contacts at rest still have: what is left of infinitely
-    /// many bounces would ask for accelerations, towards the axis that they turn about, which
-    /// points of one body at rest cannot have.
-    fn at_rest(&self, motion: &mut Motion<'_>, y: &[f64]) -> Vec<f64> {
+    /// The state without the rates that those contacts still have that carry force: what is left
+    /// of infinitely many bounces would ask for accelerations, towards the axis that they turn
+    /// about, which points of one body at rest cannot have.
+    fn at_rest(
+        &self,
+        motion: &mut Motion<'_>,
+        contacts: &[usize],
+        carries: &[bool],
+        y: &[f64],
+    ) -> Vec<f64> {
+        motion.project(y, contacts);
         let rows = motion.ground.rows();
         let mut held = Vec::new();
-        for (index, contact) in self.contacts.iter().enumerate() {
+        for (index, contact) in self.contacts.iter().enumerate().filter(|(i, _)| carries[*i]) {
             if contact.slipping.is_none() && contact.friction != Friction::Coulomb(0.0) {
                 held.extend(index * rows..index * rows + rows - 1);
             }
             held.push(index * rows + rows - 1);
         }
         let mut at_rest = y.to_vec();
-        let _ = motion.still(&held, &mut at_rest);
+        let _ = motion.still(&held, &[], &mut at_rest);
         at_rest
     }
 
@@ -353,38 +374,46 @@ impl Settler {
         motion.solver.decide(&problem, Search::First, &mut self.solution)
     }
 
-    /// Takes the decided modes over, and takes out what is left of the rates that they forbid.
+    /// Takes the decided modes of contacts over, and takes out what is left of the rates that they
+    /// forbid, so that none of those that touch sinks.
     ///
     /// Contacts that stick do so where they are now: places from different events would contradict
     /// each other by what they have drifted, for points of one rigid foot.
     fn adopt(
         &mut self,
         motion: &mut Motion<'_>,
-        candidates: &[usize],
+        decided: &[usize],
+        touching: &[usize],
         y: &mut [f64],
     ) -> Vec<(usize, Vec<f64>)> {
+        motion.project(y, touching);
         let rows = motion.ground.rows();
-        let mut held = Vec::new();
+        let (mut held, mut open) = (Vec::new(), Vec::new());
         motion.closed.clear();
-        for (index, (&contact, &mode)) in candidates.iter().zip(&self.solution.modes).enumerate() {
-            if !mode.is_closed() {
+        for (place, contact) in touching.iter().enumerate() {
+            let normal = place * rows + rows - 1;
+            let index = decided.iter().position(|other| other == contact);
+            let closed = index.filter(|index| self.solution.modes[*index].is_closed());
+            let Some(index) = closed else {
+                open.push(normal);
                 continue;
-            }
-            held.push(index * rows + rows - 1);
+            };
+            held.push(normal);
+            let mode = self.solution.modes[index];
             // slipping that begins in space does so from rest
             let rests = rows == 3 && self.contacts[index].slipping.is_none();
             if mode == Mode::Stick || (rests && mode != Mode::Slip([0.0; 2])) {
-                held.extend(index * rows..index * rows + rows - 1);
+                held.extend(normal + 1 - rows..normal);
             }
             let mut along = Vec::with_capacity(rows);
             motion.ground.append(&motion.work.positions[3 * contact..3 * contact + 3], &mut along);
             let anchor = [along[0], if rows == 3 { along[1] } else { 0.0 }];
             let law = self.contacts[index].friction;
             let runs = self.contacts[index].slipping.is_some();
-            motion.closed.push(Closed { contact, mode, law, anchor, runs });
+            motion.closed.push(Closed { contact: *contact, mode, law, anchor, runs });
         }
-        let impulses = motion.still(&held, y).unwrap_or_default();
+        let impulses = motion.still(&held, &open, y).unwrap_or_default();
         let blocks = impulses.chunks_exact(rows).map(<[f64]>::to_vec);
-        candidates.iter().copied().zip(blocks).collect()
+        touching.iter().copied().zip(blocks).collect()
     }
 }

@@ -17,6 +17,10 @@ use nalgebra::{DMatrix, DVector};
 const COMPLIANCE: [f64; 4] = [1e-9, 1e-7, 1e-5, 1e-3];
 /// Solutions, each with the compliance of the one before taken back.
 const CORRECTIONS: usize = 30;
+/// As much of what points give way is left, in units of what counts as no response; and is where
+/// they are nearly one.
+const TAKEN_BACK: f64 = 1e-2;
+const NEARLY: f64 = 1e3;
 /// Steps at most.
 const STEPS: usize = 80;
 /// Where steps cease to get nearer than this, relative to the largest force, sweeps go on.
@@ -34,29 +38,61 @@ struct Scales {
     tangent: f64,
 }
 
-/// Improves `force` (the start) until it obeys the laws; says if it does. No contact is `NoSlip`.
-pub fn solve(problem: &ContactProblem<'_>, force: &mut [f64]) -> bool {
-    let solves =
-        |compliance: &f64| solve_compliant(problem, *compliance, RESIDUAL[0], force).is_some();
-    COMPLIANCE.iter().any(solves)
+/// How near forces come to the laws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found {
+    /// They obey them.
+    Forces,
+    /// Points that are all but one are told apart by less than the compliance: they give way by
+    /// as much as this many times what counts as no response.
+    Nearly(f64),
+    /// No steps led to any.
+    Nothing,
+}
+
+/// Improves `force` (the start) until it obeys the laws, or nearly. No contact is `NoSlip`.
+pub fn solve(problem: &ContactProblem<'_>, force: &mut [f64]) -> Found {
+    let (mut nearest, mut kept) = (NEARLY, None);
+    for compliance in COMPLIANCE {
+        let mut trial = force.to_vec();
+        let Some((_, way)) = solve_compliant(problem, compliance, RESIDUAL[0], &mut trial) else {
+            continue;
+        };
+        if way <= TAKEN_BACK {
+            force.copy_from_slice(&trial);
+            return Found::Forces;
+        }
+        if way <= nearest {
+            (nearest, kept) = (way, Some(trial));
+        }
+    }
+    kept.map_or(Found::Nothing, |kept| {
+        force.copy_from_slice(&kept);
+        Found::Nearly(nearest)
+    })
 }
 
 /// As `solve`, from forces that obey the laws already: only how redundant contacts share them may
 /// change. Says whether the new forces obey the laws exactly, or nearly; none, with `force` as it
 /// was, if no steps lead there.
 pub fn improve(problem: &ContactProblem<'_>, force: &mut [f64]) -> Option<bool> {
-    let missed = solve_compliant(problem, COMPLIANCE[0], NEAR, force)?;
-    Some(missed <= RESIDUAL[0])
+    let mut trial = force.to_vec();
+    let (missed, way) = solve_compliant(problem, COMPLIANCE[0], NEAR, &mut trial)?;
+    (way <= TAKEN_BACK).then(|| {
+        force.copy_from_slice(&trial);
+        missed <= RESIDUAL[0]
+    })
 }
 
 /// Points that give way alike; what that changes of the motion is taken back afterwards. Returns by
-/// how much the laws are missed, relative to the largest force; none if that is too much.
+/// how much the laws are missed, relative to the largest force, none if that is too much; and what
+/// could not be taken back, in units of what counts as no response.
 fn solve_compliant(
     problem: &ContactProblem<'_>,
     relative: f64,
     enough: f64,
     force: &mut [f64],
-) -> Option<f64> {
+) -> Option<(f64, f64)> {
     let n = problem.rows();
     let trace: f64 = (0..n).map(|i| problem.delassus[i * n + i]).sum();
     let compliance = relative * trace / n.max(1) as f64;
@@ -74,19 +110,22 @@ fn solve_compliant(
     let free = DVector::from_column_slice(problem.free);
     let mut f = DVector::from_column_slice(force);
     let mut given_way = DVector::zeros(n);
+    let mut result = None;
     for _ in 0..CORRECTIONS {
         let missed = iterate(problem, &scales, &g, &(&free - &given_way), enough, &mut f);
         if missed.is_nan() || missed > enough {
             return None;
         }
         let before = std::mem::replace(&mut given_way, compliance * &f);
+        let way = (&given_way - before).amax() / problem.response_zero();
+        force.copy_from_slice(f.as_slice());
+        result = Some((missed, way));
         // the distribution of forces stays as the compliance made it
-        if (&given_way - before).amax() <= 1e-2 * problem.response_zero() {
-            force.copy_from_slice(f.as_slice());
-            return Some(missed);
+        if way <= TAKEN_BACK {
+            break;
         }
     }
-    None
+    result
 }
 
 /// Newton's method on w = g f + b; returns by how much the laws are missed, relative to the largest

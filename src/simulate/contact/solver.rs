@@ -17,7 +17,8 @@ use super::modes::ModeSolver;
 use super::pyramid::Pyramid;
 use super::{
     Contact, ContactFailure, ContactProblem, ContactSolution, Friction, Mode, Space, closed_mode,
-    length, newton,
+    length,
+    newton::{self, Found},
 };
 
 /// How many combinations of modes are tried at most.
@@ -203,47 +204,67 @@ impl ContactSolver {
     }
 
     /// Solves for forces and reads their modes, from one start after the other, and changes the
-    /// modes until they obey all laws; the trial has what was found.
+    /// modes until they obey all laws; the trial has what was found. What nearly obeys them is
+    /// taken where no start leads to more.
     fn iterate(&mut self, problem: &ContactProblem<'_>) -> bool {
         self.trial.modes.clear();
         self.trial.modes.extend(problem.contacts.iter().map(closed_mode));
         if self.try_modes(problem) == Some(true) {
             return true;
         }
-        if self.refine(problem) {
+        let mut nearest: Option<(f64, ContactSolution)> = None;
+        if self.refine(problem, &mut nearest) {
             return true;
         }
         self.trial.force.fill(0.0);
         let report = self.pyramid.solve(problem, FACETS, &mut self.trial.force);
-        if report.outcome == LcpOutcome::Solved && self.refine(problem) {
+        if report.outcome == LcpOutcome::Solved && self.refine(problem, &mut nearest) {
             return true;
         }
-        if problem.contacts.iter().any(|contact| contact.slipping.is_some()) {
-            return false;
+        if problem.contacts.iter().all(|contact| contact.slipping.is_none()) {
+            self.trial.force.fill(0.0);
+            let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
+            gauss_seidel::solve(problem, limits, &mut self.trial.force);
+            if self.refine(problem, &mut nearest) {
+                return true;
+            }
         }
-        self.trial.force.fill(0.0);
-        let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
-        gauss_seidel::solve(problem, limits, &mut self.trial.force);
-        self.refine(problem)
+        let found = nearest.is_some();
+        if let Some((_, solution)) = nearest {
+            self.trial = solution;
+        }
+        found
     }
 
-    /// From the forces of the trial to lawful modes.
-    fn refine(&mut self, problem: &ContactProblem<'_>) -> bool {
+    /// From the forces of the trial to lawful modes; what only nearly obeys the laws goes to
+    /// `nearest`, if it is.
+    fn refine(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        nearest: &mut Option<(f64, ContactSolution)>,
+    ) -> bool {
         let solved = newton::solve(problem, &mut self.trial.force);
         self.trial.redundancy = 0;
         problem.respond(&self.trial.force, &mut self.trial.response);
         newton::modes(problem, &self.trial.force, &self.trial.response, &mut self.trial.modes);
-        if !solved {
-            return self.change_until_lawful(problem);
-        }
-        // at the edge of a case rounding reads a mode, of which the forces tell whether it is right
         let found = self.trial.clone();
-        let lawful = self.try_modes(problem) == Some(true);
-        self.trial.modes.clone_from(&found.modes);
-        if lawful || !self.change_until_lawful(problem) {
-            self.trial = found;
+        match solved {
+            Found::Forces => {
+                // at the edge of a case rounding reads a mode, of which the forces tell whether it
+                // is right
+                let lawful = self.try_modes(problem) == Some(true);
+                self.trial.modes.clone_from(&found.modes);
+                if lawful || !self.change_until_lawful(problem) {
+                    self.trial = found;
+                }
+                return true;
+            }
+            Found::Nearly(way) if nearest.as_ref().is_none_or(|(least, _)| way < *least) => {
+                *nearest = Some((way, found));
+            }
+            Found::Nearly(_) | Found::Nothing => {}
         }
-        true
+        self.change_until_lawful(problem)
     }
 
     /// Solves for the modes of the trial and changes those that break a law, all at once, until

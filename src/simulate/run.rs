@@ -125,7 +125,8 @@ pub fn simulate_believing(
     let (points, links, falls) = (model.contacts.len(), model.links.len(), model.fall_points.len());
     let mut motion = Motion::new(plant, control, drives, friction, holding);
     motion.believed = believed;
-    let y = motion.layout.pack(&state);
+    let mut y = motion.layout.pack(&state);
+    let standing = stand(&mut motion, &mut y)?;
     let mut run = Runner {
         watch: Watch::new(points, links, falls, y.len()),
         stepper: Stepper::new(simulation.method, state.t_s, &y),
@@ -144,12 +145,28 @@ pub fn simulate_believing(
         motion,
         y,
     };
-    run.close_touching()?;
+    run.begin(&standing)?;
     let stop = match run.go() {
         Ok(stop) => stop,
         Err(breakdown) => Stop::Breakdown(breakdown),
     };
     Ok(run.finish(stop))
+}
+
+/// Sets down what starts nearly on the ground; returns what stands there.
+fn stand(motion: &mut Motion<'_>, y: &mut [f64]) -> Result<Vec<usize>, StartError> {
+    motion.place(y);
+    let points = 0..motion.friction.len();
+    let touching: Vec<usize> = points.filter(|c| motion.gap(*c) < START_TOUCH_M).collect();
+    for &contact in &touching {
+        let depth = -motion.gap(contact);
+        if depth > DEPTH_M {
+            let name = motion.plant.model().contacts[contact].name.clone();
+            return Err(StartError::Penetration(name, depth));
+        }
+    }
+    // from here on what touches is held where it is
+    motion.set_down(&touching, y).map_err(StartError::Breakdown)
 }
 
 struct Runner<'a> {
@@ -177,25 +194,13 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    fn close_touching(&mut self) -> Result<(), StartError> {
+    /// The start: what stands on the ground is closed.
+    fn begin(&mut self, standing: &[usize]) -> Result<(), StartError> {
         self.sample_control(self.start_s);
-        self.motion.place(&self.y);
-        let touching: Vec<usize> = (0..self.watch.level.len())
-            .filter(|contact| self.motion.gap(*contact) < START_TOUCH_M)
-            .collect();
-        for &contact in &touching {
-            let depth = -self.motion.gap(contact);
-            if depth > DEPTH_M {
-                let name = self.motion.plant.model().contacts[contact].name.clone();
-                return Err(StartError::Penetration(name, depth));
-            }
-        }
-        if touching.is_empty() {
+        if standing.is_empty() {
             return Ok(());
         }
-        // from here on what touches is held where it is
-        let down = self.motion.set_down(&touching, &mut self.y).map_err(StartError::Breakdown)?;
-        self.happen(EventKind::Start, self.start_s, &down).map_err(StartError::Breakdown)
+        self.happen(EventKind::Start, self.start_s, standing).map_err(StartError::Breakdown)
     }
 
     fn go(&mut self) -> Result<Stop, Breakdown> {

@@ -451,7 +451,9 @@ pub(super) fn look_ahead(
 ) -> Result<(f64, f64), Breakdown> {
     // the step was good up to its end; not much is known beyond
     let last = stepper.time().max(t_s + 64.0 * AHEAD_S);
-    let mut ahead = AHEAD_S;
+    // steps are as long as what changes the forces takes, and may be much shorter
+    let length = stepper.time() - stepper.start_time();
+    let mut ahead = AHEAD_S.min((stepper.time() - t_s).max(0.1 * length)).max(SHORTEST_S);
     let mut worst = (t_s, f64::INFINITY);
     let mut trial = y.to_vec();
     loop {

@@ -112,7 +112,7 @@ impl Settler {
         self.contacts.clone_from(&motion.work.contacts);
         for _ in 0..HELD_ROUNDS {
             self.decide(motion, touching, &mut settled)?;
-            settled.impulses.extend(self.adopt(motion, &candidates, &candidates, y));
+            settled.impulses.extend(self.adopt(motion, (&candidates, &before), &candidates, y));
             if !self.release_held(motion, &candidates, y) {
                 break;
             }
@@ -123,7 +123,7 @@ impl Settler {
             && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
         if same && self.let_go(motion, &before, ahead)? {
             self.decide(motion, touching, &mut settled)?;
-            settled.impulses.extend(self.adopt(motion, &candidates, &candidates, y));
+            settled.impulses.extend(self.adopt(motion, (&candidates, &before), &candidates, y));
         }
         Ok(settled)
     }
@@ -237,7 +237,7 @@ impl Settler {
             }
             self.decide(motion, touching, settled)?;
             y.copy_from_slice(&before);
-            stilled = self.adopt(motion, &slow, candidates, y);
+            stilled = self.adopt(motion, (&slow, &[]), candidates, y);
             let held = self.release_held(motion, &slow, y);
             let decided: Vec<bool> = self.solution.modes.iter().map(|m| m.is_closed()).collect();
             if !held && decided == carries {
@@ -273,18 +273,19 @@ impl Settler {
         at_rest
     }
 
-    /// What slid, until other points of its foot were decided to stick, is at rest with them: lets
-    /// it be decided as such. Says if there was any.
+    /// What slid, until the rates of other points of its foot were taken out, is at rest with them:
+    /// lets it be decided as such. Says if there was any.
     fn release_held(&mut self, motion: &mut Motion<'_>, candidates: &[usize], y: &[f64]) -> bool {
         let rows = motion.ground.rows();
-        if rows < 3 || !self.solution.modes.contains(&Mode::Stick) {
+        if rows < 3 {
             return false;
         }
+        let rests_below = SLIP_SPEED.max(1.001 * motion.holding.slips.rests_below());
         motion.project(y, candidates);
         let mut any = false;
         for (index, contact) in self.contacts.iter_mut().enumerate() {
             let sliding = &motion.work.velocity[index * rows..index * rows + 2];
-            let held = sliding[0].hypot(sliding[1]) <= SLIP_SPEED;
+            let held = sliding[0].hypot(sliding[1]) <= rests_below;
             if held && self.solution.modes[index].is_closed() && contact.slipping.is_some() {
                 contact.slipping = None;
                 any = true;
@@ -375,14 +376,15 @@ impl Settler {
     }
 
     /// Takes the decided modes of contacts over, and takes out what is left of the rates that they
-    /// forbid, so that none of those that touch sinks.
+    /// forbid, so that none of those that touch sinks. What slips on, of those closed `before`,
+    /// runs if it did then.
     ///
     /// Contacts that stick do so where they are now: places from different events would contradict
     /// each other by what they have drifted, for points of one rigid foot.
     fn adopt(
         &mut self,
         motion: &mut Motion<'_>,
-        decided: &[usize],
+        (decided, before): (&[usize], &[Closed]),
         touching: &[usize],
         y: &mut [f64],
     ) -> Vec<(usize, Vec<f64>)> {
@@ -409,7 +411,8 @@ impl Settler {
             motion.ground.append(&motion.work.positions[3 * contact..3 * contact + 3], &mut along);
             let anchor = [along[0], if rows == 3 { along[1] } else { 0.0 }];
             let law = self.contacts[index].friction;
-            let runs = self.contacts[index].slipping.is_some();
+            let ran = |closed: &Closed| closed.contact != *contact || closed.runs;
+            let runs = self.contacts[index].slipping.is_some() && before.iter().all(ran);
             motion.closed.push(Closed { contact: *contact, mode, law, anchor, runs });
         }
         let impulses = motion.still(&held, &open, y).unwrap_or_default();

@@ -10,6 +10,8 @@
 //! never by the signs of an arbitrary one. Friction cones in space enter as tangent planes, added
 //! where the last distribution leaves the cone.
 
+mod margin;
+
 use super::cholesky::dot;
 use super::interior;
 use super::lemke::{LcpOutcome, Lemke};
@@ -22,8 +24,6 @@ const RANK: f64 = 1e-10;
 /// Smaller entries of a unit null vector are no direction: points of a foot that is flat up to a
 /// drift would pull at each other with 10^12 N to lift one of them.
 const DIRECTION: f64 = 1e-5;
-/// As much force to spare, relative to the largest, is far from any limit.
-const ENOUGH: f64 = 1e-4;
 /// Rounds of tangent planes: each at least halves the angle by which a cone is left.
 const ROUNDS: usize = 40;
 
@@ -36,6 +36,7 @@ pub struct ModeSolver {
     values: Vec<f64>,
     sharing: Sharing,
     limits: Vec<Limit>,
+    normals: Vec<Limit>,
     /// The system with its null vectors, where sharing finds nothing.
     system: MinimumNorm,
     /// The transpose, and the products of its null vectors with those of the system: needed where
@@ -120,44 +121,6 @@ impl ModeSolver {
         for (direction, along) in along.into_iter().enumerate() {
             self.move_along(direction, along);
         }
-    }
-
-    /// The largest t such that forces exist that keep the modes, with f_n >= t for every closed
-    /// contact and mu f_n - |f_t| >= t for every one that sticks \[N\].
-    ///
-    /// Continuous in time while the modes stay and the forces are determined; the first sign
-    /// change from positive to negative is when a contact has to open or to slip. Infinite if no
-    /// contact is closed, or if contacts press against each other without bound. With it comes the
-    /// largest component of the least forces that keep the modes.
-    pub fn margin(
-        &mut self,
-        problem: &ContactProblem<'_>,
-        modes: &[Mode],
-    ) -> Result<(f64, f64), ContactFailure> {
-        self.solve(problem, modes)?;
-        let largest = self.values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
-        let slack = least_slack(&self.limits, &self.values);
-        let rough = self.has_cones_in_space() && slack > 0.0;
-        if rough || self.sharing.nullity() == 0 {
-            return Ok((slack, largest));
-        }
-        let enough = ENOUGH * largest;
-        if self.has_cones_in_space() {
-            if self.sharing.share(&self.limits, enough) {
-                return Ok((enough, largest));
-            }
-            self.find_null_vectors();
-            let (margin, _) =
-                interior::largest_margin(&self.values, &self.system, &self.limits, enough);
-            return Ok((margin, largest));
-        }
-        self.find_null_vectors();
-        let mut margin = f64::INFINITY;
-        self.with_planes(problem, modes, |solver| {
-            margin = solver.largest_slack();
-            margin.is_finite().then_some(margin)
-        });
-        Ok((margin, largest))
     }
 
     /// What each closed contact must keep.
@@ -382,51 +345,6 @@ impl ModeSolver {
         for (value, entry) in self.values.iter_mut().zip(self.system.null_vector(direction)) {
             *value += along * entry;
         }
-    }
-
-    /// max t subject to A z + c >= t, as a complementarity problem of the multipliers y and of
-    /// (z, t) = x+ - x-; moves the values to z.
-    fn largest_slack(&mut self) -> f64 {
-        let (count, free) = (self.slack.len(), self.system.nullity());
-        let smallest = self.slack.iter().copied().fold(f64::INFINITY, f64::min);
-        self.values.copy_from_slice(&self.least);
-        let largest = self.slack.iter().fold(0.0_f64, |sum, slack| sum.max(slack.abs()));
-        if free == 0 || largest == 0.0 || !smallest.is_finite() {
-            return smallest;
-        }
-        let (columns, size) = (free + 1, count + 2 * free + 2);
-        self.lcp.clear();
-        self.lcp.resize(size * size, 0.0);
-        for row in 0..count {
-            for column in 0..columns {
-                let last = column == free;
-                let entry = if last { -1.0 } else { self.slope[row * free + column] };
-                let (plus, minus) = (count + column, count + columns + column);
-                self.lcp[row * size + plus] = entry;
-                self.lcp[row * size + minus] = -entry;
-                self.lcp[plus * size + row] = -entry;
-                self.lcp[minus * size + row] = entry;
-            }
-        }
-        self.lcp_right.clear();
-        self.lcp_right.extend(self.slack.iter().map(|slack| slack / largest));
-        self.lcp_right.resize(size, 0.0);
-        self.lcp_right[count + free] = -1.0;
-        self.lcp_right[count + columns + free] = 1.0;
-        let report = self.lemke.solve(&self.lcp, &self.lcp_right, 50 * size);
-        match report.outcome {
-            LcpOutcome::Solved => {}
-            LcpOutcome::Ray => return f64::INFINITY,
-            // A lower bound that is certain.
-            LcpOutcome::Limit | LcpOutcome::Inaccurate => return smallest,
-        }
-        let x = |solution: &[f64], column: usize| {
-            largest * (solution[count + column] - solution[count + columns + column])
-        };
-        for direction in 0..free {
-            self.move_along(direction, x(self.lemke.solution(), direction));
-        }
-        x(self.lemke.solution(), free)
     }
 }
 

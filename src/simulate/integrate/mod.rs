@@ -55,7 +55,7 @@ const SHORTEST_FAILURE_S: f64 = 1e-10;
 
 /// So many steps in a row that are shorter than `SHORT_S` lead nowhere: the rates have a limit
 /// there that no step gets over.
-const SHORT_STEPS: usize = 2000;
+const SHORT_STEPS: usize = 10_000;
 const SHORT_S: f64 = 1e-8;
 
 /// The method of integration.

@@ -13,7 +13,7 @@ use crate::simulate::integrate::Method;
 
 /// v_s in units of the absolute accuracy of rates, and within which limits [m/s].
 const ERRORS: f64 = 1e4;
-const SPEEDS: [f64; 2] = [1e-7, 1e-4];
+const SPEEDS: [f64; 2] = [1e-6, 1e-4];
 /// From this many v_s on nothing is remembered.
 const FORGETS: f64 = 4.0;
 

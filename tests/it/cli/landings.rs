@@ -60,13 +60,11 @@ fn a_sliding_landing_has_a_solution() {
 }
 
 #[test]
-#[ignore = "open: adhesion for microseconds where slipping ends, at a high accuracy"]
 fn slipping_ends_without_adhesion() {
     assert!(ends("end_of_slip", &[]).0);
 }
 
 #[test]
-#[ignore = "open: a step becomes too small at a high accuracy"]
 fn a_higher_accuracy_comes_to_the_same_end() {
     assert!(ends("fine_accuracy", &[]).0);
 }

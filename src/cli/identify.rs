@@ -36,7 +36,7 @@ use std::path::PathBuf;
 /// are any); --columns maps those of other logs. Positions and torques pass one zero-phase filter,
 /// torques and regressor one decimator. Base parameters are exact; what the motion does not show
 /// keeps the model's value and is said to. Exits with 1 if what is found leaves as much of the
-/// torques as nothing would.
+/// torques as nothing would, or nearly all of the torque of a joint that moves.
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:
@@ -428,5 +428,6 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         (_, false) => text::write(out, &shown)?,
     }
     let judged = found.validate.as_ref().unwrap_or(&found.train);
-    Ok(if judged.relative < 1.0 { Answer::Done } else { Answer::Negative })
+    let explains = judged.relative < 1.0 && found.unexplained.is_empty();
+    Ok(if explains { Answer::Done } else { Answer::Negative })
 }

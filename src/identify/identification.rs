@@ -4,8 +4,8 @@ use super::condition::Conditioned;
 use super::estimate::{
     Consistent, Convergence, Estimate, EstimateError, ExchangedJoints, FlippedTorque,
     IdentifiedParameter, MistakenUnits, Options, SlowRows, Status, Validation, biased_frictions,
-    consistent, convergence, estimate, exchanged_joints, flipped_torques, mistaken_units,
-    noise_of_positions, parameters, validate,
+    consistent, convergence, estimate, exchanged_joints, flipped_torques, long_enough,
+    mistaken_units, noise_of_positions, parameters, unexplained_joints, validate,
 };
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -48,7 +48,10 @@ pub struct Identification {
     pub reversals: Vec<(String, f64)>,
     /// Two joints whose columns seem to be exchanged.
     pub exchanged: Option<ExchangedJoints>,
-    /// Time or torques that seem to be in another unit.
+    /// Joints that move and of whose torque nearly all is left, in the logs for validation or, if
+    /// there are none, those of the estimate, each with the share.
+    pub unexplained: Vec<(String, f64)>,
+    /// Time, torques or angles that seem to be in another unit.
     pub units: Option<MistakenUnits>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
@@ -73,6 +76,10 @@ pub struct LeftOutRows {
 /// have as much, so that its square is their bias, and standard errors of a good log are a
 /// thousandth.
 const BIASING: f64 = 0.01;
+
+/// The share of a torque from which on noise of the positions may look like another unit of time.
+/// It is that of the estimate, which no unit changes.
+const NOISY: f64 = 0.1;
 
 /// The share of the torques that an estimate of exchanged columns leaves, at least.
 const MISFIT: f64 = 0.05;
@@ -135,7 +142,21 @@ impl Identification {
                 100.0 * share
             )
         });
-        exchanged.chain(units).chain(flipped).chain(self.bias()).chain(reversals).collect()
+        let unexplained = self.unexplained.iter().map(|(joint, share)| {
+            format!(
+                "The torque of {joint} is not explained: {:.0} % of it is left, although the joint \
+                 moves. Its column may be another quantity, in another unit, or noise; what was \
+                 found is not to be believed.",
+                100.0 * share
+            )
+        });
+        exchanged
+            .chain(units)
+            .chain(unexplained)
+            .chain(flipped)
+            .chain(self.bias())
+            .chain(reversals)
+            .collect()
     }
 
     /// The names of parameters that the motion does not show.
@@ -151,6 +172,9 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let given = model.model_axes();
     let start = given.clone().unwrap_or_else(|| vec![0.0; model.rank()]);
     let found = estimate(model, train, instruments, options, &start)?;
+    if options.prior.is_empty() {
+        long_enough(train, &found)?;
+    }
     let phi = found.solution.phi.as_slice();
     let judged = |phi: &[f64]| (!held_out.is_empty()).then(|| validate(model, phi, held_out));
     let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
@@ -165,16 +189,20 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let names = model.joints.iter().map(|joint| joint.name.clone());
     let most = names.zip(noise).max_by(|a, b| a.1.total_cmp(&b.1));
     let listed = parameters(model, &found);
+    let is_noisy = most.as_ref().is_some_and(|(_, share)| *share > NOISY);
+    let held_out_left = judged(phi);
+    let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));
     Ok(Identification {
+        unexplained: unexplained_joints(model, all_left.0, all_left.1),
         flipped: flipped_torques(model, &found, &listed),
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, &found),
         parameters: listed,
         exchanged: (left.relative > MISFIT).then(|| exchanged_joints(model, train)).flatten(),
-        units: mistaken_units(model, train),
+        units: mistaken_units(model, train, [left.relative > MISFIT, is_noisy]),
         train: left,
         position_noise: most.filter(|(_, share)| *share > 0.0),
-        validate: judged(phi),
+        validate: held_out_left,
         before: given.map(|phi| {
             let logs = if held_out.is_empty() { train } else { held_out };
             validate(model, &phi, logs).relative

@@ -10,14 +10,15 @@ use std::fmt;
 const BLOCK: usize = 512;
 const BLOCKS: usize = 4;
 
-/// Less than this share of the squares of torques is not for exchanged columns.
-const SMALL: f64 = 0.1;
+/// Less than this share of the torques (roots of mean squares, as all here) is not for exchanged
+/// columns.
+const SMALL: f64 = 0.05;
 
 /// What is left must fall to this share of what was left before.
 const BETTER: f64 = 0.5;
 
-/// And explain this much of the squares of torques.
-const LEFT: f64 = 0.4;
+/// And to this share of the torques.
+const LEFT: f64 = 0.63;
 
 /// Which columns of two joints seem to be exchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +38,8 @@ pub struct ExchangedJoints {
     pub joints: [String; 2],
     /// What is exchanged.
     pub columns: ExchangedColumns,
-    /// The share of the squares of torques that the model's values leave, as the log is and with
-    /// the columns exchanged.
+    /// The share of the torques, as roots of mean squares, that the model's values leave, as the
+    /// log is and with the columns exchanged.
     pub left: [f64; 2],
 }
 
@@ -53,7 +54,7 @@ impl fmt::Display for ExchangedJoints {
         write!(
             f,
             "{what} of {a} and {b} seem to be exchanged: the model's own values leave {:.0} % of \
-             the squares of the torques, and {:.0} % the other way round",
+             the torques, and {:.0} % the other way round",
             100.0 * left[0],
             100.0 * left[1]
         )
@@ -142,7 +143,7 @@ impl Balance<'_> {
                 let size = if [a, b].contains(joint) { pair } else { self.sizes[*joint] };
                 misses[*joint] / size
             };
-            joints.iter().map(of_joint).sum::<f64>() / joints.len().max(1) as f64
+            (joints.iter().map(of_joint).sum::<f64>() / joints.len().max(1) as f64).sqrt()
         };
         [share(&both[0]), share(&both[1])]
     }

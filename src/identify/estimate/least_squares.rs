@@ -21,6 +21,10 @@ const MAX_REWEIGHTING: usize = 30;
 /// Change of phi, in standard errors, below which weights have settled.
 const SETTLED: f64 = 1e-3;
 
+/// Samples that are independent of each other which a parameter needs, at least: with fewer,
+/// residuals are far smaller than errors and standard errors say nothing.
+const ROWS_OF_ONE: usize = 4;
+
 /// How base parameters are estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Method {
@@ -63,6 +67,8 @@ pub enum EstimateError {
     NoTorque,
     /// Fewer rows than parameters: rows, parameters.
     TooFewRows(usize, usize),
+    /// Logs too short for their filter: independent samples of all torques, parameters.
+    TooShort(usize, usize),
     /// Instruments that have other samples than the logs.
     Instruments,
     /// Weights that do not settle.
@@ -76,6 +82,14 @@ impl fmt::Display for EstimateError {
             Self::TooFewRows(rows, parameters) => {
                 write!(f, "{rows} rows are too few for {parameters} parameters")
             }
+            Self::TooShort(independent, parameters) => write!(
+                f,
+                "the logs are too short: all torques have about {independent} samples that are \
+                 independent of each other after the filter, and {parameters} parameters need \
+                 {}\n  hint: more of the motion, or a higher cutoff (--filter) if the log has \
+                 little noise",
+                ROWS_OF_ONE * parameters
+            ),
             Self::Instruments => write!(
                 f,
                 "instruments must be as many logs as there are for training, each with as many \
@@ -136,6 +150,22 @@ pub fn estimate(
         covariance *= squares / degrees_of_freedom;
     }
     Ok(Estimate { covariance, degrees_of_freedom, ..first })
+}
+
+/// Whether logs have enough samples for an estimate. A filter leaves two that are independent in a
+/// period of its cutoff.
+pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
+    let of = |log: &Conditioned| {
+        let share = log.filter.as_ref().map_or(1.0, |filter| (2.0 * filter.cutoff()).min(1.0));
+        let independent = (share * log.range.len() as f64).min(log.samples() as f64);
+        independent * log.torque.iter().flatten().count() as f64
+    };
+    let independent = logs.iter().map(of).sum::<f64>() as usize;
+    let parameters = found.solution.excited();
+    match independent < ROWS_OF_ONE * parameters {
+        true => Err(EstimateError::TooShort(independent, parameters)),
+        false => Ok(()),
+    }
 }
 
 /// What estimates have in common.

@@ -7,7 +7,8 @@
 //! - [`validate`]: what is left of the torques
 //! - [`flipped_torques`]: whose sign is wrong
 //! - [`exchanged_joints`]: whose columns have each other's names
-//! - [`mistaken_units`]: time or torques in another unit
+//! - [`mistaken_units`]: time, torques or angles in another unit
+//! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
@@ -26,6 +27,7 @@ mod rows;
 mod solve;
 mod total;
 mod triangle;
+mod unexplained;
 mod units;
 mod validate;
 mod widening;
@@ -35,7 +37,7 @@ pub use consistent::{Consistent, consistent};
 pub use errors::{Errors, interval_factor};
 pub use exchanged::{ExchangedColumns, ExchangedJoints, exchanged_joints};
 pub use flipped::{FlippedTorque, flipped_torques};
-pub use least_squares::{Estimate, EstimateError, Method, Options, estimate};
+pub use least_squares::{Estimate, EstimateError, Method, Options, estimate, long_enough};
 pub use left_out::SlowRows;
 pub(in crate::identify) use left_out::{biased_frictions, is_biased};
 pub(in crate::identify) use likelihood::noise_of_positions;
@@ -44,5 +46,6 @@ pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
-pub use units::{MistakenUnits, mistaken_units};
+pub use unexplained::unexplained_joints;
+pub use units::{MistakenQuantity, MistakenUnits, mistaken_units};
 pub use validate::{JointResidual, LAGS, Validation, validate};

@@ -203,7 +203,11 @@ fn a_torque_of_the_wrong_sign_is_told_by_its_joint() {
         let words = ["tulip_leg_table34", "--train", "log.csv", "--filter", "10"];
         let sound = identified(&directory, &words);
         assert!(!sound["remarks"].to_string().contains("wrong sign"), "{}", sound["remarks"]);
-        let turned = identified(&directory, &[&words[..], &["--columns", "map.json"]].concat());
+        let more = ["--columns", "map.json", "--json"];
+        let run = run_in(&directory.path, &[&["identify"][..], &words[..], &more[..]].concat());
+        // of one of the two torques next to nothing is explained
+        assert_ne!(run.code, Some(2), "{}", run.stderr);
+        let turned: Value = serde_json::from_str(&run.stdout).expect("JSON");
         let remarks = turned["remarks"].to_string();
         assert!(remarks.contains(&format!("The torque of {joint} seems")), "{remarks}");
         assert_eq!(remarks.matches("wrong sign").count(), 1, "{remarks}");
@@ -247,6 +251,36 @@ fn exchanged_joints_are_told_by_the_balance_of_torques() {
         let run = run_in(&directory.path, &accepted);
         assert!(run.code != Some(2) && run.stdout.contains("exchanged"), "{}", run.stdout);
     }
+}
+
+/// A torque that is something else is told, and logs that end before they say anything.
+#[test]
+fn unexplained_torques_and_short_logs_are_told() {
+    let directory = Directory::new("unexplained");
+    write(&directory, "arm.json", &moving_arm().to_string());
+    let run = run_in(&directory.path, &["simulate", "arm.json", "-o", "arm.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let text = std::fs::read_to_string(directory.path.join("arm.csv")).expect("a log");
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+    let columns: Vec<&str> = lines[0].split(',').collect();
+    let torque = columns.iter().position(|one| *one == "tau_link2").expect("a torque");
+    let mut noise = lines[0].to_owned() + "\n";
+    for (row, line) in lines[1..].iter().enumerate() {
+        // a fast square wave of no motion's period
+        let value = if row * row / 7 % 2 == 0 { "1.0" } else { "-1.0" };
+        let mut fields: Vec<&str> = line.split(',').collect();
+        fields[torque] = value;
+        noise += &(fields.join(",") + "\n");
+    }
+    write(&directory, "noise.csv", &noise);
+    let words = ["identify", "planar_2r", "--accept-suspicious", "--train"];
+    let run = run_in(&directory.path, &[&words[..], &["noise.csv"]].concat());
+    assert_eq!(run.code, Some(1), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("The torque of link2 is not explained"), "{}", run.stdout);
+    write(&directory, "short.csv", &(lines[..111].join("\n") + "\n"));
+    let run = run_in(&directory.path, &[&words[..], &["short.csv"]].concat());
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("the logs are too short"), "{}", run.stderr);
 }
 
 /// What is written is a model, however little the log says: bodies as sums of unknowns, moments of
@@ -306,6 +340,14 @@ fn what_only_the_model_shows_is_told() {
         (map(r#", "t": {"scale": 0.1}"#), Some(("the time seems", r#""scale": 10"#))),
         (map(r#", "t": {"scale": 0.001}"#), Some(("the time seems", r#""scale": 1000"#))),
         (map(&torques(1000.0)), Some(("torques seem to", r#""scale": 0.001"#))),
+        (
+            map(r#", "tau_link2": {"scale": 1000}"#),
+            Some(("the torque of link2 seems", r#""scale": 0.001"#)),
+        ),
+        (
+            map(r#", "q_link1": {"scale": 0.017453}, "q_link2": {"scale": 0.017453}"#),
+            Some(("positions seem to", r#""scale": 57.29"#)),
+        ),
         (map(""), None),
     ];
     for (map, told) in cases {

@@ -331,11 +331,9 @@ impl Answered {
             read = logs::read((arguments, &conditions), &robot, &model)?;
             (found, updated) = estimated(&read, &options)?;
         }
-        if let (Some(exchanged), false) = (&found.exchanged, arguments.accept_suspicious) {
-            return Err(IdentifyFailure::Exchanged(exchanged.clone()).into());
-        }
-        if let (Some(units), false) = (&found.units, arguments.accept_suspicious) {
-            return Err(IdentifyFailure::Units(units.clone()).into());
+        let is_sure = found.misread.iter().any(|one| one.is_sure);
+        if is_sure && !arguments.accept_suspicious {
+            return Err(IdentifyFailure::Misread(found.misread).into());
         }
         progress.show("simulating the logs again");
         let simulated = match (&controller, read.motions.is_empty()) {
@@ -428,6 +426,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         (_, false) => text::write(out, &shown)?,
     }
     let judged = found.validate.as_ref().unwrap_or(&found.train);
+    let is_doubted = !(found.misread.is_empty() || arguments.accept_suspicious);
     let explains = judged.relative < 1.0 && found.unexplained.is_empty();
-    Ok(if explains { Answer::Done } else { Answer::Negative })
+    Ok(if explains && !is_doubted { Answer::Done } else { Answer::Negative })
 }

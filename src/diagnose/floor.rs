@@ -80,7 +80,7 @@ impl NoiseFloor {
             deviation: deviation.collect(),
             white,
             positions,
-            period_s: laps.map(|laps| laps.samples as f64 * signals.log_step_s),
+            period_s: laps.map(|laps| laps.period * signals.log_step_s),
             laps: of_laps,
         }
     }
@@ -111,8 +111,9 @@ fn usual(values: Vec<f64>) -> f64 {
 
 /// Usual deviation of a signal, from the differences of laps that follow each other.
 fn lap_noise(signal: &[f64], laps: Laps) -> f64 {
-    let Laps { start, samples, count } = laps;
-    let pairs = start..start + (count - 1) * samples;
+    let Laps { start, samples, count, .. } = laps;
+    let end = (start + (count - 1) * samples).min(signal.len().saturating_sub(samples));
+    let pairs = start..end;
     usual(pairs.map(|k| signal[k + samples] - signal[k]).collect()) / 2.0_f64.sqrt()
 }
 

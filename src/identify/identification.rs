@@ -2,10 +2,10 @@
 
 use super::condition::Conditioned;
 use super::estimate::{
-    Consistent, Convergence, Estimate, EstimateError, ExchangedJoints, FlippedTorque,
-    IdentifiedParameter, MistakenUnits, Options, SlowRows, Status, Validation, biased_frictions,
-    consistent, convergence, estimate, exchanged_joints, flipped_torques, long_enough,
-    mistaken_units, noise_of_positions, parameters, unexplained_joints, validate,
+    Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, MisreadColumns, Options,
+    SlowRows, Status, Validation, biased_frictions, consistent, convergence, estimate,
+    filter_errors, long_enough, misread_columns, noise_of_positions, nominal_values, parameters,
+    unexplained_joints, validate,
 };
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -39,20 +39,20 @@ pub struct Identification {
     /// The joint of whose torque noise of the positions makes most by itself, and how much: a share
     /// of its root of mean square. Parameters are biased if it is more than some percent.
     pub position_noise: Option<(String, f64)>,
-    /// Joints whose torques seem to have the wrong sign.
-    pub flipped: Vec<FlippedTorque>,
+    /// Columns that seem to be other ones than they are taken for, one after the other: each with
+    /// those before it mended.
+    pub misread: Vec<MisreadColumns>,
+    /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
+    /// it, and how much: a share of its root of mean square.
+    pub filter_error: Option<(String, f64)>,
     /// Rows that were left out, joint by joint.
     pub left_out: Vec<LeftOutRows>,
     /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in so much
     /// of the logs that it is biased, each with the share of samples.
     pub reversals: Vec<(String, f64)>,
-    /// Two joints whose columns seem to be exchanged.
-    pub exchanged: Option<ExchangedJoints>,
     /// Joints that move and of whose torque nearly all is left, in the logs for validation or, if
     /// there are none, those of the estimate, each with the share.
     pub unexplained: Vec<(String, f64)>,
-    /// Time, torques or angles that seem to be in another unit.
-    pub units: Option<MistakenUnits>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
     /// The nearest bodies that exist.
@@ -77,12 +77,9 @@ pub struct LeftOutRows {
 /// thousandth.
 const BIASING: f64 = 0.01;
 
-/// The share of a torque from which on noise of the positions may look like another unit of time.
-/// It is that of the estimate, which no unit changes.
-const NOISY: f64 = 0.1;
-
-/// The share of the torques that an estimate of exchanged columns leaves, at least.
-const MISFIT: f64 = 0.05;
+/// The same of what the filter makes of a motion that is too fast for it, if it is also this share
+/// of what is left.
+const SMEARED: [f64; 2] = [0.01, 0.3];
 
 impl Identification {
     /// What is to be said if noise of the positions biases the parameters.
@@ -91,6 +88,17 @@ impl Identification {
         Some(format!(
             "Noise of the positions alone makes {:.0} % of the torque of {joint}: parameters are \
              biased, and their intervals too narrow. A filter with a lower cutoff has less of it.",
+            100.0 * share
+        ))
+    }
+
+    /// What is to be said if the filter itself makes a part of the torques.
+    fn smeared(&self) -> Option<String> {
+        let (joint, share) = self.filter_error.as_ref()?;
+        Some(format!(
+            "The filter by itself makes an error of {:.1} % of the torque of {joint}: the motion \
+             is too fast for it, or has too few samples a second. Parameters are biased, and their \
+             intervals too narrow. --filter with a higher cutoff makes less of it.",
             100.0 * share
         ))
     }
@@ -112,27 +120,11 @@ impl Identification {
 
     /// All that is to be said before anybody believes the parameters.
     pub fn warnings(&self) -> Vec<String> {
-        let flipped = self.flipped.iter().map(|FlippedTorque { joint, left }| {
-            let seen = match left {
-                Some([before, after]) => format!(
-                    "what is left of all torques falls from {:.1} % to {:.1} %",
-                    100.0 * before,
-                    100.0 * after
-                ),
-                None => "its friction is not below 0".to_owned(),
-            };
-            format!(
-                "The torque of {joint} seems to have the wrong sign: with the other one {seen}. \
-                 Torques are positive along the joint axis; --columns with {{\"tau_{joint}\": \
-                 {{\"scale\": -1}}}} turns it round."
-            )
+        let misread = self.misread.iter().map(|one| {
+            let accepted = if one.is_sure { "Accepted: " } else { "Perhaps " };
+            let hint = one.hint();
+            format!("{accepted}{} ({hint}).", one.summary())
         });
-        let exchanged = self.exchanged.iter().map(|one| format!("Accepted: {one}."));
-        let first = |one: &MistakenUnits| {
-            let text = one.to_string();
-            format!("Accepted: {}.", text.lines().next().unwrap_or_default())
-        };
-        let units = self.units.iter().map(first);
         let reversals = self.reversals.iter().map(|(joint, share)| {
             format!(
                 "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
@@ -150,11 +142,10 @@ impl Identification {
                 100.0 * share
             )
         });
-        exchanged
-            .chain(units)
+        misread
             .chain(unexplained)
-            .chain(flipped)
             .chain(self.bias())
+            .chain(self.smeared())
             .chain(reversals)
             .collect()
     }
@@ -185,21 +176,22 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         found.map_or(0.0, |one| one.torque_rms)
     };
     let torques: Vec<f64> = model.joints.iter().map(torque_of).collect();
-    let noise = noise_of_positions(model, train, (phi, &options.position_noise), &torques);
+    let deviations = &options.position_noise;
+    let noise = noise_of_positions(model, train, (phi, deviations), &torques, true);
     let names = model.joints.iter().map(|joint| joint.name.clone());
     let most = names.zip(noise).max_by(|a, b| a.1.total_cmp(&b.1));
     let listed = parameters(model, &found);
-    let is_noisy = most.as_ref().is_some_and(|(_, share)| *share > NOISY);
+    let noise_of_own = nominal_values(model)
+        .map(|own| noise_of_positions(model, train, (&own, deviations), &torques, false));
     let held_out_left = judged(phi);
     let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));
     Ok(Identification {
         unexplained: unexplained_joints(model, all_left.0, all_left.1),
-        flipped: flipped_torques(model, &found, &listed),
+        misread: misread_columns(model, train, (&listed, noise_of_own.as_deref())),
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, &found),
         parameters: listed,
-        exchanged: (left.relative > MISFIT).then(|| exchanged_joints(model, train)).flatten(),
-        units: mistaken_units(model, train, [left.relative > MISFIT, is_noisy]),
+        filter_error: filter_error(model, train, (phi, &left)),
         train: left,
         position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: held_out_left,
@@ -211,6 +203,21 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         consistent: consistent(model, &found, &standard),
         estimate: found,
     })
+}
+
+/// The joint of whose torque the filter makes most by itself, if that is a part of what is left.
+fn filter_error(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (phi, left): (&[f64], &Validation),
+) -> Option<(String, f64)> {
+    let names = model.joints.iter().map(|joint| joint.name.clone());
+    let is_large = |(name, share): &(String, f64)| {
+        let left = left.joints.iter().find(|one| one.name == *name);
+        *share > SMEARED[0] && left.is_some_and(|left| *share > SMEARED[1] * left.relative)
+    };
+    let all = names.zip(filter_errors(model, logs, phi)).filter(is_large);
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The joints whose Coulomb friction is biased by samples that were not left out.

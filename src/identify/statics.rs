@@ -7,7 +7,7 @@
 //! link by link; least squares in all rows does the subtraction.
 
 use super::knowledge::Knowledge;
-use crate::plants::regression::{RegressionModel, RegressionRows};
+use crate::plants::regression::{RegressionJoint, RegressionModel, RegressionRows};
 use denavit_codegen::expr::text::nearest;
 use std::fmt;
 
@@ -57,6 +57,8 @@ pub enum StaticFault {
     /// Links weigh so many times what the model says, as if in another unit: mass \[kg\], that of
     /// the model \[kg\].
     Unit(usize, f64, f64),
+    /// Torques or positions of all postures seem to be in another unit, or of the other sign.
+    Postures(MisreadPostures),
     /// A posture has not one position for each joint: expected, found.
     WrongPosture(usize, usize, usize),
     /// A standard deviation is not positive, or a number not finite.
@@ -88,10 +90,12 @@ impl fmt::Display for StaticFault {
             ),
             Self::Unit(at, mass, expected) => write!(
                 f,
-                "measurement {}: {mass} kg, and the model says {expected} kg: is it in grams?\n  \
+                "measurement {}: {mass} kg, and the model says {expected} kg: is it in {}?\n  \
                  hint: --accept-suspicious takes it as it is",
-                at + 1
+                at + 1,
+                if mass > expected { "grams" } else { "tonnes" }
             ),
+            Self::Postures(one) => write!(f, "{one}"),
             Self::WrongPosture(at, expected, found) => write!(
                 f,
                 "measurement {}: a posture has {expected} positions, {found} are given",
@@ -108,6 +112,47 @@ impl fmt::Display for StaticFault {
 
 impl std::error::Error for StaticFault {}
 
+/// Torques or positions of all postures that seem to be in another unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MisreadPostures {
+    /// Whether it is the torques, or the positions of joints that turn.
+    pub of_torques: bool,
+    /// What they are to be multiplied with.
+    pub factor: f64,
+    /// The share of the torques (roots of mean squares) that the model's own values leave, as they
+    /// are and with the factor.
+    pub left: [f64; 2],
+}
+
+impl fmt::Display for MisreadPostures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { of_torques, factor, left: [before, after] } = self;
+        let what = if *of_torques { "torques" } else { "positions" };
+        let how = match *factor == -1.0 {
+            true => "to have the wrong sign".to_owned(),
+            false => "to be in another unit".to_owned(),
+        };
+        write!(
+            f,
+            "{what} of the postures seem {how}: the model's own values leave {:.0} % of the \
+             torques, and {:.0} % with {factor} times the {what}\n  hint: --accept-suspicious \
+             takes them as they are",
+            100.0 * before,
+            100.0 * after
+        )
+    }
+}
+
+/// Factors of torques and of angles that are tried.
+const OF_TORQUES: [f64; 7] = [-1.0, 1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3];
+const OF_ANGLES: [f64; 3] = [-1.0, std::f64::consts::PI / 180.0, 180.0 / std::f64::consts::PI];
+
+/// What the model's own values leave of the torques must be more than this share, and fall to this
+/// share of it and to less than this.
+const FAR: f64 = 0.2;
+const BETTER: f64 = 0.5;
+const NEAR: f64 = 0.32;
+
 /// Times the model's mass that no mistake of a model is.
 const OTHER_UNIT: f64 = 100.0;
 
@@ -123,10 +168,61 @@ pub fn suspicious_units(
     let suspicious = |(at, measurement): (usize, &StaticMeasurement)| {
         let StaticMeasurement::Weighing { links, mass_kg, .. } = measurement else { return None };
         let expected: f64 = links.iter().map(mass).sum::<Option<f64>>()?;
-        let is_other = expected > 0.0 && *mass_kg > OTHER_UNIT * expected;
+        let is_other = expected > 0.0
+            && *mass_kg > 0.0
+            && (*mass_kg > OTHER_UNIT * expected || *mass_kg * OTHER_UNIT < expected);
         is_other.then_some(StaticFault::Unit(at, *mass_kg, expected))
     };
-    measurements.iter().enumerate().filter_map(suspicious).collect()
+    let weighed = measurements.iter().enumerate().filter_map(suspicious);
+    weighed.chain(misread_postures(model, measurements).map(StaticFault::Postures)).collect()
+}
+
+/// The unit of torques or positions with which the model's own values make far more of what holds
+/// the postures; none if the model lacks one, or there are no two torques.
+fn misread_postures(
+    model: &RegressionModel,
+    measurements: &[StaticMeasurement],
+) -> Option<MisreadPostures> {
+    let phi = model.model_axes()?;
+    let n = model.joints.len();
+    let mut evaluator = model.evaluator();
+    let mut left = |of_angles: f64, of_torques: f64| -> Option<f64> {
+        let (mut sums, mut count) = ([0.0; 2], 0);
+        for measurement in measurements {
+            let StaticMeasurement::Posture { q, torques } = measurement else { continue };
+            if q.len() != n {
+                return None;
+            }
+            let of_joint = |(q, joint): (&f64, &RegressionJoint)| {
+                if joint.slides { *q } else { of_angles * q }
+            };
+            let q = q.iter().zip(&model.joints).map(of_joint);
+            let resting: Vec<f64> = q.chain(std::iter::repeat_n(0.0, 2 * n)).collect();
+            let columns: Vec<&[f64]> = resting.iter().map(std::slice::from_ref).collect();
+            let mut rows = RegressionRows::default();
+            evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");
+            for torque in torques {
+                let joint = model.joints.iter().position(|joint| joint.name == torque.joint)?;
+                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+                let mut computed = [0.0];
+                rows.torque(joint, &own, &mut computed);
+                let measured = of_torques * torque.torque;
+                sums[0] += (measured - computed[0]).powi(2);
+                sums[1] += measured * measured;
+                count += 1;
+            }
+        }
+        (count > 1 && sums[1] > 0.0).then(|| (sums[0] / sums[1]).sqrt())
+    };
+    let before = left(1.0, 1.0).filter(|before| *before > FAR)?;
+    let torques = OF_TORQUES.into_iter().map(|factor| (true, factor));
+    let tried = torques.chain(OF_ANGLES.into_iter().map(|factor| (false, factor)));
+    let judged = tried.filter_map(|(of_torques, factor)| {
+        let after = if of_torques { left(1.0, factor) } else { left(factor, 1.0) };
+        let left = [before, after.filter(|left| *left < NEAR.min(BETTER * before))?];
+        Some(MisreadPostures { of_torques, factor, left })
+    });
+    judged.min_by(|a, b| a.left[1].total_cmp(&b.left[1]))
 }
 
 /// What measurements at rest say of the standard parameters, or all that is wrong with them.

@@ -116,7 +116,7 @@ impl RegressionModel {
     ///
     /// Rank and formulas are exact for the constants as symbols. Where their values make more
     /// columns depend on others (a length that is 0, a centre of mass that is known to be on an
-    /// axis), those of the values are taken.
+    /// axis), or the change of basis singular, those of the values are taken.
     pub fn new(
         robot: &Robot,
         options: RegressorOptions,
@@ -129,10 +129,18 @@ impl RegressionModel {
             let numeric = bake_geometry(&robot).ok()?;
             Some((reduced(&numeric, keep).ok()?, numeric))
         };
-        let special = special().filter(|(special, _)| special.rank() < base.rank());
-        match special {
-            Some((special, numeric)) => Self::of(&numeric, special, side),
-            None => Self::of(&robot, base, side),
+        let special = special();
+        let is_less = special.as_ref().is_some_and(|(special, _)| special.rank() < base.rank());
+        let general = match is_less {
+            true => Err(RegressionError::Singular(robot.name.clone())),
+            false => Self::of(&robot, base, side),
+        };
+        // a symbol whose value is 0 may be what a column was kept for
+        match (general, special) {
+            (Err(RegressionError::Singular(_)), Some((special, numeric))) => {
+                Self::of(&numeric, special, side)
+            }
+            (general, _) => general,
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use denavit::identify::UpdateError;
 use denavit::identify::condition::ConditionError;
-use denavit::identify::estimate::{EstimateError, ExchangedJoints, MistakenUnits};
+use denavit::identify::estimate::{EstimateError, MisreadColumns};
 use denavit::identify::forward::ForwardError;
 use denavit::identify::log::{LogFaults, MappingError};
 use denavit::identify::statics::StaticFault;
@@ -28,8 +28,8 @@ pub(crate) enum IdentifyFailure {
     Plant(String, PlantError),
     /// Nothing can be estimated; holds the model's name.
     Estimate(String, EstimateError),
-    /// Columns of two joints seem to be exchanged.
-    Exchanged(ExchangedJoints),
+    /// Columns seem to be other ones than they are taken for.
+    Misread(Vec<MisreadColumns>),
     /// What was found makes no model.
     Update(UpdateError),
     /// A log cannot be simulated again; holds its name.
@@ -46,8 +46,6 @@ pub(crate) enum IdentifyFailure {
     NoPrior(String),
     /// Two logs for training say the same.
     SameLogs([String; 2]),
-    /// Units of the logs seem to be others.
-    Units(MistakenUnits),
     /// A picture of a simulation that was not made.
     NotSimulated,
     /// A formula is not shown in a page.
@@ -63,11 +61,12 @@ impl fmt::Display for IdentifyFailure {
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
             Self::Estimate(model, error) => write!(f, "{model}: {error}"),
-            Self::Exchanged(joints) => write!(
-                f,
-                "{joints}\n  hint: --columns can name them the other way round\n  hint: \
-                 --accept-suspicious takes the logs as they are"
-            ),
+            Self::Misread(all) => {
+                for one in all {
+                    writeln!(f, "{one}")?;
+                }
+                write!(f, "  hint: --accept-suspicious takes the logs as they are")
+            }
             Self::Formula(error) => write!(f, "{error}"),
             Self::Update(error) => write!(f, "{error}"),
             Self::Forward(file, error) => write!(f, "{file}: {error}"),
@@ -95,9 +94,6 @@ impl fmt::Display for IdentifyFailure {
                 "{other} says the same as {one}: measured once, it counts once\n  hint: name each \
                  log once"
             ),
-            Self::Units(units) => {
-                write!(f, "{units}\n  hint: --accept-suspicious takes the logs as they are")
-            }
             Self::NotSimulated => write!(
                 f,
                 "--motion-svg: no log was simulated again\n  hint: --validate or --controller \

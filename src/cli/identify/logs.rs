@@ -99,6 +99,8 @@ impl Conditions {
         let filter = self.filter(step_s);
         // The decimator passes up to 0.4 of what is left of the rate.
         let allowed = filter.map_or(1.0, |filter| 0.4 / (filter.cutoff_hz * step_s));
+        // of laps one is left
+        let samples = if self.average.is_some() { 0 } else { samples };
         let allowed = allowed.min(samples as f64 / FEWEST_LEFT);
         let decimation = self.decimate.map_or(allowed.max(1.0) as usize, |n| n as usize);
         Conditioning {
@@ -109,6 +111,7 @@ impl Conditions {
             },
             decimation,
             averaging: self.average.unwrap_or_default(),
+            resolution: None,
         }
     }
 }
@@ -175,7 +178,7 @@ pub(super) fn read(
     let whole = reader.motions.take().unwrap_or_default();
     let mut numbered = train.iter().enumerate();
     let same = numbered.find_map(|(at, log)| {
-        let before = train[..at].iter().find(|other| says_the_same(other, log))?;
+        let before = train[..at].iter().find(|other| other.overlaps(log))?;
         Some([&before.file, &log.file].map(String::clone))
     });
     if let Some(same) = same {
@@ -185,7 +188,7 @@ pub(super) fn read(
     let validate = reader.kept(&arguments.validate, simulates.then_some(LONGEST_S))?;
     let mut motions = reader.motions.take().unwrap_or_default();
     for log in &validate {
-        if let Some(same) = train.iter().find(|other| says_the_same(other, log)) {
+        if let Some(same) = train.iter().find(|other| other.overlaps(log)) {
             let remark = LogRemark::SameAs { other: same.file.clone() };
             reader.remarks.push((log.file.clone(), remark));
         }
@@ -196,11 +199,6 @@ pub(super) fn read(
     let instruments = reader.kept(&arguments.instruments, None)?;
     let Reader { remarks, noise, .. } = reader;
     Ok(Read { train, validate, instruments, motions, whole, remarks, position_noise: noise })
-}
-
-/// Whether two logs have one motion with one noise.
-fn says_the_same(one: &Conditioned, other: &Conditioned) -> bool {
-    one.range == other.range && one.q == other.q && one.torque == other.torque
 }
 
 /// A log as it was measured, without a look at torques of motors behind springs.
@@ -272,12 +270,10 @@ impl Reader<'_> {
             let is_base: Vec<bool> = self.model.joints.iter().map(|joint| joint.is_base).collect();
             add_contact_forces(&mut log, plant.as_mut(), &is_base);
         }
-        for (noise, joint) in self.noise.iter_mut().zip(&log.joints) {
-            // An encoder's error is anywhere within its step.
-            let step = joint.step.or(self.arguments.resolution).unwrap_or(0.0);
-            *noise = noise.max(step / 12.0_f64.sqrt());
-        }
-        let how = self.conditions.of(log.step_s, log.samples());
+        let how = Conditioning {
+            resolution: self.arguments.resolution,
+            ..self.conditions.of(log.step_s, log.samples())
+        };
         if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, self.conditions.halvings) {
             self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
         }
@@ -292,6 +288,27 @@ impl Reader<'_> {
             motions.push(motion);
         }
         let conditioned = Conditioned::new(log, &self.names, &how);
-        Ok(conditioned.map_err(|error| IdentifyFailure::Condition(file, error))?)
+        let conditioned =
+            conditioned.map_err(|error| IdentifyFailure::Condition(file.clone(), error))?;
+        self.note(&file, &conditioned);
+        Ok(conditioned)
+    }
+
+    /// What a conditioned log says of noise, rest and laps.
+    fn note(&mut self, file: &str, log: &Conditioned) {
+        for (all, own) in self.noise.iter_mut().zip(&log.position_noise) {
+            *all = all.max(*own);
+        }
+        for (joint, name) in self.names.iter().enumerate().filter(|(at, _)| log.resting[*at]) {
+            let remark = (file.to_owned(), LogRemark::Resting { joint: name.clone() });
+            if !(self.model.joints[joint].is_base || self.remarks.contains(&remark)) {
+                self.remarks.push(remark);
+            }
+        }
+        if let Some(laps) = &log.laps {
+            let period_s = laps.samples as f64 * log.step_s;
+            let remark = LogRemark::Averaged { laps: laps.count, period_s };
+            self.remarks.push((file.to_owned(), remark));
+        }
     }
 }

@@ -7,6 +7,8 @@
 mod butterworth;
 mod decimate;
 mod laps;
+mod noise;
+mod overlap;
 mod reversals;
 
 pub use butterworth::Butterworth;
@@ -59,6 +61,8 @@ pub struct Conditioning {
     pub decimation: usize,
     /// Whether laps are averaged.
     pub averaging: Averaging,
+    /// The step of encoders whose steps cannot be seen in the log [rad, m].
+    pub resolution: Option<f64>,
 }
 
 /// Why a log cannot be conditioned.
@@ -80,8 +84,8 @@ pub enum ConditionError {
     },
     /// The rates or accelerations of this joint were not logged.
     NoRates(String),
-    /// A period is no whole number of samples.
-    PeriodNotWhole {
+    /// A period has too few samples.
+    ShortPeriod {
         /// The period \[s\].
         period_s: f64,
         /// The distance of samples \[s\].
@@ -92,6 +96,8 @@ pub enum ConditionError {
         /// The period \[s\].
         period_s: f64,
     },
+    /// No joint moves further than its noise.
+    NothingMoves,
     /// The motion does not repeat.
     NoPeriod,
     /// The motion does not repeat with this period.
@@ -119,10 +125,9 @@ impl fmt::Display for ConditionError {
             Self::NoRates(joint) => {
                 write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
             }
-            Self::PeriodNotWhole { period_s, step_s } => write!(
-                f,
-                "a period of {period_s} s is no whole number of samples of {step_s} s, or too few"
-            ),
+            Self::ShortPeriod { period_s, step_s } => {
+                write!(f, "a period of {period_s} s has too few samples of {step_s} s for a lap")
+            }
             Self::OneLap { period_s } => {
                 write!(f, "the log has no two whole laps of {period_s} s")
             }
@@ -132,6 +137,7 @@ impl fmt::Display for ConditionError {
                  joint\n  hint: `found` looks for the period; or do not average",
                 100.0 * misfit
             ),
+            Self::NothingMoves => write!(f, "no joint moves further than its noise"),
             Self::NoPeriod => {
                 write!(f, "the motion does not repeat\n  hint: give its period, or do not average")
             }
@@ -166,6 +172,11 @@ pub struct Conditioned {
     pub lap_noise: Option<Vec<Option<f64>>>,
     /// The laps that were found in the log.
     pub laps: Option<Laps>,
+    /// Deviation of each measured position before the filter, from steps of its encoder or from
+    /// what the log shows; 0 of a joint that rests [rad, m].
+    pub position_noise: Vec<f64>,
+    /// Whether each joint moves no further than its noise: its position is taken for constant.
+    pub resting: Vec<bool>,
 }
 
 /// Samples on either side that a derivative looks at.
@@ -204,6 +215,8 @@ impl Conditioned {
             ..Self::default()
         };
         let mut rates = [Vec::new(), Vec::new()];
+        let of_joint = |joint: &JointSignals| noise::position_noise(joint, how.resolution);
+        found.position_noise = joints.iter().map(of_joint).collect();
         for (joint, name) in joints.into_iter().zip(names) {
             let JointSignals { mut q, qd, qdd, mut tau, .. } = joint;
             if let Some(filter) = &filter {
@@ -227,13 +240,19 @@ impl Conditioned {
         }
         found.rates = logged.then_some(rates);
         found.filter = filter;
+        found.rest();
+        if !found.resting.contains(&false) {
+            return Err(ConditionError::NothingMoves);
+        }
         found.average(how.averaging)?;
         Ok(found)
     }
 
     /// Replaces laps by their mean: everything once, with the noise that the laps show.
     fn average(&mut self, averaging: Averaging) -> Result<(), ConditionError> {
-        let span = (self.range.start, self.range.end);
+        // values between samples need some on either side
+        let samples = self.q.first().map_or(0, Vec::len);
+        let span = (self.range.start.max(STENCIL), self.range.end.min(samples - STENCIL));
         let laps = match averaging {
             Averaging::No => return Ok(()),
             Averaging::Period(period_s) => Laps::given(&self.q, (period_s, self.step_s), span)?,
@@ -258,7 +277,10 @@ impl Conditioned {
             noise.push(mean.as_ref().map(|(_, noise)| *noise));
             *torque = mean.map(|(mean, _)| around(&mean));
         }
-        self.start_s += laps.start as f64 * self.step_s - wrap as f64 * self.step_s;
+        self.start_s += laps.start as f64 * self.step_s;
+        // the filter's cutoff, in samples, is as good as the same
+        self.step_s *= laps.distance();
+        self.start_s -= wrap as f64 * self.step_s;
         self.range = edge..laps.samples + 2 * wrap - edge;
         self.lap_noise = Some(noise);
         self.laps = Some(laps);
@@ -345,7 +367,15 @@ impl Conditioned {
     /// The covariance of position, rate and acceleration that white noise of variance 1 of the
     /// measured position makes, after both filters.
     pub fn noise_gains(&self) -> [[f64; 3]; 3] {
-        let decimator = self.decimator();
+        self.gains_after(&self.decimator())
+    }
+
+    /// The same after the filter alone.
+    pub(crate) fn filter_gains(&self) -> [[f64; 3]; 3] {
+        self.gains_after(&Decimator::new(1, 0.5))
+    }
+
+    fn gains_after(&self, decimator: &Decimator) -> [[f64; 3]; 3] {
         let settling = self.filter.as_ref().map_or(0, Butterworth::settling);
         let margin = 2 * settling + decimator.reach() + STENCIL;
         let mut impulse = vec![0.0; 2 * margin + 1 + 2 * decimator.reach()];

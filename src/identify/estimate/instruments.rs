@@ -28,6 +28,13 @@ pub(super) fn instrumental(
     if logs.len() != instruments.len() || !logs.iter().zip(instruments).all(fits) {
         return Err(EstimateError::Instruments);
     }
+    for (number, (log, instrument)) in logs.iter().zip(instruments).enumerate() {
+        let differ = other_motion(log, instrument);
+        if differ > OTHER {
+            let percent = (100.0 * differ).min(1e6) as usize;
+            return Err(EstimateError::OtherMotion(number, percent));
+        }
+    }
     let condensed = paired(model, rows, instruments);
     let system = System::new(&condensed, &condensed.whole(), &found.weights);
     let solved = system.solve().ok_or(EstimateError::Instruments)?;
@@ -37,6 +44,25 @@ pub(super) fn instrumental(
     found.covariance = covariance;
     found.degrees_of_freedom = degrees_of_freedom;
     Ok(())
+}
+
+/// The share of a joint's variance by which the positions of instruments differ, of those of
+/// another motion; and the least variance that says something, of the largest one.
+const OTHER: f64 = 0.25;
+const MOVES: f64 = 1e-4;
+
+/// The largest share of a joint's variance by which positions differ from sample to sample.
+fn other_motion(log: &Conditioned, instrument: &Conditioned) -> f64 {
+    let of_joint = |(q, other): (&Vec<f64>, &Vec<f64>)| {
+        let (q, other) = (&q[log.range.clone()], &other[instrument.range.clone()]);
+        let mean = q.iter().sum::<f64>() / q.len().max(1) as f64;
+        let variance = q.iter().map(|q| (q - mean).powi(2)).sum::<f64>();
+        (variance, q.iter().zip(other).map(|(q, other)| (q - other).powi(2)).sum::<f64>())
+    };
+    let all: Vec<(f64, f64)> = log.q.iter().zip(&instrument.q).map(of_joint).collect();
+    let most = all.iter().map(|(variance, _)| *variance).fold(0.0, f64::max);
+    let moving = all.iter().filter(|(variance, _)| *variance > MOVES * most);
+    moving.map(|(variance, differ)| differ / variance).fold(0.0, f64::max)
 }
 
 /// Rows of Z and W beside each other: columns of Z come first.

@@ -71,6 +71,9 @@ pub enum EstimateError {
     TooShort(usize, usize),
     /// Instruments that have other samples than the logs.
     Instruments,
+    /// Instruments of another motion: their number, from 0, and the share of a joint's variance by
+    /// which its positions differ, in percent.
+    OtherMotion(usize, usize),
     /// Weights that do not settle.
     NotSettled,
 }
@@ -94,6 +97,12 @@ impl fmt::Display for EstimateError {
                 f,
                 "instruments must be as many logs as there are for training, each with as many \
                  samples"
+            ),
+            Self::OtherMotion(number, percent) => write!(
+                f,
+                "instruments must be of the motion of their log, without its noise: in log {} \
+                 positions of a joint differ by {percent} % of its variance",
+                number + 1
             ),
             Self::NotSettled => write!(f, "the weights do not settle"),
         }

@@ -54,7 +54,11 @@ pub(in crate::identify) fn biased_frictions(
     if model.law != CoulombLaw::Sign {
         return Vec::new();
     }
+    let is_resting = |joint: usize| logs.iter().all(|log| log.resting.get(joint) == Some(&true));
     let biased = |&(joint, place): &(usize, usize)| {
+        if is_resting(joint) {
+            return None; // it has no column
+        }
         let at = model.pattern()[joint][place];
         let near = near(logs, joint, 1.0);
         let count = near.iter().flatten().filter(|&&near| near).count();

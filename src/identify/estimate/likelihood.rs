@@ -31,7 +31,8 @@ impl Variance {
         logs: &[Conditioned],
         (phi, deviations): (&[f64], &[f64]),
     ) -> Self {
-        let of_log = |log: &Conditioned| of_log(model, (log, 1), phi, deviations);
+        let of_log =
+            |log: &Conditioned| of_log(model, (log, 1), (phi, deviations), &log.noise_gains());
         Self { of_positions: logs.iter().map(of_log).collect() }
     }
 
@@ -62,18 +63,22 @@ impl Variance {
 
 /// How much of each joint's torque noise of the positions makes up by itself, root of mean square
 /// over root of mean square, looked at in some blocks of each log. Columns of the regressor have as
-/// much noise, so that parameters are biased by about its square.
+/// much noise, so that parameters are biased by about its square. That is after both filters, or,
+/// if it is not of `decimated` samples, after the first one alone.
 pub(in crate::identify) fn noise_of_positions(
     model: &RegressionModel,
     logs: &[Conditioned],
     (phi, deviations): (&[f64], &[f64]),
     torque_rms: &[f64],
+    decimated: bool,
 ) -> Vec<f64> {
     let mut sums = vec![0.0; model.joints.len()];
     let mut count = 0;
     for log in logs {
         let every = log.samples().div_ceil(BLOCK * LOOKED_AT).max(1);
-        for (sum, row) in sums.iter_mut().zip(of_log(model, (log, every), phi, deviations)) {
+        let gains = if decimated { log.noise_gains() } else { log.filter_gains() };
+        let rows = of_log(model, (log, every), (phi, deviations), &gains);
+        for (sum, row) in sums.iter_mut().zip(rows) {
             *sum += row.iter().sum::<f64>();
         }
         count += (0..log.samples()).filter(|sample| (sample / BLOCK).is_multiple_of(every)).count();
@@ -89,11 +94,10 @@ pub(in crate::identify) fn noise_of_positions(
 fn of_log(
     model: &RegressionModel,
     (log, every): (&Conditioned, usize),
-    phi: &[f64],
-    deviations: &[f64],
+    (phi, deviations): (&[f64], &[f64]),
+    gains: &[[f64; 3]; 3],
 ) -> Vec<Vec<f64>> {
     let n = log.joints();
-    let gains = log.noise_gains();
     let samples = log.samples();
     let mut variance = vec![vec![0.0; samples]; n];
     let mut evaluator = model.evaluator();

@@ -5,9 +5,7 @@
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
-//! - [`flipped_torques`]: whose sign is wrong
-//! - [`exchanged_joints`]: whose columns have each other's names
-//! - [`mistaken_units`]: time, torques or angles in another unit
+//! - [`misread_columns`]: columns of another unit or sign, of other joints, or late
 //! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
 
@@ -15,12 +13,12 @@ mod bounds;
 mod condensed;
 mod consistent;
 mod errors;
-mod exchanged;
-mod flipped;
+mod filter_error;
 mod instruments;
 mod least_squares;
 mod left_out;
 mod likelihood;
+mod misread;
 mod report;
 mod robust;
 mod rows;
@@ -28,24 +26,23 @@ mod solve;
 mod total;
 mod triangle;
 mod unexplained;
-mod units;
 mod validate;
 mod widening;
 
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
 pub use errors::{Errors, interval_factor};
-pub use exchanged::{ExchangedColumns, ExchangedJoints, exchanged_joints};
-pub use flipped::{FlippedTorque, flipped_torques};
+pub(in crate::identify) use filter_error::filter_errors;
 pub use least_squares::{Estimate, EstimateError, Method, Options, estimate, long_enough};
 pub use left_out::SlowRows;
 pub(in crate::identify) use left_out::{biased_frictions, is_biased};
 pub(in crate::identify) use likelihood::noise_of_positions;
+pub(in crate::identify) use misread::nominal_values;
+pub use misread::{ExchangedColumns, MisreadColumns, Misreading, misread_columns};
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
 pub use unexplained::unexplained_joints;
-pub use units::{MistakenQuantity, MistakenUnits, mistaken_units};
 pub use validate::{JointResidual, LAGS, Validation, validate};

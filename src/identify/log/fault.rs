@@ -116,6 +116,8 @@ pub enum LogRemark {
     MotorTorques { joints: Vec<String> },
     /// The default filter has a lower cutoff, since noise of positions biased parameters.
     LoweredFilter { cutoff_hz: f64 },
+    /// Laps were replaced by their mean.
+    Averaged { laps: usize, period_s: f64 },
     /// The log says the same as another one, which the estimate is from.
     SameAs { other: String },
     /// A suspicion that was accepted.
@@ -335,7 +337,11 @@ impl fmt::Display for LogRemark {
                 100.0 * jitter
             ),
             Self::Resting { joint } => {
-                write!(f, "`{joint}` never moves: what only its motion shows is not identified")
+                write!(
+                    f,
+                    "`{joint}` never moves, or no further than its noise: what only its motion \
+                     shows is not identified, and stiction may hide in its torque"
+                )
             }
             Self::Saturated { column, share, value } => write!(
                 f,
@@ -356,6 +362,9 @@ impl fmt::Display for LogRemark {
                 "noise of positions would bias parameters: filtered below {cutoff_hz} Hz (--filter \
                  says otherwise)"
             ),
+            Self::Averaged { laps, period_s } => {
+                write!(f, "{laps} laps of {period_s:.6} s are replaced by their mean")
+            }
             Self::SameAs { other } => {
                 write!(f, "says the same as {other}: it validates nothing")
             }

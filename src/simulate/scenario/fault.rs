@@ -148,7 +148,7 @@ impl Cause {
     fn fixed_hint(&self) -> Option<&'static str> {
         Some(match self {
             Self::OutsideRange(..) | Self::Odd => {
-                "`denavit schema scenario` has the ranges of all numbers"
+                "`denavit schema` has the ranges of all numbers, by format"
             }
             Self::NoEffect(_) => "add that, or leave this out",
             Self::TwoRobots => "keep one of them",

@@ -7,6 +7,7 @@ mod friction;
 mod gait;
 mod leg;
 mod log;
+mod misread;
 mod noise;
 mod regression;
 mod statics;

@@ -8,7 +8,11 @@ use denavit::regressor::functions::modelled;
 
 /// D qdd + bias + Coulomb friction of the simulator's plant, which knows no regressor.
 fn plant_torques(name: &str, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let mut plant = InterpretedPlant::new(&robot(name), &[]).expect("it has every value");
+    torques_of(&robot(name), motion)
+}
+
+fn torques_of(robot: &denavit::model::Robot, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut plant = InterpretedPlant::new(robot, &[]).expect("it has every value");
     let n = motion.len() / 3;
     let samples = motion[0].len();
     let mut torques = vec![vec![0.0; samples]; n];
@@ -112,6 +116,31 @@ fn a_joint_parameter_that_is_not_asked_for_has_no_column() {
 fn columns_to_keep_are_checked() {
     let wrong = RegressionModel::new(&robot("scara"), INERTIAL, &["mass".to_owned()]);
     assert!(matches!(wrong, Err(RegressionError::Base(_))));
+}
+
+/// Where the first body is known, what remains of the second one's mass is a number times a symbol
+/// whose value is 0: as many columns, another basis.
+#[test]
+fn a_known_body_before_one_on_its_axis_has_a_basis() {
+    let shipped = denavit::shipped::find("planar_2r").expect("shipped");
+    let mut text: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
+    let known = |value: f64| serde_json::json!({"value": value, "known": true});
+    let body = &mut text["links"][0]["body"];
+    body["mass"] = known(2.0);
+    body["com"] = [known(-0.22), known(0.0), known(0.0)].into();
+    text["links"][1]["body"]["com"][1] = known(0.0);
+    let robot = denavit::model::read("arm", text.to_string().as_bytes()).expect("sound");
+    let model = RegressionModel::new(&robot, INERTIAL, &[]).expect("a model");
+    // by hand: the moment of inertia of the first, mass and two moments of the second
+    assert_eq!(model.rank(), 4);
+    let motion = random_motion(2, 30, 8);
+    let ours = torques(&model, &motion, &model.model_axes().expect("it has values"));
+    let theirs = torques_of(&robot, &motion);
+    for (joint, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
+        for (a, b) in ours.iter().zip(theirs) {
+            assert!((a - b).abs() < 1e-9, "joint {joint}: {a} {b}");
+        }
+    }
 }
 
 /// A centre of mass that is known to be on an axis makes columns depend on others; the rows times

@@ -12,6 +12,7 @@ mod gears;
 mod help;
 mod identify;
 mod identify_procedures;
+mod identify_told;
 mod landings;
 mod readme;
 mod simulate;

@@ -1,0 +1,277 @@
+//! What a table of docs/identification.md claims of logs that are not what they seem, of logs made
+//! by hand: the planar arm, whose torques are written out here.
+
+use super::{Directory, run_in};
+use denavit::simulate::Random;
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+
+/// A sum of sines about a position: amplitude, angular frequency, phase.
+struct Motion {
+    about: f64,
+    waves: Vec<[f64; 3]>,
+}
+
+impl Motion {
+    /// Position, rate and acceleration.
+    fn at(&self, t: f64) -> [f64; 3] {
+        let mut all = [self.about, 0.0, 0.0];
+        for [size, w, phase] in &self.waves {
+            let (sine, cosine) = (w * t + phase).sin_cos();
+            all[0] += size * sine;
+            all[1] += size * w * cosine;
+            all[2] -= size * w * w * sine;
+        }
+        all
+    }
+}
+
+/// Two motions with five waves each.
+fn motions(seed: u64, slowest: f64) -> [Motion; 2] {
+    let mut random = Random::new(seed);
+    let mut one = || {
+        let wave = |k: i32| {
+            let size = (0.2 + 0.3 * random.uniform()) / f64::from(k).sqrt();
+            [size, slowest * f64::from(k), TAU * random.uniform()]
+        };
+        Motion { about: 0.0, waves: (1..=5).map(wave).collect() }
+    };
+    [one(), one()]
+}
+
+const FRICTION: [[f64; 2]; 2] = [[0.3, 0.5], [0.2, 0.3]];
+
+/// Torques of the shipped planar arm with friction.
+fn torques([a, b]: [[f64; 3]; 2]) -> [f64; 2] {
+    let ([qa, va, aa], [qb, vb, ab]) = (a, b);
+    let (m, l, r, i, g) = ([2.0, 1.5], 0.5, [0.28, 0.23], [0.04, 0.03], 9.81);
+    let (sine, cosine) = qb.sin_cos();
+    let coupled = m[1] * l * r[1];
+    let second = i[1] + m[1] * r[1] * r[1];
+    let first = i[0] + m[0] * r[0] * r[0] + m[1] * l * l + second;
+    let weight = g * m[1] * r[1] * (qa + qb).cos();
+    let one = (first + 2.0 * coupled * cosine) * aa + (second + coupled * cosine) * ab
+        - coupled * sine * (2.0 * va * vb + vb * vb)
+        + g * (m[0] * r[0] + m[1] * l) * qa.cos()
+        + weight;
+    let other = (second + coupled * cosine) * aa + second * ab + coupled * sine * va * va + weight;
+    let rubs = |[viscous, coulomb]: [f64; 2], rate: f64| {
+        viscous * rate + if rate == 0.0 { 0.0 } else { coulomb * rate.signum() }
+    };
+    [one + rubs(FRICTION[0], va), other + rubs(FRICTION[1], vb)]
+}
+
+/// How a log is made.
+struct Made {
+    step_s: f64,
+    samples: usize,
+    /// Deviation of the noise of torques and of positions of each joint.
+    torque_noise: f64,
+    position_noise: [f64; 2],
+    seed: u64,
+}
+
+const GOOD: Made =
+    Made { step_s: 0.005, samples: 2000, torque_noise: 0.05, position_noise: [0.0; 2], seed: 1 };
+
+impl Made {
+    /// Rows of time, positions and torques.
+    fn rows(&self, motions: &[Motion; 2]) -> Vec<[f64; 5]> {
+        let mut random = Random::new(self.seed);
+        let row = |k: usize| {
+            let t = self.step_s * k as f64;
+            let both = motions.each_ref().map(|one| one.at(t));
+            let torque = torques(both).map(|one| one + self.torque_noise * random.normal());
+            let mut seen =
+                |joint: usize| both[joint][0] + self.position_noise[joint] * random.normal();
+            [t, seen(0), seen(1), torque[0], torque[1]]
+        };
+        (0..self.samples).map(row).collect()
+    }
+}
+
+fn write(directory: &Directory, name: &str, text: &str) {
+    std::fs::write(directory.path.join(name), text).expect("written");
+}
+
+fn write_log(directory: &Directory, name: &str, rows: &[[f64; 5]]) {
+    let mut text = "t,q_link1,q_link2,tau_link1,tau_link2\n".to_owned();
+    for row in rows {
+        let cells: Vec<String> = row.iter().map(|value| format!("{value:.9}")).collect();
+        text += &(cells.join(",") + "\n");
+    }
+    write(directory, name, &text);
+}
+
+/// The arm with the friction of its logs, and gears if they are given.
+fn write_arm(directory: &Directory, gears: Option<[f64; 2]>) {
+    let shipped = denavit::shipped::find("planar_2r").expect("shipped");
+    let mut arm: Value = serde_json::from_str(shipped.text).expect("JSON");
+    for (joint, name) in ["link1", "link2"].into_iter().enumerate() {
+        let [viscous, coulomb] = FRICTION[joint];
+        let ratio = gears.map_or(1.0, |gears| gears[joint]);
+        let (viscous, coulomb) = (viscous / (ratio * ratio), coulomb / ratio.abs());
+        arm["drives"][name] = match gears {
+            Some(_) => json!({"viscous": viscous, "coulomb": coulomb, "gear_ratio": ratio}),
+            None => json!({"viscous": viscous, "coulomb": coulomb}),
+        };
+    }
+    write(directory, "arm.json", &arm.to_string());
+}
+
+/// What is said of the logs of `words`.
+fn said(directory: &Directory, words: &[&str]) -> (Option<i32>, String) {
+    let words = [&["identify", "arm.json"][..], words].concat();
+    let run = run_in(&directory.path, &words);
+    (run.code, run.stdout + &run.stderr)
+}
+
+/// A joint at rest under the noise of its encoder rubs against nothing: its friction keeps the
+/// model's value, without an error, where the sign of noise would be estimated to be 0.
+#[test]
+fn a_joint_that_rests_but_for_noise_shows_no_friction() {
+    let directory = Directory::new("told-rest");
+    write_arm(&directory, None);
+    let [first, _] = motions(1, 0.628);
+    let rest = Motion { about: 0.3, waves: Vec::new() };
+    let noise = Made { position_noise: [0.0, 3e-4], ..GOOD };
+    write_log(&directory, "rest.csv", &noise.rows(&[first, rest]));
+    let (code, text) = said(&directory, &["--train", "rest.csv", "--json"]);
+    assert_eq!(code, Some(0), "{text}");
+    let json: Value = serde_json::from_str(&text).expect("JSON");
+    assert!(json["remarks"].to_string().contains("no further than its noise"), "{text}");
+    let all = json["parameters"].as_array().expect("a list");
+    for (name, is_shown) in [("fc_link1", true), ("fv_link2", false), ("fc_link2", false)] {
+        let one = all.iter().find(|one| one["name"] == name).expect("a parameter");
+        assert_eq!(one["identifiable"], is_shown, "{one}");
+        assert_eq!(one["std"].is_number(), is_shown, "{one}");
+    }
+}
+
+/// Laps of 3.1416 s, which no step of time divides: neither refused nor biased.
+#[test]
+fn laps_of_a_fraction_of_a_sample_are_averaged() {
+    let directory = Directory::new("told-laps");
+    write_arm(&directory, None);
+    for (step_s, samples) in [(0.01, 6000), (0.002, 20_000)] {
+        let made = Made { step_s, samples, ..GOOD };
+        write_log(&directory, "laps.csv", &made.rows(&motions(5, 2.0)));
+        for period in ["found", "3.1416"] {
+            let words = ["--train", "laps.csv", "--average", period, "--json"];
+            let (code, text) = said(&directory, &words);
+            assert_eq!(code, Some(0), "{text}");
+            let json: Value = serde_json::from_str(&text).expect("JSON");
+            assert!(json["remarks"].to_string().contains("laps of 3.14159"), "{text}");
+            for one in json["parameters"].as_array().expect("a list") {
+                let [value, std, truth] =
+                    ["value", "std", "model_value"].map(|key| one[key].as_f64().expect("a number"));
+                assert!((value - truth).abs() < 4.5 * std, "{step_s} {period}: {one}");
+            }
+        }
+    }
+}
+
+/// Torques of motors behind gears that nobody speaks of, and torques that are late.
+#[test]
+fn torques_of_motors_and_late_torques_are_told() {
+    let directory = Directory::new("told-torques");
+    write_arm(&directory, Some([-50.0, 30.0]));
+    let rows = GOOD.rows(&motions(1, 0.628));
+    let of_motors: Vec<[f64; 5]> =
+        rows.iter().map(|row| [row[0], row[1], row[2], row[3] / -50.0, row[4] / 30.0]).collect();
+    write_log(&directory, "joints.csv", &rows);
+    write_log(&directory, "motors.csv", &of_motors);
+    let (code, text) = said(&directory, &["--train", "joints.csv"]);
+    assert_eq!(code, Some(0), "{text}");
+    let (code, text) = said(&directory, &["--train", "motors.csv"]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("those of the motors"), "{text}");
+    let late = rows.windows(11).map(|both| {
+        let ([t, a, b, ..], [.., one, other]) = (both[10], both[0]);
+        [t, a, b, one, other]
+    });
+    write_log(&directory, "late.csv", &late.collect::<Vec<_>>());
+    let (code, text) = said(&directory, &["--train", "late.csv"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("torques seem to be 0.05"), "{text}");
+}
+
+/// A log that is half of another one, shifted and printed to fewer digits, is no other log; one of
+/// the same motion with noise of its own is. Instruments of another motion are none.
+#[test]
+fn one_measurement_counts_once_and_instruments_are_of_the_motion() {
+    let directory = Directory::new("told-twice");
+    write_arm(&directory, None);
+    let rows = GOOD.rows(&motions(1, 0.628));
+    let rounded = |value: f64| (value * 1e4).round() / 1e4;
+    let part: Vec<[f64; 5]> = rows[700..]
+        .iter()
+        .map(|row| row.map(rounded))
+        .map(|[t, rest @ ..]| {
+            let [a, b, c, d] = rest;
+            [t - 3.5, a, b, c, d]
+        })
+        .collect();
+    write_log(&directory, "whole.csv", &rows);
+    write_log(&directory, "part.csv", &part);
+    write_log(&directory, "again.csv", &Made { seed: 2, ..GOOD }.rows(&motions(1, 0.628)));
+    write_log(&directory, "other.csv", &GOOD.rows(&motions(2, 0.628)));
+    let (code, text) = said(&directory, &["--train", "whole.csv", "part.csv"]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("says the same as whole.csv"), "{text}");
+    let (code, text) = said(&directory, &["--train", "whole.csv", "again.csv"]);
+    assert_eq!(code, Some(0), "{text}");
+    for (instruments, expected) in [("again.csv", 0), ("other.csv", 2)] {
+        let words = ["--train", "whole.csv", "--method", "iv", "--instruments", instruments];
+        let (code, text) = said(&directory, &words);
+        assert_eq!(code, Some(expected), "{instruments}: {text}");
+    }
+}
+
+/// Noise of positions without steps, and a motion that twenty samples a second do not hold.
+#[test]
+fn noise_without_steps_and_motions_too_fast_are_told() {
+    let directory = Directory::new("told-noise");
+    write_arm(&directory, None);
+    let noisy = Made { position_noise: [1e-3; 2], ..GOOD };
+    write_log(&directory, "noisy.csv", &noisy.rows(&motions(1, 0.628)));
+    let (_, text) = said(&directory, &["--train", "noisy.csv", "--filter", "20"]);
+    assert!(text.contains("Noise of the positions alone makes"), "{text}");
+    let (_, text) = said(&directory, &["--train", "noisy.csv"]);
+    assert!(text.contains("noise of positions would bias parameters"), "{text}");
+    let slow = Made { step_s: 0.05, samples: 1000, ..GOOD };
+    for (slowest, is_said) in [(3.5, true), (0.2, false)] {
+        write_log(&directory, "fast.csv", &slow.rows(&motions(1, slowest)));
+        let (_, text) = said(&directory, &["--train", "fast.csv"]);
+        assert_eq!(text.contains("The filter by itself"), is_said, "{slowest}: {text}");
+    }
+}
+
+/// Held postures by their weight: torques in mN m, angles in degrees.
+#[test]
+fn postures_in_other_units_are_told() {
+    let directory = Directory::new("told-postures");
+    write_arm(&directory, None);
+    let file = |of_torques: f64, of_angles: f64| {
+        let posture = |[a, b]: [f64; 2]| {
+            let [one, other] = torques([[a, 0.0, 0.0], [b, 0.0, 0.0]]);
+            let torque = |torque: f64| json!({"torque": of_torques * torque, "std": 0.02});
+            json!({"q": {"link1": of_angles * a, "link2": of_angles * b},
+                   "torques": {"link1": torque(one), "link2": torque(other)}})
+        };
+        let postures = [[0.5, -1.0], [1.0, 0.4], [-0.3, 0.7]].map(posture);
+        json!({"format": "denavit-statics/1", "postures": postures}).to_string()
+    };
+    let cases = [
+        ((1.0, 1.0), None),
+        ((1000.0, 1.0), Some("torques of the postures seem to be in another unit")),
+        ((-1.0, 1.0), Some("torques of the postures seem to have the wrong sign")),
+        ((1.0, 57.295_78), Some("positions of the postures seem to be in another unit")),
+    ];
+    for ((of_torques, of_angles), expected) in cases {
+        write(&directory, "rest.json", &file(of_torques, of_angles));
+        let (code, text) = said(&directory, &["--static", "rest.json"]);
+        assert_eq!(code, Some(if expected.is_some() { 2 } else { 0 }), "{text}");
+        assert!(expected.is_none_or(|expected| text.contains(expected)), "{text}");
+    }
+}

@@ -31,6 +31,9 @@ pub(super) struct Problem<'a> {
     pub(super) solution: &'a Solution,
 }
 
+/// Fewer parts say nothing of how residuals are correlated.
+pub(super) const FEWEST_PARTS: usize = 8;
+
 /// A larger share of what is known of a direction is taken for this one.
 const MOST_LEVERAGE: f64 = 0.95;
 
@@ -42,8 +45,8 @@ impl Problem<'_> {
         let parts = self.condensed.parts.len();
         let free = (rows as f64 - self.solution.excited() as f64).max(1.0);
         match errors {
-            Errors::Correlated if parts >= 8 => (self.correlated(), (parts - 1) as f64),
-            Errors::Bootstrap { draws, seed } if parts >= 8 => {
+            Errors::Correlated if parts >= FEWEST_PARTS => (self.correlated(), (parts - 1) as f64),
+            Errors::Bootstrap { draws, seed } if parts >= FEWEST_PARTS => {
                 (self.bootstrap(draws.max(2), seed), (parts - 1) as f64)
             }
             _ => (self.solution.covariance(), free),

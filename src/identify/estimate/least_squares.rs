@@ -1,7 +1,7 @@
 //! The estimates: one loop of weighting and solving, by method.
 
 use super::condensed::{Condensed, Rows};
-use super::errors::{Errors, Problem};
+use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::instruments;
 use super::left_out::SlowRows;
 use super::likelihood;
@@ -152,7 +152,16 @@ pub fn estimate(
             return Ok(first);
         }
     }
-    let (mut covariance, degrees_of_freedom) = fit.problem(&first).covariance(options.errors);
+    let (mut covariance, mut degrees_of_freedom) = fit.problem(&first).covariance(options.errors);
+    let parts = first.condensed.parts.len();
+    if options.errors == Errors::Correlated && parts < FEWEST_PARTS {
+        // too few parts to say how residuals are correlated: as the filter makes them
+        let rows: usize = first.condensed.parts.iter().flatten().map(Triangle::rows).sum();
+        let used = first.solution.excited() as f64;
+        let free = (independent(logs).min(rows as f64) - used).max(1.0);
+        covariance *= (rows as f64 - used).max(1.0) / free;
+        degrees_of_freedom = free;
+    }
     if options.method == Method::Ordinary && options.errors == Errors::Classical {
         let triangles = first.condensed.whole();
         let squares: f64 = first.squares(&triangles).iter().sum();
@@ -161,15 +170,20 @@ pub fn estimate(
     Ok(Estimate { covariance, degrees_of_freedom, ..first })
 }
 
-/// Whether logs have enough samples for an estimate. A filter leaves two that are independent in a
-/// period of its cutoff.
-pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
+/// Samples of all torques that are independent of each other: a filter leaves two in a period of
+/// its cutoff.
+fn independent(logs: &[Conditioned]) -> f64 {
     let of = |log: &Conditioned| {
         let share = log.filter.as_ref().map_or(1.0, |filter| (2.0 * filter.cutoff()).min(1.0));
         let independent = (share * log.range.len() as f64).min(log.samples() as f64);
         independent * log.torque.iter().flatten().count() as f64
     };
-    let independent = logs.iter().map(of).sum::<f64>() as usize;
+    logs.iter().map(of).sum()
+}
+
+/// Whether logs have enough samples for an estimate.
+pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
+    let independent = independent(logs) as usize;
     let parameters = found.solution.excited();
     match independent < ROWS_OF_ONE * parameters {
         true => Err(EstimateError::TooShort(independent, parameters)),

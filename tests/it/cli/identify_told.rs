@@ -192,8 +192,8 @@ fn torques_of_motors_and_late_torques_are_told() {
     });
     write_log(&directory, "late.csv", &late.collect::<Vec<_>>());
     let (code, text) = said(&directory, &["--train", "late.csv"]);
-    assert_eq!(code, Some(1), "{text}");
-    assert!(text.contains("torques seem to be 0.05"), "{text}");
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("torques seem to be 0.0500 s late"), "{text}");
 }
 
 /// A log that is half of another one, shifted and printed to fewer digits, is no other log; one of
@@ -274,4 +274,27 @@ fn postures_in_other_units_are_told() {
         assert_eq!(code, Some(if expected.is_some() { 2 } else { 0 }), "{text}");
         assert!(expected.is_none_or(|expected| text.contains(expected)), "{text}");
     }
+}
+
+/// A second of motion gives errors that hold: its few samples are alike, as the filter makes them.
+#[test]
+fn short_logs_have_honest_errors() {
+    let directory = Directory::new("told-short");
+    write_arm(&directory, None);
+    let (mut squares, mut count) = (0.0, 0.0);
+    for seed in 1..=8 {
+        let made = Made { samples: 200, seed, ..GOOD };
+        write_log(&directory, "short.csv", &made.rows(&motions(seed, 0.628)));
+        let (code, text) = said(&directory, &["--train", "short.csv", "--json"]);
+        assert_ne!(code, Some(2), "{text}");
+        let json: Value = serde_json::from_str(&text).expect("JSON");
+        for one in json["parameters"].as_array().expect("a list") {
+            let [value, std, truth] =
+                ["value", "std", "model_value"].map(|key| one[key].as_f64().expect("a number"));
+            squares += ((value - truth) / std).powi(2);
+            count += 1.0;
+        }
+    }
+    let deviation = f64::sqrt(squares / count);
+    assert!((0.4..2.0).contains(&deviation), "{deviation}");
 }

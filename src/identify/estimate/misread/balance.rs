@@ -9,8 +9,10 @@ use crate::plants::regression::{
     RegressionEvaluator, RegressionModel, RegressionParameter, RegressionRows,
 };
 
-/// Samples that are looked at in all, in blocks of so many, and blocks of each log.
-const SAMPLES: usize = 4096;
+/// Samples that are looked at in all, of robots with many joints, of which there are many readings,
+/// fewer; in blocks of so many, and blocks of each log.
+const SAMPLES: [usize; 2] = [1024, 4096];
+const ALL_READINGS: usize = 600_000;
 const BLOCK: usize = 256;
 const BLOCKS: usize = 8;
 
@@ -79,7 +81,10 @@ pub(super) struct Left {
 
 impl<'a> Balance<'a> {
     pub(super) fn new(model: &'a RegressionModel, logs: &'a [Conditioned]) -> Self {
-        let blocks = (SAMPLES / BLOCK / logs.len().max(1)).clamp(1, BLOCKS);
+        let n = model.joints.len();
+        let readings = 3 * n * n / 2 + 20 * n + 30;
+        let samples = (ALL_READINGS / readings).clamp(SAMPLES[0], SAMPLES[1]);
+        let blocks = (samples / BLOCK / logs.len().max(1)).clamp(1, BLOCKS);
         let mut windows = Vec::new();
         for log in logs {
             let samples = log.samples();

@@ -23,25 +23,27 @@ use std::fmt;
 /// A witness speaks for a reading if what is left falls to this share,
 const BETTER: f64 = 0.5;
 
-/// and to less than this: of all joints by the model's own values, of columns of single joints,
-/// which other faults of a model's values resemble more, and by an estimate.
+/// and to less than this: of all joints by the model's own values; of columns of single joints,
+/// which other faults of a model's values resemble more, if an estimate speaks for it too, and if
+/// not; and by an estimate.
 const LEFT_OF_ALL: f64 = 0.63;
 const LEFT_OF_ONE: f64 = 0.32;
+const LEFT_ALONE: f64 = 0.1;
 const LEFT_BY_ESTIMATE: f64 = 0.4;
 
 /// What is of all joints alike changes what is left of half of them, at least.
 const HALF: f64 = 0.5;
 
-/// An estimate that leaves less than this has nothing to be explained better; the model's own
-/// values, less than this.
+/// What leaves less than this has nothing to be explained better; for delays, which show in little,
+/// an estimate that leaves less than this.
 const EXPLAINED: f64 = 0.02;
-const OWN_EXPLAINED: f64 = 0.05;
+const PROMPT: f64 = 0.005;
 
 /// A witness speaks against a reading if more than this many times is left.
 const WORSE: f64 = 1.25;
 
 /// From this share on, left by the model's own values, single columns are looked at.
-const FAR: f64 = 0.2;
+const FAR: f64 = 0.05;
 
 /// The share of what is left by the model's own values that noise of the positions explains.
 const NOISE: f64 = 0.5;
@@ -125,20 +127,24 @@ struct Verdict {
 
 impl Verdict {
     fn new(misreading: Misreading, own: Option<Change>, fit: Change) -> Self {
-        let most = if misreading.is_of_all() { LEFT_OF_ALL } else { LEFT_OF_ONE };
+        let is_late = matches!(misreading, Misreading::Late(_));
+        let least = if is_late { PROMPT } else { EXPLAINED };
+        let by_fit = fit.ratio < BETTER && fit.left[0] > least && fit.left[1] < LEFT_BY_ESTIMATE;
+        let most = match (misreading.is_of_all(), by_fit) {
+            (true, _) => LEFT_OF_ALL,
+            (false, true) => LEFT_OF_ONE,
+            (false, false) => LEFT_ALONE,
+        };
         let by_own = own.is_some_and(|own| {
             let is_enough = !misreading.is_of_all() || own.joints >= HALF;
-            is_enough && own.ratio < BETTER && own.left[0] > OWN_EXPLAINED && own.left[1] < most
+            is_enough && own.ratio < BETTER && own.left[0] > EXPLAINED && own.left[1] < most
         });
-        let by_fit =
-            fit.ratio < BETTER && fit.left[0] > EXPLAINED && fit.left[1] < LEFT_BY_ESTIMATE;
         Self { misreading, own, fit, by_own, by_fit }
     }
 
     fn is_believed(&self) -> bool {
         let against_fit = self.fit.ratio > WORSE && self.fit.left[1] > EXPLAINED;
-        let against_own =
-            self.own.is_some_and(|own| own.ratio > WORSE && own.left[1] > OWN_EXPLAINED);
+        let against_own = self.own.is_some_and(|own| own.ratio > WORSE && own.left[1] > EXPLAINED);
         (self.by_own && !against_fit) || (self.by_fit && !against_own)
     }
 
@@ -225,7 +231,7 @@ impl Search<'_> {
     fn is_noisy(&self, own: &Shares) -> bool {
         let both = own.iter().zip(self.noise.unwrap_or_default());
         let is_noise = |(left, noise): (&Option<f64>, &f64)| {
-            left.is_some_and(|left| left > OWN_EXPLAINED && *noise > NOISE * left)
+            left.is_some_and(|left| left > EXPLAINED && *noise > NOISE * left)
         };
         both.into_iter().any(is_noise)
     }
@@ -242,11 +248,11 @@ impl Search<'_> {
         let is_far = own.as_ref().is_some_and(|own| root_mean_square(own) > FAR);
         let single = is_misfit || is_far;
         let is_noisy = own.as_ref().is_some_and(|own| self.is_noisy(own));
-        let mut tried = hypotheses(self.model, [single, is_noisy]);
+        let is_measured = |joint: usize| fit[joint].is_some();
+        let mut tried = hypotheses(self.model, &is_measured, [single, is_noisy]);
         tried.retain(|one| reading.with(*one, self.joints()) != *reading);
-        if is_misfit && reading.late == 0 {
-            tried.extend(self.lateness(reading));
-        }
+        let late = (reading.late == 0).then(|| self.lateness(reading, &fit)).flatten();
+        tried.extend(late);
         let mut judged: Vec<(Misreading, Option<Change>)> = Vec::new();
         for one in tried {
             let other = reading.with(one, &self.model.joints);
@@ -255,7 +261,8 @@ impl Search<'_> {
                 Some(Change::of(own, &after))
             });
             // without a misfit an estimate can speak against a reading, not for it
-            if is_misfit || change.is_some_and(|change| change.ratio < BETTER) {
+            let is_open = is_misfit || Some(one) == late;
+            if is_open || change.is_some_and(|change| change.ratio < BETTER) {
                 judged.push((one, change));
             }
         }
@@ -276,32 +283,41 @@ impl Search<'_> {
     }
 
     /// How late torques are if they are: the delay with which an estimate leaves least.
-    fn lateness(&mut self, reading: &Reading) -> Option<Misreading> {
+    fn lateness(&mut self, reading: &Reading, fit: &Shares) -> Option<Misreading> {
+        let prompt = total(fit);
+        if prompt < PROMPT || self.latest < 1 {
+            return None;
+        }
         let left = |search: &mut Self, samples: isize| {
             let other = reading.with(Misreading::Late(samples), &search.model.joints);
             search.balance.left(&other, true).fit.map_or(f64::INFINITY, |fit| total(&fit))
         };
-        let mut ladder = vec![0];
-        let mut next = 1;
-        while next <= self.latest {
-            ladder.extend([-next, next]);
-            next += (next / 2).max(1);
+        // what is late by many samples is better explained with the first of them mended
+        let [early, late] = [-1, 1].map(|samples| left(self, samples));
+        if early.min(late) >= prompt {
+            return None;
         }
-        ladder.sort_unstable();
-        let shares: Vec<f64> = ladder.iter().map(|&samples| left(self, samples)).collect();
+        let sign = if early < late { -1 } else { 1 };
+        let mut ladder = vec![0, 1];
+        while let Some(next) =
+            ladder.last().map(|last| last + (last / 2).max(1)).filter(|next| *next <= self.latest)
+        {
+            ladder.push(next);
+        }
+        let shares: Vec<f64> = ladder.iter().map(|&samples| left(self, sign * samples)).collect();
         let at = (0..ladder.len()).min_by(|&a, &b| shares[a].total_cmp(&shares[b]))?;
         let mut low = ladder[at.saturating_sub(1)];
         let mut high = ladder[(at + 1).min(ladder.len() - 1)];
         while high - low > 2 {
             let third = (high - low) / 3;
             let [a, b] = [low + third, high - third];
-            if left(self, a) < left(self, b) {
+            if left(self, sign * a) < left(self, sign * b) {
                 high = b;
             } else {
                 low = a;
             }
         }
-        let best = (low..=high).map(|samples| (samples, left(self, samples)));
+        let best = (low..=high).map(|samples| (sign * samples, left(self, sign * samples)));
         let (samples, _) = best.min_by(|a, b| a.1.total_cmp(&b.1))?;
         (samples != 0).then_some(Misreading::Late(samples))
     }

@@ -208,10 +208,12 @@ fn is_geared(joint: &RegressionJoint) -> bool {
     !joint.is_elastic && !joint.is_base && ratio.is_finite() && ratio != 0.0 && ratio != 1.0
 }
 
-/// All that is tried; single columns only if they are asked for. In noisy logs nothing is tried
+/// All that is tried; single columns only if they are asked for, and torques of joints of which
+/// some were measured. In noisy logs nothing is tried
 /// that merely makes less of the noise.
 pub(super) fn hypotheses(
     model: &RegressionModel,
+    is_measured: &dyn Fn(usize) -> bool,
     [single, is_noisy]: [bool; 2],
 ) -> Vec<Misreading> {
     use Misreading::{
@@ -233,8 +235,10 @@ pub(super) fn hypotheses(
         tried.extend(OF_LENGTHS.map(Lengths));
     }
     for (place, &joint) in real.iter().enumerate().filter(|_| single && real.len() > 1) {
-        tried.extend(POWERS.into_iter().chain([-1.0]).map(|factor| Torque(joint, factor)));
-        if is_geared(&joints[joint]) {
+        if is_measured(joint) {
+            tried.extend(POWERS.into_iter().chain([-1.0]).map(|factor| Torque(joint, factor)));
+        }
+        if is_measured(joint) && is_geared(&joints[joint]) {
             let ratio = joints[joint].gear_ratio;
             tried.extend([ratio, 1.0 / ratio].map(|factor| Torque(joint, factor)));
         }
@@ -244,7 +248,10 @@ pub(super) fn hypotheses(
         tried.extend(units.chain([-1.0]).map(|factor| Position(joint, factor)));
         for &other in real[..place].iter().filter(|&&other| joints[other].slides == slides) {
             use ExchangedColumns::{Both, Positions, Torques};
-            tried.extend([Positions, Torques, Both].map(|one| Exchanged([other, joint], one)));
+            tried.push(Exchanged([other, joint], Positions));
+            if is_measured(joint) && is_measured(other) {
+                tried.extend([Torques, Both].map(|one| Exchanged([other, joint], one)));
+            }
         }
     }
     tried.retain(|one| !(is_noisy && one.hides_noise()));

@@ -189,17 +189,11 @@ impl<'a> Motion<'a> {
                 self.control.command(plant, time, q, qd, &mut self.memory, command);
             }
         }
+        self.factor_mass(y)?;
+        let parts = self.layout.parts(y);
         let Work { mass, bias, acceleration, drive, command, scratch, laws, .. } = &mut self.work;
         self.drives.respond(self.plant.model(), command, parts, drive);
         self.plant.bias(parts.q, parts.qd, bias);
-        if self.factored_for != parts.q {
-            self.plant.mass_matrix(parts.q, mass);
-            self.factored_for.clear();
-            self.delassus
-                .factor(mass, self.layout.joints)
-                .map_err(|error| Breakdown::Singular { coordinate: error.coordinate })?;
-            self.factored_for.extend_from_slice(parts.q);
-        }
         for (entry, (torque, bias)) in acceleration.iter_mut().zip(drive.torque.iter().zip(bias)) {
             *entry = torque - *bias;
         }
@@ -220,6 +214,20 @@ impl<'a> Motion<'a> {
             true => Ok(()),
             false => Err(Breakdown::NotFinite),
         }
+    }
+
+    /// Factors the mass matrix, which rows are projected by.
+    pub(super) fn factor_mass(&mut self, y: &[f64]) -> Result<(), Breakdown> {
+        let q = self.layout.parts(y).q;
+        if self.factored_for != q {
+            self.plant.mass_matrix(q, &mut self.work.mass);
+            self.factored_for.clear();
+            self.delassus
+                .factor(&self.work.mass, self.layout.joints)
+                .map_err(|error| Breakdown::Singular { coordinate: error.coordinate })?;
+            self.factored_for.extend_from_slice(q);
+        }
+        Ok(())
     }
 
     /// Rows, velocities and G of the listed contact points; positions of all points.

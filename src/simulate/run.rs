@@ -228,7 +228,8 @@ impl Runner<'_> {
             let row_s = self.row_time();
             let end_s = if row_s < stop_s - 1e-12 { row_s } else { stop_s };
             if !self.stepper.advance(&mut self.motion, end_s)? {
-                return Err(Breakdown::StepTooSmall);
+                let jams = self.motion.jams(self.stepper.time(), &self.y);
+                return Err(if jams { Breakdown::Painleve } else { Breakdown::StepTooSmall });
             }
             if self.stepper.statistics.evaluations > self.simulation.max_evaluations {
                 return Ok(Some(Stop::EvaluationLimit));

@@ -112,6 +112,7 @@ impl Settler {
         self.contacts.clone_from(&motion.work.contacts);
         for _ in 0..HELD_ROUNDS {
             self.decide(motion, touching, &mut settled)?;
+            motion.factor_mass(y)?;
             settled.impulses.extend(self.adopt(motion, (&candidates, &before), &candidates, y));
             if !self.release_held(motion, &candidates, y) {
                 break;
@@ -123,6 +124,7 @@ impl Settler {
             && before.iter().zip(&motion.closed).all(|(a, b)| a.does_as(b));
         if same && self.let_go(motion, &before, ahead)? {
             self.decide(motion, touching, &mut settled)?;
+            motion.factor_mass(y)?;
             settled.impulses.extend(self.adopt(motion, (&candidates, &before), &candidates, y));
         }
         Ok(settled)
@@ -308,16 +310,16 @@ impl Settler {
             let before = motion.closed.iter().find(|closed| closed.contact == *contact);
             let sliding = &work.velocity[index * rows..index * rows + rows - 1];
             let speed = sliding.iter().map(|v| v * v).sum::<f64>().sqrt();
-            // what slid until now and is about to turn round has come to rest
-            let slides = match before {
-                Some(before) if matches!(before.mode, Mode::Slip(_)) && rows == 2 => {
-                    let turns = speed < touching.rest_speed
-                        && slips.slip_left(sliding, before) <= SLIP_SPEED;
-                    speed > SLIP_SPEED && !turns
-                }
-                _ if rows == 2 => speed > SLIP_SPEED,
-                _ => speed > SLIP_SPEED.max(1.001 * slips.rests_below()),
+            let (slow, least) = match rows {
+                2 => (speed < touching.rest_speed, SLIP_SPEED),
+                _ => (!slips.is_left_by(sliding), SLIP_SPEED.max(1.001 * slips.rests_below())),
             };
+            // what slid until now and is about to turn round has come to rest
+            let turns = |before: &Closed| {
+                matches!(before.mode, Mode::Slip(_))
+                    && slips.slip_left(sliding, before) <= SLIP_SPEED
+            };
+            let slides = speed > least && !(slow && before.is_some_and(turns));
             let mut law = motion.friction[*contact];
             if let (true, Friction::NoSlip) = (slides, law) {
                 // the law under which it began to slide holds until it rests

@@ -61,12 +61,8 @@ impl Motion<'_> {
         let (n, rows) = (self.layout.joints, self.ground.rows());
         let normals: Vec<usize> = (0..contacts.len()).map(|i| i * rows + rows - 1).collect();
         // the second pass takes out what the first bends
-        self.factored_for.clear();
         for _ in 0..2 {
-            self.plant.mass_matrix(&y[..n], &mut self.work.mass);
-            self.delassus
-                .factor(&self.work.mass, n)
-                .map_err(|error| Breakdown::Singular { coordinate: error.coordinate })?;
+            self.factor_mass(y)?;
             self.project(y, contacts);
             for (&contact, &row) in contacts.iter().zip(&normals) {
                 self.work.velocity[row] = self.gap(contact);

@@ -14,6 +14,8 @@ use crate::simulate::integrate::Method;
 /// v_s in units of the absolute accuracy of rates, and within which limits [m/s].
 const ERRORS: f64 = 1e4;
 const SPEEDS: [f64; 2] = [1e-6, 1e-4];
+/// Forces this much larger than those that would hold the contacts jam.
+const JAMS: f64 = 1e3;
 /// From this many v_s on nothing is remembered.
 const FORGETS: f64 = 4.0;
 
@@ -95,6 +97,19 @@ impl Motion<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// Whether the forces of what slips grow beyond all bounds here: its friction turns it into the
+    /// ground as much as its normal force lifts it (Painleve).
+    pub(in crate::simulate) fn jams(&mut self, t_s: f64, y: &[f64]) -> bool {
+        let slips = |closed: &Closed| closed.mode != Mode::Stick;
+        if !self.closed.iter().any(slips) || self.constrained_motion(t_s, y).is_err() {
+            return false;
+        }
+        let largest = |entries: &[f64]| entries.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+        let (total, matrix) = (self.delassus.rows(), self.delassus.matrix());
+        let stiffest = (0..total).map(|row| matrix[row * (total + 1)]).fold(0.0, f64::max);
+        stiffest * largest(&self.work.force) > JAMS * largest(&self.work.free)
     }
 
     /// Whether a closed contact slips on in space where its speed along the direction that is

@@ -40,8 +40,27 @@ pub struct LcpReport {
 const PIVOTS: [f64; 3] = [1e-9, 1e-12, 1e-7];
 /// Ratios closer than this, relatively, are equal: their rows are compared lexicographically.
 const TIE: f64 = 1e-12;
+/// Where rounding hides which ratios are equal, the path goes astray, and may end in a ray that is
+/// none. Then right sides are moved apart by about these parts of the largest, so that there are no
+/// ties; the solution of the last basis has them where they were.
+const APART: [f64; 3] = [1e-9, 1e-7, 1e-11];
+/// Multiples of the golden section are evenly spread, modulo 1.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Largest residual of a solution.
 const RESIDUAL: f64 = 1e-8;
+
+/// One way along the path.
+#[derive(Clone, Copy, Debug)]
+struct Attempt {
+    /// The largest |q|.
+    magnitude: f64,
+    /// Pivots at most.
+    limit: usize,
+    /// Smaller entries of a column are none.
+    pivot: f64,
+    /// How far right sides are moved apart.
+    apart: f64,
+}
 
 /// Lemke's method and its memory, which grows to the largest problem and stays.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +85,7 @@ impl Lemke {
         Self::default()
     }
 
-    /// z of the last problem: its solution if that was solved.
+    /// z of the last problem: its solution if that was solved, or the best that was found.
     pub fn solution(&self) -> &[f64] {
         &self.solution[..self.n]
     }
@@ -84,26 +103,32 @@ impl Lemke {
         self.equilibrate(m);
         let magnitude =
             q.iter().zip(&self.scale).fold(0.0_f64, |sum, (entry, d)| sum.max((entry * d).abs()));
-        let mut report = self.attempt(m, q, magnitude, limit, PIVOTS[0]);
-        for pivot in &PIVOTS[1..] {
-            if report.outcome == LcpOutcome::Inaccurate {
-                report = self.attempt(m, q, magnitude, limit, *pivot);
+        let exact = |pivot| Attempt { magnitude, limit, pivot, apart: 0.0 };
+        let mut best = self.attempt(m, q, exact(PIVOTS[0]));
+        let mut kept = self.solution.clone();
+        let mut spent = best.pivots;
+        let others = PIVOTS[1..].iter().map(|pivot| exact(*pivot));
+        let moved = APART.iter().map(|apart| Attempt { apart: *apart, ..exact(PIVOTS[0]) });
+        for attempt in others.chain(moved) {
+            if best.outcome == LcpOutcome::Solved {
+                break;
+            }
+            let report = self.attempt(m, q, attempt);
+            spent += report.pivots;
+            if report.residual < best.residual {
+                best = report;
+                kept.clone_from(&self.solution);
             }
         }
-        report
+        self.solution = kept;
+        LcpReport { pivots: spent, ..best }
     }
 
-    fn attempt(
-        &mut self,
-        m: &[f64],
-        q: &[f64],
-        magnitude: f64,
-        limit: usize,
-        smallest: f64,
-    ) -> LcpReport {
+    fn attempt(&mut self, m: &[f64], q: &[f64], attempt: Attempt) -> LcpReport {
+        let magnitude = attempt.magnitude;
         self.solution.fill(0.0);
-        self.fill(m, q, magnitude);
-        let (outcome, pivots) = self.pivot_along_the_path(limit, smallest);
+        self.fill(m, q, attempt);
+        let (outcome, pivots) = self.pivot_along_the_path(attempt.limit, attempt.pivot);
         if outcome != LcpOutcome::Solved {
             return LcpReport { outcome, pivots, residual: f64::INFINITY };
         }
@@ -137,8 +162,9 @@ impl Lemke {
         }
     }
 
-    fn fill(&mut self, m: &[f64], q: &[f64], magnitude: f64) {
+    fn fill(&mut self, m: &[f64], q: &[f64], attempt: Attempt) {
         let (n, width) = (self.n, 2 * self.n + 2);
+        let spread = |i: usize| 0.5 + (i as f64 * GOLDEN).fract();
         self.tableau.clear();
         self.tableau.resize(n * width, 0.0);
         self.basis.clear();
@@ -150,7 +176,7 @@ impl Lemke {
                 row[n + j] = -m[i * n + j] * self.scale[i] * self.scale[j];
             }
             row[2 * n] = -1.0;
-            row[2 * n + 1] = q[i] * self.scale[i] / magnitude;
+            row[2 * n + 1] = q[i] * self.scale[i] / attempt.magnitude + attempt.apart * spread(i);
         }
     }
 

@@ -170,7 +170,7 @@ fn summary(
         "scheme": scenario.scheme.word(),
         "stop": run.stop.word(),
         "message": run.stop.to_string(),
-        "hint": run.stop.hint(scenario.simulation.friction),
+        "hint": scenario.hint(&run.stop),
         "end_s": run.end.t_s,
         "events": run.events.len(),
         "steps": cost.steps,
@@ -221,7 +221,7 @@ fn print(
         cost.rejected,
         cost.evaluations,
     )?;
-    if let Some(hint) = run.stop.hint(scenario.simulation.friction) {
+    if let Some(hint) = scenario.hint(&run.stop) {
         writeln!(out, "hint: {hint}")?;
     }
     writeln!(out)?;

@@ -7,7 +7,8 @@ use crate::plants::PlantModel;
 /// What a run may miss the laws by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
-    /// Energy, work and impact losses \[J\]; also this part of the energy that was exchanged.
+    /// Energy, work and impact losses \[J\]; also this part of the energy that was exchanged, or in
+    /// motion.
     pub energy_j: f64,
     /// Change of momentum at impacts against their impulses [N s].
     pub momentum_ns: f64,
@@ -28,6 +29,10 @@ pub struct Tolerances {
     /// Angle between friction and what is opposite to the velocity of a slipping contact \[rad\].
     pub friction_angle_rad: f64,
 }
+
+/// Tolerances of forces, momentum and their products count once per so much kinetic energy: what a
+/// robot of human size has that walks \[J\].
+const MOTION_J: f64 = 4.0;
 
 impl Tolerances {
     /// Those of time stepping with steps of this length: in proportion to it, what a robot of
@@ -87,6 +92,8 @@ pub struct Audit {
     /// Work put in, either way, impact losses included: what the energy error is compared with
     /// \[J\].
     pub exchanged_j: f64,
+    /// Largest kinetic energy: what errors of forces and of momentum are compared with \[J\].
+    pub motion_j: f64,
     /// Linear momentum across impacts [N s].
     pub momentum_ns: f64,
     /// Largest energy that an impact made \[J\]; 0 if all lost.
@@ -166,17 +173,18 @@ impl Audit {
     /// The laws that were missed by more than is tolerated: name, by how much, tolerance.
     pub fn broken(&self, tolerances: &Tolerances) -> Vec<(&'static str, f64, f64)> {
         let t = tolerances;
-        let energy = t.energy_j * self.exchanged_j.max(1.0);
+        let energy = t.energy_j * self.exchanged_j.max(self.motion_j).max(1.0);
+        let size = (self.motion_j / MOTION_J).max(1.0);
         let checks = [
             ("energy", self.energy_j, energy),
             ("impact_gain", self.impact_gain_j, energy),
-            ("momentum", self.momentum_ns, t.momentum_ns),
+            ("momentum", self.momentum_ns, size * t.momentum_ns),
             ("penetration", self.penetration_m, t.penetration_m),
-            ("complementarity", self.complementarity_nm, t.complementarity_nm),
+            ("complementarity", self.complementarity_nm, size * t.complementarity_nm),
             ("adhesion", self.adhesion_n, t.adhesion_n),
             ("separation", self.separation_m_s, t.separation_m_s),
             ("zmp", self.zmp_m, t.zmp_m),
-            ("force_balance", self.force_n, t.force_n),
+            ("force_balance", self.force_n, size * t.force_n),
             ("friction_cone", self.cone_n, t.cone_n),
             ("friction_direction", self.friction_angle_rad, t.friction_angle_rad),
         ];

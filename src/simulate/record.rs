@@ -83,6 +83,7 @@ impl Recorder {
         audit.energy_j = worst(audit.energy_j, energy_error.abs());
         let exchanged = parts.work_in.abs() + parts.lost.abs() + self.lost_in_impacts;
         audit.exchanged_j = audit.exchanged_j.max(exchanged);
+        audit.motion_j = audit.motion_j.max(motion.plant.kinetic_energy(parts.q, parts.qd));
         for torque in &motion.work.drive.torque {
             audit.torque = worst(audit.torque, torque.abs());
         }

@@ -24,12 +24,13 @@ pub(crate) use reader::{Fields, Node, Report};
 pub use trajectory::{TRAJECTORY_FORMAT, Trajectory, read_trajectory, trajectory_schema};
 
 use super::audit::Tolerances;
+use super::breakdown::{Breakdown, Stop};
 use super::control::Control;
 use super::measured_log::measured_log;
 use super::run::{Run, simulate};
 use super::simulation::Simulation;
 use super::state::State;
-use super::time_stepping::{Scheme, Stepping, simulate_by_steps};
+use super::time_stepping::{Scheme, StepSolver, Stepping, simulate_by_steps};
 use crate::plants::Plant;
 use start::Origin;
 
@@ -117,6 +118,22 @@ impl Scenario {
     pub fn set_step_s(&mut self, step_s: f64) {
         self.stepping_tolerances = self.stepping_tolerances.scaled(step_s / self.stepping.step_s);
         self.stepping.step_s = step_s;
+    }
+
+    /// What may help where a run stopped.
+    pub fn hint(&self, stop: &Stop) -> Option<&'static str> {
+        match (self.scheme, stop, self.stepping.solver) {
+            (RunScheme::Event, ..) | (_, Stop::Breakdown(Breakdown::SingularPose), _) => {
+                stop.hint(self.simulation.friction)
+            }
+            (_, Stop::Breakdown(Breakdown::Contact(_)), StepSolver::Pivots { .. }) => {
+                Some("`\"solver\": \"sweeps\"` in `time_stepping` keeps the cones")
+            }
+            (_, Stop::Breakdown(Breakdown::Contact(_)), StepSolver::Sweeps(_)) => {
+                Some("more `sweeps`, or shorter steps, in `time_stepping`")
+            }
+            _ => None,
+        }
     }
 
     /// The laws that a run of this scenario missed by more than is tolerated: name, by how much,

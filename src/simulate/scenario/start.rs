@@ -3,9 +3,10 @@
 use super::Scenario;
 use super::fault::{Cause, ScenarioError};
 use super::reader::Report;
+use crate::simulate::breakdown::Breakdown;
 use crate::simulate::contact::delassus::Delassus;
 use crate::simulate::control::ControlMemory;
-use crate::simulate::start::{StartError, check_gaps};
+use crate::simulate::start::{StartError, check_gaps, quarter_turn_left};
 use denavit_codegen::model::json::{self, Json};
 
 /// Notes what keeps a scenario, whose numbers are sound one by one, from beginning: a contact below
@@ -18,7 +19,12 @@ pub(super) fn find_start_faults(scenario: &mut Scenario, root: &Json<'_>, report
     }
     let mut mass = vec![0.0; n * n];
     plant.mass_matrix(&state.q, &mut mass);
-    if let Err(error) = Delassus::new().factor(&mass, n) {
+    let roll = plant.model().singular_base_joint().map(|joint| state.q[joint]);
+    if roll.is_some_and(|roll| quarter_turn_left(roll) <= 0.0) {
+        // rounding decides whether that shows in the masses
+        let pose = StartError::Breakdown(Breakdown::SingularPose);
+        report.push(root.offset(["initial"]), Cause::Start(pose));
+    } else if let Err(error) = Delassus::new().factor(&mass, n) {
         let joint = plant.model().joints[error.coordinate].name.clone();
         report.push(root.offset(["model"]), Cause::Singular(joint));
     }

@@ -214,6 +214,8 @@ impl StepRecorder {
         audit.energy_j = worst(audit.energy_j, (energy - expected).abs());
         let exchanged = self.work_in.abs() + self.lost.abs() + self.contact_exchange;
         audit.exchanged_j = audit.exchanged_j.max(exchanged);
+        let motion = system.plant().kinetic_energy(parts.q, parts.qd);
+        audit.motion_j = audit.motion_j.max(motion);
         let length_s = t_s - self.interval.start_s;
         let zmp = self.audit_interval(system, length_s, q, qd);
         let values = &mut self.log.values;

@@ -39,6 +39,7 @@ pub(super) fn run(
         let answered = Answered::new(arguments, &progress)?;
         progress.clear();
         remarks.extend(answered.remarks.iter().map(|(file, one)| format!("{file}: {one}")));
+        remarks.extend(answered.found.warnings());
         if let Some(remark) = join(&model, &answered, &mut knowledge) {
             remarks.push(remark);
         }

@@ -9,6 +9,9 @@ const SAME: f64 = 1e-3;
 /// The least overlap, of the samples of the shorter log.
 const OVERLAP: f64 = 0.3;
 
+/// The spread of a position in the overlap, of that in the log, that at least one joint has.
+const MOVES: f64 = 0.1;
+
 /// Samples that are looked at before all are.
 const FIRST: usize = 64;
 
@@ -32,6 +35,10 @@ impl Pair<'_> {
     }
 }
 
+fn rms_about_mean(values: &[f64]) -> f64 {
+    rms(values, values.iter().sum::<f64>() / values.len().max(1) as f64)
+}
+
 fn rms(values: &[f64], mean: f64) -> f64 {
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (squares / values.len().max(1) as f64).sqrt()
@@ -50,11 +57,10 @@ impl Conditioned {
         let inner = &other.range;
         let position = |joint: usize| {
             let own = &other.q[joint][inner.clone()];
-            let mean = own.iter().sum::<f64>() / own.len() as f64;
             Pair {
                 one: &self.q[joint],
                 other: &other.q[joint],
-                most: SAME * rms(own, mean) + 1e-12,
+                most: SAME * rms_about_mean(own) + 1e-12,
             }
         };
         let torque = |joint: usize| {
@@ -84,6 +90,11 @@ impl Conditioned {
                 let count = end.saturating_sub(first);
                 if (count as f64) < OVERLAP * shortest {
                     return false;
+                }
+                let inside = |pair: &Pair<'_>| rms_about_mean(&pair.other[first..end]);
+                let moves = |pair: &Pair<'_>| inside(pair) * SAME > MOVES * pair.most;
+                if !positions.iter().any(moves) {
+                    return false; // all rests look alike
                 }
                 let both = || positions.iter().chain(&torques);
                 let step = count.div_ceil(FIRST);

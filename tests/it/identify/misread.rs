@@ -88,6 +88,21 @@ fn nothing_is_told_of_good_logs() {
     }
 }
 
+/// A slide in mm, and one log of two whose torques have the wrong sign.
+#[test]
+fn slides_and_single_logs_are_told() {
+    let (model, log) = made("stanford", 4, true);
+    let slide = model.joints.iter().position(|joint| joint.slides).expect("it has one");
+    let in_mm = misread(&log, Misreading::Position(slide, 1e-3));
+    assert_eq!(told(&model, &in_mm), [(Misreading::Lengths(1e-3), true)]);
+    let (model, log) = made("planar_2r", 4, true);
+    let mut turned = misread(&made("planar_2r", 5, true).1, Misreading::Torque(1, -1.0));
+    turned.file = "turned".to_owned();
+    let found = misread_columns(&model, &[log, turned], (&[], None));
+    let told: Vec<_> = found.iter().map(|one| (one.misreading, one.file.as_deref())).collect();
+    assert_eq!(told, [(Misreading::Torque(1, -1.0), Some("turned"))]);
+}
+
 #[test]
 fn misread_columns_are_told() {
     use Misreading::{Angles, Exchanged, Late, Position, Time, Torque, Torques};

@@ -68,6 +68,8 @@ pub struct MisreadColumns {
     pub left_by_model: Option<[f64; 2]>,
     /// The same of an estimate.
     pub left_by_estimate: Option<[f64; 2]>,
+    /// The log, if it is one of several and the others are not misread.
+    pub file: Option<String>,
     /// Whether nothing else explains it as well. What may be a model's parameters or a law of
     /// friction that it lacks is not sure.
     pub is_sure: bool,
@@ -89,6 +91,9 @@ impl MisreadColumns {
 
 impl fmt::Display for MisreadColumns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{file}: ")?;
+        }
         self.misreading.describe(f, (&self.names, self.step_s))?;
         let percent = |[before, after]: [f64; 2]| {
             format!("{} of the torques as the log is, and {} so", share(before), share(after))
@@ -126,10 +131,17 @@ struct Verdict {
 }
 
 impl Verdict {
-    fn new(misreading: Misreading, own: Option<Change>, fit: Change) -> Self {
+    /// `after` is what an estimate leaves of each joint.
+    fn new(misreading: Misreading, own: Option<Change>, [before, after]: [&Shares; 2]) -> Self {
+        let fit = Change::of(before, after);
+        let own_torques = misreading.torques_of().into_iter().filter_map(|joint| after[joint]);
+        let is_explained = own_torques.fold(0.0, f64::max) < LEFT_BY_ESTIMATE;
         let is_late = matches!(misreading, Misreading::Late(_));
         let least = if is_late { PROMPT } else { EXPLAINED };
-        let by_fit = fit.ratio < BETTER && fit.left[0] > least && fit.left[1] < LEFT_BY_ESTIMATE;
+        let by_fit = is_explained
+            && fit.ratio < BETTER
+            && fit.left[0] > least
+            && fit.left[1] < LEFT_BY_ESTIMATE;
         let most = match (misreading.is_of_all(), by_fit) {
             (true, _) => LEFT_OF_ALL,
             (false, true) => LEFT_OF_ONE,
@@ -179,6 +191,42 @@ pub fn misread_columns(
     logs: &[Conditioned],
     (listed, noise): (&[IdentifiedParameter], Option<&[f64]>),
 ) -> Vec<MisreadColumns> {
+    let mut found = misread_alike(model, logs, noise);
+    if found.is_empty() && logs.len() > 1 {
+        // one log among good ones
+        for log in logs {
+            let own = misread_alike(model, std::slice::from_ref(log), noise);
+            let named = |one| MisreadColumns { file: Some(log.file.clone()), ..one };
+            found.extend(own.into_iter().map(named));
+        }
+    }
+    for joint in rubbing_backwards(model, listed) {
+        let is_told = |one: &MisreadColumns| match one.misreading {
+            Misreading::Torque(of, -1.0) => of == joint,
+            Misreading::Torques(-1.0) => true,
+            _ => false,
+        };
+        if !found.iter().any(is_told) {
+            found.push(MisreadColumns {
+                misreading: Misreading::Torque(joint, -1.0),
+                left_by_model: None,
+                left_by_estimate: None,
+                file: None,
+                is_sure: false,
+                names: names(model),
+                step_s: 0.0,
+            });
+        }
+    }
+    found
+}
+
+/// The same of logs that are all misread alike.
+fn misread_alike(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    noise: Option<&[f64]>,
+) -> Vec<MisreadColumns> {
     let step_s = logs.iter().map(|log| log.step_s).fold(f64::INFINITY, f64::min);
     let shortest = logs.iter().map(|log| log.range.len()).min().unwrap_or(0);
     let latest = (LATEST_S / step_s).min(shortest as f64 / 8.0) as isize;
@@ -197,36 +245,20 @@ pub fn misread_columns(
             misreading: verdict.misreading,
             left_by_model: verdict.own.filter(|_| verdict.by_own).map(|own| own.left),
             left_by_estimate: verdict.by_fit.then_some(verdict.fit.left),
+            file: None,
             is_sure,
-            names: search.names(),
+            names: names(model),
             step_s,
         });
-    }
-    for joint in rubbing_backwards(model, listed) {
-        let is_told = |one: &MisreadColumns| match one.misreading {
-            Misreading::Torque(of, -1.0) => of == joint,
-            Misreading::Torques(-1.0) => true,
-            _ => false,
-        };
-        if !found.iter().any(is_told) {
-            found.push(MisreadColumns {
-                misreading: Misreading::Torque(joint, -1.0),
-                left_by_model: None,
-                left_by_estimate: None,
-                is_sure: false,
-                names: search.names(),
-                step_s,
-            });
-        }
     }
     found
 }
 
-impl Search<'_> {
-    fn names(&self) -> Vec<String> {
-        self.model.joints.iter().map(|joint| joint.name.clone()).collect()
-    }
+fn names(model: &RegressionModel) -> Vec<String> {
+    model.joints.iter().map(|joint| joint.name.clone()).collect()
+}
 
+impl Search<'_> {
     /// Whether noise of the positions explains what the model's own values leave of a torque.
     fn is_noisy(&self, own: &Shares) -> bool {
         let both = own.iter().zip(self.noise.unwrap_or_default());
@@ -273,7 +305,7 @@ impl Search<'_> {
         for (one, change) in judged {
             let other = reading.with(one, &self.model.joints);
             let Some(after) = self.balance.left(&other, true).fit else { continue };
-            let verdict = Verdict::new(one, change, Change::of(&fit, &after));
+            let verdict = Verdict::new(one, change, [&fit, &after]);
             let is_better = best.as_ref().is_none_or(|best| verdict.rank() < best.rank());
             if verdict.is_believed() && is_better {
                 best = Some(verdict);

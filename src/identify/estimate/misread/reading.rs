@@ -56,6 +56,17 @@ impl Misreading {
         matches!(self, Time(_) | Torques(_) | TorquesOfMotors(_) | Angles(_) | Lengths(_))
     }
 
+    /// The joints whose own torque must be explained then.
+    pub(super) fn torques_of(self) -> Vec<usize> {
+        match self {
+            Self::Torque(joint, _) => vec![joint],
+            Self::Exchanged(both, columns) if columns != ExchangedColumns::Positions => {
+                both.to_vec()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// Whether it makes less of noise of the positions, whatever is true.
     fn hides_noise(self) -> bool {
         match self {

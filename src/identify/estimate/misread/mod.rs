@@ -23,9 +23,9 @@ use std::fmt;
 /// A witness speaks for a reading if what is left falls to this share,
 const BETTER: f64 = 0.5;
 
-/// and to less than this: of all joints by the model's own values; of columns of single joints,
-/// which other faults of a model's values resemble more, if an estimate speaks for it too, and if
-/// not; and by an estimate.
+/// and to less than this: by the model's own values where all joints are in question, or the sign
+/// of a torque; other columns of single joints, which other faults of a model's values resemble
+/// more, if an estimate speaks for it too, and if not; and by an estimate.
 const LEFT_OF_ALL: f64 = 0.63;
 const LEFT_OF_ONE: f64 = 0.32;
 const LEFT_ALONE: f64 = 0.1;
@@ -142,7 +142,9 @@ impl Verdict {
             && fit.ratio < BETTER
             && fit.left[0] > least
             && fit.left[1] < LEFT_BY_ESTIMATE;
-        let most = match (misreading.is_of_all(), by_fit) {
+        // a torque against that of the model is no parameter that is far off
+        let is_sign = matches!(misreading, Misreading::Torque(_, -1.0));
+        let most = match (misreading.is_of_all() || is_sign, by_fit) {
             (true, _) => LEFT_OF_ALL,
             (false, true) => LEFT_OF_ONE,
             (false, false) => LEFT_ALONE,

@@ -1,5 +1,6 @@
-//! The project is its own first client: these robots become modules of Rust, tulip_leg6 for the
-//! benches alone, planar_biped with what a simulation needs. All others are read at run time.
+//! The project is its own first client: these robots become modules of Rust, tulip_leg6, with
+//! products fused, for benches and tests alone, planar_biped with what a simulation needs. All
+//! others are read at run time.
 
 use denavit_codegen::build_script::{Request, emit, emit_with};
 use denavit_codegen::function::FunctionName;
@@ -18,9 +19,11 @@ const OF_A_PLANT: [FunctionName; 10] = [
 ];
 
 fn main() {
-    for model in ["puma560", "tulip", "tulip_leg6"] {
+    for model in ["puma560", "tulip"] {
         emit(format!("models/{model}.json"));
     }
+    let functions = [&FunctionName::ALL[..], &[FunctionName::BaseRegressor]].concat();
+    emit_with("models/tulip_leg6.json", &Request { functions, fuses: true, ..Request::default() });
     let request = Request { functions: OF_A_PLANT.to_vec(), ..Request::default() };
     emit_with("models/planar_biped.json", &request);
 }

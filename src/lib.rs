@@ -4,6 +4,7 @@
 //! - [`shipped`]: robots whose model files are part of the library
 //! - [`tulip`], [`puma560`], [`planar_biped`]: what the compiler made of three of them when this
 //!   library was built
+//! - [`batch`]: emitted functions on many samples, on all processors
 //! - [`simulate`]: robots in motion, on the ground
 //! - [`diagnose`]: what a model lacks, from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
@@ -12,6 +13,7 @@
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
 
+pub mod batch;
 pub mod diagnose;
 mod generated;
 pub mod identify;

@@ -19,7 +19,7 @@ use crate::effect::{self, Effect};
 use crate::emit::rust::{EmitError, module};
 use crate::function::FunctionName;
 use crate::model::{BakeError, ModelError, Robot};
-use crate::program::{LowerError, lower};
+use crate::program::{LowerError, fuse, lower};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -31,12 +31,15 @@ pub struct Request {
     pub flavour: Flavour,
     /// The functions; those that the robot cannot have are left out.
     pub functions: Vec<FunctionName>,
+    /// Whether products are fused with sums: faster where the target has the instruction and the
+    /// runtime its feature `fma`, at the price of bits that depend on the target.
+    pub fuses: bool,
 }
 
 impl Default for Request {
     /// All functions, with parameters that can be set at run time.
     fn default() -> Self {
-        Self { flavour: Flavour::Tunable, functions: FunctionName::ALL.to_vec() }
+        Self { flavour: Flavour::Tunable, functions: FunctionName::ALL.to_vec(), fuses: false }
     }
 }
 
@@ -147,8 +150,11 @@ pub fn source(robot: &Robot, request: &Request) -> Result<String, BuildError> {
     let model = || robot.name.clone();
     let derivation =
         derive(robot, request.flavour, &request.functions).map_err(BuildError::Bake)?;
-    let program = lower(&derivation.dag, &derivation.functions)
+    let mut program = lower(&derivation.dag, &derivation.functions)
         .map_err(|error| BuildError::Lower { model: model(), error })?;
+    if request.fuses {
+        fuse(&mut program);
+    }
     module(&derivation.robot, &program).map_err(|error| BuildError::Emit { model: model(), error })
 }
 

@@ -178,7 +178,7 @@ fn one_robot(
     let name = compiled.name;
     let robot = read_model(Path::new(name))?;
     progress.show(&format!("{name}: deriving and emitting"));
-    let emitted = Emitted::new(&robot, Flavour::Tunable, &FunctionName::ALL)?;
+    let emitted = Emitted::new(&robot, Flavour::Tunable, false, &FunctionName::ALL)?;
     let mut files = Vec::new();
     let functions = emitted.program.routines.len();
     let what = format!("{functions} functions as Rust, tunable parameters");

@@ -12,7 +12,7 @@ use denavit::dynamics::implicit_effects;
 use denavit::emit::rust::module;
 use denavit::function::FunctionName;
 use denavit::model::Robot;
-use denavit::program::{Program, lower};
+use denavit::program::{Program, fuse, lower};
 use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
@@ -26,6 +26,7 @@ use std::path::PathBuf;
 Examples:
   denavit emit puma560 -o puma560_dynamics.rs
   denavit emit tulip --baked --functions inverse_dynamics,mass_matrix -o tulip.rs
+  denavit emit tulip_leg6 --baked --fused -o leg.rs
   denavit emit scara -o -")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -36,6 +37,10 @@ pub(crate) struct Arguments {
     functions: FunctionList,
     #[command(flatten)]
     flavour: FlavourOption,
+    /// Fuse products with the sums that they go into: faster with the feature `fma` of
+    /// denavit-runtime and -C target-cpu=native, but the last bits then depend on the processor
+    #[arg(long)]
+    fused: bool,
     /// The file to write; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -64,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let flavour = arguments.flavour.flavour();
     let progress = Progress::new();
     progress.show(&format!("deriving and emitting {}", robot.name));
-    let emitted = Emitted::new(&robot, flavour, &arguments.functions.wanted())?;
+    let emitted = Emitted::new(&robot, flavour, arguments.fused, &arguments.functions.wanted())?;
     drop(progress);
     let text = &emitted.text;
     write_whole(&arguments.output, text.as_bytes())?;
@@ -109,6 +114,7 @@ impl Emitted {
     pub(crate) fn new(
         robot: &Robot,
         flavour: Flavour,
+        fuses: bool,
         wanted: &[FunctionName],
     ) -> Result<Self, Failure> {
         let derivation = derive(robot, flavour, wanted).map_err(Failure::Bake)?;
@@ -116,8 +122,11 @@ impl Emitted {
             let asked = wanted.iter().map(|name| name.to_string()).collect();
             return Err(Failure::NoFunction { model: robot.name.clone(), asked });
         }
-        let program = lower(&derivation.dag, &derivation.functions)
+        let mut program = lower(&derivation.dag, &derivation.functions)
             .map_err(|error| Failure::Lower(robot.name.clone(), error))?;
+        if fuses {
+            fuse(&mut program);
+        }
         let text = module(&derivation.robot, &program)
             .map_err(|error| Failure::Emit(robot.name.clone(), error))?;
         Ok(Self { derivation, program, text })

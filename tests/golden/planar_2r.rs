@@ -316,9 +316,10 @@ pub fn inverse_dynamics<S: Scalar>(
     qdd: &[S; DOF],
 ) -> [S; DOF] {
     let p = parameters;
-    let (s1, c1) = q[0].sincos();
+    let (sines, cosines) = S::sincos_all([q[0], q[1]]);
+    let [s1, s2] = sines;
+    let [c1, c2] = cosines;
     let t1 = p.g * s1 - qd[0] * qd[0] * p.l1;
-    let (s2, c2) = q[1].sincos();
     let t2 = p.g * c1 + p.l1 * qdd[0];
     let t3 = (s2 * t1 - c2 * t2) * p.r3 + (c2 * t1 + s2 * t2) * p.r2;
     let t4 = qdd[0] + qdd[1];
@@ -376,27 +377,28 @@ pub fn dynamics_terms<S: Scalar>(
     qd: &[S; DOF],
 ) -> DynamicsTerms<S> {
     let p = parameters;
-    let (s2, c2) = q[1].sincos();
-    let t1 = c2 * p.r13 - s2 * p.r12;
+    let t1 = q[0] + q[1];
+    let (sines, cosines) = S::sincos_all([q[0], q[1], t1]);
+    let [s1, s2, s12] = sines;
+    let [c1, c2, c12] = cosines;
+    let t2 = c2 * p.r13 - s2 * p.r12;
     let k1 = S::from_f64(2.0);
-    let t2 = k1 * t1 - p.r14;
-    let t3 = t1 - p.r5;
-    let t4 = c2 * p.r12 + s2 * p.r13;
-    let t5 = -(qd[1] * t4);
-    let t6 = (qd[0] + qd[1]) * t4;
-    let t7 = -t6;
-    let t8 = qd[0] * t4;
-    let (s1, c1) = q[0].sincos();
-    let (s12, c12) = (q[0] + q[1]).sincos();
-    let t9 = c12 * p.r10;
-    let t10 = s12 * p.r11;
-    let t11 = c1 * p.r8 - s1 * p.r9 + t9 - t10;
-    let t12 = t9 - t10;
+    let t3 = k1 * t2 - p.r14;
+    let t4 = t2 - p.r5;
+    let t5 = c2 * p.r12 + s2 * p.r13;
+    let t6 = -(qd[1] * t5);
+    let t7 = (qd[0] + qd[1]) * t5;
+    let t8 = -t7;
+    let t9 = qd[0] * t5;
+    let t10 = c12 * p.r10;
+    let t11 = s12 * p.r11;
+    let t12 = c1 * p.r8 - s1 * p.r9 + t10 - t11;
+    let t13 = t10 - t11;
     let zero = S::ZERO;
     DynamicsTerms {
-        mass_matrix: [[t2, t3], [t3, p.r6]],
-        coriolis_matrix: [[t5, t7], [t8, zero]],
-        gravity_vector: [t11, t12],
+        mass_matrix: [[t3, t4], [t4, p.r6]],
+        coriolis_matrix: [[t6, t8], [t9, zero]],
+        gravity_vector: [t12, t13],
     }
 }
 
@@ -417,9 +419,10 @@ pub fn forward_dynamics<S: Scalar>(
     tau: &[S; DOF],
 ) -> [S; DOF] {
     let p = parameters;
-    let (s1, c1) = q[0].sincos();
+    let (sines, cosines) = S::sincos_all([q[0], q[1]]);
+    let [s1, s2] = sines;
+    let [c1, c2] = cosines;
     let t1 = p.g * s1 - qd[0] * qd[0] * p.l1;
-    let (s2, c2) = q[1].sincos();
     let t2 = p.g * c1;
     let t3 = (s2 * t1 - c2 * t2) * p.r3 + (c2 * t1 + s2 * t2) * p.r2;
     let t4 = qd[0] + qd[1];
@@ -476,18 +479,20 @@ fn link_jacobian_link1<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [
 /// Geometric Jacobian of a link's frame. Of the link `link2`: 4 mul, 3 add, 2 neg, 2 sincos.
 fn link_jacobian_link2<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [[S; DOF]; 6] {
     let p = parameters;
-    let (s1, c1) = q[0].sincos();
-    let (s12, c12) = (q[0] + q[1]).sincos();
-    let t1 = p.l2 * s12;
-    let t2 = -(p.l1 * s1 + t1);
-    let t3 = -t1;
-    let t4 = p.l2 * c12;
-    let t5 = p.l1 * c1 + t4;
+    let t1 = q[0] + q[1];
+    let (sines, cosines) = S::sincos_all([q[0], t1]);
+    let [s1, s12] = sines;
+    let [c1, c12] = cosines;
+    let t2 = p.l2 * s12;
+    let t3 = -(p.l1 * s1 + t2);
+    let t4 = -t2;
+    let t5 = p.l2 * c12;
+    let t6 = p.l1 * c1 + t5;
     let zero = S::ZERO;
     let one = S::ONE;
     [
-        [t2, t3],
-        [t5, t4],
+        [t3, t4],
+        [t6, t5],
         [zero, zero],
         [zero, zero],
         [zero, zero],
@@ -530,12 +535,13 @@ pub fn base_regressor<S: Scalar>(
     qdd: &[S; DOF],
 ) -> [[S; 6]; DOF] {
     let p = parameters;
-    let (s1, c1) = q[0].sincos();
+    let (sines, cosines) = S::sincos_all([q[0], q[1]]);
+    let [s1, s2] = sines;
+    let [c1, c2] = cosines;
     let t1 = p.g * c1;
     let t2 = p.g * s1;
     let t3 = -t2;
     let t4 = t2 - qd[0] * qd[0] * p.l1;
-    let (s2, c2) = q[1].sincos();
     let t5 = t1 + p.l1 * qdd[0];
     let t6 = s2 * t4 - c2 * t5;
     let t7 = qd[0] + qd[1];

@@ -60,7 +60,9 @@ pub fn inverse_dynamics<S: Scalar>(
     qdd: &[S; DOF],
 ) -> [S; DOF] {
     let _ = parameters;
-    let (s2, c2) = q[1].sincos();
+    let (sines, cosines) = S::sincos_all([q[1], q[3]]);
+    let [s2, s4] = sines;
+    let [c2, c4] = cosines;
     let k1 = S::from_f64(0.35);
     let t1 = qd[0] * qd[0] * k1;
     let t2 = k1 * qdd[0];
@@ -68,7 +70,6 @@ pub fn inverse_dynamics<S: Scalar>(
     let t4 = t3 * t3;
     let k2 = S::from_f64(0.25);
     let t5 = c2 * t1 - s2 * t2 + k2 * t4;
-    let (s4, c4) = q[3].sincos();
     let t6 = s2 * t1 + c2 * t2;
     let t7 = qdd[0] + qdd[1];
     let t8 = t6 + k2 * t7;
@@ -104,8 +105,9 @@ pub fn inverse_dynamics<S: Scalar>(
 #[allow(clippy::approx_constant)] // a model's number may lie near a famous one
 pub fn mass_matrix<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [[S; DOF]; DOF] {
     let _ = parameters;
-    let (s2, c2) = q[1].sincos();
-    let (s4, c4) = q[3].sincos();
+    let (sines, cosines) = S::sincos_all([q[1], q[3]]);
+    let [s2, s4] = sines;
+    let [c2, c4] = cosines;
     let k3 = S::from_f64(0.006);
     let t1 = k3 * c4;
     let k11 = S::from_f64(1.035);
@@ -170,42 +172,50 @@ pub fn gravity_vector<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [S
 #[allow(clippy::approx_constant)] // a model's number may lie near a famous one
 pub fn link_transforms<S: Scalar>(parameters: &Parameters<S>, q: &[S; DOF]) -> [[[S; 4]; 3]; 4] {
     let _ = parameters;
-    let (s1, c1) = q[0].sincos();
-    let t1 = -s1;
+    let mut result = [[[S::ZERO; 4]; 3]; 4];
+    let one = S::ONE;
+    result[0][2][2] = one;
+    result[1][2][2] = one;
+    result[2][2][2] = one;
+    result[3][2][2] = one;
+    result[2][2][3] = q[2];
+    result[3][2][3] = q[2];
+    let t1 = q[0] + q[1];
+    let (sines, cosines) = S::sincos_all([q[0], q[3], t1]);
+    let [s1, s4, s12] = sines;
+    let [c1, c4, c12] = cosines;
+    result[0][1][0] = s1;
+    result[0][0][0] = c1;
+    result[0][1][1] = c1;
+    result[1][1][0] = s12;
+    result[2][1][0] = s12;
+    result[1][0][0] = c12;
+    result[1][1][1] = c12;
+    result[2][0][0] = c12;
+    result[2][1][1] = c12;
+    result[0][0][1] = -s1;
     let k1 = S::from_f64(0.35);
     let t2 = k1 * c1;
+    result[0][0][3] = t2;
     let t3 = k1 * s1;
-    let (s12, c12) = (q[0] + q[1]).sincos();
+    result[0][1][3] = t3;
     let t4 = -s12;
+    result[1][0][1] = t4;
+    result[2][0][1] = t4;
     let k2 = S::from_f64(0.25);
     let t5 = t2 + k2 * c12;
+    result[1][0][3] = t5;
+    result[2][0][3] = t5;
+    result[3][0][3] = t5;
     let t6 = t3 + k2 * s12;
-    let (s4, c4) = q[3].sincos();
+    result[1][1][3] = t6;
+    result[2][1][3] = t6;
+    result[3][1][3] = t6;
     let t7 = c4 * c12 - s4 * s12;
+    result[3][0][0] = t7;
+    result[3][1][1] = t7;
     let t8 = s4 * c12 + c4 * s12;
-    let t9 = -t8;
-    let zero = S::ZERO;
-    let one = S::ONE;
-    [
-        [
-            [c1, t1, zero, t2],
-            [s1, c1, zero, t3],
-            [zero, zero, one, zero],
-        ],
-        [
-            [c12, t4, zero, t5],
-            [s12, c12, zero, t6],
-            [zero, zero, one, zero],
-        ],
-        [
-            [c12, t4, zero, t5],
-            [s12, c12, zero, t6],
-            [zero, zero, one, q[2]],
-        ],
-        [
-            [t7, t9, zero, t5],
-            [t8, t7, zero, t6],
-            [zero, zero, one, q[2]],
-        ],
-    ]
+    result[3][1][0] = t8;
+    result[3][0][1] = -t8;
+    result
 }

@@ -4,9 +4,11 @@
 //! [`Scalar`]; that is why they agree **bit for bit**. Emitted code relies on the following.
 //!
 //! - **Plain IEEE arithmetic.** `+ - * /` and negation round to nearest, in the order written.
-//!   Nothing here uses a fused multiply-add or asks which target features are enabled, so the
-//!   same source gives the same bits on every target whose `f64` is IEEE binary64 (that excludes
-//!   only 32-bit x86 without SSE2). The sign and payload of a NaN are not part of the promise.
+//!   Without the feature `fma` nothing here uses a fused multiply-add or asks which target features
+//!   are enabled, so the same source gives the same bits on every target whose `f64` is IEEE
+//!   binary64 (that excludes only 32-bit x86 without SSE2). The sign and payload of a NaN are not
+//!   part of the promise. With the feature, [`Scalar::product_plus`] and its kin round once where
+//!   [`FUSES`] says so; only modules emitted with fused products call them.
 //! - **One sine and cosine.** [`Scalar::sincos`] costs one argument reduction for the pair, has
 //!   no branch in the ordinary range and is exactly odd and even; its error is stated there.
 //! - **No name to fall into.** An inherent method of `f64` wins over a trait method of the same
@@ -33,12 +35,24 @@
 //! ```
 #![no_std]
 
+#[cfg(feature = "fma")]
+extern crate std;
+
+#[cfg(feature = "wide")]
+mod pack;
 mod reduction;
 mod scalar;
 mod sincos;
 #[cfg(feature = "libm")]
 mod transcendental;
+#[cfg(feature = "wide")]
+mod wide_scalar;
 
-pub use scalar::Scalar;
+#[cfg(feature = "wide")]
+pub use pack::{ColumnFault, Packed, for_each_pack, map_packs};
+pub use scalar::{FUSES, Scalar};
 #[cfg(feature = "libm")]
 pub use transcendental::Transcendental;
+/// The crate of packs, in the version whose types are scalars here.
+#[cfg(feature = "wide")]
+pub use wide;

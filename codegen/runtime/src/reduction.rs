@@ -1,19 +1,62 @@
 //! Reduction of an angle modulo a quarter turn.
 
 use core::f64::consts::FRAC_2_PI;
+use core::ops::{Add, Mul, Sub};
 
 /// An angle x = quarter_turns * pi/2 + head - excess, with |head| <= pi/4 (1 + 1e-9) and `excess`
 /// at most half a unit in the last place of `head`; x = -0 becomes (-0) - (+0). Only the two low
 /// bits of `quarter_turns` count.
 #[derive(Clone, Copy)]
-pub(crate) struct Reduced {
-    pub(crate) head: f64,
-    pub(crate) excess: f64,
-    pub(crate) quarter_turns: u64,
+pub(crate) struct Reduced<R: Lanes> {
+    pub(crate) head: R,
+    pub(crate) excess: R,
+    pub(crate) quarter_turns: R::Bits,
+}
+
+/// A number, or a pack of numbers that are computed alike: what the reduction and the polynomials
+/// need of it. Every operation rounds in each lane as it does on one `f64`.
+pub(crate) trait Lanes:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// The bits, lane by lane.
+    type Bits: Copy;
+
+    /// The number in all lanes.
+    fn splat(value: f64) -> Self;
+
+    /// The bits of the numbers.
+    fn bits(self) -> Self::Bits;
+
+    /// Turns the point (cosine, sine) by a number of quarter turns (modulo 4), without a branch.
+    fn turned(sine: Self, cosine: Self, quarter_turns: Self::Bits) -> (Self, Self);
+}
+
+impl Lanes for f64 {
+    type Bits = u64;
+
+    #[inline]
+    fn splat(value: f64) -> Self {
+        value
+    }
+
+    #[inline]
+    fn bits(self) -> u64 {
+        self.to_bits()
+    }
+
+    /// An odd number of quarter turns swaps the two, and the signs follow from bit 1 of the number.
+    #[inline]
+    fn turned(sine: f64, cosine: f64, quarter_turns: u64) -> (f64, f64) {
+        let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
+        let swapped = (sine ^ cosine) & 0_u64.wrapping_sub(quarter_turns & 1);
+        let sine_sign = (quarter_turns & 2) << 62;
+        let cosine_sign = (quarter_turns.wrapping_add(1) & 2) << 62;
+        (f64::from_bits(sine ^ swapped ^ sine_sign), f64::from_bits(cosine ^ swapped ^ cosine_sign))
+    }
 }
 
 /// Up to here the three parts of pi/2 suffice: the number of quarter turns stays below 2^16.
-const ORDINARY_RANGE: f64 = 1e5;
+pub(crate) const ORDINARY_RANGE: f64 = 1e5;
 
 /// pi/2 in three parts. The first two have at most 37 bits, so that their products with a number
 /// of quarter turns below 2^16 are exact; together the three differ from pi/2 by 2^-130.
@@ -29,31 +72,39 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Reduces any `f64`; infinities and NaN give NaN.
 #[inline]
-pub(crate) fn reduce(x: f64) -> Reduced {
-    if x.abs() <= ORDINARY_RANGE { reduce_ordinary(x) } else { reduce_large(x) }
+pub(crate) fn reduce(x: f64) -> Reduced<f64> {
+    if is_ordinary(x) { reduce_ordinary(x) } else { reduce_large(x) }
+}
+
+/// Whether |x| <= [`ORDINARY_RANGE`].
+#[inline]
+pub(crate) fn is_ordinary(x: f64) -> bool {
+    x.abs() <= ORDINARY_RANGE
 }
 
 /// Cody and Waite's reduction, for |x| <= [`ORDINARY_RANGE`].
 #[inline]
-fn reduce_ordinary(x: f64) -> Reduced {
-    let biased = x * FRAC_2_PI + ROUNDER;
-    let turns = biased - ROUNDER;
+pub(crate) fn reduce_ordinary<R: Lanes>(x: R) -> Reduced<R> {
+    let part = HALF_PI.map(R::splat);
+    let biased = x * R::splat(FRAC_2_PI) + R::splat(ROUNDER);
+    let turns = biased - R::splat(ROUNDER);
     // Exact: unless `turns` is zero, both terms are multiples of 2^-53, and so is their
     // difference, which is below 1.
-    let first = x - turns * HALF_PI[0];
-    let step = turns * HALF_PI[1];
+    let first = x - turns * part[0];
+    let step = turns * part[1];
     let second = first - step;
     // What rounding `second` lost. If |first| < |step| nothing was lost: then `second` is a
     // multiple of 2^-73 below 2^-20.
     let lost = (first - second) - step;
-    let correction = turns * HALF_PI[2] - lost;
+    let correction = turns * part[2] - lost;
     let head = second - correction;
     let excess = correction - (second - head);
-    Reduced { head, excess, quarter_turns: biased.to_bits() }
+    Reduced { head, excess, quarter_turns: biased.bits() }
 }
 
-/// The bits of 2/pi with weights 2^63 down to 2^-1216, so the first word is zero.
-const TWO_OVER_PI: [u64; 20] = [
+/// The bits of 2/pi with weights 2^63 down to 2^-1216, so the first word is zero. The table is
+/// filled up to a power of two, so that masked indices need no check and nothing here can panic.
+const TWO_OVER_PI: [u64; 32] = filled([
     0x0000_0000_0000_0000,
     0xA2F9_836E_4E44_1529,
     0xFC27_57D1_F534_DDC0,
@@ -74,7 +125,17 @@ const TWO_OVER_PI: [u64; 20] = [
     0x3D07_39F7_8A52_92EA,
     0x6BFB_5FB1_1F8D_5D08,
     0x5603_3046_FC7B_6BAB,
-];
+]);
+
+const fn filled(words: [u64; 20]) -> [u64; 32] {
+    let mut table = [0; 32];
+    let mut row = 0;
+    while row < words.len() {
+        table[row] = words[row];
+        row += 1;
+    }
+    table
+}
 
 /// pi/2, scaled by 2^63.
 const HALF_PI_SCALED: u64 = 0xC90F_DAA2_2168_C235;
@@ -83,7 +144,7 @@ const HALF_PI_SCALED: u64 = 0xC90F_DAA2_2168_C235;
 /// bits are formed that matter modulo 4, and enough below them that cancellation costs nothing.
 #[cold]
 #[inline(never)]
-fn reduce_large(x: f64) -> Reduced {
+fn reduce_large(x: f64) -> Reduced<f64> {
     if !x.is_finite() {
         return Reduced { head: f64::NAN, excess: 0.0, quarter_turns: 0 };
     }
@@ -121,7 +182,7 @@ fn reduce_large(x: f64) -> Reduced {
 fn two_over_pi_from(offset: usize) -> [u64; 3] {
     let (word, shift) = (offset / 64, offset % 64);
     core::array::from_fn(|i| {
-        let pair = join(TWO_OVER_PI[word + i], TWO_OVER_PI[word + i + 1]);
+        let pair = join(TWO_OVER_PI[(word + i) & 31], TWO_OVER_PI[(word + i + 1) & 31]);
         ((pair << shift) >> 64) as u64
     })
 }

@@ -5,6 +5,11 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::sincos;
 
+/// Whether [`Scalar::product_plus`] and its kin round once: the feature `fma` is on and the target
+/// has the instruction (`-C target-cpu=native`, or `-C target-feature=+fma`).
+pub const FUSES: bool =
+    cfg!(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64")));
+
 /// A real number, or a pack of them, that emitted dynamics can be evaluated on.
 ///
 /// An implementation keeps to three rules: the operators round like IEEE arithmetic, no method
@@ -43,6 +48,32 @@ pub trait Scalar:
     #[must_use]
     fn sincos(self) -> (Self, Self);
 
+    /// The sines and the cosines of several angles, with the bits that [`sincos`](Self::sincos)
+    /// gives; `f64` computes up to four of them in the time of one.
+    #[must_use]
+    fn sincos_all<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let pairs = angles.map(Self::sincos);
+        (pairs.map(|(sine, _)| sine), pairs.map(|(_, cosine)| cosine))
+    }
+
+    /// `self factor + addend`, rounded once where [`FUSES`], else after the product too.
+    #[must_use]
+    fn product_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+
+    /// `self factor - subtrahend`, rounded as [`product_plus`](Self::product_plus).
+    #[must_use]
+    fn product_minus(self, factor: Self, subtrahend: Self) -> Self {
+        self * factor - subtrahend
+    }
+
+    /// `self - left right`, rounded as [`product_plus`](Self::product_plus).
+    #[must_use]
+    fn minus_product(self, left: Self, right: Self) -> Self {
+        self - left * right
+    }
+
     /// The absolute value; clears the sign of zero.
     #[must_use]
     fn abs(self) -> Self;
@@ -74,9 +105,28 @@ pub trait Scalar:
     fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
 }
 
-/// What `f64` and `f32` do alike: everything but constants and the sine and cosine.
+/// What `f64` and `f32` do alike: everything but constants and the sine and cosine. A product that
+/// is negated is exact, so a fused difference is a fused sum of it.
 macro_rules! comparisons_and_signs {
     () => {
+        #[cfg(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64")))]
+        #[inline]
+        fn product_plus(self, factor: Self, addend: Self) -> Self {
+            self.mul_add(factor, addend)
+        }
+
+        #[cfg(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64")))]
+        #[inline]
+        fn product_minus(self, factor: Self, subtrahend: Self) -> Self {
+            self.mul_add(factor, -subtrahend)
+        }
+
+        #[cfg(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64")))]
+        #[inline]
+        fn minus_product(self, left: Self, right: Self) -> Self {
+            (-left).mul_add(right, self)
+        }
+
         #[inline]
         fn abs(self) -> Self {
             // The inherent method, which the compiler prefers here.
@@ -131,6 +181,11 @@ impl Scalar for f64 {
     #[inline]
     fn sincos(self) -> (Self, Self) {
         sincos::sincos(self)
+    }
+
+    #[inline]
+    fn sincos_all<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        sincos::sincos_all(angles)
     }
 
     comparisons_and_signs!();

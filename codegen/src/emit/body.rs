@@ -3,15 +3,23 @@
 //! A value that is used once is written where it is used while the line stays short; every other
 //! one gets a `let`. The operations and their order of evaluation are those of the code.
 
+mod sines;
+
+use self::sines::name_sines;
 use super::arrays::{Place, list};
-use super::names::{Names, joint_numbers};
+use super::names::Names;
 use crate::arena::Handle;
 use crate::expr::Relation;
-use crate::program::{BinaryOperation, Code, Instruction, Leaf, Operation, Slot, UnaryOperation};
+use crate::program::{
+    BinaryOperation, Code, FusedOperation, Instruction, Leaf, Operation, Slot, UnaryOperation,
+};
 use std::ops::Range;
 
 /// Longest right side of a `let`; the line stays within 100 columns.
 const LONGEST: usize = 72;
+
+/// Longest statement, without its indentation.
+const LONGEST_LINE: usize = 92;
 
 /// Most instructions in one block.
 const BLOCK: usize = 2_000;
@@ -61,6 +69,9 @@ pub(super) struct Vocabulary {
     pub(super) leaves: Vec<Option<String>>,
     /// The names of values that have one: fields of the prelude.
     pub(super) named: Vec<Option<String>>,
+    /// Entries of arrays, by slot, that are assigned as soon as their value is there; without them
+    /// outputs are read when all is done.
+    pub(super) entries: Vec<Vec<String>>,
 }
 
 /// Writes the statements of one code.
@@ -70,9 +81,10 @@ pub(super) struct Body<'a> {
     /// Values that wait to be written where they are used.
     waiting: Vec<Option<Term>>,
     named: Vec<Option<String>>,
+    entries: Vec<Vec<String>>,
     names: Names,
     uses: Vec<u32>,
-    /// The instruction that uses a slot last; `usize::MAX` for an output.
+    /// The instruction that uses a slot last; `usize::MAX` for an output that is read at the end.
     last_use: Vec<Option<usize>>,
     next: usize,
     /// The statement that declares each constant.
@@ -83,7 +95,7 @@ pub(super) struct Body<'a> {
 
 impl<'a> Body<'a> {
     pub(super) fn new(code: &'a Code, vocabulary: Vocabulary) -> Self {
-        let Vocabulary { mut names, leaves, mut named } = vocabulary;
+        let Vocabulary { mut names, leaves, mut named, entries } = vocabulary;
         let mut terms = vec![None; code.slots];
         let mut constants = vec![None; code.slots];
         for (slot, leaf) in code.leaves.iter() {
@@ -102,12 +114,15 @@ impl<'a> Body<'a> {
         for (index, instruction) in code.instructions.iter().enumerate() {
             instruction.for_each_operand(|operand| last_use[operand.index()] = Some(index));
         }
-        code.outputs.iter().for_each(|output| last_use[output.index()] = Some(usize::MAX));
+        for output in code.outputs.iter().filter(|output| entries[output.index()].is_empty()) {
+            last_use[output.index()] = Some(usize::MAX);
+        }
         Self {
             code,
             terms,
             waiting: vec![None; code.slots],
             named,
+            entries,
             names,
             uses: code.uses(),
             last_use,
@@ -133,7 +148,13 @@ impl<'a> Body<'a> {
             self.write(block.clone());
             let lines = self.take_lines();
             let slots = self.used_after(block).into_iter();
-            let names = slots.map(|slot| vec![self.text(slot).to_owned()]).collect();
+            let names: Vec<_> = slots.map(|slot| vec![self.text(slot).to_owned()]).collect();
+            if names.is_empty() {
+                statements.push("{".to_owned());
+                statements.extend(lines.iter().map(|line| format!("    {line}")));
+                statements.push("}".to_owned());
+                continue;
+            }
             let names = list(names, Place { indent: 8, followed: true });
             statements.push(format!("let {} = {{", names.join("\n")));
             statements.extend(lines.iter().chain(&names).map(|line| format!("    {line}")));
@@ -161,23 +182,55 @@ impl<'a> Body<'a> {
 
     /// Writes the instructions of a range; what is used after it gets a name.
     fn write(&mut self, range: Range<usize>) {
-        for index in range.clone() {
-            let instruction = self.code.instructions[index];
+        let mut next = range.start;
+        while next < range.end {
+            let turns = self.turns(next..range.end);
+            if !turns.is_empty() {
+                self.sincos(&turns);
+                next += turns.len();
+                continue;
+            }
+            let instruction = self.code.instructions[next];
+            next += 1;
             instruction.for_each_operand(|operand| self.declare(operand));
             match instruction {
-                Instruction::SinCos { sine, cosine, angle } => self.sincos(sine, cosine, angle),
+                Instruction::SinCos { .. } => unreachable!("it is one of the turns"),
                 Instruction::Value { result, operation } => {
                     let term = self.term(&operation);
                     let slot = result.index();
                     let used_here = self.last_use[slot].is_some_and(|last| last < range.end);
                     let may_wait = self.uses[slot] == 1 && used_here && self.named[slot].is_none();
-                    if may_wait && term.text.len() <= LONGEST / 2 {
+                    if let Some(line) = self.entry_line(result, &term) {
+                        self.lines.push(line);
+                    } else if may_wait && term.text.len() <= LONGEST / 2 {
                         self.waiting[slot] = Some(term);
                     } else {
                         self.assign(result, &term);
+                        self.store(result);
                     }
                 }
             }
+        }
+    }
+
+    /// The statement that assigns a value to the one entry that it is for; none if it is used
+    /// elsewhere too, or if the line would become too long.
+    fn entry_line(&self, slot: Slot, term: &Term) -> Option<String> {
+        match &self.entries[slot.index()][..] {
+            [entry] if self.uses[slot.index()] == 1 => {
+                let line = format!("{entry} = {};", term.text);
+                (line.len() <= LONGEST_LINE).then_some(line)
+            }
+            _ => None,
+        }
+    }
+
+    /// Assigns a value that has a text to its entries.
+    pub(super) fn store(&mut self, slot: Slot) {
+        for entry in std::mem::take(&mut self.entries[slot.index()]) {
+            self.declare(slot);
+            let line = format!("{entry} = {};", self.text(slot));
+            self.lines.push(line);
         }
     }
 
@@ -201,19 +254,20 @@ impl<'a> Body<'a> {
         &self.terms[slot.index()].as_ref().expect("values are assigned before their use").text
     }
 
-    fn sincos(&mut self, sine: Slot, cosine: Slot, angle: Slot) {
-        let receiver = self.operands([angle], 0, Binding::Atom)[0].within(Binding::Atom);
-        let [left, right] = [sine, cosine].map(|slot| match self.uses[slot.index()] {
-            0 => "_".to_owned(),
-            _ => self.name(slot),
-        });
-        self.lines.push(format!("let ({left}, {right}) = {receiver}.sincos();"));
-    }
-
     fn term(&mut self, operation: &Operation) -> Term {
         match *operation {
             Operation::Unary(function, a) => self.unary(function, a),
             Operation::Binary(function, a, b) => self.binary(function, a, b),
+            Operation::Fused(function, operands) => {
+                let name = match function {
+                    FusedOperation::ProductPlus => "product_plus",
+                    FusedOperation::ProductMinus => "product_minus",
+                    FusedOperation::MinusProduct => "minus_product",
+                };
+                let [a, b, c] = self.operands(operands, 20, Binding::Atom);
+                let a = a.within(Binding::Atom);
+                Term::atom(format!("{a}.{name}({}, {})", b.text, c.text))
+            }
             Operation::Select { relation, sides, then, otherwise } => {
                 let operands = [sides[0], sides[1], then, otherwise];
                 let all = self.operands(operands, 30, Binding::Sum).map(|term| term.text);
@@ -347,43 +401,4 @@ fn constant(value: f64, names: &mut Names) -> (String, String) {
     let name = candidates.find(|name| names.claim(name)).expect("numbers do not end");
     let declaration = format!("let {name} = {value};");
     (name, declaration)
-}
-
-/// Names sines and cosines of joint angles and their sums: s1, c1, s23, c23; sin1, cos1 where
-/// those are taken.
-fn name_sines(code: &Code, names: &mut Names, named: &mut [Option<String>]) {
-    let mut joints: Vec<Option<Vec<usize>>> = vec![None; code.slots];
-    for (slot, leaf) in code.leaves.iter() {
-        if let Leaf::Argument { argument: 0, entry } = leaf {
-            joints[slot.index()] = Some(vec![entry + 1]);
-        }
-    }
-    for instruction in &code.instructions {
-        match *instruction {
-            Instruction::Value {
-                result,
-                operation: Operation::Binary(BinaryOperation::Add, a, b),
-            } => {
-                if let (Some(a), Some(b)) = (&joints[a.index()], &joints[b.index()]) {
-                    let mut sum = [a.as_slice(), b].concat();
-                    sum.sort_unstable();
-                    joints[result.index()] = Some(sum);
-                }
-            }
-            Instruction::SinCos { sine, cosine, angle } => {
-                let Some(joints) = &joints[angle.index()] else { continue };
-                let numbers = joint_numbers(joints);
-                for [s, c] in [["s", "c"], ["sin", "cos"]] {
-                    let pair = [format!("{s}{numbers}"), format!("{c}{numbers}")];
-                    if names.claim_all(&pair) {
-                        let [s, c] = pair;
-                        named[sine.index()] = Some(s);
-                        named[cosine.index()] = Some(c);
-                        break;
-                    }
-                }
-            }
-            Instruction::Value { .. } => {}
-        }
-    }
 }

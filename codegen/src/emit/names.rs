@@ -11,8 +11,8 @@ const KEYWORDS: [&str; 54] = [
     "priv", "try", "typeof", "unsized", "virtual", "yield", "union", "_", "Self",
 ];
 
-/// Names that emitted functions give to arguments and to the parameters.
-const LOCALS: [&str; 13] = [
+/// Names that emitted functions give to arguments, to the parameters and to packs of values.
+const LOCALS: [&str; 15] = [
     "q",
     "qd",
     "qdd",
@@ -26,6 +26,8 @@ const LOCALS: [&str; 13] = [
     "model",
     "link",
     "contact",
+    "sines",
+    "cosines",
 ];
 
 /// A set of names of which each is given once.

@@ -4,6 +4,7 @@
 //! panic, no unsafe code. It has no inner attributes, so that `include!` takes it as well as
 //! `mod`. All functions are generic over the runtime's scalar.
 
+mod filling;
 mod functions;
 mod parameters;
 mod selectors;
@@ -60,7 +61,6 @@ pub fn module(robot: &Robot, program: &Program) -> Result<String, EmitError> {
     items.extend(functions::items(&context));
     let items = items.join("\n");
 
-    let tunable = !program.parameters.is_empty();
     let quoted = |name: &str| vec![format!("{name:?}")];
     let joint_names = robot.joints().map(|(id, _)| quoted(&robot.links[id].name)).collect();
     let text = template(
@@ -68,7 +68,7 @@ pub fn module(robot: &Robot, program: &Program) -> Result<String, EmitError> {
         &[
             ("title", &format!("Dynamics of the robot `{}`.", one_line(&robot.name))),
             ("version", env!("CARGO_PKG_VERSION")),
-            ("about", &about(robot, tunable)),
+            ("about", &about(robot, program)),
             ("operations", &operations(program)),
             ("imports", imports(&items)),
             ("dof", &context.dof.to_string()),
@@ -99,13 +99,17 @@ impl<'a> Context<'a> {
 }
 
 /// Comment lines about the model and the flavour.
-fn about(robot: &Robot, tunable: bool) -> String {
-    let flavour = match tunable {
+fn about(robot: &Robot, program: &Program) -> String {
+    let flavour = match !program.parameters.is_empty() {
         true => "tunable at run time (`ModelParameters`)",
         false => "none: the functions hold all values",
     };
     let mut lines = format!("// model: {}, hash {:016x}\n", one_line(&robot.name), robot.hash);
     lines += &format!("// parameters: {flavour}\n");
+    if program.routines.iter().any(|routine| routine.code.is_fused()) {
+        lines += "// products: fused with sums where denavit-runtime has its feature `fma` and\n\
+                  // the target the instruction (`-C target-cpu=native`)\n";
+    }
     for (label, text) in [("description", &robot.description), ("source", &robot.source)] {
         if !text.trim().is_empty() {
             lines += &wrapped("// ", &format!("{label}: {}", one_line(text)));

@@ -4,7 +4,9 @@
 //! Each lane computes exactly what [`Evaluator`](super::Evaluator) computes: the two agree bit for
 //! bit, also in the remainder.
 
-use super::interpret::{ShapeMismatch, argument_leaves, binary, initial_registers, select, unary};
+use super::interpret::{
+    ShapeMismatch, argument_leaves, binary, fused, initial_registers, select, unary,
+};
 use super::tape::{Register, Run, Tape};
 use super::{BinaryOperation, Routine};
 use denavit_runtime::Transcendental;
@@ -110,6 +112,13 @@ fn execute<S: Transcendental>(tape: &Tape, values: &mut [Block<S>]) {
                 let function = |a, b| binary(*function, a, b);
                 pairwise(values, &tape.binary[rows.clone()], function);
             }
+            Run::Fused(function, rows) => {
+                for &[to, a, b, c] in &tape.fused[rows.clone()] {
+                    let [a, b, c] = [a, b, c].map(|at| values[at as usize]);
+                    values[to as usize] =
+                        std::array::from_fn(|lane| fused(*function, a[lane], b[lane], c[lane]));
+                }
+            }
             Run::Unary(function, rows) => {
                 for &[to, from] in &tape.unary[rows.clone()] {
                     values[to as usize] = values[from as usize].map(|a| unary(*function, a));
@@ -117,9 +126,9 @@ fn execute<S: Transcendental>(tape: &Tape, values: &mut [Block<S>]) {
             }
             Run::SinCos(rows) => {
                 for &[sine, cosine, angle] in &tape.sincos[rows.clone()] {
-                    let pairs = values[angle as usize].map(S::sincos);
-                    values[sine as usize] = pairs.map(|(s, _)| s);
-                    values[cosine as usize] = pairs.map(|(_, c)| c);
+                    let (sines, cosines) = S::sincos_all(values[angle as usize]);
+                    values[sine as usize] = sines;
+                    values[cosine as usize] = cosines;
                 }
             }
             Run::Select(relation, rows) => {

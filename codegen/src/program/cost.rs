@@ -43,11 +43,18 @@ fn prelude_operations(program: &Program, routine: &Routine) -> usize {
 }
 
 fn count(counts: &mut Operations, instruction: &Instruction) {
+    if let Instruction::Value { operation: Operation::Fused(..), .. } = instruction {
+        // Two operations in one instruction.
+        counts.mul += 1;
+        counts.add += 1;
+        return;
+    }
     use BinaryOperation::{Add, Atan2, Div, Max, Min, Mul, Sub};
     use UnaryOperation::{Abs, Exp, Log, Neg, Sign, Sqrt, Tan, Tanh};
     *(match instruction {
         Instruction::SinCos { .. } => &mut counts.sincos,
         Instruction::Value { operation, .. } => match operation {
+            Operation::Fused(..) => unreachable!("counted above"),
             Operation::Unary(Neg, _) => &mut counts.neg,
             Operation::Unary(Sqrt, _) => &mut counts.sqrt,
             Operation::Unary(Tan | Exp | Log | Tanh, _) => &mut counts.function,

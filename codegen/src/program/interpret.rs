@@ -4,7 +4,9 @@
 //! bit for bit.
 
 use super::tape::{Register, Run, Tape};
-use super::{BinaryOperation, Code, Leaf, Program, Routine, UnaryOperation, constant_values};
+use super::{
+    BinaryOperation, Code, FusedOperation, Leaf, Program, Routine, UnaryOperation, constant_values,
+};
 use crate::expr::{ExprId, Relation};
 use crate::model::Robot;
 use denavit_runtime::{Scalar, Transcendental};
@@ -136,6 +138,9 @@ pub(super) fn initial_registers<S: Scalar>(tape: &Tape, prelude: &[f64]) -> Vec<
     tape.leaves.iter().map(leaf).collect()
 }
 
+/// Sines and cosines that are computed at a time.
+const SIDE_BY_SIDE: usize = 4;
+
 fn execute<S: Transcendental>(tape: &Tape, values: &mut [S]) {
     use BinaryOperation::{Add, Mul, Sub};
     for run in &tape.runs {
@@ -148,16 +153,26 @@ fn execute<S: Transcendental>(tape: &Tape, values: &mut [S]) {
                 let function = |a, b| binary(*function, a, b);
                 pairwise(values, &tape.binary[rows.clone()], function);
             }
+            Run::Fused(function, rows) => {
+                for &[to, a, b, c] in &tape.fused[rows.clone()] {
+                    let [a, b, c] = [a, b, c].map(|at| values[at as usize]);
+                    values[to as usize] = fused(*function, a, b, c);
+                }
+            }
             Run::Unary(function, rows) => {
                 for &[to, from] in &tape.unary[rows.clone()] {
                     values[to as usize] = unary(*function, values[from as usize]);
                 }
             }
             Run::SinCos(rows) => {
-                for &[sine, cosine, angle] in &tape.sincos[rows.clone()] {
-                    let (s, c) = values[angle as usize].sincos();
-                    values[sine as usize] = s;
-                    values[cosine as usize] = c;
+                for rows in tape.sincos[rows.clone()].chunks(SIDE_BY_SIDE) {
+                    let angle = |row: usize| rows.get(row).unwrap_or(&rows[0])[2] as usize;
+                    let angles: [S; SIDE_BY_SIDE] = std::array::from_fn(|row| values[angle(row)]);
+                    let (sines, cosines) = S::sincos_all(angles);
+                    for (row, &[sine, cosine, _]) in rows.iter().enumerate() {
+                        values[sine as usize] = sines[row];
+                        values[cosine as usize] = cosines[row];
+                    }
                 }
             }
             Run::Select(relation, rows) => {
@@ -202,6 +217,15 @@ pub(super) fn binary<S: Transcendental>(function: BinaryOperation, a: S, b: S) -
         BinaryOperation::Atan2 => a.arctangent2(b),
         BinaryOperation::Min => a.lesser(b),
         BinaryOperation::Max => a.greater(b),
+    }
+}
+
+#[inline]
+pub(super) fn fused<S: Scalar>(function: FusedOperation, a: S, b: S, c: S) -> S {
+    match function {
+        FusedOperation::ProductPlus => a.product_plus(b, c),
+        FusedOperation::ProductMinus => a.product_minus(b, c),
+        FusedOperation::MinusProduct => a.minus_product(b, c),
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! - [`lower`]: expressions to code; what depends on parameters alone goes to one shared prelude
 //! - [`schedule`]: an order of the instructions in which values are short-lived
+//! - [`fuse`]: products and the sums that they go into as one operation, where that is wanted
 //! - [`verify`]: each slot defined once and before its use; called after each pass
 //! - [`counts`]: what a call costs
 //! - [`Evaluator`]: the reference interpreter; [`BatchEvaluator`]: many samples at once
@@ -11,8 +12,10 @@
 
 mod batch;
 mod cost;
+mod fuse;
 mod interpret;
 mod lower;
+mod renumber;
 mod schedule;
 mod sign;
 mod tape;
@@ -21,6 +24,7 @@ mod verify;
 pub use crate::expr::Operations as Counts;
 pub use batch::{BatchEvaluator, LANES};
 pub use cost::{code_counts, counts};
+pub use fuse::fuse;
 pub use interpret::{Evaluator, ShapeMismatch, parameter_defaults, prelude_values};
 pub use lower::{LowerError, constant_values, lower};
 pub use schedule::{peak_live, schedule};
@@ -81,6 +85,17 @@ pub enum BinaryOperation {
     Max,
 }
 
+/// A product and the sum or difference that it goes into, from three values a, b, c.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FusedOperation {
+    /// a b + c
+    ProductPlus,
+    /// a b - c
+    ProductMinus,
+    /// a - b c
+    MinusProduct,
+}
+
 /// How a value is computed from others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
@@ -88,6 +103,8 @@ pub enum Operation {
     Unary(UnaryOperation, Slot),
     /// From two, left then right.
     Binary(BinaryOperation, Slot, Slot),
+    /// From three, in the order of the formula; see [`fuse`].
+    Fused(FusedOperation, [Slot; 3]),
     /// `then` where `left relation right` holds, `otherwise` elsewhere; both are computed.
     Select {
         /// The condition's relation.
@@ -130,6 +147,7 @@ impl Instruction {
             Self::Value { operation, .. } => match operation {
                 Operation::Unary(_, a) => visit(a),
                 Operation::Binary(_, a, b) => [a, b].into_iter().for_each(visit),
+                Operation::Fused(_, operands) => operands.into_iter().for_each(visit),
                 Operation::Select { sides: [left, right], then, otherwise, .. } => {
                     [left, right, then, otherwise].into_iter().for_each(visit);
                 }
@@ -183,6 +201,14 @@ impl Code {
         }
         self.outputs.iter().for_each(|output| uses[output.index()] += 1);
         uses
+    }
+
+    /// Whether products are fused with sums.
+    pub fn is_fused(&self) -> bool {
+        let is_fused = |step: &Instruction| {
+            matches!(step, Instruction::Value { operation: Operation::Fused(..), .. })
+        };
+        self.instructions.iter().any(is_fused)
     }
 
     /// Whether the scalar must be `Transcendental`.

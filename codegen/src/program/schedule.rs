@@ -1,21 +1,37 @@
 //! An order of the instructions in which values are short-lived.
 //!
 //! Outputs are computed one after the other, each from its operands, the operand first that needs
-//! more registers (Sethi and Ullman's rule, with shared values counted as if they were not). The
-//! order depends on the code alone.
+//! more registers (Sethi and Ullman's rule, with shared values counted as if they were not). Before
+//! all of them come the sines and cosines of angles that need no other sine: one after the other,
+//! so that they can be computed side by side. The order depends on the code alone.
 
 use super::{Code, Instruction, Slot};
 use crate::arena::Handle;
 
-/// The instructions of `code` in the new order; those that no output needs are dropped.
+/// The instructions of `code` in the new order; those that no output needs are dropped. Of two
+/// orders of the outputs, as they stand and as their values were made, it is the one in which
+/// fewer values must be read again after they had to leave the registers.
 pub fn schedule(code: &Code) -> Vec<Instruction> {
     let definition = definitions(code);
-    let needs = registers_needed(code, &definition);
+    let mut as_made = code.outputs.clone();
+    as_made.sort_unstable();
+    let [as_they_stand, as_made] =
+        [&code.outputs, &as_made].map(|outputs| ordered(code, &definition, outputs));
+    let misses = |order: &[Instruction]| register_misses(code, order);
+    if misses(&as_made) < misses(&as_they_stand) { as_made } else { as_they_stand }
+}
+
+/// The instructions in the order in which `outputs` need them.
+fn ordered(code: &Code, definition: &[Option<usize>], outputs: &[Slot]) -> Vec<Instruction> {
+    let needs = registers_needed(code, definition);
     let mut placed = vec![false; code.instructions.len()];
     let mut order = Vec::with_capacity(code.instructions.len());
     let mut stack: Vec<(usize, bool)> = Vec::new();
-    for output in &code.outputs {
-        stack.extend(definition[output.index()].map(|index| (index, false)));
+    let turns = first_turns(code, definition);
+    let angles = turns.iter().filter_map(|&turn| angle_of(code, turn, definition));
+    let ends = outputs.iter().filter_map(|output| definition[output.index()]);
+    for end in angles.chain(turns.iter().copied()).chain(ends) {
+        stack.push((end, false));
         while let Some((index, operands_done)) = stack.pop() {
             if placed[index] {
                 continue;
@@ -38,6 +54,88 @@ pub fn schedule(code: &Code) -> Vec<Instruction> {
         }
     }
     order
+}
+
+/// The sines and cosines that some output needs and whose angles need no sine or cosine.
+fn first_turns(code: &Code, definition: &[Option<usize>]) -> Vec<usize> {
+    let mut is_needed = vec![false; code.slots];
+    code.outputs.iter().for_each(|output| is_needed[output.index()] = true);
+    for instruction in code.instructions.iter().rev() {
+        let mut is_live = false;
+        instruction.for_each_result(|result| is_live |= is_needed[result.index()]);
+        if is_live {
+            instruction.for_each_operand(|operand| is_needed[operand.index()] = true);
+        }
+    }
+    let mut has_turned = vec![false; code.instructions.len()];
+    let mut turns = Vec::new();
+    for (index, instruction) in code.instructions.iter().enumerate() {
+        let mut after_turn = false;
+        instruction.for_each_operand(|operand| {
+            after_turn |= definition[operand.index()].is_some_and(|maker| has_turned[maker]);
+        });
+        has_turned[index] = after_turn;
+        if let Instruction::SinCos { sine, cosine, .. } = instruction {
+            has_turned[index] = true;
+            let is_live = is_needed[sine.index()] || is_needed[cosine.index()];
+            turns.extend((!after_turn && is_live).then_some(index));
+        }
+    }
+    turns
+}
+
+/// The instruction that computes the angle of a sine and cosine; none for an argument.
+fn angle_of(code: &Code, turn: usize, definition: &[Option<usize>]) -> Option<usize> {
+    match code.instructions[turn] {
+        Instruction::SinCos { angle, .. } => definition[angle.index()],
+        Instruction::Value { .. } => None,
+    }
+}
+
+/// Registers of a common processor.
+const REGISTERS: usize = 16;
+
+/// How often a value is read that is in no register, when the value that leaves the registers is
+/// always that which is needed last. Leaves are read from memory, and outputs written to it, as it
+/// is.
+fn register_misses(code: &Code, order: &[Instruction]) -> usize {
+    let mut readers: Vec<Vec<usize>> = vec![Vec::new(); code.slots];
+    for (step, instruction) in order.iter().enumerate().rev() {
+        instruction.for_each_operand(|operand| readers[operand.index()].push(step));
+    }
+    let mut held: Vec<Slot> = Vec::with_capacity(REGISTERS + 1);
+    let mut misses = 0;
+    for (step, instruction) in order.iter().enumerate() {
+        let mut take = |slot: Slot, readers: &mut Vec<Vec<usize>>| {
+            let is_held = held.contains(&slot);
+            if !is_held {
+                held.push(slot);
+            }
+            held.retain(|slot| !readers[slot.index()].is_empty());
+            if held.len() > REGISTERS {
+                let next = |slot: &Slot| readers[slot.index()].last().copied();
+                let (row, _) = held
+                    .iter()
+                    .enumerate()
+                    .max_by_key(|(_, slot)| next(slot))
+                    .expect("it holds more than there are registers");
+                held.swap_remove(row);
+            }
+            is_held
+        };
+        instruction.for_each_operand(|operand| {
+            while readers[operand.index()].last() == Some(&step) {
+                readers[operand.index()].pop();
+            }
+            if operand.index() >= code.leaves.len() {
+                misses += usize::from(!take(operand, &mut readers));
+            }
+        });
+        instruction.for_each_result(|result| {
+            take(result, &mut readers);
+        });
+    }
+    misses
 }
 
 /// The largest number of values, leaves not counted, that are needed at one time.

@@ -3,6 +3,7 @@
 //! The graph keeps one of `a - b` and `b - a` and negates it for the other. Here a negation is
 //! taken back into the difference below it, through products and quotients that nothing else uses.
 
+use super::renumber::close_gaps;
 use super::{BinaryOperation, Code, Instruction, Operation, Slot, UnaryOperation};
 use crate::arena::Handle;
 
@@ -79,44 +80,12 @@ impl Signs {
             negation(instruction).is_some_and(|(result, _)| self.renamed[result.index()].is_some())
         };
         code.instructions.retain(|instruction| !is_absorbed(instruction));
-        let mut number: Vec<Option<Slot>> = vec![None; code.slots];
-        let mut slots = 0;
-        let mut assign = |slot: Slot| {
-            number[slot.index()] = Some(Slot::from_index(slots));
-            slots += 1;
-        };
-        code.leaves.keys().for_each(&mut assign);
-        code.instructions.iter().for_each(|instruction| instruction.for_each_result(&mut assign));
-        code.slots = slots;
-        let renumbered = |slot: Slot| {
-            let slot = self.renamed[slot.index()].unwrap_or(slot);
-            number[slot.index()].expect("what is used is assigned")
-        };
-        code.instructions.iter_mut().for_each(|step| renumber(step, &renumbered));
-        code.outputs.iter_mut().for_each(|output| *output = renumbered(*output));
+        close_gaps(code, |slot| self.renamed[slot.index()].unwrap_or(slot));
     }
 }
 
 fn set_operation(code: &mut Code, index: usize, new: Operation) {
     if let Instruction::Value { operation, .. } = &mut code.instructions[index] {
         *operation = new;
-    }
-}
-
-fn renumber(instruction: &mut Instruction, number: &dyn Fn(Slot) -> Slot) {
-    match instruction {
-        Instruction::SinCos { sine, cosine, angle } => {
-            [sine, cosine, angle].into_iter().for_each(|slot| *slot = number(*slot));
-        }
-        Instruction::Value { result, operation } => {
-            *result = number(*result);
-            match operation {
-                Operation::Unary(_, a) => *a = number(*a),
-                Operation::Binary(_, a, b) => [a, b].into_iter().for_each(|s| *s = number(*s)),
-                Operation::Select { sides: [left, right], then, otherwise, .. } => {
-                    [left, right, then, otherwise].into_iter().for_each(|s| *s = number(*s));
-                }
-            }
-        }
     }
 }

@@ -5,7 +5,7 @@
 //! together with all others of their kind: a run needs one choice. Each instruction still computes
 //! what it did from the same operands, so no bit changes.
 
-use super::{BinaryOperation, Code, Instruction, Leaf, Operation, UnaryOperation};
+use super::{BinaryOperation, Code, FusedOperation, Instruction, Leaf, Operation, UnaryOperation};
 use crate::arena::Handle;
 use crate::expr::Relation;
 use std::ops::Range;
@@ -18,6 +18,7 @@ pub(super) type Register = u32;
 pub(super) enum Run {
     Unary(UnaryOperation, Range<usize>),
     Binary(BinaryOperation, Range<usize>),
+    Fused(FusedOperation, Range<usize>),
     SinCos(Range<usize>),
     Select(Relation, Range<usize>),
 }
@@ -32,6 +33,8 @@ pub(super) struct Tape {
     pub(super) unary: Vec<[Register; 2]>,
     /// Result, left operand, right operand.
     pub(super) binary: Vec<[Register; 3]>,
+    /// Result, three operands.
+    pub(super) fused: Vec<[Register; 4]>,
     /// Sine, cosine, angle.
     pub(super) sincos: Vec<[Register; 3]>,
     /// Result, left and right side, value if the relation holds, value if not.
@@ -45,6 +48,7 @@ pub(super) struct Tape {
 enum Kind {
     Unary(UnaryOperation),
     Binary(BinaryOperation),
+    Fused(FusedOperation),
     SinCos,
     Select(Relation),
 }
@@ -56,6 +60,7 @@ impl Kind {
             Instruction::Value { operation, .. } => match operation {
                 Operation::Unary(function, _) => Self::Unary(*function),
                 Operation::Binary(function, ..) => Self::Binary(*function),
+                Operation::Fused(function, _) => Self::Fused(*function),
                 Operation::Select { relation, .. } => Self::Select(*relation),
             },
         }
@@ -88,6 +93,10 @@ impl Tape {
                     tape.binary.push([first, a, b]);
                     &mut rows.end
                 }
+                Run::Fused(_, rows) => {
+                    tape.fused.push([first, a, b, c]);
+                    &mut rows.end
+                }
                 Run::SinCos(rows) => {
                     tape.sincos.push([first, second, a]);
                     &mut rows.end
@@ -110,6 +119,7 @@ impl Tape {
         self.runs.push(match kind {
             Kind::Unary(function) => Run::Unary(function, empty(self.unary.len())),
             Kind::Binary(function) => Run::Binary(function, empty(self.binary.len())),
+            Kind::Fused(function) => Run::Fused(function, empty(self.fused.len())),
             Kind::SinCos => Run::SinCos(empty(self.sincos.len())),
             Kind::Select(relation) => Run::Select(relation, empty(self.select.len())),
         });

@@ -2,10 +2,10 @@
 
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
-use denavit_codegen::model;
+use denavit_codegen::model::{self, Robot};
 use denavit_codegen::number::Residue;
 use denavit_codegen::program::{
-    BatchEvaluator, Evaluator, Program, Routine, lower, parameter_defaults, prelude_values,
+    BatchEvaluator, Evaluator, Program, Routine, fuse, lower, parameter_defaults, prelude_values,
 };
 use std::path::{Path, PathBuf};
 
@@ -70,7 +70,18 @@ impl Interpreted {
         let robot = model::read(model, &std::fs::read(path).unwrap()).unwrap();
         let derivation = derive(&robot, flavour, functions).unwrap();
         let program = lower(&derivation.dag, &derivation.functions).unwrap();
-        let defaults = parameter_defaults(&program, &robot);
+        Self::with(program, &robot)
+    }
+
+    /// The same with products fused.
+    pub(super) fn fused(model: &str, flavour: Flavour, functions: &[FunctionName]) -> Self {
+        let mut interpreted = Self::new(model, flavour, functions);
+        fuse(&mut interpreted.program);
+        interpreted
+    }
+
+    fn with(program: Program, robot: &Robot) -> Self {
+        let defaults = parameter_defaults(&program, robot);
         let parameters: Vec<f64> = defaults.into_iter().map(Option::unwrap).collect();
         let prelude = prelude_values(&program, &parameters).unwrap();
         Self { program, prelude }

@@ -1,7 +1,9 @@
 //! The functions: documentation, signature, statements, result.
 
+use super::filling::{array_name, empty_arrays, entry_places, filled_result, fills_arrays};
 use super::selectors::{links, variants};
 use super::{Context, bound, template};
+use crate::arena::Handle;
 use crate::emit::arrays::{Place, array};
 use crate::emit::body::{Body, Vocabulary};
 use crate::emit::names::{Names, camel_case, identifier};
@@ -46,6 +48,16 @@ fn function(context: &Context<'_>, routine: &Routine, name: &str) -> String {
     let code = &routine.code;
     let mut body = Body::new(code, vocabulary(context, routine));
     let mut lines = prologue(routine);
+    if fills_arrays(routine) {
+        lines.extend(empty_arrays(context, routine));
+        // Numbers and arguments are there from the start.
+        let leaves = code.outputs.iter().filter(|slot| slot.index() < code.leaves.len());
+        leaves.for_each(|&slot| body.store(slot));
+        body.write_all();
+        lines.extend(body.take_lines());
+        lines.extend(filled_result(routine));
+        return finished(context, routine, name, &body, &lines);
+    }
     body.write_all();
     code.outputs.iter().for_each(|&output| body.declare(output));
     lines.extend(body.take_lines());
@@ -56,7 +68,17 @@ fn function(context: &Context<'_>, routine: &Routine, name: &str) -> String {
     } else {
         lines.extend(result_lines(routine, &entries));
     }
+    finished(context, routine, name, &body, &lines)
+}
 
+/// A function of its statements.
+fn finished(
+    context: &Context<'_>,
+    routine: &Routine,
+    name: &str,
+    body: &Body<'_>,
+    lines: &[String],
+) -> String {
     let is_public = routine.link.is_none();
     let result = result_type(context, routine);
     let start = if is_public { format!("pub fn {name}") } else { format!("fn {name}") };
@@ -65,7 +87,7 @@ fn function(context: &Context<'_>, routine: &Routine, name: &str) -> String {
     if body.is_in_blocks() {
         doc += "#[rustfmt::skip] // each name would get a line of its own\n";
     }
-    frame(&doc, is_public, &signature, &lines)
+    frame(&doc, is_public, &signature, lines)
 }
 
 /// Documentation, attributes, signature and statements together.
@@ -99,10 +121,21 @@ fn vocabulary(context: &Context<'_>, routine: &Routine) -> Vocabulary {
         }),
         Leaf::Constant(_) | Leaf::Parameter(_) => None,
     };
+    let mut names = Names::locals();
+    let mut entries = vec![Vec::new(); routine.code.slots];
+    if fills_arrays(routine) {
+        for output in &routine.outputs {
+            names.claim(array_name(routine, output));
+        }
+        for (slot, place) in routine.code.outputs.iter().zip(entry_places(routine)) {
+            entries[slot.index()].extend(place);
+        }
+    }
     Vocabulary {
-        names: Names::locals(),
+        names,
         leaves: routine.code.leaves.values().map(text).collect(),
         named: vec![None; routine.code.slots],
+        entries,
     }
 }
 
@@ -211,6 +244,16 @@ fn result_type(context: &Context<'_>, routine: &Routine) -> String {
 
 /// `[[S; 3]; DOF]`: outermost dimension last.
 fn array_type(context: &Context<'_>, routine: &Routine, output: &OutputShape) -> String {
+    array_of("S", context, routine, output)
+}
+
+/// An array in the shape of an output: of one type, or of one value.
+pub(super) fn array_of(
+    entry: &str,
+    context: &Context<'_>,
+    routine: &Routine,
+    output: &OutputShape,
+) -> String {
     let (rows, columns) = of_joints(routine.name);
     let last = output.shape.len().saturating_sub(1);
     let dimension = |(place, &len): (usize, &usize)| {
@@ -221,7 +264,7 @@ fn array_type(context: &Context<'_>, routine: &Routine, output: &OutputShape) ->
     dimensions
         .iter()
         .rev()
-        .fold("S".to_owned(), |inner, dimension| format!("[{inner}; {dimension}]"))
+        .fold(entry.to_owned(), |inner, dimension| format!("[{inner}; {dimension}]"))
 }
 
 fn is_scalar(routine: &Routine) -> bool {

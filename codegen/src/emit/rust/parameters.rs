@@ -84,7 +84,8 @@ fn prelude(context: &Context<'_>) -> (String, String) {
             named[output.index()] = Some(field.clone());
         }
     }
-    let mut body = Body::new(code, Vocabulary { names, leaves, named });
+    let entries = vec![Vec::new(); code.slots];
+    let mut body = Body::new(code, Vocabulary { names, leaves, named, entries });
     body.write_all();
     code.outputs.iter().for_each(|&output| body.declare(output));
     let statements = body.take_lines().join("\n");

@@ -24,7 +24,7 @@ fn requests() -> [(&'static str, &'static str, Request); 3] {
     ];
     let scara = vec![F::InverseDynamics, F::MassMatrix, F::GravityVector, F::LinkTransforms];
     let awkward = vec![F::InverseDynamics, F::LinkJacobian, F::PotentialEnergy];
-    let request = |flavour, functions| Request { flavour, functions };
+    let request = |flavour, functions| Request { flavour, functions, ..Request::default() };
     [
         ("models/planar_2r.json", "planar_2r", request(Flavour::Tunable, planar)),
         ("models/scara.json", "scara_baked", request(Flavour::Baked, scara)),

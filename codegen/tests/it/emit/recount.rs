@@ -48,7 +48,13 @@ fn recount(statements: &[&str]) -> Counts {
         counts.add += count(" + ") + count(" - ");
         counts.div += count(" / ");
         counts.neg += count("-") - count(" - ") - count("->");
+        let fused = [".product_plus(", ".product_minus(", ".minus_product("];
+        let fused: usize = fused.iter().map(|pattern| count(pattern)).sum();
+        counts.mul += fused;
+        counts.add += fused;
         counts.sincos += count(".sincos()");
+        let packs = line.split_once("S::sincos_all([").and_then(|(_, rest)| rest.split_once("])"));
+        counts.sincos += packs.map_or(0, |(angles, _)| angles.split(", ").count());
         counts.sqrt += count(".sqrt()");
         let selections = ["S::select_", ".lesser(", ".greater(", ".abs()", ".sign()"];
         counts.select += selections.iter().map(|pattern| count(pattern)).sum::<usize>();

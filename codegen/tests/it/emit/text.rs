@@ -65,7 +65,7 @@ fn a_model_without_values_has_no_default_parameters() {
 #[test]
 fn only_the_functions_asked_for_are_emitted() {
     let functions = vec![FunctionName::GravityVector];
-    let request = Request { flavour: Flavour::Baked, functions };
+    let request = Request { flavour: Flavour::Baked, functions, ..Request::default() };
     let text = emit(AWKWARD, &request).unwrap();
     let found: Vec<&str> = text.lines().filter(|line| line.starts_with("pub fn ")).collect();
     assert_eq!(found.len(), 1);

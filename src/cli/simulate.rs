@@ -231,5 +231,8 @@ fn print(
     for (law, found, allowed) in broken {
         writeln!(out, "broken: {law}: {found:.3e}, and {allowed:.0e} is tolerated")?;
     }
+    if let Some(hint) = scenario.broken_hint(broken) {
+        writeln!(out, "hint: {hint}")?;
+    }
     Ok(())
 }

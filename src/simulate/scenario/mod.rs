@@ -136,6 +136,14 @@ impl Scenario {
         }
     }
 
+    /// What may help where a run missed these laws: fast turning is more than steps of first order
+    /// follow.
+    pub fn broken_hint(&self, broken: &[(&'static str, f64, f64)]) -> Option<&'static str> {
+        let first_order = self.scheme == RunScheme::TimeStepping && self.stepping.corrections == 0;
+        (first_order && !broken.is_empty())
+            .then_some("shorter steps (`--step`), or `\"corrections\": 1` in `time_stepping`")
+    }
+
     /// The laws that a run of this scenario missed by more than is tolerated: name, by how much,
     /// tolerance.
     pub fn broken(&self, run: &Run) -> Vec<(&'static str, f64, f64)> {

@@ -286,7 +286,9 @@ impl StepRecorder {
         let zmp = point_of_moment(origin, normal, impulse, self.interval.moment);
         let of_momentum = point_of_moment(origin, normal, missing, moment);
         let apart = (0..3).map(|axis| (zmp[axis] - of_momentum[axis]).powi(2)).sum::<f64>().sqrt();
-        self.audit.zmp_m = worst(self.audit.zmp_m, apart);
+        // what it says of the motion is a moment: as much as the weight has on its arm
+        let share = (dot(normal, &impulse) / (weight * length_s)).min(1.0);
+        self.audit.zmp_m = worst(self.audit.zmp_m, share * apart);
         // in the mean of the interval, a contact is where its impulses are
         let corners: Vec<[f64; 3]> = self
             .interval

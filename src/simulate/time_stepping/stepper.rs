@@ -182,13 +182,15 @@ impl TimeStepper {
     fn contact_figures(&self, qd: &[f64]) -> (f64, f64) {
         let (n, rows, h) = (qd.len(), self.space.rows(), self.stepping.step_s);
         let (mut work, mut error) = (0.0, 0.0_f64);
+        let largest = self.force.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
         for (place, &contact) in self.closed.iter().enumerate() {
             for row in place * rows..(place + 1) * rows {
                 let line = &self.terms.jacobian[row * n..(row + 1) * n];
                 let (before, after) = (dot(line, qd), dot(line, &self.rates));
                 let impulse = self.force[row];
                 work += 0.5 * impulse * (before + after);
-                if row + 1 == (place + 1) * rows && impulse > 0.0 {
+                // a smaller impulse is rounding of none
+                if row + 1 == (place + 1) * rows && impulse > 1e-12 * largest {
                     let wanted = match self.stepping.scheme {
                         Scheme::MoreauMidpoint => -self.laws[contact].restitution * before.min(0.0),
                         Scheme::Anitescu { .. } => -self.gaps[contact] / h,

@@ -20,6 +20,11 @@ const GIVE: [f64; 4] = [0.0, 1e-11, 1e-9, 1e-7];
 /// Pivots that miss the laws by no more, relative to the largest velocity, do where none do better.
 const NEARLY: f64 = 1e-6;
 
+/// Impulses that make more of the energy that they exchange than this part make energy: then all
+/// restitution is reduced by one factor, found by so many halvings.
+const GAIN: f64 = 1e-3;
+const HALVINGS: usize = 12;
+
 /// Slower contacts have no direction of slipping that a solver finds [m/s].
 const SLIPS: f64 = 1e-4;
 
@@ -38,8 +43,11 @@ pub struct TimeStepper {
     mean: Vec<f64>,
     terms: Terms,
     delassus: Delassus,
-    /// v without, then with contact impulses.
+    /// v without, then with contact impulses; and without.
     rates: Vec<f64>,
+    without: Vec<f64>,
+    /// Part of all restitution that makes no energy.
+    bounce: f64,
     free: Vec<f64>,
     force: Vec<f64>,
     softened: Vec<f64>,
@@ -68,6 +76,8 @@ impl TimeStepper {
             terms: Terms::default(),
             delassus: Delassus::new(),
             rates: vec![0.0; n],
+            without: vec![0.0; n],
+            bounce: 1.0,
             free: Vec::new(),
             force: Vec::new(),
             softened: Vec::new(),
@@ -165,17 +175,57 @@ impl TimeStepper {
             self.impulses.fill(0.0);
         } else {
             self.delassus.project(&self.terms.jacobian);
-            self.free_response(qd);
-            let (iterations, fell_back) = self.solve_contacts()?;
-            report.iterations += iterations;
-            report.fell_back |= fell_back;
-            self.delassus.respond(&self.force, &mut self.rates, &mut self.scratch);
+            self.without.clone_from(&self.rates);
+            self.push(qd, 1.0, report)?;
+            if self.makes_energy(qd) {
+                let (mut low, mut high) = (0.0, 1.0);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    self.push(qd, middle, report)?;
+                    *if self.makes_energy(qd) { &mut high } else { &mut low } = middle;
+                }
+                self.push(qd, low, report)?;
+            }
             self.keep_impulses();
         }
         match self.rates.iter().all(|rate| rate.is_finite()) {
             true => Ok(()),
             false => Err(StepFailure::NotFinite),
         }
+    }
+
+    /// Impulses with this part of all restitution, and the rates that they make.
+    fn push(
+        &mut self,
+        qd: &[f64],
+        bounce: f64,
+        report: &mut StepReport,
+    ) -> Result<(), StepFailure> {
+        self.bounce = bounce;
+        self.rates.copy_from_slice(&self.without);
+        self.free_response(qd);
+        let (iterations, fell_back) = self.solve_contacts()?;
+        report.iterations += iterations;
+        report.fell_back |= fell_back;
+        self.delassus.respond(&self.force, &mut self.rates, &mut self.scratch);
+        Ok(())
+    }
+
+    /// Whether the impulses make energy, as Newton's restitution can where contacts that part are
+    /// pushed on, or rub.
+    fn makes_energy(&self, qd: &[f64]) -> bool {
+        let n = qd.len();
+        let bounces = |contact: &usize| self.laws[*contact].restitution > 0.0;
+        if self.bounce == 0.0 || !self.closed.iter().any(bounces) {
+            return false;
+        }
+        let (mut work, mut size) = (0.0, 0.0);
+        for (line, impulse) in self.terms.jacobian.chunks_exact(n).zip(&self.force) {
+            let (before, after) = (dot(line, qd), dot(line, &self.rates));
+            work += impulse * (before + after);
+            size += (impulse * before).abs() + (impulse * after).abs();
+        }
+        work > GAIN * size
     }
 
     /// Work of the impulses, and how far those that push miss the law of the scheme.
@@ -192,7 +242,9 @@ impl TimeStepper {
                 // a smaller impulse is rounding of none
                 if row + 1 == (place + 1) * rows && impulse > 1e-12 * largest {
                     let wanted = match self.stepping.scheme {
-                        Scheme::MoreauMidpoint => -self.laws[contact].restitution * before.min(0.0),
+                        Scheme::MoreauMidpoint => {
+                            -self.bounce * self.laws[contact].restitution * before.min(0.0)
+                        }
                         Scheme::Anitescu { .. } => -self.gaps[contact] / h,
                     };
                     error = error.max((after - wanted).abs());
@@ -264,7 +316,7 @@ impl TimeStepper {
                 Scheme::MoreauMidpoint if restitution == 0.0 => 0.0,
                 Scheme::MoreauMidpoint => {
                     let row = &self.terms.jacobian[normal * n..(normal + 1) * n];
-                    restitution * dot(row, qd).min(0.0)
+                    self.bounce * restitution * dot(row, qd).min(0.0)
                 }
                 Scheme::Anitescu { .. } => self.gaps[contact] / h,
             };

@@ -73,3 +73,28 @@ fn a_higher_accuracy_comes_to_the_same_end() {
 fn pivots_solve_what_sweeps_solve() {
     assert!(ends("pivots", &["--scheme", "time-stepping"]).0);
 }
+
+/// Of four points nearly in a line that slide, equally compliant ones would make one pull.
+#[test]
+fn points_that_slide_in_a_line_do_not_pull() {
+    assert!(ends("sliding_in_line", &[]).0);
+}
+
+/// Two points of a body begin to slip, one after the other, more slowly than errors are.
+#[test]
+fn what_begins_to_slip_slips_on() {
+    assert!(ends("slipping_begins", &[]).0);
+}
+
+/// Without friction, a point that parts is pushed on by the rebound of others.
+#[test]
+fn steps_with_restitution_make_no_energy() {
+    assert!(ends("bounce", &["--scheme", "time-stepping"]).0);
+}
+
+/// One point slips with friction 1 until its normal force has no bound.
+#[test]
+fn a_jam_is_called_one() {
+    let (_, log) = ends("jam", &[]);
+    assert!(log.lines().any(|line| line == "# stop: painleve"), "{log}");
+}

@@ -235,7 +235,7 @@ impl Settler {
             let normals = || (0..slow.len()).map(|index| index * rows + rows - 1);
             let fall = normals().map(|row| -motion.work.free[row]).fold(0.0, f64::max);
             for (row, speed) in normals().zip(&parting) {
-                motion.work.free[row] += speed * fall / touching.rest_speed;
+                motion.work.free[row] += speed * fall / touching.rest_speed.max(IMPACT_SPEED);
             }
             self.decide(motion, touching, settled)?;
             y.copy_from_slice(&before);

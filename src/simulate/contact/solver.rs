@@ -47,6 +47,8 @@ pub struct ContactSolver {
     options: Vec<Vec<Mode>>,
     choice: Vec<usize>,
     trial: ContactSolution,
+    /// What nearly obeys the laws, if nothing does, and how nearly.
+    nearest: Option<(f64, ContactSolution)>,
 }
 
 impl ContactSolver {
@@ -82,6 +84,7 @@ impl ContactSolver {
         solution: &mut ContactSolution,
     ) -> Result<(), ContactFailure> {
         problem.checked()?;
+        self.nearest = None;
         let begins_to_slip = |contact: &Contact| {
             !contact.has_slip_law() && !contact.released && contact.friction != Friction::NoSlip
         };
@@ -99,6 +102,10 @@ impl ContactSolver {
         }
         if iterates && search == Search::All && self.iterate(problem) {
             solution.clone_from(&self.trial);
+            return Ok(());
+        }
+        if let Some((_, nearest)) = self.nearest.take() {
+            *solution = nearest;
             return Ok(());
         }
         if enumerable || iterates {
@@ -204,45 +211,32 @@ impl ContactSolver {
     }
 
     /// Solves for forces and reads their modes, from one start after the other, and changes the
-    /// modes until they obey all laws; the trial has what was found. What nearly obeys them is
-    /// taken where no start leads to more.
+    /// modes until they obey all laws; the trial has what was found.
     fn iterate(&mut self, problem: &ContactProblem<'_>) -> bool {
         self.trial.modes.clear();
         self.trial.modes.extend(problem.contacts.iter().map(closed_mode));
         if self.try_modes(problem) == Some(true) {
             return true;
         }
-        let mut nearest: Option<(f64, ContactSolution)> = None;
-        if self.refine(problem, &mut nearest) {
+        if self.refine(problem) {
             return true;
         }
         self.trial.force.fill(0.0);
         let report = self.pyramid.solve(problem, FACETS, &mut self.trial.force);
-        if report.outcome == LcpOutcome::Solved && self.refine(problem, &mut nearest) {
+        if report.outcome == LcpOutcome::Solved && self.refine(problem) {
             return true;
         }
-        if problem.contacts.iter().all(|contact| contact.slipping.is_none()) {
-            self.trial.force.fill(0.0);
-            let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
-            gauss_seidel::solve(problem, limits, &mut self.trial.force);
-            if self.refine(problem, &mut nearest) {
-                return true;
-            }
+        if problem.contacts.iter().any(|contact| contact.slipping.is_some()) {
+            return false;
         }
-        let found = nearest.is_some();
-        if let Some((_, solution)) = nearest {
-            self.trial = solution;
-        }
-        found
+        self.trial.force.fill(0.0);
+        let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
+        gauss_seidel::solve(problem, limits, &mut self.trial.force);
+        self.refine(problem)
     }
 
-    /// From the forces of the trial to lawful modes; what only nearly obeys the laws goes to
-    /// `nearest`, if it is.
-    fn refine(
-        &mut self,
-        problem: &ContactProblem<'_>,
-        nearest: &mut Option<(f64, ContactSolution)>,
-    ) -> bool {
+    /// From the forces of the trial to lawful modes; keeps what only nearly obeys the laws.
+    fn refine(&mut self, problem: &ContactProblem<'_>) -> bool {
         let solved = newton::solve(problem, &mut self.trial.force);
         self.trial.redundancy = 0;
         problem.respond(&self.trial.force, &mut self.trial.response);
@@ -259,10 +253,12 @@ impl ContactSolver {
                 }
                 return true;
             }
-            Found::Nearly(way) if nearest.as_ref().is_none_or(|(least, _)| way < *least) => {
-                *nearest = Some((way, found));
+            Found::Nearly(way) => {
+                if self.nearest.as_ref().is_none_or(|(least, _)| way < *least) {
+                    self.nearest = Some((way, found));
+                }
             }
-            Found::Nearly(_) | Found::Nothing => {}
+            Found::Nothing => {}
         }
         self.change_until_lawful(problem)
     }

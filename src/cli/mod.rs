@@ -93,7 +93,23 @@ pub(crate) fn run() -> ExitCode {
 }
 
 impl Command {
+    /// Whether the command evaluates models again and again.
+    fn computes(&self) -> bool {
+        matches!(
+            self,
+            Self::Demo(_)
+                | Self::Simulate(_)
+                | Self::Excite(_)
+                | Self::Identify(_)
+                | Self::Diagnose(_)
+        )
+    }
+
     fn run(&self, out: &mut dyn Write) -> Result<Answer, Failure> {
+        if let (true, Err(unsupported)) = (self.computes(), denavit::plants::native_code()) {
+            let note = "note: models are interpreted, which takes three to five times as long";
+            let _ = writeln!(io::stderr(), "{note}: {unsupported}");
+        }
         match self {
             Self::Demo(arguments) => demo::run(arguments, out),
             Self::Inspect(arguments) => inspect::run(arguments, out),

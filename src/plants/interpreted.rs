@@ -1,12 +1,13 @@
-//! A model read at run time, derived with its values folded in, and interpreted.
+//! A model read at run time, derived with its values folded in, and compiled in memory.
 
 use super::laws::{LawMoment, LawResponse, Laws};
 use super::model::baked;
+use super::native::NativeRoutine;
 use super::{Override, Plant, PlantError, PlantModel};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::Robot;
-use denavit_codegen::program::{Evaluator, Program, lower};
+use denavit_codegen::program::{Evaluate, Program, lower};
 
 const FUNCTIONS: [FunctionName; 10] = [
     FunctionName::MassMatrix,
@@ -26,7 +27,7 @@ const FUNCTIONS: [FunctionName; 10] = [
 pub struct InterpretedPlant {
     model: PlantModel,
     /// In the order of `FUNCTIONS`; none where the robot has no contact point.
-    evaluators: [Option<Evaluator<f64>>; FUNCTIONS.len()],
+    evaluators: [Option<NativeRoutine>; FUNCTIONS.len()],
     /// Laws of added effects but for inertias, which the bias leaves out.
     laws: Option<Laws>,
 }
@@ -61,10 +62,10 @@ impl InterpretedPlant {
     }
 }
 
-fn evaluator(program: &Program, function: FunctionName) -> Option<Evaluator<f64>> {
+fn evaluator(program: &Program, function: FunctionName) -> Option<NativeRoutine> {
     let routine = program.find(function, None)?;
     // baked: there is nothing left that depends on parameters alone
-    Some(Evaluator::new(routine, &[]))
+    Some(NativeRoutine::new(routine, &[]))
 }
 
 impl Plant for InterpretedPlant {

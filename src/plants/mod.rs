@@ -3,7 +3,7 @@
 //!
 //! - [`Plant`]: the functions of a robot, into the caller's memory
 //! - [`PlantModel`]: what a simulation must know of it besides: names, drives, contact points
-//! - [`InterpretedPlant`]: any model file, derived and interpreted
+//! - [`InterpretedPlant`]: any model file, derived and compiled in memory
 //! - [`Cradle`]: balls that collide with each other
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
@@ -18,6 +18,7 @@ mod generated;
 mod interpreted;
 mod laws;
 mod model;
+mod native;
 pub mod regression;
 mod regression_model;
 mod regression_rows;
@@ -31,6 +32,7 @@ pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
     SeriesElasticModel,
 };
+pub use native::native_code;
 
 /// The functions of a robot with n joints and c contact points. Each may use memory of its own,
 /// hence `&mut self`; none changes what another returns.

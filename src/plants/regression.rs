@@ -6,6 +6,7 @@
 //! Rows are torques on the joint side along the joint axes, in the order of the joints; of a
 //! floating base the generalized forces of its virtual joints come first.
 
+use super::native::NativeBatch;
 use super::regression_model::{described_joints, with_joint_parameters};
 use super::regression_values::{not_negative_program, theta0_program, values_of};
 use denavit_codegen::derive::{Flavour, derive};
@@ -14,7 +15,7 @@ use denavit_codegen::expr::{Dag, ExprId, substitute};
 use denavit_codegen::function::{Form, Function, FunctionName, Output};
 use denavit_codegen::model::{Robot, Role, TorqueSide, bake_geometry};
 use denavit_codegen::program::{
-    BatchEvaluator, Program, constant_values, lower, parameter_defaults, prelude_values,
+    Program, constant_values, lower, parameter_defaults, prelude_values,
 };
 use denavit_codegen::regressor::functions::modelled;
 use denavit_codegen::regressor::{
@@ -22,6 +23,7 @@ use denavit_codegen::regressor::{
 };
 use nalgebra::DMatrix;
 use rustc_hash::FxHashMap;
+use std::sync::OnceLock;
 
 pub use super::regression_model::{MotionError, RegressionError, RegressionJoint};
 pub use super::regression_rows::{CoulombLaw, RegressionEvaluator, RegressionRows};
@@ -106,6 +108,8 @@ pub struct RegressionModel {
     known: Vec<usize>,
     program: Program,
     prelude: Vec<f64>,
+    /// The program, made ready when it is first asked for.
+    native: OnceLock<NativeBatch>,
     theta0: Program,
     not_negative: Option<Program>,
 }
@@ -194,6 +198,7 @@ impl RegressionModel {
             known,
             program,
             prelude,
+            native: OnceLock::new(),
             not_negative: not_negative_program(&base, robot)?,
             theta0,
         })
@@ -234,8 +239,9 @@ impl RegressionModel {
     pub fn evaluator(&self) -> RegressionEvaluator {
         let routine = &self.program.routines[0];
         let widths = self.pattern.iter().map(Vec::len).collect();
-        let batch = BatchEvaluator::new(routine, &self.prelude);
-        RegressionEvaluator::new(batch, widths, &self.known).with_law(self.law, &self.coulomb)
+        let batch = self.native.get_or_init(|| NativeBatch::new(routine, &self.prelude));
+        RegressionEvaluator::new(batch.clone(), widths, &self.known)
+            .with_law(self.law, &self.coulomb)
     }
 
     /// theta0 of values of [`RegressionModel::parameters`].

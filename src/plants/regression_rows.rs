@@ -1,7 +1,8 @@
 //! Rows of a regression, a block of samples at once.
 
+use super::native::NativeBatch;
 use super::regression_model::MotionError;
-use denavit_codegen::program::BatchEvaluator;
+use denavit_codegen::program::EvaluateBatch;
 use denavit_runtime::Transcendental;
 
 /// How Coulomb friction depends on the rate of a joint.
@@ -29,7 +30,7 @@ impl CoulombLaw {
 /// Computes rows of tau - known = Y phi for many samples at once.
 #[derive(Clone, Debug)]
 pub struct RegressionEvaluator {
-    batch: BatchEvaluator<f64>,
+    batch: NativeBatch,
     widths: Vec<usize>,
     known: Vec<usize>,
     law: CoulombLaw,
@@ -89,7 +90,7 @@ impl RegressionRows {
 }
 
 impl RegressionEvaluator {
-    pub(super) fn new(batch: BatchEvaluator<f64>, widths: Vec<usize>, known: &[usize]) -> Self {
+    pub(super) fn new(batch: NativeBatch, widths: Vec<usize>, known: &[usize]) -> Self {
         let (law, coulomb) = (CoulombLaw::Sign, Vec::new());
         Self { batch, widths, known: known.to_vec(), law, coulomb }
     }

@@ -4,9 +4,8 @@
 //! Each lane computes exactly what [`Evaluator`](super::Evaluator) computes: the two agree bit for
 //! bit, also in the remainder.
 
-use super::interpret::{
-    ShapeMismatch, argument_leaves, binary, fused, initial_registers, select, unary,
-};
+use super::ShapeMismatch;
+use super::interpret::{argument_leaves, binary, fused, initial_registers, select, unary};
 use super::tape::{Register, Run, Tape};
 use super::{BinaryOperation, Routine};
 use denavit_runtime::Transcendental;
@@ -64,18 +63,8 @@ impl<S: Transcendental> BatchEvaluator<S> {
         inputs: &[&[S]],
         outputs: &mut [&mut [S]],
     ) -> Result<(), ShapeMismatch> {
-        ShapeMismatch::check("input columns", self.columns, inputs.len())?;
-        ShapeMismatch::check("output columns", self.tape.outputs.len(), outputs.len())?;
-        let first = inputs.first().map(|column| column.len());
-        let Some(samples) = first.or_else(|| outputs.first().map(|column| column.len())) else {
-            return Ok(());
-        };
-        for column in inputs {
-            ShapeMismatch::check("samples of an input column", samples, column.len())?;
-        }
-        for column in outputs.iter() {
-            ShapeMismatch::check("samples of an output column", samples, column.len())?;
-        }
+        let columns = (self.tape.outputs.len(), &*outputs);
+        let samples = ShapeMismatch::check_columns((self.columns, inputs), columns)?;
         for start in (0..samples).step_by(LANES) {
             let lanes = LANES.min(samples - start);
             self.load(inputs, start, lanes);

@@ -3,6 +3,7 @@
 //! It computes through the same [`Scalar`] as emitted code, in the same order, so the two agree
 //! bit for bit.
 
+use super::ShapeMismatch;
 use super::tape::{Register, Run, Tape};
 use super::{
     BinaryOperation, Code, FusedOperation, Leaf, Program, Routine, UnaryOperation, constant_values,
@@ -10,36 +11,6 @@ use super::{
 use crate::expr::{ExprId, Relation};
 use crate::model::Robot;
 use denavit_runtime::{Scalar, Transcendental};
-use std::fmt;
-
-/// A slice whose length is not that of the argument, output or parameters it stands for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ShapeMismatch {
-    /// What it stands for.
-    pub of: &'static str,
-    /// The length that it must have.
-    pub expected: usize,
-    /// The length that it has.
-    pub found: usize,
-}
-
-impl ShapeMismatch {
-    pub(super) fn check(
-        of: &'static str,
-        expected: usize,
-        found: usize,
-    ) -> Result<(), ShapeMismatch> {
-        if expected == found { Ok(()) } else { Err(Self { of, expected, found }) }
-    }
-}
-
-impl fmt::Display for ShapeMismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {} values expected, {} given", self.of, self.expected, self.found)
-    }
-}
-
-impl std::error::Error for ShapeMismatch {}
 
 /// The values of the prelude for parameters in the order of [`Program::parameters`]; always in
 /// `f64`, because regrouped parameters mix magnitudes.

@@ -6,12 +6,14 @@
 //! - [`verify`]: each slot defined once and before its use; called after each pass
 //! - [`counts`]: what a call costs
 //! - [`Evaluator`]: the reference interpreter; [`BatchEvaluator`]: many samples at once
+//! - [`Evaluate`], [`EvaluateBatch`]: what they and compiled code have in common
 //!
 //! A program is the first stage that holds floats: constants are the nearest `f64` of the exact
 //! ones. Nothing is decided by their values.
 
 mod batch;
 mod cost;
+mod evaluate;
 mod fuse;
 mod interpret;
 mod lower;
@@ -24,8 +26,9 @@ mod verify;
 pub use crate::expr::Operations as Counts;
 pub use batch::{BatchEvaluator, LANES};
 pub use cost::{code_counts, counts};
+pub use evaluate::{Evaluate, EvaluateBatch, ShapeMismatch};
 pub use fuse::fuse;
-pub use interpret::{Evaluator, ShapeMismatch, parameter_defaults, prelude_values};
+pub use interpret::{Evaluator, parameter_defaults, prelude_values};
 pub use lower::{LowerError, constant_values, lower};
 pub use schedule::{peak_live, schedule};
 pub use verify::{Fault, verify};

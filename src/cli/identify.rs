@@ -36,7 +36,8 @@ use std::path::PathBuf;
 /// are any); --columns maps those of other logs. Positions and torques pass one zero-phase filter,
 /// torques and regressor one decimator. Base parameters are exact; what the motion does not show
 /// keeps the model's value and is said to. Exits with 1 if what is found leaves as much of the
-/// torques as nothing would, or nearly all of the torque of a joint that moves.
+/// torques as nothing would, or, of the torque of a joint that moves, nearly all, or a third that
+/// is no noise.
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:

@@ -2,8 +2,8 @@
 
 use super::condition::Conditioned;
 use super::estimate::{
-    Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, MisreadColumns, Options,
-    SlowRows, Status, Validation, biased_frictions, consistent, convergence, estimate,
+    CLEAN, Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, MisreadColumns,
+    Options, SlowRows, Status, Validation, biased_frictions, consistent, convergence, estimate,
     filter_errors, long_enough, misread_columns, noise_of_positions, nominal_values, parameters,
     unexplained_joints, validate,
 };
@@ -50,8 +50,8 @@ pub struct Identification {
     /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in so much
     /// of the logs that it is biased, each with the share of samples.
     pub reversals: Vec<(String, f64)>,
-    /// Joints that move and of whose torque nearly all is left, in the logs for validation or, if
-    /// there are none, those of the estimate, each with the share.
+    /// Joints that move and of whose torque nearly all is left, or much that is no noise, in the
+    /// logs for validation or, if there are none, those of the estimate, each with the share.
     pub unexplained: Vec<(String, f64)>,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
@@ -137,8 +137,9 @@ impl Identification {
         let unexplained = self.unexplained.iter().map(|(joint, share)| {
             format!(
                 "The torque of {joint} is not explained: {:.0} % of it is left, although the joint \
-                 moves. Its column may be another quantity, in another unit, or noise; what was \
-                 found is not to be believed.",
+                 moves. Its column may be another quantity, in another unit, or noise, or the zero \
+                 of a position may be off, or the model's geometry; what was found is not to be \
+                 believed.",
                 100.0 * share
             )
         });
@@ -184,10 +185,16 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let noise_of_own = nominal_values(model)
         .map(|own| noise_of_positions(model, train, (&own, deviations), &torques, false));
     let held_out_left = judged(phi);
+    let share = |(noise, torque): (&f64, &f64)| if *torque > 0.0 { noise / torque } else { 0.0 };
+    let counted: Vec<f64> = found.noise.iter().zip(&torques).map(share).collect();
+    let mut misread = misread_columns(model, train, (&listed, noise_of_own.as_deref()));
+    if counted.iter().all(|share| *share < CLEAN) {
+        misread.retain(|one| !one.is_guess());
+    }
     let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));
     Ok(Identification {
-        unexplained: unexplained_joints(model, all_left.0, all_left.1),
-        misread: misread_columns(model, train, (&listed, noise_of_own.as_deref())),
+        unexplained: unexplained_joints(model, all_left.0, (all_left.1, &counted)),
+        misread,
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, &found),
         parameters: listed,

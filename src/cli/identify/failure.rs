@@ -42,6 +42,8 @@ pub(crate) enum IdentifyFailure {
     Statics(String, Vec<StaticFault>),
     /// Instrumental variables without instruments, and nothing to simulate them with.
     NoInstruments,
+    /// Instruments that are a log for training itself, noise and all: its name.
+    OwnInstruments(String),
     /// `--prior`, and the model states no standard deviation that says anything.
     NoPrior(String),
     /// Two logs for training say the same.
@@ -82,6 +84,11 @@ impl fmt::Display for IdentifyFailure {
             Self::NoInstruments => write!(
                 f,
                 "--method iv needs --instruments LOG.., or --controller FILE to simulate them"
+            ),
+            Self::OwnInstruments(file) => write!(
+                f,
+                "{file}: a log for training as --instruments has its own noise in them, and \
+                 would say what least squares does\n  hint: --controller FILE simulates instruments"
             ),
             Self::NoPrior(model) => write!(
                 f,

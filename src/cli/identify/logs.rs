@@ -197,6 +197,11 @@ pub(super) fn read(
         motions.clone_from(&whole);
     }
     let instruments = reader.kept(&arguments.instruments, None)?;
+    let is_measured =
+        |one: &&Conditioned| train.iter().any(|log| log.q == one.q && log.torque == one.torque);
+    if let Some(one) = instruments.iter().find(is_measured) {
+        return Err(IdentifyFailure::OwnInstruments(one.file.clone()).into());
+    }
     let Reader { remarks, noise, .. } = reader;
     Ok(Read { train, validate, instruments, motions, whole, remarks, position_noise: noise })
 }

@@ -17,6 +17,9 @@ const ROUNDS: usize = 20;
 /// Change of a period, in samples, that is none.
 const SETTLED: f64 = 1e-9;
 
+/// Samples that a period may lack in digits.
+const DIGITS: f64 = 0.99;
+
 /// Laps of a log. A period is hardly ever a whole number of samples: were it rounded, laps would
 /// drift apart by up to half a sample each, and the seam of the mean lap would be a jump. A mean
 /// lap therefore has its samples at a distance of its own, of which a lap holds a whole number.
@@ -144,9 +147,14 @@ impl Laps {
         let moving = moving(positions, (start, end));
         let stride = (end - start).div_ceil(SEARCHED).max(1);
         let compared = Compared::new(&moving, (start, end), stride);
+        // the best one may be further away than what digits leave open
+        let away = compared.refined(laps.period) - laps.period;
         let period = refined(&compared, laps.period, laps.count);
         let misfit = compared.misfit(period);
         match misfit < REPEATS {
+            true if away.abs() >= DIGITS => {
+                Err(ConditionError::OtherPeriod { period_s, longer: away > 0.0 })
+            }
             true => Self::of_period(period, step_s, (start, end)),
             false => Err(ConditionError::NotRepeated { period_s, misfit }),
         }
@@ -315,6 +323,18 @@ mod tests {
             let refused = matches!(given(wrong), Err(ConditionError::NotRepeated { .. }));
             assert!(refused, "{wrong}: {:?}", given(wrong));
         }
+    }
+
+    /// Laps that are 0.3 to 0.6 % off repeat to 2 % of the variance, but have a seam.
+    #[test]
+    fn a_period_that_is_off_by_samples_is_refused() {
+        let positions = [two_harmonics(640.0, 2700)];
+        let given = |period_s: f64| Laps::given(&positions, (period_s, 1e-3), (20, 2680));
+        for (wrong, is_longer) in [(0.638, true), (0.6425, false), (0.644, false)] {
+            let expected = ConditionError::OtherPeriod { period_s: wrong, longer: is_longer };
+            assert_eq!(given(wrong), Err(expected));
+        }
+        assert!(given(0.6405).is_ok());
     }
 
     #[test]

@@ -6,6 +6,7 @@
 
 mod butterworth;
 mod decimate;
+mod derivatives;
 mod laps;
 mod noise;
 mod overlap;
@@ -107,6 +108,22 @@ pub enum ConditionError {
         /// The share of a joint's variance by which laps differ.
         misfit: f64,
     },
+    /// The motion repeats better with a period that is samples away from this one.
+    OtherPeriod {
+        /// The period \[s\].
+        period_s: f64,
+        /// Whether the better one is longer.
+        longer: bool,
+    },
+    /// A logged column is not the derivative of the positions that it is named after.
+    NotTheDerivative {
+        /// The column.
+        column: String,
+        /// What it is times the derivative, by least squares.
+        factor: f64,
+        /// How late it is \[s\].
+        late_s: f64,
+    },
 }
 
 impl fmt::Display for ConditionError {
@@ -136,6 +153,18 @@ impl fmt::Display for ConditionError {
                 "laps of {period_s} s do not repeat: they differ by {:.0} % of the variance of a \
                  joint\n  hint: `found` looks for the period; or do not average",
                 100.0 * misfit
+            ),
+            Self::OtherPeriod { period_s, longer } => write!(
+                f,
+                "laps of {period_s} s do not repeat: the motion repeats with a period that is {} \
+                 by a sample or more\n  hint: `found` looks for the period; or do not average",
+                if *longer { "longer" } else { "shorter" }
+            ),
+            Self::NotTheDerivative { column, factor, late_s } => write!(
+                f,
+                "`{column}` is not the derivative of the position: it is {factor:.3} times that, \
+                 {late_s:.4} s late\n  hint: --columns scales columns; --rates differences takes \
+                 the derivatives of the positions"
             ),
             Self::NothingMoves => write!(f, "no joint moves further than its noise"),
             Self::NoPeriod => {
@@ -244,6 +273,7 @@ impl Conditioned {
         if !found.resting.contains(&false) {
             return Err(ConditionError::NothingMoves);
         }
+        found.compare_rates(names)?;
         found.average(how.averaging)?;
         Ok(found)
     }

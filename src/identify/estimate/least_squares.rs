@@ -5,7 +5,7 @@ use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::instruments;
 use super::left_out::SlowRows;
 use super::likelihood;
-use super::robust::{Loss, scales};
+use super::robust::{Loss, influences, scales};
 use super::rows::Block;
 use super::solve::{PriorRow, Solution, solve, stacked};
 use super::total;
@@ -152,7 +152,14 @@ pub fn estimate(
             return Ok(first);
         }
     }
-    let (mut covariance, mut degrees_of_freedom) = fit.problem(&first).covariance(options.errors);
+    let problem = fit.problem(&first);
+    let (mut covariance, mut degrees_of_freedom) = match options.method {
+        Method::Robust(loss) => {
+            let of = (first.solution.phi.as_slice(), &first.noise[..], loss);
+            problem.robust_covariance(options.errors, &influences(model, logs, of))
+        }
+        _ => problem.covariance(options.errors),
+    };
     let parts = first.condensed.parts.len();
     if options.errors == Errors::Correlated && parts < FEWEST_PARTS {
         // too few parts to say how residuals are correlated: as the filter makes them

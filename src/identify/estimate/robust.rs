@@ -1,9 +1,12 @@
 //! Weights that outliers lose (iteratively reweighted least squares; Huber 1964, Beaton and Tukey
 //! 1974).
 
+use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::rows::BlockMaker;
+use super::solve::{solve, stacked};
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
+use nalgebra::DMatrix;
 
 /// Residuals that a scale is found from, at most.
 const SCALE_SAMPLES: usize = 40_000;
@@ -27,6 +30,94 @@ impl Loss {
             Self::Bisquare if size < 4.685 => 1.0 - (size / 4.685).powi(2),
             Self::Bisquare => 0.0,
         }
+    }
+
+    /// psi' of a residual of so many deviations, where psi is what it weighs times its size.
+    fn slope(self, deviations: f64) -> f64 {
+        let size = deviations.abs();
+        match self {
+            Self::Huber => f64::from(u8::from(size <= 1.345)),
+            Self::Bisquare if size < 4.685 => {
+                let squared = (size / 4.685).powi(2);
+                (1.0 - squared) * (1.0 - 5.0 * squared)
+            }
+            Self::Bisquare => 0.0,
+        }
+    }
+}
+
+/// What the residuals of a joint do to an estimate that bends with their loss: a change of the
+/// target moves psi by psi', which is less than the weight.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Influence {
+    /// Mean of psi' over that of the weights.
+    slope: f64,
+    /// Mean of psi^2 over that of the weights.
+    spread: f64,
+}
+
+/// The least mean of psi' over that of the weights: most residuals count at all.
+const LEAST_SLOPE: f64 = 0.1;
+
+/// The influences of all joints' residuals, whose deviations are `scales`.
+pub(super) fn influences(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (phi, scales, loss): (&[f64], &[f64], Loss),
+) -> Vec<Influence> {
+    let mut sums = vec![[0.0; 3]; model.joints.len()];
+    for log in logs {
+        BlockMaker::new(model, log).for_each(|block| {
+            for (joint, sums) in sums.iter_mut().enumerate() {
+                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+                let scale = scales[joint].max(f64::MIN_POSITIVE);
+                for residual in block.residual(joint, &own).unwrap_or_default() {
+                    let deviations = residual / scale;
+                    let weight = loss.factor(deviations).powi(2);
+                    sums[0] += weight;
+                    sums[1] += loss.slope(deviations);
+                    sums[2] += (weight * deviations).powi(2);
+                }
+            }
+        });
+    }
+    let of = |[weights, slopes, squares]: [f64; 3]| match weights > 0.0 {
+        true => Influence {
+            slope: (slopes / weights).clamp(LEAST_SLOPE, 1.0),
+            spread: squares / weights,
+        },
+        false => Influence { slope: 1.0, spread: 1.0 },
+    };
+    sums.into_iter().map(of).collect()
+}
+
+impl Problem<'_> {
+    /// The covariance of phi, and its degrees of freedom, of an estimate whose weights follow its
+    /// residuals: A^-1 S A^-1 with S the covariance of the scores, psi, and A their slope (Huber
+    /// 1981), which the weights alone overstate.
+    pub(super) fn robust_covariance(
+        &self,
+        errors: Errors,
+        influences: &[Influence],
+    ) -> (DMatrix<f64>, f64) {
+        let Self { condensed, weights, prior, solution } = self;
+        let (rank, triangles) = (condensed.rank, condensed.whole());
+        let of = |times: &dyn Fn(&Influence) -> f64| {
+            let both = weights.iter().zip(influences);
+            let weights: Vec<f64> = both.map(|(one, by)| one * times(by).sqrt()).collect();
+            stacked(&triangles, &condensed.pattern, &weights, prior, rank)
+        };
+        let squared = |r: &DMatrix<f64>| {
+            let w = r.columns(0, rank);
+            w.tr_mul(&w)
+        };
+        let slope = solve(&of(&|one| one.slope), solution.phi.as_slice()).covariance();
+        let (plain, free) = self.covariance(errors);
+        if errors == Errors::Classical || condensed.parts.len() < FEWEST_PARTS {
+            return (&slope * squared(&of(&|one| one.spread)) * &slope, free);
+        }
+        let turned = slope * squared(&of(&|_| 1.0));
+        (&turned * plain * turned.transpose(), free)
     }
 }
 

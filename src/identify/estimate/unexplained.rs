@@ -7,6 +7,11 @@ use crate::plants::regression::{RegressionJoint, RegressionModel};
 /// The share of a joint's torque, as root of mean square, that must be left.
 const LEFT: f64 = 0.9;
 
+/// The share that must be left where it is no noise: noise is another one after half a period of
+/// the filter's cutoff, and what is left is still correlated with itself by so much.
+const LEFT_ALIKE: f64 = 0.3;
+const ALIKE: f64 = 0.5;
+
 /// A joint that moves less than this share of the one of its kind that moves most is at rest:
 /// nothing but noise may be in its torque.
 const AT_REST: f64 = 0.01;
@@ -43,18 +48,32 @@ fn moves(model: &RegressionModel, logs: &[Conditioned]) -> Vec<bool> {
     ranges.iter().zip(&model.joints).map(of_joint).collect()
 }
 
-/// The joints that move and of whose torque nearly all is left, each with the share: root of mean
-/// square of the residual over that of the torque. Equations of a floating base are none of joints.
+/// Samples that are left after which noise has become another one.
+fn memory(logs: &[Conditioned]) -> usize {
+    let of = |log: &Conditioned| {
+        let cutoff = log.filter.as_ref().map_or(0.5, |filter| filter.cutoff());
+        (0.5 / (cutoff * log.decimation.max(1) as f64)).ceil().min(1e6) as usize
+    };
+    logs.iter().map(of).max().unwrap_or(1).max(1)
+}
+
+/// The joints that move and of whose torque nearly all is left, or much that is no noise, each with
+/// the share: root of mean square of the residual over that of the torque. `counted` is the share
+/// of each joint's torque that is left of the rows that count: what is left of those near reversals
+/// is no misfit. Equations of a floating base are none of joints.
 pub fn unexplained_joints(
     model: &RegressionModel,
     logs: &[Conditioned],
-    left: &Validation,
+    (left, counted): (&Validation, &[f64]),
 ) -> Vec<(String, f64)> {
     let moving = moves(model, logs);
-    let of = |(joint, moves): (&RegressionJoint, &bool)| {
+    let lag = memory(logs);
+    let of = |((joint, moves), counted): ((&RegressionJoint, &bool), &f64)| {
         let found = left.joints.iter().find(|one| one.name == joint.name)?;
-        let is_left = *moves && !joint.is_base && found.relative > LEFT;
+        let is_alike = found.autocorrelation.get(lag - 1).is_some_and(|one| *one > ALIKE);
+        let least = if is_alike && *counted > LEFT_ALIKE { LEFT_ALIKE } else { LEFT };
+        let is_left = *moves && !joint.is_base && found.relative > least;
         is_left.then(|| (joint.name.clone(), found.relative))
     };
-    model.joints.iter().zip(&moving).filter_map(of).collect()
+    model.joints.iter().zip(&moving).zip(counted).filter_map(of).collect()
 }

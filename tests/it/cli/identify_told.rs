@@ -221,11 +221,62 @@ fn one_measurement_counts_once_and_instruments_are_of_the_motion() {
     assert!(text.contains("says the same as whole.csv"), "{text}");
     let (code, text) = said(&directory, &["--train", "whole.csv", "again.csv"]);
     assert_eq!(code, Some(0), "{text}");
-    for (instruments, expected) in [("again.csv", 0), ("other.csv", 2)] {
+    for (instruments, expected) in [("again.csv", 0), ("other.csv", 2), ("whole.csv", 2)] {
         let words = ["--train", "whole.csv", "--method", "iv", "--instruments", instruments];
         let (code, text) = said(&directory, &words);
         assert_eq!(code, Some(expected), "{instruments}: {text}");
     }
+}
+
+/// Logged rates and accelerations must be derivatives of the positions, if they are to be taken.
+#[test]
+fn logged_rates_that_are_none_are_refused() {
+    let directory = Directory::new("told-rates");
+    write_arm(&directory, None);
+    let motions = motions(1, 0.628);
+    let write_rates = |name: &str, wrong: &dyn Fn(f64) -> f64| {
+        let mut text =
+            "t,q_link1,q_link2,tau_link1,tau_link2,qd_link1,qd_link2,qdd_link1,qdd_link2\n"
+                .to_owned();
+        for row in GOOD.rows(&motions) {
+            let [a, b] = motions.each_ref().map(|one| one.at(row[0]));
+            let all = [&row[..], &[a[1], b[1], a[2], wrong(row[0])]].concat();
+            let cells: Vec<String> = all.iter().map(|value| format!("{value:.9}")).collect();
+            text += &(cells.join(",") + "\n");
+        }
+        write(&directory, name, &text);
+    };
+    let second = |t: f64| motions[1].at(t)[2];
+    let cases: [(&dyn Fn(f64) -> f64, bool); 5] = [
+        (&second, true),
+        (&|t| -second(t), false),
+        (&|_| 0.0, false),
+        (&|t| 1.2 * second(t), false),
+        (&|t| second(t - 0.06), false),
+    ];
+    for (number, (column, is_good)) in cases.into_iter().enumerate() {
+        write_rates("rates.csv", column);
+        let (code, text) = said(&directory, &["--train", "rates.csv", "--rates", "logged"]);
+        assert_eq!(code, Some(if is_good { 0 } else { 2 }), "{number}: {text}");
+        assert_eq!(text.contains("`qdd_link2` is not the derivative"), !is_good, "{text}");
+    }
+}
+
+/// Half of a torque that is of something else is left, and no noise; as much noise is.
+#[test]
+fn a_misfit_that_is_no_noise_is_said() {
+    let directory = Directory::new("told-misfit");
+    write_arm(&directory, None);
+    let mut rows = GOOD.rows(&motions(1, 0.628));
+    rows.iter_mut().for_each(|row| row[4] += 2.5 * (3.3 * row[0]).sin());
+    write_log(&directory, "other.csv", &rows);
+    let (code, text) = said(&directory, &["--train", "other.csv"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("The torque of link2 is not explained"), "{text}");
+    let noisy = Made { torque_noise: 4.0, ..GOOD };
+    write_log(&directory, "noise.csv", &noisy.rows(&motions(1, 0.628)));
+    let (code, text) = said(&directory, &["--train", "noise.csv"]);
+    assert_eq!(code, Some(0), "{text}");
 }
 
 /// Noise of positions without steps, and a motion that twenty samples a second do not hold.

@@ -214,6 +214,37 @@ fn outliers_lose_their_weight() {
     }
 }
 
+/// Intervals of weights that follow the residuals hold on noise without outliers as well: there
+/// the weights alone would make them a sixth (Huber) to a fifth (bisquare) too narrow.
+#[test]
+fn intervals_of_robust_estimates_hold_on_plain_noise() {
+    let robot = bare("planar_2r");
+    let model = RegressionModel::new(&robot, INERTIAL, &[]).expect("a model");
+    let clean = Experiment { samples: 1500, noise: 0.0, seed: 4, friction: false }.run(&robot);
+    let truth = truth(&model);
+    for loss in [Loss::Huber, Loss::Bisquare] {
+        for errors in [Errors::Classical, Errors::Correlated] {
+            let options = Options { method: Method::Robust(loss), errors, ..Options::default() };
+            let (mut squares, mut count) = (0.0, 0.0);
+            for seed in 0..100 {
+                let mut random = Random::new(5000 + seed);
+                let mut data = clean.clone();
+                for torque in data.torque.iter_mut().flatten().flatten() {
+                    *torque += 0.1 * random.normal();
+                }
+                let found = run(&model, &[data], &options);
+                for (one, truth) in parameters(&model, &found).iter().zip(&truth) {
+                    squares += ((one.value - truth) / one.std.expect("excited")).powi(2);
+                    count += 1.0;
+                }
+            }
+            let size = f64::sqrt(squares / count);
+            println!("{loss:?} {errors:?}: {size}");
+            assert!((0.9..1.12).contains(&size), "{loss:?} {errors:?}: {size}");
+        }
+    }
+}
+
 /// Errors of a Monte Carlo: residuals of an AR(1) process, which independent errors understate.
 #[test]
 fn intervals_hold_for_residuals_that_are_correlated() {

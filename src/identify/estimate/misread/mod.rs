@@ -42,6 +42,12 @@ const PROMPT: f64 = 0.005;
 /// A witness speaks against a reading if more than this many times is left.
 const WORSE: f64 = 1.25;
 
+/// What an estimate leaves of a log that it explains as the log stands, and the share left by the
+/// model's own values below which these are near: then they may be somewhat off, and a reading that
+/// they alone speak for is a guess.
+pub(in crate::identify) const CLEAN: f64 = 0.015;
+const NEAR: f64 = 0.5;
+
 /// From this share on, left by the model's own values, single columns are looked at.
 const FAR: f64 = 0.05;
 
@@ -81,6 +87,13 @@ impl MisreadColumns {
     /// What they seem to be, and what shows it.
     pub fn summary(&self) -> String {
         self.to_string().lines().next().unwrap_or_default().to_owned()
+    }
+
+    /// Whether the model's own values alone speak for it, which are near: where an estimate leaves
+    /// next to nothing of the log as it stands, that is no reason.
+    pub(in crate::identify) fn is_guess(&self) -> bool {
+        let is_near = self.left_by_model.is_some_and(|[before, _]| before < NEAR);
+        is_near && !self.is_sure && self.left_by_estimate.is_none()
     }
 
     /// How to mend it.
@@ -151,7 +164,12 @@ impl Verdict {
         };
         let by_own = own.is_some_and(|own| {
             let is_enough = !misreading.is_of_all() || own.joints >= HALF;
-            is_enough && own.ratio < BETTER && own.left[0] > EXPLAINED && own.left[1] < most
+            let is_guess = own.left[0] < NEAR && root_mean_square(before) < CLEAN;
+            is_enough
+                && !is_guess
+                && own.ratio < BETTER
+                && own.left[0] > EXPLAINED
+                && own.left[1] < most
         });
         Self { misreading, own, fit, by_own, by_fit }
     }
@@ -165,7 +183,10 @@ impl Verdict {
     fn is_sure(&self) -> bool {
         match self.misreading {
             Misreading::Late(_) => self.by_own && self.by_fit,
-            misreading => self.by_fit || (self.by_own && misreading.is_of_all()),
+            misreading => {
+                let is_near = self.own.is_some_and(|own| own.left[0] < NEAR);
+                self.by_fit || (self.by_own && misreading.is_of_all() && !is_near)
+            }
         }
     }
 
@@ -261,9 +282,15 @@ fn names(model: &RegressionModel) -> Vec<String> {
 }
 
 impl Search<'_> {
-    /// Whether noise of the positions explains what the model's own values leave of a torque.
-    fn is_noisy(&self, own: &Shares) -> bool {
-        let both = own.iter().zip(self.noise.unwrap_or_default());
+    /// Whether noise of the positions explains what the model's own values leave of a torque, or,
+    /// where these are near, what an estimate does.
+    fn is_noisy(&self, own: &Shares, fit: &Shares) -> bool {
+        let is_near = root_mean_square(own) < NEAR;
+        self.is_noise(own) || (is_near && self.is_noise(fit))
+    }
+
+    fn is_noise(&self, left: &Shares) -> bool {
+        let both = left.iter().zip(self.noise.unwrap_or_default());
         let is_noise = |(left, noise): (&Option<f64>, &f64)| {
             left.is_some_and(|left| left > EXPLAINED && *noise > NOISE * left)
         };
@@ -281,7 +308,7 @@ impl Search<'_> {
         let is_misfit = root_mean_square(&fit) > EXPLAINED;
         let is_far = own.as_ref().is_some_and(|own| root_mean_square(own) > FAR);
         let single = is_misfit || is_far;
-        let is_noisy = own.as_ref().is_some_and(|own| self.is_noisy(own));
+        let is_noisy = own.as_ref().is_some_and(|own| self.is_noisy(own, &fit));
         let is_measured = |joint: usize| fit[joint].is_some();
         let mut tried = hypotheses(self.model, &is_measured, [single, is_noisy]);
         tried.retain(|one| reading.with(*one, self.joints()) != *reading);
@@ -375,4 +402,25 @@ fn rubbing_backwards(model: &RegressionModel, listed: &[IdentifiedParameter]) ->
         ["fv", "fc"].iter().all(|prefix| is_below_0(format!("{prefix}_{name}")))
     };
     (0..model.joints.len()).filter(rubs_backwards).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The model's own values alone: against an estimate that explains the log as it stands they
+    /// say nothing where they are near, and they refuse nothing then.
+    #[test]
+    fn guesses_yield_to_estimates_that_explain_the_log() {
+        let verdict = |misreading, before: f64, fit: f64| {
+            let own = Change { ratio: 0.3, left: [before, 0.05], joints: 1.0 };
+            let fit = vec![Some(fit); 2];
+            Verdict::new(misreading, Some(own), [&fit, &fit])
+        };
+        let of_one = Misreading::Exchanged([0, 1], ExchangedColumns::Positions);
+        assert!(!verdict(of_one, 0.2, 0.003).is_believed());
+        assert!(verdict(Misreading::Torques(1e-3), 900.0, 0.003).is_sure());
+        let of_all = verdict(Misreading::Angles(-1.0), 0.15, 0.05);
+        assert!(of_all.is_believed() && !of_all.is_sure());
+    }
 }

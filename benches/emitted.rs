@@ -1,4 +1,5 @@
-//! How long a call takes: every emitted function, and the interpreters beside it.
+//! How long a call takes: every emitted function, and beside them the interpreters and code that is
+//! compiled in memory.
 //!
 //! Each measurement is of 64 calls with different inputs, in hot caches; the throughput that is
 //! printed is calls per second.
@@ -12,8 +13,10 @@ use denavit::function::FunctionName;
 use denavit::model;
 use denavit::number::Residue;
 use denavit::program::{
-    BatchEvaluator, Evaluator, Program, lower, parameter_defaults, prelude_values,
+    BatchEvaluator, Evaluate, EvaluateBatch, Evaluator, Program, lower, parameter_defaults,
+    prelude_values,
 };
+use denavit_jit::{Compiled, CompiledBatch};
 use std::hint::black_box;
 
 /// Made for this measurement alone.
@@ -115,51 +118,83 @@ fn program(name: &str, text: &str) -> (Program, Vec<f64>) {
     (program, prelude)
 }
 
-fn interpreted(criterion: &mut Criterion) {
+/// Routines of models that are read at run time, by the interpreters and as compiled code.
+fn at_run_time(criterion: &mut Criterion) {
     let puma560 = ("puma560", include_str!("../models/puma560.json"));
     let tulip = ("tulip", include_str!("../models/tulip.json"));
-    let names = [FunctionName::InverseDynamics, FunctionName::ForwardDynamics];
+    let names = [
+        FunctionName::InverseDynamics,
+        FunctionName::MassMatrix,
+        FunctionName::ForwardDynamics,
+        FunctionName::DynamicsTerms,
+    ];
     for (model, text) in [puma560, tulip] {
         let (program, prelude) = program(model, text);
         for name in names {
             let routine = program.find(name, None).expect("every robot has it");
             let label = format!("{model}/{name}");
-            let mut one = Evaluator::<f64>::new(routine, &prelude);
-            let mut many = BatchEvaluator::<f64>::new(routine, &prelude);
-            let columns: Vec<Vec<f64>> = (0..many.inputs())
-                .map(|entry| (0..SAMPLES).map(|sample| number(sample, entry)).collect())
-                .collect();
-            let rows: Vec<Vec<f64>> = (0..SAMPLES)
-                .map(|sample| columns.iter().map(|column| column[sample]).collect())
-                .collect();
-
-            let mut group = criterion.benchmark_group("interpreted");
-            group.throughput(Throughput::Elements(SAMPLES as u64));
-            let mut output = vec![0.0; one.outputs()];
-            group.bench_function(format!("one/{label}"), |b| {
-                b.iter(|| {
-                    for row in black_box(&rows) {
-                        let vectors: [&[f64]; 3] = std::array::from_fn(|argument| {
-                            let len = row.len() / 3;
-                            &row[argument * len..(argument + 1) * len]
-                        });
-                        one.evaluate(&vectors, &mut output).expect("lengths are right");
-                    }
-                });
-            });
-            let inputs: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
-            let mut outputs = vec![vec![0.0; SAMPLES]; many.outputs()];
-            group.bench_function(format!("batch/{label}"), |b| {
-                b.iter(|| {
-                    let mut columns: Vec<&mut [f64]> =
-                        outputs.iter_mut().map(|column| &mut column[..]).collect();
-                    many.evaluate(black_box(&inputs), &mut columns).expect("lengths are right");
-                });
-            });
-            group.finish();
+            let lengths: Vec<usize> = routine.arguments.iter().map(|a| a.len).collect();
+            let interpreted = &mut Evaluator::<f64>::new(routine, &prelude);
+            let compiled = &mut Compiled::new(routine, &prelude).expect("a common processor");
+            one(criterion, &format!("interpreted/one/{label}"), &lengths, interpreted);
+            one(criterion, &format!("compiled/one/{label}"), &lengths, compiled);
+            let interpreted = &mut BatchEvaluator::<f64>::new(routine, &prelude);
+            let compiled = &mut CompiledBatch::new(routine, &prelude).expect("a common processor");
+            many(criterion, &format!("interpreted/batch/{label}"), interpreted);
+            many(criterion, &format!("compiled/batch/{label}"), compiled);
         }
+        criterion.bench_function(&format!("compiling/{model}"), |b| {
+            b.iter(|| {
+                for routine in &program.routines {
+                    black_box(Compiled::new(routine, &prelude).expect("a common processor"));
+                }
+            });
+        });
     }
 }
 
-criterion_group!(benches, emitted, interpreted);
+fn columns(inputs: usize) -> Vec<Vec<f64>> {
+    (0..inputs).map(|e| (0..SAMPLES).map(|sample| number(sample, e)).collect()).collect()
+}
+
+fn one(criterion: &mut Criterion, name: &str, lengths: &[usize], routine: &mut dyn Evaluate) {
+    let columns = columns(lengths.iter().sum());
+    let rows: Vec<Vec<f64>> =
+        (0..SAMPLES).map(|sample| columns.iter().map(|column| column[sample]).collect()).collect();
+    let mut output = vec![0.0; routine.outputs()];
+    let mut group = criterion.benchmark_group("run time");
+    group.throughput(Throughput::Elements(SAMPLES as u64));
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            for row in black_box(&rows) {
+                let mut rest = &row[..];
+                let mut vectors: [&[f64]; 3] = [&[]; 3];
+                for (vector, &len) in vectors.iter_mut().zip(lengths) {
+                    (*vector, rest) = rest.split_at(len);
+                }
+                let vectors = &vectors[..lengths.len()];
+                routine.evaluate(vectors, &mut output).expect("lengths are right");
+            }
+        });
+    });
+    group.finish();
+}
+
+fn many(criterion: &mut Criterion, name: &str, routine: &mut dyn EvaluateBatch) {
+    let columns = columns(routine.inputs());
+    let inputs: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
+    let mut outputs = vec![vec![0.0; SAMPLES]; routine.outputs()];
+    let mut group = criterion.benchmark_group("run time");
+    group.throughput(Throughput::Elements(SAMPLES as u64));
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            let mut columns: Vec<&mut [f64]> =
+                outputs.iter_mut().map(|column| &mut column[..]).collect();
+            routine.evaluate(black_box(&inputs), &mut columns).expect("lengths are right");
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, emitted, at_run_time);
 criterion_main!(benches);

@@ -8,7 +8,8 @@ mod text;
 use super::Answer;
 use super::failure::Failure;
 use super::files::{Input, check_outputs, on_stdout, read_input, write_whole};
-use super::options::{Term, terms};
+use super::model_effects::EffectUse;
+use super::options::{EffectsOption, Term, terms};
 use clap::{Args, ValueEnum};
 use denavit::emit::latex::base_document;
 use denavit::expr::ExprId;
@@ -42,6 +43,8 @@ pub(crate) struct Arguments {
     /// Path of a model or of a file of equations, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL|EQUATIONS")]
     model: PathBuf,
+    #[command(flatten)]
+    effects: EffectsOption,
     /// Joint parameters to add to those of the bodies, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
     with: Vec<With>,
@@ -111,6 +114,8 @@ pub(crate) struct Found<'a> {
     joints: Option<&'a [JointParameter]>,
     /// The values of what is listed; none where the model gives none.
     values: Vec<Option<f64>>,
+    /// What becomes of the model's effects.
+    effects: Vec<EffectUse>,
     verified: bool,
 }
 
@@ -144,7 +149,7 @@ impl<'a> Found<'a> {
         };
         let mut values = Values::in_graph(&base.regressor.dag, robot);
         let values = listed.into_iter().map(|value| values.number(value));
-        Self { robot, base, joints, values: values.collect(), verified }
+        Self { robot, base, joints, values: values.collect(), effects: Vec::new(), verified }
     }
 
     /// What is listed, in order.
@@ -207,10 +212,12 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let files = files.map(Option::as_ref);
     let is_answered = on_stdout(&files, arguments.json)?;
     check_outputs(&files)?;
-    let mut robot = match read_input(&arguments.model)? {
-        Input::Model(robot) => robot,
+    let model = match read_input(&arguments.model, arguments.effects.effects.as_deref())? {
+        Input::Model(model) => model,
         Input::Equations(equations) => return given::run(arguments, &equations, is_answered, out),
     };
+    let effects = model.left_out();
+    let mut robot = model.apart.robot;
     if let Some(list) = &arguments.terms {
         robot.terms = terms(list);
     }
@@ -218,7 +225,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return Err(Failure::NoMotionTerms(robot.name));
     }
     if arguments.numeric {
-        *robot = bake_geometry(&robot).map_err(Failure::Bake)?;
+        robot = bake_geometry(&robot).map_err(Failure::Bake)?;
     }
     let options = regressor_options(&robot, &arguments.with)?;
     let mut base = base_parameters(&robot, options, &arguments.keep)
@@ -235,7 +242,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         bytes.push(b'\n');
         write_whole(path, &bytes)?;
     }
-    let found = Found::new(&robot, &base, joints.as_deref(), verified);
+    let found = Found { effects, ..Found::new(&robot, &base, joints.as_deref(), verified) };
     if let Some(path) = &arguments.latex {
         write_whole(path, latex(&found).as_bytes())?;
     }

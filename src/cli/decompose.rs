@@ -7,7 +7,7 @@ use super::base::{With, regressor_options};
 use super::failure::Failure;
 use super::files::{Input, on_stdout, read_input, write_whole};
 use super::json::write_json;
-use super::options::{Term, terms};
+use super::options::{EffectsOption, Term, terms};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::fundamental::{Basis, Expansion, Progress as Expanded};
@@ -31,6 +31,8 @@ pub(crate) struct Arguments {
     /// Path of a model or of a file of equations, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL|EQUATIONS")]
     input: PathBuf,
+    #[command(flatten)]
+    effects: EffectsOption,
     /// What the functions are made of; if nothing is said, what makes the fewest
     #[arg(long, value_enum)]
     basis: Option<BasisName>,
@@ -80,7 +82,8 @@ impl BasisName {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[arguments.latex.as_ref()], arguments.json)?;
-    let input = read_input(&arguments.input)?;
+    let input = read_input(&arguments.input, arguments.effects.effects.as_deref())?;
+    let mut effects = Vec::new();
     let progress = Progress::new();
     let mut show = |at: Expanded| {
         progress.show(&format!("writing out: {} of {}, {} terms", at.done, at.total, at.terms));
@@ -89,7 +92,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut expansion = Expansion { memory_bytes, progress: &mut show };
     let basis = arguments.basis.map(BasisName::basis);
     let mut found = match input {
-        Input::Model(mut robot) => {
+        Input::Model(model) => {
+            effects = model.left_out();
+            let mut robot = Box::new(model.apart.robot);
             if let Some(list) = &arguments.terms {
                 robot.terms = terms(list);
             }
@@ -109,7 +114,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if is_answered {
         return Ok(Answer::Done);
     }
-    let texts = found.texts();
+    let texts = found.texts(effects);
     progress.clear();
     if arguments.json {
         write_json(out, &texts)?;

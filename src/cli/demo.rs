@@ -13,7 +13,7 @@ use super::Answer;
 use super::base::{Found, latex};
 use super::emit::Emitted;
 use super::failure::Failure;
-use super::files::{make_directory, read_model, write_whole};
+use super::files::{make_directory, read_model_with_effects, write_whole};
 use super::json::{Ordered, write_json};
 use super::progress::Progress;
 use checks::Check;
@@ -176,7 +176,7 @@ fn one_robot(
     progress: &Progress,
 ) -> Result<Outcome, Failure> {
     let name = compiled.name;
-    let robot = read_model(Path::new(name))?;
+    let robot = read_model_with_effects(Path::new(name), None)?;
     progress.show(&format!("{name}: deriving and emitting"));
     let emitted = Emitted::new(&robot, Flavour::Tunable, false, &FunctionName::ALL)?;
     let mut files = Vec::new();

@@ -8,18 +8,20 @@ mod text;
 use super::Answer;
 use super::failure::Failure;
 use super::files::{
-    check_outputs, given_effects, make_directory, open_log, read_file, read_model_text, write_whole,
+    check_outputs, effects_folder, make_directory, open_log, read_file, write_whole,
 };
 use super::identify::IdentifyFailure;
+use super::model_effects::{EffectUse, ModelApart};
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
     Candidate, Diagnosis, DiagnosisError, FoundEffect, Request, SearchOptions, Uncertainty,
-    Verdict, before_springs, candidates, diagnose,
+    Verdict, before_springs, candidates, diagnose, given_candidates,
 };
-use denavit::effect::{self, Effect};
+use denavit::effect::Effect;
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
+use denavit::plants::effect::ApartEffects;
 use denavit::plants::regression::RegressionModel;
 use denavit::regressor::functions::modelled;
 use denavit::report::verdict_paragraph;
@@ -53,7 +55,8 @@ pub(crate) struct Arguments {
     /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0}}
     #[arg(long, value_name = "MAP.json")]
     columns: Option<PathBuf>,
-    /// A folder of effects beside those of the catalogue
+    /// A folder of effects beside those of the catalogue; without it the folder `effects` beside
+    /// the model
     #[arg(long, value_name = "DIR")]
     effects: Option<PathBuf>,
     /// Most effects to find
@@ -88,6 +91,10 @@ pub(super) struct Shown {
     /// What was found.
     pub(super) found: Diagnosis,
     remarks: Vec<(String, LogRemark)>,
+    /// What becomes of the effects that the model has.
+    model_effects: Vec<EffectUse>,
+    /// The numbers in the model's file of those that were estimated again.
+    numbers: Vec<usize>,
     /// The text of the model's file.
     source: String,
     written: Option<Written>,
@@ -112,6 +119,9 @@ struct Written {
     /// Whether the model with its effects is there; the reason if it could not be.
     model: Result<bool, String>,
 }
+
+/// What becomes of laws beside the equations that the model has.
+const ESTIMATED: (&str, &str) = ("estimated", "estimated again within its stated errors");
 
 /// The files of a folder.
 const DIAGNOSIS: &str = "diagnosis.json";
@@ -215,7 +225,9 @@ pub(super) fn of_motions(
 
 /// Reads model and logs, and diagnoses.
 fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure> {
-    let (robot, source) = read_model_text(&arguments.model)?;
+    let given = ModelApart::read(&arguments.model, arguments.effects.as_deref())?;
+    let model_effects = given.uses(ESTIMATED);
+    let ModelApart { apart: ApartEffects { robot, laws, .. }, own, source, .. } = given;
     let model = regression(&robot)?;
     // Before its logs are asked for columns of a base.
     DiagnosisError::check_model(&model).map_err(Failure::Diagnose)?;
@@ -232,13 +244,22 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
         }
         None => (robot, model),
     };
-    let effects = effects(arguments.effects.as_deref())?;
-    let candidates = candidates(&effects, &robot, &model.joints);
+    let effects = with_own(own);
+    let numbers = laws.iter().map(|law| law.number).collect();
+    let (mut all, given) = given_candidates(laws, Uncertainty::default());
+    let is_given = |one: &Candidate| {
+        all.iter().any(|given| (&given.effect, &given.at) == (&one.effect, &one.at))
+    };
+    let mut searched = candidates(&effects, &robot, &model.joints);
+    searched.retain(|one| !is_given(one));
+    all.append(&mut searched);
+    let candidates = all;
     let request = Request {
         model: &model,
         train,
         held_out,
         candidates: &candidates,
+        given,
         uncertainty: Uncertainty::default(),
         options: SearchOptions {
             most_effects: usize::from(arguments.most),
@@ -251,7 +272,18 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
         progress.show(&format!("{} effects, held-out gap {:.2} %", taken.len(), 100.0 * gap));
     });
     let found = found.map_err(Failure::Diagnose)?;
-    Ok(Shown { robot, model, candidates, effects, found, remarks, source, written: None })
+    Ok(Shown {
+        robot,
+        model,
+        candidates,
+        effects,
+        found,
+        remarks,
+        model_effects,
+        numbers,
+        source,
+        written: None,
+    })
 }
 
 /// Writes answer, model and page.
@@ -260,8 +292,9 @@ fn write_folder(arguments: &Arguments, folder: &Path, shown: &mut Shown) -> Resu
     let completed = model::complete(&shown.source, shown, &shown.effects);
     let model = match &completed {
         Completed::Text(text) => {
-            if let Some(own) = &arguments.effects {
-                model::write_definitions(own, folder, shown)?;
+            let own = effects_folder(&arguments.model, arguments.effects.as_deref());
+            if let Some(own) = own.filter(|own| own.is_dir()) {
+                model::write_definitions(&own, folder, shown)?;
             }
             write_whole(&folder.join(MODEL), text.as_bytes())?;
             Ok(true)
@@ -309,12 +342,12 @@ fn log(
     Ok(log)
 }
 
-/// The catalogue, with the files of a folder.
-fn effects(folder: Option<&Path>) -> Result<Vec<Effect>, Failure> {
-    let mut all = effect::catalogue().to_vec();
-    for own in folder.map_or_else(|| Ok(Vec::new()), given_effects)? {
+/// The catalogue, with a user's own effects.
+fn with_own(own: Vec<Effect>) -> Vec<Effect> {
+    let mut all = denavit::effect::catalogue().to_vec();
+    for own in own {
         all.retain(|known| known.name != own.name);
         all.push(own);
     }
-    Ok(all)
+    all
 }

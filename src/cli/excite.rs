@@ -5,7 +5,8 @@ mod answer;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{check_outputs, load_beside, on_stdout, read_file, read_model, write_whole};
+use super::files::{check_outputs, load_beside, on_stdout, read_file, write_whole};
+use super::model_effects::{EffectUse, ModelApart};
 use super::progress::Progress;
 use answer::Found;
 use clap::{Args, ValueEnum};
@@ -34,6 +35,8 @@ Examples:
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: super::options::ModelArgument,
+    #[command(flatten)]
+    effects: super::options::EffectsOption,
     /// Where the trajectory goes, as a trajectory file; - is standard output
     #[arg(short, long, value_name = "TRAJECTORY")]
     output: Option<PathBuf>,
@@ -224,10 +227,12 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let files = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&files, arguments.json)?;
     check_outputs(&files)?;
-    let robot = read_model(&arguments.model.model)?;
+    let folder = arguments.effects.effects.as_deref();
+    let model = ModelApart::read(&arguments.model.model, folder)?;
+    let (effects, robot) = (model.left_out(), model.apart.robot);
     let options = arguments.options(&robot)?;
     if let Some(path) = &arguments.check {
-        return checked(arguments, &robot, &options, path, out);
+        return checked(arguments, (&robot, &effects), &options, path, out);
     }
     let progress = Progress::new();
     let tell = |at: &denavit::identify::excite::Progress| {
@@ -245,7 +250,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let Some(path) = &arguments.svg {
         write_whole(path, picture(&found).as_bytes())?;
     }
-    let shown = Found { robot: &robot, stack: &found.stack, check: &found.found().ended };
+    let (stack, check) = (&found.stack, &found.found().ended);
+    let shown = Found { robot: &robot, effects: &effects, stack, check };
     match (is_answered, arguments.json) {
         (true, _) => {}
         (_, true) => answer::write_json_answer(out, &shown, Some(&found))?,
@@ -260,7 +266,7 @@ fn verdict(check: &Check) -> Answer {
 
 fn checked(
     arguments: &Arguments,
-    robot: &Robot,
+    (robot, effects): (&Robot, &[EffectUse]),
     options: &ExciteOptions,
     path: &Path,
     out: &mut dyn Write,
@@ -270,7 +276,7 @@ fn checked(
     let bytes = read_file(path)?;
     let trajectory = read_trajectory(&name, &bytes, &load).map_err(Failure::Scenario)?;
     let (check, stack) = check_trajectory(robot, options, &trajectory).map_err(Failure::Excite)?;
-    let shown = Found { robot, stack: &stack, check: &check };
+    let shown = Found { robot, effects, stack: &stack, check: &check };
     match arguments.json {
         true => answer::write_json_answer(out, &shown, None)?,
         false => answer::write_text(out, &shown, None)?,

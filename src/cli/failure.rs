@@ -5,6 +5,7 @@ use denavit::diagnose::DiagnosisError;
 use denavit::emit::rust::EmitError;
 use denavit::identify::excite::ExciteError;
 use denavit::model::{BakeError, ModelError};
+use denavit::plants::effect::AddedError;
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
@@ -30,8 +31,11 @@ pub(crate) enum Failure {
     Overwrites(String),
     /// Two documents were asked for on standard output.
     TwoDocuments,
-    /// A model has effects, which nothing adds to its equations yet; holds model and effect.
+    /// A model has an effect beside its equations, for which a command has no place; holds model
+    /// and effect.
     Effect(String, String),
+    /// The effects of a model cannot be taken apart; holds the model.
+    Apart(String, AddedError),
     /// Values are missing that the baked flavour needs.
     Bake(BakeError),
     /// A model holds numbers that no computer arithmetic holds; holds model and cause.
@@ -156,6 +160,7 @@ impl Failure {
             Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
             | Self::Scenario(_)
+            | Self::Apart(..)
             | Self::Excite(_)
             | Self::Identify(_)
             | Self::Diagnose(_)
@@ -220,6 +225,7 @@ impl fmt::Display for Failure {
             Self::Effect(model, effect) => {
                 write!(f, "{model}: this has no place for the effect `{effect}`")?;
             }
+            Self::Apart(model, error) => write!(f, "{model}: {error}")?,
             Self::Lower(model, error) => write!(f, "{model}: {error}")?,
             Self::Emit(model, error) => write!(f, "{model}: {error}")?,
             Self::NoFunction { model, asked } => {

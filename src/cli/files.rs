@@ -1,9 +1,10 @@
 //! Files in and out: models by path or by name, outputs that are whole or not there.
 
 use super::failure::{Failure, reason};
+use super::model_effects::ModelApart;
 use denavit::effect::{self, Effect};
+use denavit::model::Robot;
 use denavit::model::equations::{self, Equations};
-use denavit::model::{self, Robot};
 use denavit::shipped::{self, ShippedModel};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufReader, Read, Write};
@@ -19,12 +20,6 @@ const MAX_LOG_BYTES: u64 = 256 << 20;
 /// The files that this run has read: no output may take the place of one.
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The robot of a path, of a shipped model's name, or, for `-`, of standard input.
-pub(crate) fn read_model(place: &Path) -> Result<Robot, Failure> {
-    let (name, bytes) = read_named(place, &[shipped::MODELS])?;
-    complete(model::read(&name, &bytes).map_err(Failure::Model)?)
-}
-
 /// The robot of a path with the effects that its file names: those of `folder`, or of the folder
 /// `effects` beside the file, then the shipped ones.
 pub(crate) fn read_model_with_effects(
@@ -32,12 +27,23 @@ pub(crate) fn read_model_with_effects(
     folder: Option<&Path>,
 ) -> Result<Robot, Failure> {
     let (name, bytes) = read_named(place, &[shipped::MODELS])?;
-    let beside = place.parent().filter(|_| place.is_file()).map(|parent| parent.join("effects"));
-    let own = match folder {
-        Some(folder) => given_effects(folder)?,
-        None => beside.map_or_else(|| Ok(Vec::new()), |folder| own_effects(&folder))?,
-    };
+    let own = effects_beside(place, folder)?;
     effect::read_model(&name, &bytes, &own).map_err(Failure::Model)
+}
+
+/// The folder of a user's own effects, if there is one: `folder`, or that beside a model's file.
+pub(crate) fn effects_folder(place: &Path, folder: Option<&Path>) -> Option<PathBuf> {
+    let beside = place.parent().filter(|_| place.is_file()).map(|parent| parent.join("effects"));
+    folder.map(Path::to_owned).or(beside)
+}
+
+/// The effects of a folder that was asked for, or of the folder `effects` beside a model's file.
+pub(crate) fn effects_beside(place: &Path, folder: Option<&Path>) -> Result<Vec<Effect>, Failure> {
+    match (folder, effects_folder(place, None)) {
+        (Some(folder), _) => given_effects(folder),
+        (None, Some(beside)) => own_effects(&beside),
+        (None, None) => Ok(Vec::new()),
+    }
 }
 
 /// The effects of a folder that was asked for.
@@ -59,20 +65,9 @@ fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
     files.iter().map(read).collect()
 }
 
-/// A robot all of whose parts the equations have.
-fn complete(robot: Robot) -> Result<Robot, Failure> {
-    match robot.effects.first() {
-        Some(added) => Err(Failure::Effect(robot.name, added.effect.clone())),
-        None => Ok(robot),
-    }
-}
-
-/// The robot of a path, with the text of its file.
-pub(crate) fn read_model_text(place: &Path) -> Result<(Robot, String), Failure> {
-    let (name, bytes) = read_named(place, &[shipped::MODELS])?;
-    let robot = complete(model::read(&name, &bytes).map_err(Failure::Model)?)?;
-    // a model that was read is UTF-8
-    Ok((robot, String::from_utf8_lossy(&bytes).into_owned()))
+/// Name and content of a model: of a path, of a shipped model's name, or of standard input.
+pub(crate) fn read_model_bytes(place: &Path) -> Result<(String, Vec<u8>), Failure> {
+    read_named(place, &[shipped::MODELS])
 }
 
 /// A log, to be read row by row.
@@ -84,19 +79,18 @@ pub(crate) fn open_log(path: &Path) -> Result<BufReader<File>, Failure> {
 
 /// What a command can be about that takes models and equations.
 pub(crate) enum Input {
-    Model(Box<Robot>),
+    Model(Box<ModelApart>),
     Equations(Box<Equations>),
 }
 
 /// The model or the equations of a path, told apart by their format.
-pub(crate) fn read_input(place: &Path) -> Result<Input, Failure> {
+pub(crate) fn read_input(place: &Path, folder: Option<&Path>) -> Result<Input, Failure> {
     let (name, bytes) = read_named(place, &[shipped::MODELS, shipped::EQUATIONS])?;
     if equations::is_equations_file(&bytes) {
         let equations = equations::read(&name, &bytes).map_err(Failure::Model)?;
         return Ok(Input::Equations(Box::new(equations)));
     }
-    let robot = complete(model::read(&name, &bytes).map_err(Failure::Model)?)?;
-    Ok(Input::Model(Box::new(robot)))
+    Ok(Input::Model(Box::new(ModelApart::of(place, folder, (&name, &bytes))?)))
 }
 
 /// Name and content of a path, of a file of one of these lists, or of standard input.

@@ -12,9 +12,12 @@ mod two_stage;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{check_outputs, on_stdout, read_model_text, write_whole};
+use super::files::{check_outputs, on_stdout, write_whole};
+use super::model_effects::{EffectUse, ModelApart};
+use super::options::EffectsOption;
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
+use denavit::effect::{self, Effect};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow, SlowRows};
 use denavit::identify::log::LogRemark;
 use denavit::identify::{
@@ -52,6 +55,8 @@ pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
+    #[command(flatten)]
+    effects: EffectsOption,
     /// Logs to estimate from
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "statics")]
     train: Vec<PathBuf>,
@@ -205,6 +210,11 @@ enum ErrorsName {
 }
 
 impl Arguments {
+    /// The model, its effects apart.
+    fn model_apart(&self) -> Result<ModelApart, Failure> {
+        ModelApart::read(&self.model, self.effects.effects.as_deref())
+    }
+
     fn options(&self, model: &RegressionModel, noise: Vec<f64>) -> Result<Options, Failure> {
         let method = match self.method {
             MethodName::Ols => Method::Ordinary,
@@ -272,6 +282,8 @@ struct Shown<'a> {
     model: &'a RegressionModel,
     found: &'a Identification,
     remarks: &'a [(String, LogRemark)],
+    /// What became of the model's effects.
+    effects: &'a [EffectUse],
     simulated: Option<&'a SimulationGap>,
 }
 
@@ -283,21 +295,38 @@ struct Answered {
     /// The model with what was found.
     updated: Result<UpdatedModel, UpdateError>,
     remarks: Vec<(String, LogRemark)>,
+    effects: Vec<EffectUse>,
     simulated: Option<SimulationGap>,
+}
+
+/// What becomes of laws beside the equations.
+const TAKEN_OUT: (&str, &str) = (
+    "taken_out",
+    "a law beside the equations of the bodies: taken out of the logs with the values of the model",
+);
+
+/// The identified model with all of its effects: what is simulated.
+fn with_all_effects(updated: UpdatedModel, own: &[Effect]) -> Result<UpdatedModel, UpdateError> {
+    let UpdatedModel { text, .. } = updated;
+    let robot = effect::read_model("the identified model", text.as_bytes(), own);
+    robot.map(|robot| UpdatedModel { text, robot }).map_err(UpdateError::Unsound)
 }
 
 impl Answered {
     fn new(arguments: &Arguments, progress: &Progress) -> Result<Self, Failure> {
-        let (robot, source) = read_model_text(&arguments.model)?;
+        let given = arguments.model_apart()?;
+        let effects = given.uses(TAKEN_OUT);
+        let ModelApart { whole, apart, own, source } = given;
+        let (robot, laws) = (apart.robot, &apart.laws[..]);
         let options = regressor_options(&robot, &arguments.with)?;
         let mut model = RegressionModel::new(&robot, options, &arguments.keep)
             .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
         model.law = arguments.friction;
         progress.show("reading logs");
         let mut conditions = arguments.conditions;
-        let mut read = logs::read((arguments, &conditions), &robot, &model)?;
+        let mut read = logs::read((arguments, &conditions), (&robot, laws), &model)?;
         let controller = arguments.controller.as_deref();
-        let controller = controller.map(|path| Controlled::read(path, &robot)).transpose()?;
+        let controller = controller.map(|path| Controlled::read(path, &whole)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone())?;
         progress.show("estimating");
         let estimated = |read: &logs::Read, options: &Options| {
@@ -312,6 +341,7 @@ impl Answered {
                 .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
             let both = (&found.consistent, &found.parameters[..]);
             let updated = updated_model(&robot, &model, both, &source);
+            let updated = updated.and_then(|updated| with_all_effects(updated, &own));
             Ok::<_, Failure>((found, updated))
         };
         if options.method == Method::Instrumental && read.instruments.is_empty() {
@@ -329,7 +359,7 @@ impl Answered {
         {
             conditions = lower;
             drop(read); // logs are large: not all of them twice
-            read = logs::read((arguments, &conditions), &robot, &model)?;
+            read = logs::read((arguments, &conditions), (&robot, laws), &model)?;
             (found, updated) = estimated(&read, &options)?;
         }
         let is_sure = found.misread.iter().any(|one| one.is_sure);
@@ -340,7 +370,7 @@ impl Answered {
         let simulated = match (&controller, read.motions.is_empty()) {
             (_, true) => None,
             (controller, false) => Some(SimulationGap::new(
-                (&robot, &updated),
+                (&whole, &updated),
                 controller.as_ref(),
                 (&read.motions, arguments.window),
             )),
@@ -349,12 +379,12 @@ impl Answered {
             gap.check()?;
         }
         let remarks = read.remarks;
-        Ok(Self { robot, model, found, updated, remarks, simulated })
+        Ok(Self { robot, model, found, updated, remarks, effects, simulated })
     }
 
     fn shown(&self) -> Shown<'_> {
-        let Self { robot, model, found, remarks, simulated, .. } = self;
-        Shown { robot, model, found, remarks, simulated: simulated.as_ref() }
+        let Self { robot, model, found, remarks, effects, simulated, .. } = self;
+        Shown { robot, model, found, remarks, effects, simulated: simulated.as_ref() }
     }
 }
 

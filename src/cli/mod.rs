@@ -17,6 +17,7 @@ mod files;
 mod identify;
 mod inspect;
 mod json;
+mod model_effects;
 mod options;
 mod progress;
 mod schema;

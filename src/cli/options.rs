@@ -16,7 +16,7 @@ pub(crate) struct ModelArgument {
 }
 
 /// Where the definitions of added effects are.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct EffectsOption {
     /// Folder of your own effects; without it the folder `effects` beside the model
     #[arg(long, value_name = "DIR")]

@@ -2,8 +2,10 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_file, read_model};
+use super::files::read_file;
 use super::json::write_json;
+use super::model_effects::ModelApart;
+use super::options::EffectsOption;
 use clap::Args;
 use denavit::regressor::{Certificate, Verdict};
 use serde::Serialize;
@@ -26,6 +28,8 @@ pub(crate) struct Arguments {
     /// Path of a model file, name of a shipped model, or - for standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
+    #[command(flatten)]
+    effects: EffectsOption,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -48,7 +52,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let certificate: Certificate = serde_json::from_slice(&bytes).map_err(|error| {
         Failure::Certificate { file: arguments.certificate.display().to_string(), error }
     })?;
-    let robot = read_model(&arguments.model)?;
+    let model = ModelApart::read(&arguments.model, arguments.effects.effects.as_deref())?;
+    let robot = model.apart.robot;
     let verdict = certificate.verify(&robot);
     if arguments.json {
         let (rank, multiplied_out) = match verdict {

@@ -66,6 +66,14 @@ fn on_robot(effect: &Effect, robot: &Robot, joints: &[RegressionJoint]) -> Vec<C
     places.into_iter().filter_map(of).collect()
 }
 
+/// A law of one joint, as it acts on the torques of a log.
+pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<dyn Law> {
+    match law.channel() {
+        None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
+        Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw { law, joint }),
+    }
+}
+
 fn on_joint(
     effect: &Effect,
     described: &RegressionJoint,
@@ -74,14 +82,11 @@ fn on_joint(
 ) -> Option<Candidate> {
     let kind = if described.slides { JointKind::Prismatic } else { JointKind::Revolute };
     let law = EffectLaw::new(effect, kind).ok()?;
-    let law: Box<dyn Law> = match law.channel() {
-        None | Some(Channel::Torque) => {
-            Box::new(JointLaw { law, joint, other: other.map(|(other, _)| other) })
-        }
-        // Rates are derivatives of positions here, never those of the log.
-        Some(Channel::Rate) => return None,
-        Some(Channel::Position) => Box::new(ReadingLaw { law, joint }),
-    };
+    // Rates are derivatives of positions here, never those of the log.
+    if law.channel() == Some(Channel::Rate) {
+        return None;
+    }
+    let law = law_of(law, joint, other.map(|(other, _)| other));
     let at = match other {
         Some((_, other)) => format!("{} with {}", described.name, other.name),
         None => described.name.clone(),

@@ -175,6 +175,9 @@ pub struct RowResponse {
     pub torque: Vec<Vec<f64>>,
     /// For each stretch and parameter the derivative.
     pub gradient: Vec<Vec<Vec<f64>>>,
+    /// For each parameter one over the deviation that the model states: 0 of one that is free,
+    /// infinite of one that is certain.
+    pub stiffness: Vec<f64>,
 }
 
 impl RowResponse {

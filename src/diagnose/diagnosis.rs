@@ -7,14 +7,16 @@ use super::family::{Alternative, family};
 use super::fault::DiagnosisError;
 use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
+use super::given::is_driven;
 use super::nominal::{Nominal, Uncertainty};
 use super::regime::{Where, where_left};
 use super::repeat::unrepeatable;
 use super::search::{Screen, SearchOptions, Step, Stop, search};
 use super::signals::{Filters, Signals};
-use super::state::{Setting, State};
+use super::state::{Setting, State, Taken};
 use super::structure::{Structure, describe};
 use crate::identify::log::MeasuredLog;
+use crate::plants::effect::LawParameter;
 use crate::plants::regression::RegressionModel;
 
 /// What is to be diagnosed, from what.
@@ -25,8 +27,10 @@ pub struct Request<'a> {
     pub train: Vec<MeasuredLog>,
     /// Logs to judge with.
     pub held_out: Vec<MeasuredLog>,
-    /// What may be missing.
+    /// What may be missing, after what the model has.
     pub candidates: &'a [Candidate],
+    /// What the model has of them, at its values.
+    pub given: Vec<Taken>,
     /// How far numbers of the model may be off that state nothing.
     pub uncertainty: Uncertainty,
     /// What the search asks for.
@@ -91,6 +95,15 @@ pub struct FoundEffect {
     pub alternatives: Vec<Alternative>,
 }
 
+/// An effect that the model has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenEffect {
+    /// Its number among the candidates.
+    pub candidate: usize,
+    /// Its parameters, estimated again.
+    pub parameters: Vec<EffectValue>,
+}
+
 /// Gaps of one set of logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaps {
@@ -113,6 +126,8 @@ pub struct Diagnosis {
     pub before: Vec<Where>,
     /// Where they still do.
     pub after: Vec<Where>,
+    /// The effects that the model has, with what their parameters are by these logs.
+    pub given: Vec<GivenEffect>,
     /// The effects, in the order in which they were found.
     pub effects: Vec<FoundEffect>,
     /// What is left at joints that no effect explains.
@@ -164,6 +179,7 @@ pub fn diagnose(
         train: &train,
         held_out: &held_out,
         candidates: request.candidates,
+        given: request.given,
         coarse: train.signals.iter().map(Signals::coarse).collect(),
         train_floor: &train_floor,
         held_out_floor: &held_out_floor,
@@ -175,10 +191,6 @@ pub fn diagnose(
     let filter_s = 0.35 / filters.torque_hz;
     let left = |state: &State| {
         where_left(&train, &state.residual, &state.torques[0], &train_floor, filter_s)
-    };
-    let driven = |state: &State| {
-        let both = state.held.iter().zip(&nominal.uncertain);
-        both.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect::<Vec<String>>()
     };
     let effects = found_effects(
         (&setting, &outcome.screen),
@@ -192,6 +204,7 @@ pub fn diagnose(
         reasons: Vec::new(),
         before: left(before),
         after: left(after),
+        given: given_effects(&setting, after),
         effects,
         train: Gaps {
             before: Gap::new(&train, &before.residual, &trust[0]),
@@ -206,7 +219,7 @@ pub fn diagnose(
         structures: structures(&setting, after),
         curves: curves(&held_out, [&before.held_out_residual, &after.held_out_residual]),
         filters,
-        driven: [driven(before), driven(after)],
+        driven: [before, after].map(|state| driven_names(&setting, state)),
         steps: outcome.steps,
     };
     diagnosis.judge(&setting, outcome.stop, &outcome.after);
@@ -262,33 +275,61 @@ fn found_effects(
         let ([from, _], [to, noise]) = (from[joint], to[joint]);
         to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
     };
-    let mut at = 0;
     let mut found = Vec::new();
-    for (place, taken) in after.taken.iter().enumerate() {
-        let parameters = setting.candidates[taken.candidate].law.parameters();
-        let value =
-            |(k, (value, parameter)): (usize, (&f64, &crate::plants::effect::LawParameter))| {
-                EffectValue {
-                    name: parameter.name.clone(),
-                    value: *value,
-                    std: after.covariance[(at + k, at + k)].max(0.0).sqrt(),
-                    unit: parameter.unit.clone(),
-                }
-            };
-        let values = taken.values.iter().zip(parameters).enumerate().map(value).collect();
+    for (place, taken) in after.taken.iter().enumerate().skip(setting.given.len()) {
         let mut others = after.taken.clone();
         others.remove(place);
         let whole = gap(before) - floor;
         found.push(FoundEffect {
             candidate: taken.candidate,
-            parameters: values,
+            parameters: values(setting, after, place),
             share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
             is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
             alternatives: family((setting, screen), options, after, place),
         });
-        at += taken.values.len();
     }
     found
+}
+
+/// The parameters of the effect in one place of a state, with their errors.
+fn values(setting: &Setting<'_>, state: &State, place: usize) -> Vec<EffectValue> {
+    let before: usize = state.taken[..place].iter().map(|taken| taken.values.len()).sum();
+    let taken = &state.taken[place];
+    let parameters = setting.candidates[taken.candidate].law.parameters();
+    let value = |(k, (value, parameter)): (usize, (&f64, &LawParameter))| EffectValue {
+        name: parameter.name.clone(),
+        value: *value,
+        std: state.covariance[(before + k, before + k)].max(0.0).sqrt(),
+        unit: parameter.unit.clone(),
+    };
+    taken.values.iter().zip(parameters).enumerate().map(value).collect()
+}
+
+/// What these logs say of the effects that the model has.
+fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEffect> {
+    let of = |(place, taken): (usize, &Taken)| GivenEffect {
+        candidate: taken.candidate,
+        parameters: values(setting, state, place),
+    };
+    setting.given.iter().enumerate().map(of).collect()
+}
+
+/// The names of what the logs would move beyond what the model says of it: its own numbers, and
+/// those of its effects.
+fn driven_names(setting: &Setting<'_>, state: &State) -> Vec<String> {
+    let numbers = state.held.iter().zip(&setting.train.nominal.uncertain);
+    let mut names: Vec<String> =
+        numbers.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect();
+    for taken in &state.taken {
+        let candidate = &setting.candidates[taken.candidate];
+        let parameters = candidate.law.parameters().iter().zip(candidate.law.beliefs());
+        for ((parameter, belief), value) in parameters.zip(&taken.values) {
+            if is_driven(belief, *value) {
+                names.push(format!("{}_{}_{}", parameter.name, candidate.effect, candidate.at));
+            }
+        }
+    }
+    names
 }
 
 impl Diagnosis {

@@ -1,5 +1,6 @@
 //! What an effect does to the torques of a log: its law on numbers.
 
+use super::given::Belief;
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques};
 use super::signals::Signals;
@@ -46,6 +47,11 @@ pub trait Law {
 
     /// What it adds to the torques of a motion.
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response;
+
+    /// What the model says of its parameters; nothing of laws that the model does not have.
+    fn beliefs(&self) -> &[Belief] {
+        &[]
+    }
 }
 
 /// The central difference of a signal, one-sided at its ends.

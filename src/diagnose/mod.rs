@@ -20,6 +20,7 @@ mod family;
 mod fault;
 mod floor;
 mod gap;
+mod given;
 mod joint_law;
 mod law;
 mod nominal;
@@ -37,13 +38,16 @@ pub use candidate::{Candidate, starts};
 pub use catalogue::candidates;
 pub use curve::Curve;
 pub use data::{Data, ModelTorques, RowResponse, Stretch};
-pub use diagnosis::{Diagnosis, EffectValue, FoundEffect, Gaps, Request, Verdict, diagnose};
+pub use diagnosis::{
+    Diagnosis, EffectValue, FoundEffect, Gaps, GivenEffect, Request, Verdict, diagnose,
+};
 pub use elastic::before_springs;
 pub use evidence::{block_costs, by_ranks, paired};
 pub use family::{Alternative, family};
 pub use fault::DiagnosisError;
 pub use floor::{NoiseFloor, rms};
 pub use gap::{Gap, share_closed};
+pub use given::{Belief, given_candidates};
 pub use law::{Law, Motion, Response};
 pub use nominal::{Nominal, Phi, Uncertain, Uncertainty};
 pub use problem::{Fitted, Found, Problem, View};

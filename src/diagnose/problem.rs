@@ -113,16 +113,21 @@ impl<'a> Problem<'a> {
                     let (row, weight) = (stretch.first + k, weights[stretch.first + k]);
                     residual[row] -= weight * response.torque[place][k];
                     for (parameter, gradient) in response.gradient[place].iter().enumerate() {
+                        let is_certain = response.stiffness[parameter].is_infinite();
+                        let weight = if is_certain { 0.0 } else { weight };
                         stacked[(row, begin + parameter)] = weight * gradient[k];
                     }
                 }
             }
+            for parameter in 0..of_given(response) {
+                // A column of zeros must not make R singular.
+                let place = begin + parameter;
+                let least = 1e-6 * stacked.column(place).norm().max(1e-6);
+                let stiffness = response.stiffness[parameter];
+                let stated = if stiffness.is_finite() { stiffness } else { 0.0 };
+                stacked[(rows + place, place)] = stated.max(least);
+            }
             begin += of_given(response);
-        }
-        for place in own..width {
-            // A column of zeros must not make R singular.
-            let length = stacked.column(place).norm();
-            stacked[(rows + place, place)] = 1e-6 * length.max(1e-6);
         }
         let qr = stacked.qr();
         let (q, r) = (qr.q().rows(0, rows).into_owned(), qr.r());
@@ -142,7 +147,11 @@ impl<'a> Problem<'a> {
     /// The responses of laws to all logs, in the rows.
     pub fn responses(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Vec<RowResponse> {
         let of_law = |fitted: &Fitted<'_>| {
-            let mut all = RowResponse::default();
+            let stiffness = |place: usize| {
+                fitted.law.beliefs().get(place).map_or(0.0, |belief| 1.0 / belief.std)
+            };
+            let stiffness = (0..fitted.values.len()).map(stiffness).collect();
+            let mut all = RowResponse { stiffness, ..RowResponse::default() };
             for (log, torques) in torques.iter().enumerate() {
                 let signals = &self.signals[log];
                 let motion = torques.motion(self.data.nominal, signals);
@@ -205,7 +214,7 @@ impl<'a> Problem<'a> {
     pub fn fit(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
         let mut laws = laws.to_vec();
         let mut responses = self.responses(&laws, torques);
-        let mut view = self.look(&responses);
+        let mut view = self.look(&responses).believing(&laws);
         let mut damping = 1e-4;
         for _ in 0..ITERATIONS {
             if view.gradient.is_empty() {
@@ -213,7 +222,7 @@ impl<'a> Problem<'a> {
             }
             let tried = moved(&laws, view.step(damping, &outward(&laws, &view)).as_slice());
             let next = self.responses(&tried, torques);
-            let seen = self.look(&next);
+            let seen = self.look(&next).believing(&tried);
             let gain = view.cost - seen.cost;
             if gain > 0.0 {
                 let is_done = gain < 1e-5 * view.cost;
@@ -234,7 +243,7 @@ impl<'a> Problem<'a> {
     /// What laws leave with the values that they have.
     pub fn at(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
         let responses = self.responses(laws, torques);
-        let view = self.look(&responses);
+        let view = self.look(&responses).believing(laws);
         self.found(laws, &responses, &view)
     }
 
@@ -323,6 +332,23 @@ impl View {
         let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&all);
         let cost = rho.norm_squared() - explained.norm_squared() + offset;
         Self { cost, gradient, normal, lengths, explained }
+    }
+
+    /// With what the model says of parameters, as if it had been measured.
+    fn believing(mut self, laws: &[Fitted<'_>]) -> Self {
+        let mut begin = 0;
+        for fitted in laws {
+            let beliefs = fitted.law.beliefs().iter().zip(&fitted.values).enumerate();
+            for (place, (belief, value)) in beliefs.filter(|(_, (belief, _))| belief.std > 0.0) {
+                let place = begin + place;
+                let weight = belief.std.powi(-2);
+                self.cost += weight * (belief.value - value).powi(2);
+                self.gradient[place] += weight * (belief.value - value);
+                self.normal[(place, place)] += weight;
+            }
+            begin += fitted.values.len();
+        }
+        self
     }
 
     /// The damped step; parameters in `held` stay.

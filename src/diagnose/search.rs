@@ -94,13 +94,13 @@ pub fn search(
     options: &SearchOptions,
     watch: &mut dyn FnMut(&State),
 ) -> Outcome {
-    let before = setting.state(&[]);
+    let before = setting.state(&setting.given);
     let screen = Screen::new(setting, &before);
     let mut state = before.clone();
     let (mut steps, mut idle) = (Vec::new(), Vec::new());
     let stop = loop {
         watch(&state);
-        if state.taken.len() >= options.most_effects {
+        if state.taken.len() >= setting.given.len() + options.most_effects {
             break Stop::MostEffects;
         }
         // Exchanges and removals must not lead round in circles.
@@ -327,7 +327,7 @@ fn swap(
     mut state: State,
 ) -> State {
     let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    for place in 0..state.taken.len().saturating_sub(1) {
+    for place in setting.given.len()..state.taken.len().saturating_sub(1) {
         let mut others = state.taken.clone();
         let own = others.remove(place);
         let rest = setting.state(&others);
@@ -353,13 +353,13 @@ const IDLE: f64 = 0.05;
 /// Takes effects out that the others have made idle, the idlest first.
 fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> State {
     let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    while state.taken.len() > 1 {
+    while state.taken.len() > setting.given.len() + 1 {
         let problem = Problem::new(setting.train, &state.deviation[0], &[]);
         let now = setting.trial(&problem, &state, &state.taken);
         let squares = |left: &[f64]| setting.held_out_squares(&state, left);
         let (from, then) = (squares(before), squares(&now.held_out_residual));
         let mut idlest: Option<(f64, Vec<Taken>)> = None;
-        for place in 0..state.taken.len() {
+        for place in setting.given.len()..state.taken.len() {
             let mut others = state.taken.clone();
             others.remove(place);
             let less = setting.trial(&problem, &state, &others);

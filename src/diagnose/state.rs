@@ -26,6 +26,8 @@ pub struct Setting<'a> {
     pub held_out: &'a Data<'a>,
     /// What may be missing.
     pub candidates: &'a [Candidate],
+    /// What the model has of them: the first effects of every state.
+    pub given: Vec<Taken>,
     /// Coarse views of the logs to fit; none if their filter leaves nothing to save.
     pub coarse: Option<Vec<Signals>>,
     /// Floors of the logs to fit.

@@ -4,6 +4,7 @@
 //! - [`log`]: what was measured, checked
 //! - [`condition`]: filtered, differentiated, decimated
 //! - [`add_contact_forces`]: what the ground does to each equation
+//! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`forward`]: the identified model in motion against a log
@@ -19,6 +20,7 @@ pub mod excite;
 pub mod forward;
 mod identification;
 pub mod knowledge;
+mod known_effects;
 pub mod log;
 mod model_text;
 mod model_values;
@@ -29,7 +31,10 @@ mod updated_model;
 
 pub use contact_forces::add_contact_forces;
 pub use identification::{Identification, LeftOutRows, Request, identify};
-pub use model_text::{NewEffect, NewPlace, NewValue, updated as updated_text, with_effects};
+pub use known_effects::{take_out, undo_logged_torques, undo_readings};
+pub use model_text::{
+    EffectValues, NewEffect, NewPlace, NewValue, updated as updated_text, with_effects,
+};
 pub use model_values::{model_values, with_effect};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdateError, UpdatedModel, updated_model};

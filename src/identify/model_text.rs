@@ -150,16 +150,7 @@ pub fn updated(text: &str, values: &[NewValue<'_>]) -> Option<String> {
     for (at, text) in grouped(text, inserted) {
         edits.push((at..at, text));
     }
-    edits.sort_by_key(|(span, _)| (span.start, span.end));
-    let mut result = String::with_capacity(text.len() + 64 * edits.len());
-    let mut from = 0;
-    for (span, new) in edits {
-        result.push_str(text.get(from..span.start)?);
-        result.push_str(&new);
-        from = span.end;
-    }
-    result.push_str(text.get(from..)?);
-    Some(result)
+    edited(text, edits)
 }
 
 /// Where an effect goes.
@@ -181,12 +172,29 @@ pub struct NewEffect<'a> {
     /// Its place.
     pub at: NewPlace<'a>,
     /// Its parameters: name, value, standard error if it is known.
-    pub parameters: Vec<(&'a str, f64, Option<f64>)>,
+    pub parameters: EffectValues<'a>,
 }
 
-/// The text with more effects; none if it is not the JSON of a model.
-pub fn with_effects(text: &str, effects: &[NewEffect<'_>]) -> Option<String> {
+/// Parameters of an effect: name, value, standard error if it is known.
+pub type EffectValues<'a> = Vec<(&'a str, f64, Option<f64>)>;
+
+/// The text with more effects, and with other parameters of those that it has, which are given by
+/// their numbers; none if it is not the JSON of a model.
+pub fn with_effects(
+    text: &str,
+    effects: &[NewEffect<'_>],
+    changed: &[(usize, EffectValues<'_>)],
+) -> Option<String> {
     let root = Scanner { text: text.as_bytes(), at: 0 }.value()?;
+    let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+    for (number, values) in changed {
+        let own = root.get("effects")?.items().get(*number)?;
+        let values = values_text(values);
+        edits.push(match own.get("parameters") {
+            Some(known) => (known.span.clone(), values),
+            None => (own.end()..own.end(), format!(", \"parameters\": {values}")),
+        });
+    }
     let lines: Vec<String> = effects.iter().map(effect_text).collect();
     let (at, inserted) = match root.get("effects") {
         Some(known) => match known.items().last() {
@@ -206,7 +214,24 @@ pub fn with_effects(text: &str, effects: &[NewEffect<'_>]) -> Option<String> {
             (root.end(), format!("{separator}\"effects\": {list}"))
         }
     };
-    Some([text.get(..at)?, &inserted, text.get(at..)?].concat())
+    if !lines.is_empty() {
+        edits.push((at..at, inserted));
+    }
+    edited(text, edits)
+}
+
+/// The text with pieces of it replaced.
+fn edited(text: &str, mut edits: Vec<(Range<usize>, String)>) -> Option<String> {
+    edits.sort_by_key(|(span, _)| (span.start, span.end));
+    let mut result = String::with_capacity(text.len() + 64 * edits.len());
+    let mut from = 0;
+    for (span, new) in edits {
+        result.push_str(text.get(from..span.start)?);
+        result.push_str(&new);
+        from = span.end;
+    }
+    result.push_str(text.get(from..)?);
+    Some(result)
 }
 
 fn effect_text(new: &NewEffect<'_>) -> String {
@@ -218,12 +243,15 @@ fn effect_text(new: &NewEffect<'_>) -> String {
             format!("{{\"link\": {}, \"second\": {}}}", quoted(link), quoted(second))
         }
     };
-    let values = new.parameters.iter();
-    let values = values
-        .map(|&(name, value, std)| format!("{}: {}", quoted(name), value_with_error(value, std)));
-    let values: Vec<String> = values.collect();
-    let effect = quoted(new.effect);
-    format!("{{\"effect\": {effect}, \"at\": {at}, \"parameters\": {{{}}}}}", values.join(", "))
+    let (effect, values) = (quoted(new.effect), values_text(&new.parameters));
+    format!("{{\"effect\": {effect}, \"at\": {at}, \"parameters\": {values}}}")
+}
+
+fn values_text(values: &[(&str, f64, Option<f64>)]) -> String {
+    let text = |&(name, value, std): &(&str, f64, Option<f64>)| {
+        format!("{}: {}", serde_json::Value::from(name), value_with_error(value, std))
+    };
+    format!("{{{}}}", values.iter().map(text).collect::<Vec<String>>().join(", "))
 }
 
 fn written(new: &NewValue<'_>) -> String {

@@ -9,6 +9,7 @@ mod effects;
 mod errors;
 mod excite;
 mod gears;
+mod given_effects;
 mod help;
 mod identify;
 mod identify_procedures;

@@ -3,6 +3,7 @@
 use super::{CertificateJson, Found};
 use crate::cli::failure::Failure;
 use crate::cli::json::{Ordered, write_json};
+use crate::cli::model_effects::EffectUse;
 use denavit::emit::latex::{base_notation, base_sum};
 use denavit::expr::ExprId;
 use denavit::number::Residue;
@@ -20,6 +21,8 @@ struct BaseJson<'a> {
     /// The columns that are in no relation: what can be identified by itself.
     alone: Vec<&'a str>,
     parameters: Vec<ParameterJson<'a>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    effects: &'a [EffectUse],
     certificate: CertificateJson,
 }
 
@@ -78,6 +81,7 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
         dependent: dependent.collect(),
         alone: found.names(base.alone()),
         parameters: parameters.collect(),
+        effects: &found.effects,
         certificate: CertificateJson { verified: found.verified, prime: Residue::MODULUS },
     };
     write_json(out, &json)

@@ -12,6 +12,9 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
     let (name, rank, place) = (&found.robot.name, base.rank(), found.place());
     writeln!(out, "{name}: {rank} base parameters of {columns} columns{place}\n")?;
     writeln!(out, "{}", table(found))?;
+    for effect in &found.effects {
+        writeln!(out, "{}\n", paragraph("", "  ", &effect.to_string()))?;
+    }
     for (title, names) in [
         ("identifiable alone", found.names(base.alone())),
         ("without any effect", found.names(base.zero())),

@@ -2,6 +2,7 @@
 
 use super::super::elimination::{Elimination, columns};
 use super::super::failure::Failure;
+use crate::cli::model_effects::EffectUse;
 use denavit::emit::latex::{equations_decomposition, robot_decomposition};
 use denavit::expr::text::print_with_intermediates;
 use denavit::expr::{Dag, ExprId};
@@ -126,7 +127,7 @@ impl Found {
     }
 
     /// Everything as text.
-    pub(in crate::cli) fn texts(self) -> Texts {
+    pub(in crate::cli) fn texts(self, effects: Vec<EffectUse>) -> Texts {
         let name = self.name().to_owned();
         let Self { subject, decomposition, theta } = self;
         let (mut dag, equations, columns, left) = match subject {
@@ -161,6 +162,7 @@ impl Found {
         let left = print_with_intermediates(&dag, &left, PLAIN_NODES);
         let intermediates = left.bindings.into_iter();
         Texts {
+            effects,
             model: name,
             basis: decomposition.basis.as_str(),
             equations,
@@ -186,6 +188,9 @@ fn plain(dag: &Dag, exprs: &[ExprId]) -> Vec<String> {
 /// f and B as texts.
 #[derive(Serialize)]
 pub(in crate::cli) struct Texts {
+    /// What becomes of the model's effects.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    effects: Vec<EffectUse>,
     model: String,
     basis: &'static str,
     /// Names of joints, or the equations themselves.
@@ -232,6 +237,9 @@ impl Texts {
             self.columns.len(),
             self.nonzeros
         )?;
+        for effect in &self.effects {
+            writeln!(out, "{effect}")?;
+        }
         if self.functions.len() > READABLE_FUNCTIONS {
             writeln!(
                 out,

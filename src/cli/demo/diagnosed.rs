@@ -84,7 +84,7 @@ impl Diagnosed {
         let at = NewPlace::Link(hidden.at);
         let new = NewEffect { effect: hidden.effect, at, parameters: values };
         let shipped = shipped::find(MODEL).expect("it is shipped");
-        let robot = with_effects(shipped.text, &[new]).expect("shipped models are JSON");
+        let robot = with_effects(shipped.text, &[new], &[]).expect("shipped models are JSON");
         let mut files = Vec::new();
         let mut logs = Vec::new();
         for (number, set) in ["train", "validate"].into_iter().enumerate() {

@@ -3,7 +3,8 @@
 use super::Shown;
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
-use denavit::diagnose::{Gaps, Step, Where};
+use crate::cli::model_effects::EffectUse;
+use denavit::diagnose::{Candidate, EffectValue, Gaps, GivenEffect, Step, Where};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -14,6 +15,9 @@ struct DiagnosisJson<'a> {
     verdict: &'static str,
     reasons: &'a [String],
     r#where: Vec<WhereJson<'a>>,
+    /// The effects that the model has.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    given: Vec<GivenJson<'a>>,
     effects: Vec<EffectJson<'a>>,
     unnamed: Vec<StructureJson<'a>>,
     rounds: Vec<RoundJson<'a>>,
@@ -47,6 +51,15 @@ struct EffectJson<'a> {
     share: f64,
     parameters: BTreeMap<&'a str, ValueJson<'a>>,
     indistinguishable: Vec<OtherJson<'a>>,
+}
+
+/// An effect that the model has; what its equations took up has no parameters here.
+#[derive(Serialize)]
+struct GivenJson<'a> {
+    #[serde(flatten)]
+    becomes: &'a EffectUse,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    parameters: BTreeMap<&'a str, ValueJson<'a>>,
 }
 
 #[derive(Serialize)]
@@ -136,10 +149,6 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     });
     let effects = found.effects.iter().map(|one| {
         let own = &candidates[one.candidate];
-        let values = one.parameters.iter().map(|value| {
-            let std = Some(value.std).filter(|std| std.is_finite());
-            (value.name.as_str(), ValueJson { value: value.value, std, unit: &value.unit })
-        });
         let others = one.alternatives.iter().map(|other| OtherJson {
             effect: &candidates[other.candidate].effect,
             at: &candidates[other.candidate].at,
@@ -151,7 +160,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
             nearest: (!one.is_named).then_some(own.effect.as_str()),
             at: &own.at,
             share: one.share,
-            parameters: values.collect(),
+            parameters: values(&one.parameters),
             indistinguishable: others.collect(),
         }
     });
@@ -167,6 +176,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         verdict: found.verdict.word(),
         reasons: &found.reasons,
         r#where: places.collect(),
+        given: shown.model_effects.iter().map(|becomes| given(shown, becomes)).collect(),
         effects: effects.collect(),
         unnamed: structures.collect(),
         rounds: found.steps.iter().map(|step| round(shown, step)).collect(),
@@ -180,6 +190,28 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         report: written.map(|_| super::REPORT),
     };
     write_json(out, &json)
+}
+
+fn values(parameters: &[EffectValue]) -> BTreeMap<&str, ValueJson<'_>> {
+    let entry = |value: &'_ EffectValue| {
+        let std = Some(value.std).filter(|std| std.is_finite());
+        (value.value, std)
+    };
+    let named = parameters.iter().map(|one| {
+        let (value, std) = entry(one);
+        (one.name.as_str(), ValueJson { value, std, unit: &one.unit })
+    });
+    named.collect()
+}
+
+fn given<'a>(shown: &'a Shown, becomes: &'a EffectUse) -> GivenJson<'a> {
+    let is_it = |one: &&GivenEffect| {
+        let Candidate { effect, at, .. } = &shown.candidates[one.candidate];
+        becomes.is_of(effect, at)
+    };
+    let found = shown.found.given.iter().find(is_it);
+    let parameters = found.map_or_else(BTreeMap::new, |one| values(&one.parameters));
+    GivenJson { becomes, parameters }
 }
 
 fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {

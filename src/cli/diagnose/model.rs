@@ -3,7 +3,7 @@
 use super::{Failure, Shown};
 use crate::cli::files::{make_directory, read_file, write_whole};
 use denavit::effect::{self, Effect, EffectSite};
-use denavit::identify::{NewEffect, NewPlace, with_effects};
+use denavit::identify::{EffectValues, NewEffect, NewPlace, with_effects};
 use std::path::Path;
 
 /// What became of the model.
@@ -24,6 +24,7 @@ pub(super) fn complete(source: &str, shown: &Shown, effects: &[Effect]) -> Compl
     if named().next().is_none() {
         return Completed::NothingFound;
     }
+    let finite = |std: f64| Some(std).filter(|std| std.is_finite());
     let added: Vec<NewEffect<'_>> = named()
         .map(|one| {
             let candidate = &shown.candidates[one.candidate];
@@ -33,13 +34,19 @@ pub(super) fn complete(source: &str, shown: &Shown, effects: &[Effect]) -> Compl
                 (_, Some((joint, second))) => NewPlace::Pair(joint, second),
                 _ => NewPlace::Link(&candidate.at),
             };
-            let values = one.parameters.iter().map(|value| {
-                (value.name.as_str(), value.value, Some(value.std).filter(|std| std.is_finite()))
-            });
+            let values = one.parameters.iter();
+            let values = values.map(|value| (value.name.as_str(), value.value, finite(value.std)));
             NewEffect { effect: &candidate.effect, at, parameters: values.collect() }
         })
         .collect();
-    let Some(text) = with_effects(source, &added) else {
+    // What the model has of effects was estimated together with what was found.
+    let given = shown.found.given.iter().zip(&shown.numbers).map(|(one, &number)| {
+        let values = one.parameters.iter();
+        let values = values.map(|value| (value.name.as_str(), value.value, finite(value.std)));
+        (number, values.collect())
+    });
+    let given: Vec<(usize, EffectValues<'_>)> = given.collect();
+    let Some(text) = with_effects(source, &added, &given) else {
         return Completed::Refused("its file is no object of JSON".to_owned());
     };
     match effect::read_model("model.json", text.as_bytes(), effects) {
@@ -51,13 +58,18 @@ pub(super) fn complete(source: &str, shown: &Shown, effects: &[Effect]) -> Compl
 /// Writes the definitions of the user's own effects that were found into a folder `effects` beside
 /// the model, where commands look for them.
 pub(super) fn write_definitions(own: &Path, folder: &Path, shown: &Shown) -> Result<(), Failure> {
+    let beside = folder.join("effects");
+    if beside.canonicalize().is_ok_and(|beside| own.canonicalize().is_ok_and(|own| own == beside)) {
+        return Ok(());
+    }
     let failure = |error| Failure::Read { file: own.display().to_string(), error };
     for path in effect::files(own).map_err(failure)? {
         let bytes = read_file(&path)?;
         let known = effect::read(&path.display().to_string(), &bytes).map_err(Failure::Model)?;
         let is_found = |candidate: usize| shown.candidates[candidate].effect == known.name;
-        if shown.found.effects.iter().any(|one| is_found(one.candidate)) {
-            let beside = folder.join("effects");
+        let found = shown.found.effects.iter().map(|one| one.candidate);
+        let given = shown.found.given.iter().map(|one| one.candidate);
+        if found.chain(given).any(is_found) {
             make_directory(&beside)?;
             write_whole(&beside.join(format!("{}.json", known.name)), &bytes)?;
         }

@@ -26,6 +26,7 @@ pub(super) fn of(arguments: &Arguments, shown: &Shown) -> Page {
     let facts = facts.map(|(name, value)| Fact { name: name.to_owned(), value });
     let mut remarks: Vec<String> =
         shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
+    remarks.extend(shown.model_effects.iter().map(ToString::to_string));
     remarks.extend(shown.about_model());
     let joints: Vec<&str> = shown.model.joints.iter().map(|joint| joint.name.as_str()).collect();
     DiagnosisPage {

@@ -2,7 +2,7 @@
 
 use super::Shown;
 use crate::cli::failure::Failure;
-use denavit::diagnose::{FoundEffect, Gap, Gaps};
+use denavit::diagnose::{EffectValue, FoundEffect, Gap, Gaps};
 use denavit::report::{Align, Table, paragraph, percent, short};
 use std::io::Write;
 
@@ -19,6 +19,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     if !places.is_empty() {
         writeln!(out, "\nwhere\n{}", places.join("\n"))?;
     }
+    given(out, shown)?;
     found.effects.iter().try_for_each(|one| effect(out, shown, one))?;
     for one in &found.structures {
         let name = &shown.model.joints[one.joint].name;
@@ -43,19 +44,39 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     files(out, shown)
 }
 
+/// What the model has of effects.
+fn given(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+    if shown.model_effects.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nof the model itself")?;
+    for effect in &shown.model_effects {
+        writeln!(out, "  {effect}")?;
+        for one in &shown.found.given {
+            let own = &shown.candidates[one.candidate];
+            if effect.is_of(&own.effect, &own.at) {
+                one.parameters.iter().try_for_each(|one| writeln!(out, "    {}", value(one)))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A parameter with its error.
+fn value(value: &EffectValue) -> String {
+    let std = match value.std.is_finite() {
+        true => format!("+- {:.1e}", value.std),
+        false => "(not determined)".to_owned(),
+    };
+    format!("{} = {} {std} {}", value.name, short(value.value), value.unit).trim_end().to_owned()
+}
+
 fn effect(out: &mut dyn Write, shown: &Shown, one: &FoundEffect) -> Result<(), Failure> {
     let own = &shown.candidates[one.candidate];
     let closes = percent(one.share);
     let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
     writeln!(out, "\n{doubt}{} ({}) at {}: closes {closes}", own.title, own.effect, own.at)?;
-    for value in &one.parameters {
-        let std = match value.std.is_finite() {
-            true => format!("+- {:.1e}", value.std),
-            false => "(not determined)".to_owned(),
-        };
-        let line = format!("  {} = {} {std} {}", value.name, short(value.value), value.unit);
-        writeln!(out, "{}", line.trim_end())?;
-    }
+    one.parameters.iter().try_for_each(|one| writeln!(out, "  {}", value(one)))?;
     for other in &one.alternatives {
         let name = shown.candidates[other.candidate].name();
         writeln!(out, "  or {name}, which would leave {}", percent(other.held_out_gap))?;

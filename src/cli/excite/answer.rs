@@ -2,6 +2,7 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
+use crate::cli::model_effects::EffectUse;
 use denavit::identify::excite::{
     Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport,
 };
@@ -13,6 +14,8 @@ use std::io::Write;
 /// A trajectory that was found or checked.
 pub(super) struct Found<'a> {
     pub(super) robot: &'a Robot,
+    /// What becomes of the model's effects: limits of torques are kept without those left out.
+    pub(super) effects: &'a [EffectUse],
     pub(super) stack: &'a Stack,
     pub(super) check: &'a Check,
 }
@@ -41,6 +44,9 @@ pub(super) fn write_json_answer(
             "joint": joint, "limit": limit.key(), "value": value,
         })).collect::<Vec<_>>(),
     });
+    if !found.effects.is_empty() {
+        answer["effects"] = json!(found.effects);
+    }
     if let Some(excited) = excited {
         answer["start"] = json!(excited.best + 1);
         answer["starts"] = excited.starts.iter().map(start).collect();
@@ -93,6 +99,9 @@ pub(super) fn write_text(
         shown(check.excitation.condition),
         shown(check.excitation.condition_scaled)
     )?;
+    for effect in found.effects {
+        writeln!(out, "{}", paragraph("", "  ", &effect.to_string()))?;
+    }
     if !found.stack.left_out.is_empty() {
         let text = format!("not excited by what moves: {}", found.stack.left_out.join(", "));
         writeln!(out, "{}", paragraph("", "  ", &text))?;

@@ -3,6 +3,7 @@
 use super::{Shown, SimulationGap};
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
+use crate::cli::model_effects::EffectUse;
 use denavit::identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
 use denavit::identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
 use denavit::plants::regression::{RegressionModel, StandardParameter};
@@ -28,6 +29,9 @@ struct IdentifyJson<'a> {
     /// Logs simulated again.
     simulation: Option<SimulationJson<'a>>,
     remarks: Vec<String>,
+    /// What became of the model's effects.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    effects: &'a [EffectUse],
 }
 
 #[derive(Serialize)]
@@ -202,7 +206,7 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let Shown { robot, model, found, remarks, simulated } = shown;
+    let Shown { robot, model, found, remarks, effects, simulated } = shown;
     let parameters = found.parameters.iter().map(ParameterJson::new);
     let held_out = |joint: &JointResidual| {
         let joints = &found.validate.as_ref()?.joints;
@@ -245,6 +249,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         consistent: ConsistentJson::new(model, &found.consistent),
         convergence: convergence.collect(),
         simulation: simulated.map(SimulationJson::new),
+        effects,
         remarks: remarks
             .iter()
             .map(|(file, remark)| format!("{file}: {remark}"))

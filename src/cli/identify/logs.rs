@@ -4,11 +4,12 @@ use super::{Arguments, IdentifyFailure, MethodName};
 use crate::cli::failure::Failure;
 use crate::cli::files::{open_log, read_file};
 use clap::{Args, ValueEnum};
-use denavit::identify::add_contact_forces;
 use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
 use denavit::identify::forward::{LONGEST_S, MotionLog};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
+use denavit::identify::{add_contact_forces, take_out, undo_logged_torques, undo_readings};
 use denavit::model::Robot;
+use denavit::plants::effect::AddedLaw;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};
 use denavit::plants::{Plant, plant_of};
 use std::path::{Path, PathBuf};
@@ -149,7 +150,7 @@ pub(super) struct Read {
 
 pub(super) fn read(
     (arguments, conditions): (&Arguments, &Conditions),
-    robot: &Robot,
+    (robot, laws): (&Robot, &[AddedLaw]),
     model: &RegressionModel,
 ) -> Result<Read, Failure> {
     let mapping = mapping(arguments)?;
@@ -161,6 +162,7 @@ pub(super) fn read(
         arguments,
         conditions,
         model,
+        laws,
         mapping,
         plant,
         contacts,
@@ -237,6 +239,8 @@ struct Reader<'a> {
     arguments: &'a Arguments,
     conditions: &'a Conditions,
     model: &'a RegressionModel,
+    /// Effects that the model has beside its equations.
+    laws: &'a [AddedLaw],
     mapping: ColumnMapping,
     plant: Option<Box<dyn Plant>>,
     contacts: Vec<String>,
@@ -271,6 +275,7 @@ impl Reader<'_> {
         log.require_joint_torques(of).map_err(IdentifyFailure::Log)?;
         let remarks = std::mem::take(&mut log.remarks);
         self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
+        undo_readings(&mut log, self.laws);
         if let Some(plant) = &mut self.plant {
             let is_base: Vec<bool> = self.model.joints.iter().map(|joint| joint.is_base).collect();
             add_contact_forces(&mut log, plant.as_mut(), &is_base);
@@ -287,14 +292,16 @@ impl Reader<'_> {
             let motion = MotionLog::new(&head, &self.names, how.filter);
             let failed = |error| IdentifyFailure::Condition(file.clone(), error);
             let mut motion = motion.map_err(failed)?;
+            undo_logged_torques(&mut motion, self.model, self.laws);
             if let CoulombLaw::Tanh(width) = self.arguments.friction {
                 motion.stiction_rate = width;
             }
             motions.push(motion);
         }
         let conditioned = Conditioned::new(log, &self.names, &how);
-        let conditioned =
+        let mut conditioned =
             conditioned.map_err(|error| IdentifyFailure::Condition(file.clone(), error))?;
+        take_out(&mut conditioned, self.model, self.laws);
         self.note(&file, &conditioned);
         Ok(conditioned)
     }

@@ -26,8 +26,9 @@ pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Fai
         .filter(|(_, value)| !value.is_empty())
         .map(|(name, value)| Fact { name: name.to_owned(), value })
         .collect();
-    let remarks: Vec<String> =
+    let mut remarks: Vec<String> =
         shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
+    remarks.extend(shown.effects.iter().map(ToString::to_string));
     let told = shown.simulated.map(|gap| (gap, gap.method(), gap.reasons()));
     let simulation = told.as_ref().map(|(gap, method, reasons)| SimulationPart {
         method,

@@ -4,7 +4,7 @@ use super::{Answered, Arguments, IdentifyFailure};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
-use crate::cli::files::{read_file, read_model_text};
+use crate::cli::files::read_file;
 use crate::cli::json::write_json;
 use crate::cli::progress::Progress;
 use denavit::identify::knowledge::{Consequences, Determined, Knowledge};
@@ -21,7 +21,7 @@ pub(super) fn run(
     path: &Path,
     out: &mut dyn Write,
 ) -> Result<Answer, Failure> {
-    let (robot, _) = read_model_text(&arguments.model)?;
+    let (robot, _) = arguments.model_apart()?.without_laws()?;
     let options = regressor_options(&robot, &arguments.with)?;
     let model = RegressionModel::new(&robot, options, &arguments.keep)
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;

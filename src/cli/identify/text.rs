@@ -13,7 +13,10 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     for (file, remark) in *remarks {
         writeln!(out, "{file}: {remark}")?;
     }
-    if !remarks.is_empty() {
+    for effect in shown.effects {
+        writeln!(out, "{effect}")?;
+    }
+    if !(remarks.is_empty() && shown.effects.is_empty()) {
         writeln!(out)?;
     }
     let (excited, rank) = (solution.excited(), model.rank());

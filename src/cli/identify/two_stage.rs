@@ -5,7 +5,7 @@ use super::{Arguments, IdentifyFailure, logs, text};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
-use crate::cli::files::{check_outputs, on_stdout, read_model_text, write_whole};
+use crate::cli::files::{check_outputs, on_stdout, write_whole};
 use crate::cli::json::write_json;
 use denavit::identify::condition::Filter;
 use denavit::identify::estimate::{Consistent, IdentifiedParameter, consistent, parameters};
@@ -34,7 +34,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let is_answered = on_stdout(&outputs, arguments.json)?;
     check_outputs(&outputs)?;
     let [path] = &arguments.train[..] else { return Err(IdentifyFailure::OneLog.into()) };
-    let (robot, source) = read_model_text(&arguments.model)?;
+    let model = arguments.model_apart()?;
+    let robot = model.whole.clone();
+    let (_, source) = model.without_laws()?;
     // inertias of rotors are known here (thesis 3.3.1)
     let asked = regressor_options(&robot, &arguments.with)?;
     let options = RegressorOptions { rotor: false, ..asked };

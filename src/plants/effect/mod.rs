@@ -3,15 +3,18 @@
 //!
 //! - [`EffectLaw`]: laws of one joint, with their states integrated along the samples
 //! - [`RobotEffect`]: effects that change the model, and with it the torques of all joints
+//! - [`apart()`]: the effects that a model has, in its equations and beside them
 //! - [`logged`](EffectLaw::logged), [`corrected`](EffectLaw::corrected): laws of a logged channel
 //!
 //! Samples are columns; columns that a law does not use may be empty.
 
+mod added;
 mod channel;
 mod program;
 mod robot;
 mod states;
 
+pub use added::{AddedError, AddedLaw, ApartEffects, apart};
 pub use robot::{RobotEffect, RobotEffectError};
 
 use denavit_codegen::effect::{Channel, Effect, EffectKind, EffectParameter, Law};

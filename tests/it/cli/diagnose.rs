@@ -4,10 +4,10 @@ use super::{Directory, command, run_in};
 use std::fs;
 use std::path::Path;
 
-const MODEL: &str = "tulip_leg_table34";
+pub(super) const MODEL: &str = "tulip_leg_table34";
 
 /// A log of the leg, made by the simulator, in a folder of its own.
-fn leg(name: &str) -> (Directory, String) {
+pub(super) fn leg(name: &str) -> (Directory, String) {
     let directory = Directory::new(name);
     let run = run_in(&directory.path, &["simulate", "tulip_leg_identification", "-o", "leg.csv"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
@@ -17,7 +17,7 @@ fn leg(name: &str) -> (Directory, String) {
 
 /// The log with `added(rate)` on the torque of a joint, whose rate is a difference of its
 /// positions.
-fn with_torque(log: &str, joint: &str, added: impl Fn(f64) -> f64) -> String {
+pub(super) fn with_torque(log: &str, joint: &str, added: impl Fn(f64) -> f64) -> String {
     let (comments, table): (Vec<&str>, Vec<&str>) =
         log.lines().partition(|line| line.starts_with('#'));
     let names: Vec<&str> = table[0].split(',').collect();

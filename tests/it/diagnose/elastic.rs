@@ -107,6 +107,7 @@ fn found(hidden: impl Fn(f64) -> f64 + Copy) -> Result<(Verdict, Vec<String>), D
         train,
         held_out,
         candidates: &candidates,
+        given: Vec::new(),
         uncertainty: Uncertainty::default(),
         options: SearchOptions::default(),
         filters: None,

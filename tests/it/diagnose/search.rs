@@ -123,6 +123,7 @@ fn found(
         train: &train,
         held_out: &held_out,
         candidates: &candidates,
+        given: Vec::new(),
         coarse: train.signals.iter().map(Signals::coarse).collect(),
         train_floor: &train_floor,
         held_out_floor: &held_out_floor,

@@ -1,0 +1,188 @@
+//! Effects that a model has beside its equations, taken out of logs: what is left is what its
+//! equations are about.
+//!
+//! Laws of what is logged are undone: positions and rates before anything is made of them, torques
+//! after their filter. What laws add to torques is computed from the filtered motion, passes the
+//! filter of the torques, as laws that jump need, and is subtracted. Loads are those of the values
+//! that the model gives.
+
+use super::condition::{Butterworth, Conditioned, STENCIL};
+use super::forward::MotionLog;
+use super::log::MeasuredLog;
+use crate::plants::effect::{AddedLaw, JointSamples};
+use crate::plants::regression::{RegressionModel, RegressionRows};
+use denavit_codegen::effect::Channel;
+use std::ops::Range;
+
+/// Samples that are evaluated at once.
+const BLOCK: usize = 512;
+
+/// What begins the names of parameters that no rigid body has.
+const NOT_OF_BODIES: [&str; 4] = ["fv", "fc", "Ia", "off"];
+
+/// Undoes laws of logged positions and rates.
+pub fn undo_readings(log: &mut MeasuredLog, laws: &[AddedLaw]) {
+    let t: Vec<f64> = (0..log.samples()).map(|k| log.start_s + log.step_s * k as f64).collect();
+    for law in laws {
+        let channel = law.law.channel();
+        let joint = &log.joints[law.joint];
+        let zeros = vec![0.0; t.len()];
+        let qd = joint.qd.clone().unwrap_or_else(|| slope(&joint.q, log.step_s));
+        let qdd = joint.qdd.clone().unwrap_or_else(|| slope(&qd, log.step_s));
+        let tau = joint.tau.as_deref().unwrap_or(&zeros);
+        let samples = JointSamples {
+            t: &t,
+            q: &joint.q,
+            qd: &qd,
+            qdd: &qdd,
+            tau_load: &zeros,
+            tau_load_rate: &zeros,
+            tau,
+            ..JointSamples::default()
+        };
+        match channel {
+            Some(Channel::Position) => {
+                log.joints[law.joint].q = law.law.corrected(&samples, &law.values);
+            }
+            Some(Channel::Rate) if joint.qd.is_some() => {
+                log.joints[law.joint].qd = Some(law.law.corrected(&samples, &law.values));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Undoes laws of logged torques, and takes away what laws add to torques. Readings are undone.
+pub fn take_out(log: &mut Conditioned, model: &RegressionModel, laws: &[AddedLaw]) {
+    if laws.is_empty() {
+        return;
+    }
+    let stencil = if log.rates.is_some() { 0 } else { STENCIL };
+    let wide = stencil..log.q.first().map_or(0, Vec::len).saturating_sub(stencil);
+    let mut motion = Vec::new();
+    log.motion(wide.clone(), &mut motion);
+    let loads = loads(model, &motion);
+    let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
+    undo_torques(&mut log.torque, laws, &moved, &wide);
+    for law in laws.iter().filter(|law| law.law.channel().is_none()) {
+        let Some(torque) = &mut log.torque[law.joint] else { continue };
+        let mut added =
+            moved.with(law, &[], wide.start, |samples| law.law.torque(samples, &law.values));
+        if let Some(filter) = &log.filter {
+            Butterworth::zero_phase(filter, &mut added);
+        }
+        torque[wide.clone()].iter_mut().zip(added).for_each(|(torque, added)| *torque -= added);
+    }
+}
+
+/// Undoes laws of logged torques in a log that is to be simulated again: the model that is
+/// simulated has the others. Readings are undone.
+pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &[AddedLaw]) {
+    let n = log.q.len();
+    let samples = log.q.first().map_or(0, Vec::len);
+    let mut motion = log.q.clone();
+    motion.extend(log.qd.iter().cloned());
+    motion.extend(log.qd.iter().map(|qd| slope(qd, log.step_s)));
+    debug_assert_eq!(motion.len(), 3 * n);
+    let loads = loads(model, &motion);
+    let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
+    undo_torques(&mut log.torque, laws, &moved, &(0..samples));
+}
+
+fn undo_torques(
+    torques: &mut [Option<Vec<f64>>],
+    laws: &[AddedLaw],
+    moved: &Moved<'_>,
+    range: &Range<usize>,
+) {
+    // What was logged last is undone first.
+    for law in laws.iter().rev().filter(|law| law.law.channel() == Some(Channel::Torque)) {
+        let Some(torque) = &mut torques[law.joint] else { continue };
+        let logged = torque[range.clone()].to_vec();
+        let truth = moved
+            .with(law, &logged, range.start, |samples| law.law.corrected(samples, &law.values));
+        torque[range.clone()].copy_from_slice(&truth);
+    }
+}
+
+/// A motion with its loads.
+struct Moved<'a> {
+    /// q, qd and qdd of every joint.
+    motion: &'a [Vec<f64>],
+    loads: &'a [Vec<f64>],
+    step_s: f64,
+    start_s: f64,
+}
+
+impl Moved<'_> {
+    /// What a law is evaluated on; the first sample is the log's sample `first`.
+    fn with<T>(
+        &self,
+        law: &AddedLaw,
+        tau: &[f64],
+        first: usize,
+        apply: impl FnOnce(&JointSamples<'_>) -> T,
+    ) -> T {
+        let n = self.motion.len() / 3;
+        let (joint, other) = (law.joint, law.second.unwrap_or(law.joint));
+        let samples = self.motion.first().map_or(0, Vec::len);
+        let t: Vec<f64> =
+            (0..samples).map(|k| self.start_s + self.step_s * (first + k) as f64).collect();
+        let load_rate = slope(&self.loads[joint], self.step_s);
+        apply(&JointSamples {
+            t: &t,
+            q: &self.motion[joint],
+            qd: &self.motion[n + joint],
+            qdd: &self.motion[2 * n + joint],
+            tau_load: &self.loads[joint],
+            tau_load_rate: &load_rate,
+            tau,
+            q_2: &self.motion[other],
+            qd_2: &self.motion[n + other],
+            qdd_2: &self.motion[2 * n + other],
+            tau_load_2: &self.loads[other],
+        })
+    }
+}
+
+/// The torques of the bodies alone, with the values that the model gives [N m, N].
+fn loads(model: &RegressionModel, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let is_of_body = |owner: &Option<(String, &str)>| {
+        owner.as_ref().is_none_or(|(_, prefix)| !NOT_OF_BODIES.contains(prefix))
+    };
+    let standard: Vec<f64> = model
+        .standard
+        .iter()
+        .map(|one| if is_of_body(&one.owner) { one.value.unwrap_or(0.0) } else { 0.0 })
+        .collect();
+    let phi = model.axes_of_standard(&standard);
+    let own: Vec<Vec<f64>> = model
+        .pattern()
+        .iter()
+        .map(|places| places.iter().map(|&place| phi[place]).collect())
+        .collect();
+    let samples = motion.first().map_or(0, Vec::len);
+    let mut found = vec![Vec::with_capacity(samples); own.len()];
+    let (mut evaluator, mut rows) = (model.evaluator(), RegressionRows::default());
+    for first in (0..samples).step_by(BLOCK) {
+        let range = first..(first + BLOCK).min(samples);
+        let block: Vec<&[f64]> = motion.iter().map(|column| &column[range.clone()]).collect();
+        evaluator.evaluate(&block, &mut rows).expect("motion has three columns for each joint");
+        let mut part = vec![0.0; range.len()];
+        for (joint, own) in own.iter().enumerate() {
+            rows.torque(joint, own, &mut part);
+            found[joint].extend_from_slice(&part);
+        }
+    }
+    found
+}
+
+/// Central differences, one-sided at the ends.
+fn slope(signal: &[f64], step_s: f64) -> Vec<f64> {
+    let last = signal.len().saturating_sub(1);
+    let at = |k: usize| {
+        let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
+        (signal[to] - signal[from]) / (step_s * (to - from).max(1) as f64)
+    };
+    (0..signal.len()).map(at).collect()
+}

@@ -1,0 +1,128 @@
+//! The effects that a model has, apart: what moves the robot stays in its equations; laws of joints
+//! and of what is logged stand beside them.
+
+use super::{EffectError, EffectLaw, LawParameter};
+use denavit_codegen::effect::{Effect, Law, find, place_name};
+use denavit_codegen::model::{AddedEffect, EffectPlace, LinkId, Robot};
+use denavit_codegen::program::constant_values;
+use std::fmt;
+
+/// A law that a model has beside its equations, with the values that the model gives.
+#[derive(Clone, Debug)]
+pub struct AddedLaw {
+    /// Its number among the effects of the model.
+    pub number: usize,
+    /// What it is, in words.
+    pub title: String,
+    /// Its place: the joint, or `joint with joint`.
+    pub at: String,
+    /// The row of its joint.
+    pub joint: usize,
+    /// The row of the second joint of a pair.
+    pub second: Option<usize>,
+    /// The law.
+    pub law: EffectLaw,
+    /// The values of its parameters.
+    pub values: Vec<f64>,
+    /// Their standard deviations, where the model states them.
+    pub deviations: Vec<Option<f64>>,
+}
+
+/// A model with effects, apart.
+#[derive(Clone, Debug)]
+pub struct ApartEffects {
+    /// The robot with what moves it and with its terms, at the values that the model gives: these
+    /// are known there. It has no effects and no laws.
+    pub robot: Robot,
+    /// What its equations took up: effect and place.
+    pub taken_up: Vec<[String; 2]>,
+    /// The others.
+    pub laws: Vec<AddedLaw>,
+}
+
+/// Why effects of a model cannot be taken apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AddedError {
+    /// A parameter has no value.
+    NoValue {
+        /// The effect.
+        effect: String,
+        /// Its place.
+        at: String,
+        /// The parameter.
+        parameter: String,
+    },
+    /// A constant of a law is no finite number; holds the effect's name.
+    Law(String, EffectError),
+}
+
+impl fmt::Display for AddedError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoValue { effect, at, parameter } => write!(
+                f,
+                "`{effect}` at {at} has no value for `{parameter}`\n  hint: give it one in \
+                 \"parameters\" of the effect"
+            ),
+            Self::Law(effect, error) => write!(f, "`{effect}`: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for AddedError {}
+
+/// Takes apart a robot that was read with its effects; `own` are definitions that stand before the
+/// shipped ones.
+///
+/// # Errors
+/// [`AddedError`] where a law of a joint lacks a value.
+pub fn apart(robot: &Robot, own: &[Effect]) -> Result<ApartEffects, AddedError> {
+    let (mut taken_up, mut laws) = (Vec::new(), Vec::new());
+    for (number, added) in robot.effects.iter().enumerate() {
+        let at = place_name(robot, added.at);
+        let known = own.iter().find(|effect| effect.name == added.effect);
+        let effect = known.or_else(|| find(&added.effect));
+        let effect = effect.expect("a robot that was read has effects that are defined");
+        match effect.law {
+            Law::Moves(_) | Law::Term(_) => taken_up.push([added.effect.clone(), at]),
+            Law::Torque(_) | Law::Measured(_) => {
+                laws.push(law_of(robot, (number, added), effect, at)?);
+            }
+        }
+    }
+    let robot = Robot { effects: Vec::new(), laws: Vec::new(), ..robot.clone() };
+    Ok(ApartEffects { robot, taken_up, laws })
+}
+
+fn law_of(
+    robot: &Robot,
+    (number, added): (usize, &AddedEffect),
+    effect: &Effect,
+    at: String,
+) -> Result<AddedLaw, AddedError> {
+    let row = |link: LinkId| {
+        let row = robot.joints().position(|(joint, _)| joint == link);
+        row.expect("an effect of a joint acts on one that moves")
+    };
+    let (link, second) = match added.at {
+        EffectPlace::Pair(link, second) => (link, Some(row(second))),
+        EffectPlace::Link(link) => (link, None),
+        EffectPlace::Contact(_) | EffectPlace::Model => {
+            unreachable!("laws were attached to joints")
+        }
+    };
+    let kind = robot.links[link].joint.kind;
+    let law = EffectLaw::new(effect, kind)
+        .map_err(|error| AddedError::Law(added.effect.clone(), error))?;
+    let (mut values, mut deviations) = (Vec::new(), Vec::new());
+    for LawParameter { name, .. } in &law.parameters {
+        let Some(given) = added.parameters.iter().find(|given| given.name == *name) else {
+            let (effect, parameter) = (added.effect.clone(), name.clone());
+            return Err(AddedError::NoValue { effect, at, parameter });
+        };
+        values.push(constant_values(&robot.dag, &[given.value])[0]);
+        deviations.push(given.std.map(|std| constant_values(&robot.dag, &[std])[0]));
+    }
+    let (title, joint) = (effect.title.clone(), row(link));
+    Ok(AddedLaw { number, title, at, joint, second, law, values, deviations })
+}

@@ -8,13 +8,15 @@ Both sides get the same model files (shipped ones without their drives and sprin
 with all values folded in, and the same inputs. Each of CasADi's functions is compiled by gcc and by
 clang, -O3 -march=native; ours by rustc for the native processor. Results are compared before anything
 is timed: with each other and, on four inputs, with 60 digits. A round times every variant once, in
-turns; tables have medians over rounds of the nanoseconds of a call, and of ratios within a round, of
+turns: calls one after the other, and calls in a chain, each of which waits for the result of the
+last one. Tables have medians over rounds of the nanoseconds of a call, and of ratios within a round, of
 which CasADi's better compiler counts. It runs on x86-64 alone, as it calls our functions by the way in
 which C returns arrays there.
 """
 import argparse
 import ctypes
 import json
+import os
 import pathlib
 import shutil
 import statistics
@@ -128,8 +130,7 @@ def build_casadi(name, function, model, folder):
     libraries = {}
     for compiler in ("gcc", "clang"):
         library = folder / f"{symbol}.{compiler}.so"
-        flags = C_FLAGS if compiler == "clang" else [*C_FLAGS, "-fno-plt"]
-        run([compiler, *flags, folder / f"{symbol}.c", "-o", library, "-lm"])
+        run([compiler, *C_FLAGS, folder / f"{symbol}.c", "-o", library, "-lm"])
         libraries[compiler] = library
     return libraries, operations(compiled), compiled.sz_iw(), compiled.sz_w()
 
@@ -245,7 +246,7 @@ def build_ours(models, functions, folder, denavit, flags):
         '[lib]\ncrate-type = ["cdylib"]\n'
         f'[dependencies]\ndenavit-runtime = {{ path = "{ROOT}/codegen/runtime", features = ["fma", "wide"] }}\n'
         "[profile.release]\ncodegen-units = 1\npanic = \"abort\"\n[workspace]\n")
-    environment = {**__import__("os").environ, "RUSTFLAGS": flags,
+    environment = {**os.environ, "RUSTFLAGS": flags,
                    "CARGO_TARGET_DIR": str(folder / "ours" / "target")}
     run(["cargo", "build", "--release", "--quiet"], cwd=folder / "ours", env=environment)
     return ctypes.CDLL(str(folder / "ours/target/release/libours.so")), sizes
@@ -255,11 +256,12 @@ class Variant(ctypes.Structure):
     """A function that can be called and timed: `variant` of timing.c."""
 
     _fields_ = [("function", ctypes.c_void_p), ("kind", ctypes.c_int64),
+                ("chained", ctypes.c_int64),
                 ("outputs", ctypes.c_void_p), ("integers", ctypes.c_void_p),
                 ("work", ctypes.c_void_p)]
 
     @classmethod
-    def new(cls, label, library, symbol, size, kind, integers=0, numbers=0):
+    def new(cls, label, library, symbol, size, kind, integers=0, numbers=0, is_chained=False):
         """CasADi's functions have memory of their own, so they come with its size."""
         variant = cls()
         variant.label, variant.result = label, numpy.zeros(INPUTS * size)
@@ -269,6 +271,7 @@ class Variant(ctypes.Structure):
         variant.function = ctypes.cast(getattr(library, symbol), ctypes.c_void_p)
         variant.kind, variant.outputs = kind, variant.result.ctypes.data
         variant.size = size
+        variant.chained = size if is_chained else 0
         variant.integers, variant.work = (array.ctypes.data for array in memory)
         return variant
 
@@ -280,16 +283,19 @@ class Variant(ctypes.Structure):
         return self.result[:inputs * self.size].reshape(-1, inputs).T.copy()
 
 
+def in_own_frames(model, regressor):
+    """A regressor for parameters in the frames of joints, for those in the frames of bodies."""
+    columns = regressor.reshape(len(model.joints), 10 * len(model.bodies)).copy()
+    for row, body in enumerate(model.bodies):
+        block = slice(10 * row, 10 * row + 10)
+        columns[:, block] = columns[:, block] @ numpy.array(rigid_body.axis_frame_columns(body)).T
+    return columns.ravel()
+
+
 def difference(function, model, ours, theirs):
     """The largest difference, relative to the largest entry."""
     if function == "regressor":
-        n, columns = len(model.joints), 10 * len(model.bodies)
-        theirs = theirs.reshape(n, columns).copy()
-        for row, body in enumerate(model.bodies):
-            block = slice(10 * row, 10 * row + 10)
-            theirs[:, block] = theirs[:, block] @ numpy.array(
-                rigid_body.axis_frame_columns(body)).T
-        theirs = theirs.ravel()
+        theirs = in_own_frames(model, theirs)
     return abs(ours - theirs).max() / abs(theirs).max()
 
 
@@ -302,28 +308,49 @@ def columns_of(arguments):
     return numpy.ascontiguousarray(arguments.reshape(len(arguments), -1).T)
 
 
-EXACT = {
-    "inverse_dynamics": lambda robot, q, v, a: robot.inverse_dynamics(q, v, a),
-    "mass_matrix": lambda robot, q, v, a: sum(robot.mass_matrix(q), []),
-    "forward_dynamics": lambda robot, q, v, a: robot.forward_dynamics(q, v, a),
-    "gravity_vector": lambda robot, q, v, a: robot.gravity_vector(q),
-}
+def exact(function, model, q, v, a):
+    """The result to some 40 digits, slopes by differences: of 60 digits they take 20."""
+    robot = rigid_body.Dynamics(model, mpmath.sin, mpmath.cos)
+    step = mpmath.mpf(10) ** -20
+
+    def slope(of, x, k):
+        ahead, behind = ([y + sign * step * (row == k) for row, y in enumerate(x)]
+                         for sign in (1, -1))
+        return [(f - b) / (2 * step) for f, b in zip(of(ahead), of(behind))]
+
+    flat = lambda rows: [x for row in rows for x in row]
+    n = robot.n
+    if function == "mass_matrix":
+        return flat(robot.mass_matrix(q))
+    if function == "gravity_vector":
+        return robot.gravity_vector(q)
+    if function == "regressor":
+        return flat(robot.regressor(q, v, a, model.bodies))
+    if function == "inverse_dynamics_derivatives":
+        by_position = [slope(lambda x: robot.inverse_dynamics(x, v, a), q, k) for k in range(n)]
+        by_rate = [slope(lambda x: robot.inverse_dynamics(q, x, a), v, k) for k in range(n)]
+        return flat(zip(*by_position)) + flat(zip(*by_rate))
+    if function == "dynamics_terms":
+        slopes = [slope(lambda x: flat(robot.mass_matrix(x)), q, k) for k in range(n)]
+        coriolis = [sum((slopes[k][n * i + j] + slopes[j][n * i + k] - slopes[i][n * j + k])
+                        * v[k] / 2 for k in range(n)) for i in range(n) for j in range(n)]
+        return flat(robot.mass_matrix(q)) + coriolis + robot.gravity_vector(q)
+    return getattr(robot, function)(q, v, a)
 
 
 def errors(function, model, variants, timing, arguments, n):
     """The largest error of each variant, in parts of the largest entry, against 60 digits."""
-    if function not in EXACT:
-        return [float("nan")] * len(variants)
     mpmath.mp.dps = 60
-    robot = rigid_body.Dynamics(model, mpmath.sin, mpmath.cos)
     worst = [0.0] * len(variants)
-    for vectors in arguments[:4]:
-        given = [[mpmath.mpf(float(x)) for x in vector] for vector in vectors]
-        exact = EXACT[function](robot, *given)
-        largest = max(abs(x) for x in exact)
+    for vectors in arguments[:2 if n > 8 else 4]:
+        truth = exact(function, model,
+                      *([mpmath.mpf(float(x)) for x in vector] for vector in vectors))
+        own = in_own_frames(model, numpy.array(truth)) if function == "regressor" else truth
+        largest = max(abs(x) for x in own)
         for row, variant in enumerate(variants):
             found = variant.evaluate(timing, vectors[None], n)[0]
-            off = max(abs(mpmath.mpf(float(x)) - y) for x, y in zip(found, exact))
+            right = truth if variant.kind == CASADI else own
+            off = max(abs(mpmath.mpf(float(x)) - y) for x, y in zip(found, right))
             worst[row] = max(worst[row], float(off / largest))
     return worst
 
@@ -371,14 +398,21 @@ def compete(name, function, model, libraries, folder):
     single = variants[:compared] + variants[first:]
     error = dict(zip([v.label for v in single],
                      errors(function, model, single, timing, arguments, n)))
+    chained = len(variants)
+    variants += [Variant.new("chained", ours, f"{name}_baked_{function}", size, OURS, is_chained=True)]
+    variants += [Variant.new(f"chained_{v.label}", v.kept[0], f"{name}_{function}", size, CASADI,
+                             integers, numbers, is_chained=True) for v in variants[first:chained]]
     times = timed(timing, variants, arguments, n)
-    best = times[:, first:].min(axis=1)
+    best = times[:, first:chained].min(axis=1)
+    latency = times[:, chained]
     median = lambda column: statistics.median(column.tolist())
     return {
         "model": name, "function": function,
         **{f"{v.label}_ns": median(times[:, row]) for row, v in enumerate(variants)},
         "ratio": median(times[:, 0] / best), "tunable_ratio": median(times[:, 1] / times[:, 0]),
+        "chained_ratio": median(latency / times[:, chained + 1:].min(axis=1)),
         "batch_ratio": median(times[:, compared] / times[:, 0]),
+        "latency_ratio": median(times[:, compared] / latency),
         "casadi_operations": count, "difference": worst,
         **{f"{label}_error": value for label, value in error.items()},
     }
@@ -390,9 +424,14 @@ COLUMNS = {
         ("CasADi, gcc", "{gcc_ns:.0f}"), ("clang", "{clang_ns:.0f}"),
         ("ours / CasADi", "{ratio:.2f}"), ("tunable / baked", "{tunable_ratio:.2f}"),
     ],
+    "in a chain": [
+        ("ours", "{chained_ns:.0f}"), ("CasADi, gcc", "{chained_gcc_ns:.0f}"),
+        ("clang", "{chained_clang_ns:.0f}"), ("ours / CasADi", "{chained_ratio:.2f}"),
+    ],
     "many samples": [
         ("one at a time", "{baked_ns:.0f}"), ("f64x4", "{x4_ns:.0f}"), ("f64x8", "{x8_ns:.0f}"),
         ("f64x4, stored", "{stored_ns:.0f}"), ("f64x4 / one", "{batch_ratio:.2f}"),
+        ("f64x4 / one in a chain", "{latency_ratio:.2f}"),
     ],
     "errors": [
         ("ours", "{baked_error:.1e}"), ("without fusing", "{plain_error:.1e}"),
@@ -406,9 +445,6 @@ def table(rows, title):
     lines = ["| model | function | " + " | ".join(name for name, _ in columns) + " |",
              "|---|---|" + "---:|" * len(columns)]
     for row in rows:
-        # Errors are measured of functions that mpmath can be given; NaN is no figure.
-        if title == "errors" and row["baked_error"] != row["baked_error"]:
-            continue
         cells = " | ".join(cell.format(**row) for _, cell in columns)
         lines.append("| {model} | {function} | ".format(**row) + cells + " |")
     return "\n".join(lines)

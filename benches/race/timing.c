@@ -10,10 +10,13 @@ typedef void (*our_function)(double *, const double *, const double *, const dou
 typedef void (*our_batch)(double *, const double *, int64_t);
 
 enum { CASADI, OURS, OUR_BATCH };
+enum { MAX_JOINTS = 64 };
 
 struct variant {
     void *function;
     int64_t kind;
+    /* Numbers of a result; not 0 in a chain, where each call waits for the last one's result. */
+    int64_t chained;
     double *outputs[1];
     int64_t *integers;
     double *work;
@@ -31,8 +34,15 @@ static void run(const struct variant *variant, const double *arguments, const do
         ((our_batch)variant->function)(variant->outputs[0], columns, inputs);
         return;
     }
+    double waiting[3 * MAX_JOINTS];
     for (int input = 0; input < inputs; ++input) {
         const double *first = arguments + 3 * n * input;
+        if (variant->chained) {
+            const double *last = variant->outputs[0];
+            double nothing = 0.0 * (last[0] + last[variant->chained - 1]);
+            for (int k = 0; k < 3 * n; ++k) waiting[k] = first[k] + nothing;
+            first = waiting;
+        }
         if (variant->kind == OURS) {
             ((our_function)variant->function)(variant->outputs[0], first, first + n, first + 2 * n);
         } else {

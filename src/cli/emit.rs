@@ -53,6 +53,8 @@ pub(crate) struct Arguments {
 struct EmitJson<'a> {
     model: &'a str,
     flavour: String,
+    /// Whether products are fused with sums.
+    fused: bool,
     file: String,
     bytes: usize,
     lines: usize,
@@ -82,8 +84,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let implicit_effects = implicit_effects(&robot);
     if arguments.json {
         let (flavour, bytes) = (flavour.to_string(), text.len());
-        let model = &robot.name;
-        let json = EmitJson { model, flavour, file, bytes, lines, functions, implicit_effects };
+        let (model, fused) = (&robot.name, arguments.fused);
+        let json =
+            EmitJson { model, flavour, fused, file, bytes, lines, functions, implicit_effects };
         write_json(out, &json)?;
     } else {
         let count = functions.len();

@@ -16,26 +16,36 @@ pub fn native_code() -> Result<(), Unsupported> {
     denavit_jit::is_supported()
 }
 
-/// A routine, called for one sample at a time.
+/// A routine, compiled or interpreted.
 #[derive(Clone, Debug)]
-pub(crate) enum NativeRoutine {
-    Compiled(Compiled),
-    Interpreted(Box<Evaluator<f64>>),
+pub(crate) enum Native<C, I> {
+    Compiled(C),
+    Interpreted(Box<I>),
 }
+
+/// A routine, called for one sample at a time.
+pub(crate) type NativeRoutine = Native<Compiled, Evaluator<f64>>;
+
+/// A routine, called for many samples at once.
+pub(crate) type NativeBatch = Native<CompiledBatch, BatchEvaluator<f64>>;
 
 impl NativeRoutine {
     /// Makes `routine` ready, with the values of the prelude.
     pub(crate) fn new(routine: &Routine, prelude: &[f64]) -> Self {
-        match Compiled::new(routine, prelude) {
-            Ok(compiled) => Self::Compiled(compiled),
-            Err(Unsupported { .. }) => {
-                Self::Interpreted(Box::new(Evaluator::new(routine, prelude)))
-            }
-        }
+        let interpret = |_| Self::Interpreted(Box::new(Evaluator::new(routine, prelude)));
+        Compiled::new(routine, prelude).map_or_else(interpret, Self::Compiled)
     }
 }
 
-impl Evaluate for NativeRoutine {
+impl NativeBatch {
+    /// Makes `routine` ready, with the values of the prelude.
+    pub(crate) fn new(routine: &Routine, prelude: &[f64]) -> Self {
+        let interpret = |_| Self::Interpreted(Box::new(BatchEvaluator::new(routine, prelude)));
+        CompiledBatch::new(routine, prelude).map_or_else(interpret, Self::Compiled)
+    }
+}
+
+impl<C: Evaluate, I: Evaluate> Evaluate for Native<C, I> {
     fn outputs(&self) -> usize {
         match self {
             Self::Compiled(routine) => routine.outputs(),
@@ -51,26 +61,7 @@ impl Evaluate for NativeRoutine {
     }
 }
 
-/// A routine, called for many samples at once.
-#[derive(Clone, Debug)]
-pub(crate) enum NativeBatch {
-    Compiled(CompiledBatch),
-    Interpreted(Box<BatchEvaluator<f64>>),
-}
-
-impl NativeBatch {
-    /// Makes `routine` ready, with the values of the prelude.
-    pub(crate) fn new(routine: &Routine, prelude: &[f64]) -> Self {
-        match CompiledBatch::new(routine, prelude) {
-            Ok(compiled) => Self::Compiled(compiled),
-            Err(Unsupported { .. }) => {
-                Self::Interpreted(Box::new(BatchEvaluator::new(routine, prelude)))
-            }
-        }
-    }
-}
-
-impl EvaluateBatch for NativeBatch {
+impl<C: EvaluateBatch, I: EvaluateBatch> EvaluateBatch for Native<C, I> {
     fn inputs(&self) -> usize {
         match self {
             Self::Compiled(routine) => routine.inputs(),

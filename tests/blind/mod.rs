@@ -1,7 +1,7 @@
 //! The blind battery: data in which an effect is hidden, made by code that shares nothing with the
 //! symbolic engine, the catalogue of effects or the simulator. docs/blind-battery.md describes it.
 
-// The tests and the example each use a part of it.
+// The two test programs and the example each use a part of it, so that each warns of the rest.
 #![allow(dead_code)]
 
 pub(crate) mod battery;

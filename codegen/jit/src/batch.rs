@@ -29,7 +29,7 @@ impl CompiledBatch {
     /// # Errors
     /// If there is no code generator for this processor.
     pub fn new(routine: &Routine, prelude: &[f64]) -> Result<Self, Unsupported> {
-        let machine = compile(4, Width::Two, routine, write_loop)?;
+        let machine = compile(4, routine, write_loop)?;
         Ok(Self {
             machine: Arc::new(machine),
             table: table(&routine.code, prelude).into_iter().map(|value| [value; 2]).collect(),
@@ -38,6 +38,7 @@ impl CompiledBatch {
         })
     }
 
+    // Machine code can only be called unsafely.
     #[allow(unsafe_code)]
     fn call(&self, inputs: &[*const f64], outputs: &[*mut f64], pairs: usize) {
         assert!(inputs.len() == self.inputs && outputs.len() == self.outputs);

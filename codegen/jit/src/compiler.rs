@@ -2,15 +2,27 @@
 
 use crate::external;
 use crate::machine::Machine;
-use crate::translate::{Callees, Width};
+use crate::translate::Callees;
 use cranelift_codegen::ir::types::{F64, I64};
 use cranelift_codegen::ir::{AbiParam, Type};
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
-use denavit_codegen::program::Routine;
+use denavit_codegen::program::{Leaf, Routine};
 use std::fmt;
+
+/// Instructions from which on registers are assigned in one pass: the time of the search grows
+/// faster than the code. TUlip's `forward_dynamics_derivatives`, 28000 instructions, is there in
+/// 20 ms instead of 0.6 s, and takes 1.5 times as long.
+const LARGE: usize = 16_384;
+
+/// How registers are assigned.
+#[derive(Clone, Copy)]
+enum Registers {
+    Best,
+    Fast,
+}
 
 /// Why code is not compiled: there is no generator for this processor, or it has no answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,21 +49,32 @@ impl std::error::Error for Unsupported {}
 /// # Errors
 /// If there is none.
 pub fn is_supported() -> Result<(), Unsupported> {
-    module().map(drop)
+    module(Registers::Best).map(drop)
 }
 
 /// Compiles one function of `parameters` addresses (the last one may be a count); `body` writes it,
 /// given the block that it starts in, and does not end it.
+///
+/// # Panics
+/// If a leaf reads beyond its argument: lengths are compared at each call, entries only here.
 pub(crate) fn compile(
     parameters: usize,
-    width: Width,
     routine: &Routine,
     body: impl FnOnce(&mut FunctionBuilder<'_>, Callees, &Routine),
 ) -> Result<Machine, Unsupported> {
     if std::mem::size_of::<usize>() != 8 {
         return Err(Unsupported::because("its addresses have no 64 bits"));
     }
-    let mut module = module()?;
+    for leaf in routine.code.leaves.values() {
+        if let Leaf::Argument { argument, entry } = *leaf {
+            assert!(entry < routine.arguments[argument].len, "an entry beyond its argument");
+        }
+    }
+    let registers = match routine.code.instructions.len() {
+        0..LARGE => Registers::Best,
+        _ => Registers::Fast,
+    };
+    let mut module = module(registers)?;
     let mut context = module.make_context();
     let mut builders = FunctionBuilderContext::new();
     context.func.signature = signature(&module, &vec![I64; parameters], None);
@@ -65,7 +88,7 @@ pub(crate) fn compile(
     builder.finalize();
 
     let signature = context.func.signature.clone();
-    let name = format!("{}_{}", routine.full_name(), width.lanes());
+    let name = routine.full_name();
     let id =
         module.declare_function(&name, Linkage::Local, &signature).map_err(Unsupported::because)?;
     module.define_function(id, &mut context).map_err(Unsupported::because)?;
@@ -73,7 +96,7 @@ pub(crate) fn compile(
     Ok(Machine::new(module, id))
 }
 
-fn module() -> Result<JITModule, Unsupported> {
+fn module(registers: Registers) -> Result<JITModule, Unsupported> {
     let mut flags = settings::builder();
     // Expressions share what they can before they come here, so that optimising finds nothing.
     let wanted = [
@@ -81,6 +104,13 @@ fn module() -> Result<JITModule, Unsupported> {
         ("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" }),
         ("use_colocated_libcalls", "false"),
         ("is_pic", "false"),
+        (
+            "regalloc_algorithm",
+            match registers {
+                Registers::Best => "backtracking",
+                Registers::Fast => "single_pass",
+            },
+        ),
     ];
     for (name, value) in wanted {
         flags.set(name, value).map_err(Unsupported::because)?;

@@ -1,4 +1,5 @@
 //! What compiled code calls: the runtime's functions, by C's calling convention.
+// Compiled code hands over plain addresses.
 #![allow(unsafe_code)]
 
 use denavit_runtime::{Scalar, Transcendental};

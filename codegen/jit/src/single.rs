@@ -27,7 +27,7 @@ impl Compiled {
     /// # Errors
     /// If there is no code generator for this processor.
     pub fn new(routine: &Routine, prelude: &[f64]) -> Result<Self, Unsupported> {
-        let machine = compile(3, Width::One, routine, |builder, callees, routine| {
+        let machine = compile(3, routine, |builder, callees, routine| {
             let block = builder.current_block().expect("the function has begun");
             let [arguments, table, outputs] = [0, 1, 2].map(|row| builder.block_params(block)[row]);
             let places = places(builder, routine, arguments, table);
@@ -77,6 +77,7 @@ impl Evaluate for Compiled {
         self.outputs
     }
 
+    // Machine code can only be called unsafely.
     #[allow(unsafe_code)]
     fn evaluate(&mut self, arguments: &[&[f64]], outputs: &mut [f64]) -> Result<(), ShapeMismatch> {
         ShapeMismatch::check("arguments", self.arguments.len(), arguments.len())?;

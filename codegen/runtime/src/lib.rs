@@ -7,8 +7,8 @@
 //!   Without the feature `fma` nothing here uses a fused multiply-add or asks which target features
 //!   are enabled, so the same source gives the same bits on every target whose `f64` is IEEE
 //!   binary64 (that excludes only 32-bit x86 without SSE2). The sign and payload of a NaN are not
-//!   part of the promise. With the feature, [`Scalar::product_plus`] and its kin round once where
-//!   [`FUSES`] says so; only modules emitted with fused products call them.
+//!   part of the promise. With the feature, [`Scalar::product_plus`] and its kin, which sine and
+//!   cosine and modules emitted with fused products call, round once where [`FUSES`] says so.
 //! - **One sine and cosine.** [`Scalar::sincos`] costs one argument reduction for the pair, has
 //!   no branch in the ordinary range and is exactly odd and even; its error is stated there.
 //! - **No name to fall into.** An inherent method of `f64` wins over a trait method of the same

@@ -1,7 +1,7 @@
 //! Reduction of an angle modulo a quarter turn.
 
+use crate::Scalar;
 use core::f64::consts::FRAC_2_PI;
-use core::ops::{Add, Mul, Sub};
 
 /// An angle x = quarter_turns * pi/2 + head - excess, with |head| <= pi/4 (1 + 1e-9) and `excess`
 /// at most half a unit in the last place of `head`; x = -0 becomes (-0) - (+0). Only the two low
@@ -15,14 +15,9 @@ pub(crate) struct Reduced<R: Lanes> {
 
 /// A number, or a pack of numbers that are computed alike: what the reduction and the polynomials
 /// need of it. Every operation rounds in each lane as it does on one `f64`.
-pub(crate) trait Lanes:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
+pub(crate) trait Lanes: Scalar {
     /// The bits, lane by lane.
     type Bits: Copy;
-
-    /// The number in all lanes.
-    fn splat(value: f64) -> Self;
 
     /// The bits of the numbers.
     fn bits(self) -> Self::Bits;
@@ -33,11 +28,6 @@ pub(crate) trait Lanes:
 
 impl Lanes for f64 {
     type Bits = u64;
-
-    #[inline]
-    fn splat(value: f64) -> Self {
-        value
-    }
 
     #[inline]
     fn bits(self) -> u64 {
@@ -85,18 +75,17 @@ pub(crate) fn is_ordinary(x: f64) -> bool {
 /// Cody and Waite's reduction, for |x| <= [`ORDINARY_RANGE`].
 #[inline]
 pub(crate) fn reduce_ordinary<R: Lanes>(x: R) -> Reduced<R> {
-    let part = HALF_PI.map(R::splat);
-    let biased = x * R::splat(FRAC_2_PI) + R::splat(ROUNDER);
-    let turns = biased - R::splat(ROUNDER);
+    let part = HALF_PI.map(R::from_f64);
+    let biased = x.product_plus(R::from_f64(FRAC_2_PI), R::from_f64(ROUNDER));
+    let turns = biased - R::from_f64(ROUNDER);
     // Exact: unless `turns` is zero, both terms are multiples of 2^-53, and so is their
     // difference, which is below 1.
-    let first = x - turns * part[0];
-    let step = turns * part[1];
-    let second = first - step;
-    // What rounding `second` lost. If |first| < |step| nothing was lost: then `second` is a
-    // multiple of 2^-73 below 2^-20.
-    let lost = (first - second) - step;
-    let correction = turns * part[2] - lost;
+    let first = x.minus_product(turns, part[0]);
+    let second = first.minus_product(turns, part[1]);
+    // What rounding `second` lost. If |first| is below the product nothing was lost: then `second`
+    // is a multiple of 2^-73 below 2^-20.
+    let lost = (first - second).minus_product(turns, part[1]);
+    let correction = turns.product_minus(part[2], lost);
     let head = second - correction;
     let excess = correction - (second - head);
     Reduced { head, excess, quarter_turns: biased.bits() }

@@ -79,18 +79,31 @@ pub trait Scalar:
     fn abs(self) -> Self;
 
     /// -1, 0 or +1 as `self` is negative, zero or positive; a zero keeps its sign, NaN stays NaN.
+    #[inline]
     #[must_use]
-    fn sign(self) -> Self;
+    fn sign(self) -> Self {
+        let not_positive = Self::select_less(self, Self::ZERO, -Self::ONE, self);
+        Self::select_less(Self::ZERO, self, Self::ONE, not_positive)
+    }
 
     /// The lesser of the two; `self` if they are equal (so of two zeros the left one), NaN if
     /// either is NaN: a fault is not clipped away.
+    #[inline]
     #[must_use]
-    fn lesser(self, other: Self) -> Self;
+    fn lesser(self, other: Self) -> Self {
+        // A NaN on the right fails the first comparison and is chosen by it.
+        let chosen = Self::select_less_equal(self, other, self, other);
+        Self::select_equal(self, self, chosen, self)
+    }
 
     /// The greater of the two; `self` if they are equal (so of two zeros the left one), NaN if
     /// either is NaN: a fault is not clipped away.
+    #[inline]
     #[must_use]
-    fn greater(self, other: Self) -> Self;
+    fn greater(self, other: Self) -> Self {
+        let chosen = Self::select_less_equal(other, self, self, other);
+        Self::select_equal(self, self, chosen, self)
+    }
 
     /// `then` if `left < right`, else `otherwise`; a comparison with NaN does not hold.
     #[must_use]
@@ -105,9 +118,9 @@ pub trait Scalar:
     fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
 }
 
-/// What `f64` and `f32` do alike: everything but constants and the sine and cosine. A product that
-/// is negated is exact, so a fused difference is a fused sum of it.
-macro_rules! comparisons_and_signs {
+/// The fused operations, where the target has them. A product that is negated is exact, so a fused
+/// difference is a fused sum of it.
+macro_rules! fused_operations {
     () => {
         #[cfg(all(feature = "fma", any(target_feature = "fma", target_arch = "aarch64")))]
         #[inline]
@@ -126,30 +139,20 @@ macro_rules! comparisons_and_signs {
         fn minus_product(self, left: Self, right: Self) -> Self {
             (-left).mul_add(right, self)
         }
+    };
+}
+#[cfg(feature = "wide")]
+pub(crate) use fused_operations;
+
+/// What `f64` and `f32` do alike: everything but constants and the sine and cosine.
+macro_rules! comparisons_and_signs {
+    () => {
+        fused_operations!();
 
         #[inline]
         fn abs(self) -> Self {
             // The inherent method, which the compiler prefers here.
             self.abs()
-        }
-
-        #[inline]
-        fn sign(self) -> Self {
-            let not_positive = Self::select_less(self, 0.0, -1.0, self);
-            Self::select_less(0.0, self, 1.0, not_positive)
-        }
-
-        #[inline]
-        fn lesser(self, other: Self) -> Self {
-            // A NaN on the right fails the first comparison and is chosen by it.
-            let chosen = Self::select_less_equal(self, other, self, other);
-            Self::select_equal(self, self, chosen, self)
-        }
-
-        #[inline]
-        fn greater(self, other: Self) -> Self {
-            let chosen = Self::select_less_equal(other, self, self, other);
-            Self::select_equal(self, self, chosen, self)
         }
 
         #[inline]

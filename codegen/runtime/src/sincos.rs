@@ -81,18 +81,18 @@ pub(crate) fn of_reduced<R: Lanes>(reduced: Reduced<R>) -> (R, R) {
     let Reduced { head, excess, quarter_turns } = reduced;
     let square = head * head;
     let fourth = square * square;
-    let half = R::splat(0.5) * square;
-    let leading = R::splat(1.0) - half;
+    let half = R::from_f64(0.5);
+    let leading = R::ONE.minus_product(half, square);
 
     // sin(h - e) = h - [e cos h + h^3 S(h^2)]: the bracket is small, so h comes last; and -0 - 0
     // is -0, whereas a sum would lose the sign of zero.
-    let bracket = excess * leading + square * head * polynomial(SINE, square, fourth);
+    let bracket = (square * head).product_plus(polynomial(SINE, square, fourth), excess * leading);
     let sine = head - bracket;
 
     // cos(h - e) = 1 - h^2/2 + [h^4 C(h^2) + e sin h]; since 1 - `leading` is exact, `lost` is
     // what rounding `leading` lost.
-    let lost = (R::splat(1.0) - leading) - half;
-    let bracket = fourth * polynomial(COSINE, square, fourth) + head * excess;
+    let lost = (R::ONE - leading).minus_product(half, square);
+    let bracket = fourth.product_plus(polynomial(COSINE, square, fourth), head * excess);
     let cosine = leading + (lost + bracket);
 
     R::turned(sine, cosine, quarter_turns)
@@ -101,7 +101,8 @@ pub(crate) fn of_reduced<R: Lanes>(reduced: Reduced<R>) -> (R, R) {
 /// a0 + a1 z + .. + a5 z^5 from z and z^2, in pairs: a shorter chain of waiting than Horner's.
 #[inline]
 fn polynomial<R: Lanes>(coefficients: [f64; 6], z: R, z_squared: R) -> R {
-    let a = coefficients.map(R::splat);
-    let high = (a[2] + a[3] * z) + z_squared * (a[4] + a[5] * z);
-    (a[0] + a[1] * z) + z_squared * high
+    let a = coefficients.map(R::from_f64);
+    let pair = |low: usize| a[low + 1].product_plus(z, a[low]);
+    let high = z_squared.product_plus(pair(4), pair(2));
+    z_squared.product_plus(high, pair(0))
 }

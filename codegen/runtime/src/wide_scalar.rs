@@ -5,19 +5,23 @@
 use crate::Scalar;
 use crate::pack::Packed;
 use crate::reduction::{Lanes, ORDINARY_RANGE, reduce_ordinary};
+use crate::scalar::fused_operations;
 use crate::sincos::{of_reduced, sincos};
 use wide::{f64x4, f64x8, u64x4, u64x8};
 
+/// The last samples, the last one repeated. Apart from the loop over full packs: where the two meet
+/// the compiler stores lanes one by one, and the processor waits until it can read them as one.
+#[cold]
+#[inline(never)]
+fn read_last<const N: usize>(lanes: &mut [f64; N], there: &[f64]) {
+    *lanes = core::array::from_fn(|lane| there[lane.min(there.len() - 1)]);
+}
+
 /// Implements the traits for a pack; the lanes are computed as the runtime's `f64` is.
 macro_rules! pack {
-    ($pack:ident, $bits:ident, $lanes:literal, $fused:meta) => {
+    ($pack:ident, $bits:ident, $lanes:literal) => {
         impl Lanes for $pack {
             type Bits = $bits;
-
-            #[inline]
-            fn splat(value: f64) -> Self {
-                Self::splat(value)
-            }
 
             #[inline]
             fn bits(self) -> $bits {
@@ -54,45 +58,11 @@ macro_rules! pack {
                 (Self::new(pairs.map(|pair| pair.0)), Self::new(pairs.map(|pair| pair.1)))
             }
 
-            #[cfg(all(feature = "fma", $fused))]
-            #[inline]
-            fn product_plus(self, factor: Self, addend: Self) -> Self {
-                self.mul_add(factor, addend)
-            }
-
-            #[cfg(all(feature = "fma", $fused))]
-            #[inline]
-            fn product_minus(self, factor: Self, subtrahend: Self) -> Self {
-                self.mul_add(factor, -subtrahend)
-            }
-
-            #[cfg(all(feature = "fma", $fused))]
-            #[inline]
-            fn minus_product(self, left: Self, right: Self) -> Self {
-                (-left).mul_add(right, self)
-            }
+            fused_operations!();
 
             #[inline]
             fn abs(self) -> Self {
                 self.abs()
-            }
-
-            #[inline]
-            fn sign(self) -> Self {
-                let not_positive = Self::select_less(self, Self::ZERO, -Self::ONE, self);
-                Self::select_less(Self::ZERO, self, Self::ONE, not_positive)
-            }
-
-            #[inline]
-            fn lesser(self, other: Self) -> Self {
-                let chosen = Self::select_less_equal(self, other, self, other);
-                Self::select_equal(self, self, chosen, self)
-            }
-
-            #[inline]
-            fn greater(self, other: Self) -> Self {
-                let chosen = Self::select_less_equal(other, self, self, other);
-                Self::select_equal(self, self, chosen, self)
             }
 
             #[inline]
@@ -119,13 +89,11 @@ macro_rules! pack {
             #[inline]
             fn read(&mut self, columns: &[&[f64]], first: usize) {
                 let there = &columns[0][first..];
-                *self = match there.first_chunk::<$lanes>() {
-                    Some(lanes) => Self::new(*lanes),
-                    None => {
-                        let last = there.len() - 1;
-                        Self::new(core::array::from_fn(|lane| there[lane.min(last)]))
-                    }
-                };
+                match there.first_chunk::<$lanes>() {
+                    // Read as one: an array would go through memory in parts.
+                    Some(lanes) => *self = bytemuck::pod_read_unaligned(bytemuck::bytes_of(lanes)),
+                    None => read_last(bytemuck::cast_mut::<Self, [f64; $lanes]>(self), there),
+                }
             }
 
             #[inline]
@@ -142,8 +110,8 @@ macro_rules! pack {
 
 // Where the target has no register of this size a pack is several smaller ones, and fusing is left
 // to those targets on which single numbers fuse too.
-pack!(f64x4, u64x4, 4, any(target_feature = "fma", target_arch = "aarch64"));
-pack!(f64x8, u64x8, 8, any(target_feature = "fma", target_arch = "aarch64"));
+pack!(f64x4, u64x4, 4);
+pack!(f64x8, u64x8, 8);
 
 #[cfg(feature = "libm")]
 mod transcendental {

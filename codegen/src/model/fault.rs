@@ -211,6 +211,8 @@ pub enum Cause {
     BodyOnFixedBase,
     /// An entry that a fixed joint cannot have.
     NotOnFixedJoint(&'static str),
+    /// An angle that is near a multiple of a quarter turn, and not one; holds that multiple.
+    RoundedAngle(String),
     /// An unknown in a row of the table.
     UnknownInRow(String),
     /// A drive of a fixed joint.

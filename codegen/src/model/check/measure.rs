@@ -228,6 +228,11 @@ pub(super) fn approximate(dag: &Dag, value: ExprId) -> Option<Rational> {
     done.remove(&value).flatten()
 }
 
+/// A convergent of the continued fraction of pi, right to 2e-38.
+pub(super) fn near_pi() -> Rational {
+    ratio(2_646_693_125_139_304_345, 842_468_587_426_513_207)
+}
+
 fn approximate_node(
     dag: &Dag,
     node: Node,
@@ -238,8 +243,7 @@ fn approximate_node(
     };
     match node {
         Node::Constant(id) => Some(dag.constant_value(id).clone()),
-        // a convergent of the continued fraction of pi, right to 2e-38
-        Node::Pi => Some(ratio(2_646_693_125_139_304_345, 842_468_587_426_513_207)),
+        Node::Pi => Some(near_pi()),
         Node::Neg(a) => Some(-of(a)?),
         Node::Add(a, b) => short(of(a)? + of(b)?),
         Node::Sub(a, b) => short(of(a)? - of(b)?),

@@ -3,6 +3,7 @@
 //! The order is that of the file, so that names are known before they are used: names, constants
 //! and unknowns, base, tree, rows and bodies, drives, points, effects.
 
+mod angle;
 mod body;
 mod declare;
 mod joint;

@@ -52,6 +52,11 @@ impl Check<'_> {
                 None => {
                     let (name, dimension) = (names[entry], dimensions[entry]);
                     self.scope.expect(expr, name, dimension, scalar.at, self.report);
+                    if dimension == Dimension::NONE
+                        && let Some(cause) = self.scope.rounded_angle(expr)
+                    {
+                        self.push(scalar.at, cause);
+                    }
                 }
             }
             expr

@@ -1,6 +1,7 @@
 //! Names and expressions: what is declared, and the reading of everything that refers to it.
 
-use super::measure::{Facts, Measure, NodeFault, approximate};
+use super::angle::rounded_quarter_turn;
+use super::measure::{Facts, Measure, NodeFault, approximate, near_pi};
 use crate::expr::text::nearest;
 use crate::expr::text::{self, ParseCause};
 use crate::expr::{Dag, ExprId, SymbolClass, free_symbols};
@@ -141,6 +142,13 @@ impl Scope {
     pub(crate) fn approximate(&mut self, expr: ExprId) -> Option<Rational> {
         self.facts.update(&mut self.dag);
         approximate(&self.dag, self.facts.value(expr)?)
+    }
+
+    /// The fault of an angle that is a number near a multiple of a quarter turn.
+    pub(crate) fn rounded_angle(&mut self, angle: ExprId) -> Option<Cause> {
+        self.facts.update(&mut self.dag);
+        let value = self.dag.as_constant(self.facts.value(angle)?)?;
+        rounded_quarter_turn(value, &near_pi())
     }
 
     /// Whether an expression depends on a symbol.

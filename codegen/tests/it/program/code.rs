@@ -6,7 +6,8 @@ use denavit_codegen::expr::{Dag, ExprId, SymbolClass};
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::number::Rational;
 use denavit_codegen::program::{
-    Counts, Fault, Instruction, Leaf, LowerError, Slot, counts, lower, peak_live, schedule, verify,
+    Counts, Fault, Instruction, Leaf, LowerError, Operation, Slot, counts, fuse, lower, peak_live,
+    schedule, verify,
 };
 
 fn function(arguments: &[ExprId], entries: &[ExprId]) -> Function {
@@ -116,6 +117,46 @@ fn the_schedule_keeps_values_short_lived() {
     });
     assert!(peak_live(&reversed) >= 39);
     assert_eq!(schedule(&reversed), code.instructions);
+}
+
+/// The sines that wait for nothing but arguments come first, so that they can be computed at once.
+#[test]
+fn sines_of_arguments_come_first() {
+    let mut dag = Dag::new();
+    let [a, b, c] = ["a", "b", "c"].map(|name| dag.symbol(name, SymbolClass::Configuration));
+    let (sine, cosine, both) = (dag.sin(a), dag.cos(b), dag.add(a, b));
+    let far = dag.sin(both);
+    let product = dag.mul(c, sine);
+    let late = dag.cos(product);
+    let program = lower(&dag, &[function(&[a, b, c], &[product, cosine, far, late])]).unwrap();
+    let kinds: Vec<bool> = (program.routines[0].code.instructions.iter())
+        .map(|instruction| matches!(instruction, Instruction::SinCos { .. }))
+        .collect();
+    // a + b; then the sines of a, b and a + b; then c sin a; and its cosine.
+    assert_eq!(kinds, [false, true, true, true, false, true]);
+}
+
+/// Products that one sum uses are taken in; a product of two users is computed once as before.
+#[test]
+fn products_of_one_user_are_fused() {
+    let mut dag = Dag::new();
+    let [a, b, c, d] = ["a", "b", "c", "d"].map(|n| dag.symbol(n, SymbolClass::Configuration));
+    let (shared, own) = (dag.mul(a, b), dag.mul(c, d));
+    let (sum, difference) = (dag.add(own, a), dag.sub(shared, c));
+    let other = dag.add(shared, d);
+    let mut program = lower(&dag, &[function(&[a, b, c, d], &[sum, difference, other])]).unwrap();
+    let before = counts(&program, &program.routines[0]);
+    fuse(&mut program);
+    let code = &program.routines[0].code;
+    assert_eq!(counts(&program, &program.routines[0]), before);
+    // c d + a in one; a b, a b - c, a b + d.
+    let fused = (code.instructions.iter())
+        .filter(|instruction| {
+            matches!(instruction, Instruction::Value { operation: Operation::Fused(..), .. })
+        })
+        .count();
+    assert_eq!((fused, code.instructions.len()), (1, 4));
+    assert!(verify(&program).is_empty());
 }
 
 #[test]

@@ -188,7 +188,9 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let share = |(noise, torque): (&f64, &f64)| if *torque > 0.0 { noise / torque } else { 0.0 };
     let counted: Vec<f64> = found.noise.iter().zip(&torques).map(share).collect();
     let mut misread = misread_columns(model, train, (&listed, noise_of_own.as_deref()));
-    if counted.iter().all(|share| *share < CLEAN) {
+    let measured = counted.iter().filter(|share| **share > 0.0).count().max(1) as f64;
+    let squares: f64 = counted.iter().map(|share| share * share).sum();
+    if (squares / measured).sqrt() < CLEAN {
         misread.retain(|one| !one.is_guess());
     }
     let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));

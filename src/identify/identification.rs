@@ -2,10 +2,10 @@
 
 use super::condition::Conditioned;
 use super::estimate::{
-    CLEAN, Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, MisreadColumns,
-    Options, SlowRows, Status, Validation, biased_frictions, consistent, convergence, estimate,
-    filter_errors, long_enough, misread_columns, noise_of_positions, nominal_values, parameters,
-    unexplained_joints, validate,
+    CLEAN, Consistent, Convergence, Estimate, EstimateError, Evidence, IdentifiedParameter,
+    MisreadColumns, Options, SlowRows, Status, Validation, biased_frictions, consistent,
+    convergence, estimate, filter_errors, long_enough, misread_apart, misread_columns,
+    noise_of_positions, nominal_values, parameters, unexplained_joints, validate,
 };
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -40,7 +40,7 @@ pub struct Identification {
     /// of its root of mean square. Parameters are biased if it is more than some percent.
     pub position_noise: Option<(String, f64)>,
     /// Columns that seem to be other ones than they are taken for, one after the other: each with
-    /// those before it mended.
+    /// those before it mended; those of the logs for validation at last.
     pub misread: Vec<MisreadColumns>,
     /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
     /// it, and how much: a share of its root of mean square.
@@ -172,11 +172,7 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
     let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
     let left = validate(model, phi, train);
-    let torque_of = |joint: &RegressionJoint| {
-        let found = left.joints.iter().find(|one| one.name == joint.name);
-        found.map_or(0.0, |one| one.torque_rms)
-    };
-    let torques: Vec<f64> = model.joints.iter().map(torque_of).collect();
+    let torques = torques(model, &left);
     let deviations = &options.position_noise;
     let noise = noise_of_positions(model, train, (phi, deviations), &torques, true);
     let names = model.joints.iter().map(|joint| joint.name.clone());
@@ -187,12 +183,20 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let held_out_left = judged(phi);
     let share = |(noise, torque): (&f64, &f64)| if *torque > 0.0 { noise / torque } else { 0.0 };
     let counted: Vec<f64> = found.noise.iter().zip(&torques).map(share).collect();
-    let mut misread = misread_columns(model, train, (&listed, noise_of_own.as_deref()));
+    let evidence = Evidence { values: None, listed: &listed, noise: noise_of_own.as_deref() };
+    let mut misread = misread_columns(model, train, evidence);
     let measured = counted.iter().filter(|share| **share > 0.0).count().max(1) as f64;
     let squares: f64 = counted.iter().map(|share| share * share).sum();
     if (squares / measured).sqrt() < CLEAN {
         misread.retain(|one| !one.is_guess());
     }
+    let others = held_out_misread(model, held_out, (phi, deviations));
+    let is_told = |one: &MisreadColumns| {
+        let is_same = |told: &MisreadColumns| told.misreading.is_like(one.misreading);
+        misread.iter().any(|told| told.file.is_none() && is_same(told))
+    };
+    let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
+    misread.extend(others);
     let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));
     Ok(Identification {
         unexplained: unexplained_joints(model, all_left.0, (all_left.1, &counted)),
@@ -212,6 +216,37 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         consistent: consistent(model, &found, &standard),
         estimate: found,
     })
+}
+
+/// Root of mean square of each joint's torque; 0 where none was measured.
+fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
+    let of_joint = |joint: &RegressionJoint| {
+        let found = left.joints.iter().find(|one| one.name == joint.name);
+        found.map_or(0.0, |one| one.torque_rms)
+    };
+    model.joints.iter().map(of_joint).collect()
+}
+
+/// Columns that seem to be other ones in each of the logs for validation: by what was found in the
+/// others, and by estimates of their own.
+fn held_out_misread(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (phi, deviations): (&[f64], &[f64]),
+) -> Vec<MisreadColumns> {
+    let of_log = |log: &Conditioned| {
+        let log = std::slice::from_ref(log);
+        let left = validate(model, phi, log);
+        let torques = torques(model, &left);
+        let noise = noise_of_positions(model, log, (phi, deviations), &torques, false);
+        let evidence = Evidence { values: Some(phi), listed: &[], noise: Some(&noise) };
+        let mut misread = misread_apart(model, log, evidence);
+        if left.relative < CLEAN {
+            misread.retain(|one| !one.is_guess());
+        }
+        misread
+    };
+    logs.iter().flat_map(of_log).collect()
 }
 
 /// The joint of whose torque the filter makes most by itself, if that is a part of what is left.

@@ -349,28 +349,26 @@ impl Conditioned {
     pub fn motion(&self, range: Range<usize>, columns: &mut Vec<Vec<f64>>) {
         let n = self.joints();
         columns.resize(3 * n, Vec::new());
-        for (joint, q) in self.q.iter().enumerate() {
-            let fill = |column: &mut Vec<f64>, at: &dyn Fn(usize) -> f64| {
-                column.clear();
-                column.extend(range.clone().map(at));
-            };
-            fill(&mut columns[joint], &|k| q[k]);
-            match &self.rates {
-                Some([rates, accelerations]) => {
-                    fill(&mut columns[n + joint], &|k| rates[joint][k]);
-                    fill(&mut columns[2 * n + joint], &|k| accelerations[joint][k]);
-                }
-                None => {
-                    let h = self.step_s;
-                    fill(&mut columns[n + joint], &|k| rate(q, k) / h);
-                    fill(&mut columns[2 * n + joint], &|k| acceleration(q, k) / (h * h));
-                }
-            }
+        for (place, column) in columns.iter_mut().enumerate() {
+            column.clear();
+            column.extend(range.clone().map(|at| self.moved(place % n, place / n, at)));
         }
     }
 }
 
 impl Conditioned {
+    /// The position of a joint (order 0), its rate or its acceleration at a place within
+    /// [`Conditioned::range`].
+    pub(crate) fn moved(&self, joint: usize, order: usize, place: usize) -> f64 {
+        let q = &self.q[joint];
+        match (order, &self.rates) {
+            (0, _) => q[place],
+            (_, Some(rates)) => rates[order - 1][joint][place],
+            (1, None) => rate(q, place) / self.step_s,
+            (_, None) => acceleration(q, place) / (self.step_s * self.step_s),
+        }
+    }
+
     /// q, qd and qdd at so many samples that are left, from `first` on.
     pub fn motion_at(&self, first: usize, samples: usize, columns: &mut Vec<Vec<f64>>) {
         let from = self.first_place(first);

@@ -5,7 +5,7 @@
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
-//! - [`misread_columns`]: columns of another unit or sign, of other joints, or late
+//! - [`misread_columns`]: columns of another unit, sign or zero, of other joints, or late
 //! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
 
@@ -37,12 +37,12 @@ pub use least_squares::{Estimate, EstimateError, Method, Options, estimate, long
 pub use left_out::SlowRows;
 pub(in crate::identify) use left_out::{biased_frictions, is_biased};
 pub(in crate::identify) use likelihood::noise_of_positions;
-pub(in crate::identify) use misread::CLEAN;
-pub(in crate::identify) use misread::nominal_values;
-pub use misread::{ExchangedColumns, MisreadColumns, Misreading, misread_columns};
+pub(in crate::identify) use misread::{CLEAN, misread_apart, nominal_values};
+pub use misread::{Evidence, ExchangedColumns, MisreadColumns, Misreading, misread_columns};
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
+pub(in crate::identify) use solve::DEAD;
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
 pub use unexplained::unexplained_joints;

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 
 /// A direction is not excited if its singular value, of columns scaled to length 1, is below this
 /// share of the largest.
-const DEAD: f64 = 1e-9;
+pub(in crate::identify) const DEAD: f64 = 1e-9;
 
 /// What is known of phi from elsewhere: a sum of entries, what it is, and how surely.
 #[derive(Clone, Debug, PartialEq)]

@@ -237,13 +237,20 @@ fn slope(a: &[f64], b: &[f64]) -> f64 {
     ab / aa
 }
 
+/// Changes of a position that tell the step of its encoder, at least: of one that moves from sample
+/// to sample, and of one that mostly does not.
+const FEWEST_MOVES: usize = 20;
+const FEWEST_STEPS: usize = 5;
+
 /// The step of an encoder: what all differences of neighbouring samples are multiples of.
 pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let size = range(q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
     let tiny = 1e-12 * size.max(1e-6);
     let mut moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
-    if moved.len() < 20 {
+    // where a position rests but for some steps, few tell their size
+    let is_staircase = moved.len() >= FEWEST_STEPS && moved.len() * 10 < q.len();
+    if moved.len() < FEWEST_MOVES && !is_staircase {
         return None;
     }
     let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
@@ -302,6 +309,19 @@ mod tests {
         let printed = sampled(TAU / 20_000.0, Some(7));
         let found = encoder_step(&printed).expect("steps");
         assert!((found / (TAU / 20_000.0) - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    /// Ten steps in three thousand samples.
+    #[test]
+    fn steps_of_slow_motion_are_found() {
+        let at = |k: usize| 0.01 * (1e-3 * k as f64).sin();
+        let slow: Vec<f64> = (0..3000).map(|k| (at(k) / 1e-3).round() * 1e-3).collect();
+        let found = encoder_step(&slow).expect("steps");
+        assert!((found / 1e-3 - 1.0).abs() < 1e-9, "{found}");
+        // at rest, but for a smooth move of ten samples
+        let moved = |k: usize| 0.1 * (0.1 * k.clamp(1000, 1010) as f64).sin();
+        let smooth: Vec<f64> = (0..3000).map(moved).collect();
+        assert_eq!(encoder_step(&smooth), None);
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! How much of the torques is left under a reading of the columns: of those that the model's own
 //! values make of the motion, and of an estimate, whatever its values.
 
-use super::reading::Reading;
+use super::reading::{Reading, Source};
 use crate::identify::condition::Conditioned;
 use crate::identify::estimate::solve::{solve, stacked};
 use crate::identify::estimate::triangle::Triangle;
 use crate::plants::regression::{
     RegressionEvaluator, RegressionModel, RegressionParameter, RegressionRows,
 };
+use nalgebra::DMatrix;
 
 /// Samples that are looked at in all, of robots with many joints, of which there are many readings,
 /// fewer; in blocks of so many, and blocks of each log.
@@ -17,7 +18,7 @@ const BLOCK: usize = 256;
 const BLOCKS: usize = 8;
 
 /// Shares below this are alike: rounding, digits of the log.
-const LEAST: f64 = 1e-3;
+pub(super) const LEAST: f64 = 1e-3;
 
 /// The share of each joint's torque that is left, as roots of mean squares; none where none was
 /// measured.
@@ -50,15 +51,29 @@ struct Window<'a> {
 }
 
 impl Window<'_> {
-    /// The torque of a column, so many samples late.
-    fn torque(&self, column: usize, late: isize) -> Option<Vec<f64>> {
-        let torque = self.log.torque[column].as_ref()?;
-        let range = &self.log.range;
-        let at = |place: usize| {
-            let there = place.saturating_add_signed(late);
-            torque[there.clamp(range.start, range.end - 1)]
-        };
-        Some(self.log.places(self.first, self.count).map(at).collect())
+    /// Its places, so many samples later.
+    fn places(&self, late: isize) -> impl Iterator<Item = usize> {
+        let (first, last) = (self.log.range.start, self.log.range.end - 1);
+        let places = self.log.places(self.first, self.count);
+        places.map(move |place| place.saturating_add_signed(late).clamp(first, last))
+    }
+
+    fn torque(&self, source: &Source) -> Option<Vec<f64>> {
+        let torque = self.log.torque[source.column].as_ref()?;
+        let at = |place: usize| source.factor * torque[place] + source.offset;
+        Some(self.places(source.late).map(at).collect())
+    }
+
+    /// A position, its rate or its acceleration.
+    fn motion(&self, source: &Source, order: usize, time: f64) -> Vec<f64> {
+        let scale = source.factor * time.powi(-(order as i32));
+        let offset = if order == 0 { source.offset } else { 0.0 };
+        if source.late == 0 {
+            let column = &self.motion[order * self.log.joints() + source.column];
+            return column.iter().map(|value| scale * value + offset).collect();
+        }
+        let at = |place: usize| scale * self.log.moved(source.column, order, place) + offset;
+        self.places(source.late).map(at).collect()
     }
 }
 
@@ -66,21 +81,34 @@ impl Window<'_> {
 pub(super) struct Balance<'a> {
     model: &'a RegressionModel,
     evaluator: RegressionEvaluator,
+    rows: RegressionRows,
     windows: Vec<Window<'a>>,
-    /// The model's own values of each joint's columns; none if it lacks one.
+    /// Values of each joint's columns that need no estimate: those of the model, or of an estimate
+    /// from other logs; none if one is missing.
     own: Option<Vec<Vec<f64>>>,
 }
 
 /// What is left under a reading.
 pub(super) struct Left {
-    /// By the model's own values; none if it lacks one.
+    /// By values that are given; none if there are none.
     pub(super) own: Option<Shares>,
     /// By an estimate; none if it was not asked for.
-    pub(super) fit: Option<Shares>,
+    pub(super) fit: Option<Fitted>,
+}
+
+/// What an estimate finds, and leaves.
+pub(super) struct Fitted {
+    pub(super) phi: Vec<f64>,
+    pub(super) left: Shares,
 }
 
 impl<'a> Balance<'a> {
-    pub(super) fn new(model: &'a RegressionModel, logs: &'a [Conditioned]) -> Self {
+    /// Of logs, with values of phi that need no estimate.
+    pub(super) fn new(
+        model: &'a RegressionModel,
+        logs: &'a [Conditioned],
+        own: Option<&[f64]>,
+    ) -> Self {
         let n = model.joints.len();
         let readings = 3 * n * n / 2 + 20 * n + 30;
         let samples = (ALL_READINGS / readings).clamp(SAMPLES[0], SAMPLES[1]);
@@ -96,47 +124,60 @@ impl<'a> Balance<'a> {
                 windows.push(Window { log, first, count, motion });
             }
         }
-        let own = |phi: Vec<f64>| {
-            let of = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
-            model.pattern().iter().map(of).collect()
-        };
-        let own = nominal_values(model).map(own);
-        Self { model, evaluator: model.evaluator(), windows, own }
+        let own = own.map(|phi| of_joints(model, phi));
+        let (evaluator, rows) = (model.evaluator(), RegressionRows::default());
+        Self { model, evaluator, rows, windows, own }
+    }
+
+    /// Makes the rows of a window under a reading.
+    fn read(&mut self, window: usize, reading: &Reading) {
+        let n = self.model.joints.len();
+        let window = &self.windows[window];
+        let column = |at: usize| window.motion(&reading.positions[at % n], at / n, reading.time);
+        let motion: Vec<Vec<f64>> = (0..3 * n).map(column).collect();
+        let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+        self.evaluator.evaluate(&motion, &mut self.rows).expect("every joint has its columns");
+    }
+
+    /// The torque that was measured of a joint, and what values leave of it, of the rows that were
+    /// made last.
+    fn residual(
+        &self,
+        (window, reading): (usize, &Reading),
+        (joint, values): (usize, &[f64]),
+    ) -> Option<[Vec<f64>; 2]> {
+        let measured = self.windows[window].torque(&reading.torques[joint])?;
+        let mut left = vec![0.0; measured.len()];
+        self.rows.torque(joint, values, &mut left);
+        left.iter_mut().zip(&measured).for_each(|(left, measured)| *left = measured - *left);
+        Some([measured, left])
     }
 
     /// What is left under a reading, with an estimate or without.
     pub(super) fn left(&mut self, reading: &Reading, estimates: bool) -> Left {
         let n = self.model.joints.len();
         let (mut missed, mut sizes) = (vec![0.0; n], vec![0.0; n]);
+        let none: Vec<Vec<f64>> =
+            self.model.pattern().iter().map(|places| vec![0.0; places.len()]).collect();
+        let own = self.own.clone();
         let mut triangles: Vec<Triangle> =
             self.model.pattern().iter().map(|places| Triangle::new(places.len())).collect();
-        let mut rows = RegressionRows::default();
-        for window in &self.windows {
-            let column = |at: usize| -> Vec<f64> {
-                let (from, factor) = reading.positions[at % n];
-                let order = at / n;
-                let scale = factor * reading.time.powi(-(order as i32));
-                window.motion[order * n + from].iter().map(|value| scale * value).collect()
-            };
-            let motion: Vec<Vec<f64>> = (0..3 * n).map(column).collect();
-            let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
-            self.evaluator.evaluate(&motion, &mut rows).expect("every joint has its columns");
+        let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        for window in 0..self.windows.len() {
+            self.read(window, reading);
             for joint in 0..n {
-                let (from, factor) = reading.torques[joint];
-                let Some(mut target) = window.torque(from, reading.late) else { continue };
-                target.iter_mut().for_each(|torque| *torque *= factor);
-                sizes[joint] += target.iter().map(|torque| torque * torque).sum::<f64>();
-                if let Some(own) = &self.own {
-                    let mut computed = vec![0.0; target.len()];
-                    rows.torque(joint, &own[joint], &mut computed);
-                    let both = target.iter().zip(&computed);
-                    missed[joint] += both.map(|(m, t)| (m - t).powi(2)).sum::<f64>();
-                }
+                let values = own.as_ref().unwrap_or(&none)[joint].as_slice();
+                let here = (window, reading);
+                let Some([measured, left]) = self.residual(here, (joint, values)) else { continue };
+                sizes[joint] += square(&measured);
+                missed[joint] += square(&left);
                 if estimates {
-                    if let Some(known) = rows.known(joint) {
+                    let mut target = measured;
+                    if let Some(known) = self.rows.known(joint) {
                         target.iter_mut().zip(known).for_each(|(target, known)| *target -= known);
                     }
-                    let columns = (0..rows.width(joint)).map(|place| rows.column(joint, place));
+                    let places = 0..self.rows.width(joint);
+                    let columns = places.map(|place| self.rows.column(joint, place));
                     let columns: Vec<&[f64]> = columns.chain([target.as_slice()]).collect();
                     triangles[joint].push(&columns);
                 }
@@ -147,25 +188,121 @@ impl<'a> Balance<'a> {
                 |(squares, size): (&f64, &f64)| (*size > 0.0).then(|| (squares / size).sqrt());
             squares.iter().zip(&sizes).map(share).collect()
         };
-        Left {
-            own: self.own.is_some().then(|| shares(&missed)),
-            fit: estimates.then(|| shares(&self.fitted(&triangles, &sizes))),
-        }
+        let fit = estimates.then(|| {
+            let phi = self.fitted(&triangles, &sizes);
+            let of_joints = triangles.iter().zip(of_joints(self.model, &phi));
+            let squares: Vec<f64> =
+                of_joints.map(|(triangle, own)| triangle.squares(&own)).collect();
+            Fitted { phi, left: shares(&squares) }
+        });
+        Left { own: self.own.is_some().then(|| shares(&missed)), fit }
     }
 
-    /// The squares of each joint's torque that an estimate leaves, each joint weighted by its size.
+    /// An estimate with each joint weighted by the size of its torque.
     fn fitted(&self, triangles: &[Triangle], sizes: &[f64]) -> Vec<f64> {
         let rank = self.model.rank();
         let weight = |size: &f64| if *size > 0.0 { 1.0 / size.sqrt() } else { 0.0 };
         let weights: Vec<f64> = sizes.iter().map(weight).collect();
         let r = stacked(triangles, self.model.pattern(), &weights, &[], rank);
-        let phi = solve(&r, &vec![0.0; rank]).phi;
-        let of_joint = |(triangle, places): (&Triangle, &Vec<usize>)| {
-            let own: Vec<f64> = places.iter().map(|&at| phi[at]).collect();
-            triangle.squares(&own)
-        };
-        triangles.iter().zip(self.model.pattern()).map(of_joint).collect()
+        solve(&r, &vec![0.0; rank]).phi.as_slice().to_vec()
     }
+
+    /// Of each line of readings, given by two of them on either side of `reading`, the share of
+    /// the squares that an estimate leaves which a step along it would explain, to first order,
+    /// the parameters following; 0 if they follow all the way, so that nothing is seen of it. Each
+    /// joint counts alike.
+    pub(super) fn explained(
+        &mut self,
+        (reading, found): (&Reading, &Fitted),
+        lines: &[[Reading; 2]],
+    ) -> Vec<f64> {
+        let (n, rank) = (self.model.joints.len(), self.model.rank());
+        let values = of_joints(self.model, &found.phi);
+        let pattern: Vec<Vec<usize>> = self.model.pattern().to_vec();
+        let width = |joint: usize| pattern[joint].len() + lines.len();
+        let mut triangles: Vec<Triangle> =
+            (0..n).map(|joint| Triangle::new(width(joint))).collect();
+        for window in 0..self.windows.len() {
+            let mut slopes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); n];
+            for line in lines {
+                let [plus, minus] = line.each_ref().map(|one| {
+                    self.read(window, one);
+                    let of = |joint: usize| self.residual((window, one), (joint, &values[joint]));
+                    (0..n).map(|joint| of(joint).map(|[_, left]| left)).collect::<Vec<_>>()
+                });
+                for (slopes, both) in slopes.iter_mut().zip(plus.into_iter().zip(minus)) {
+                    let (Some(mut slope), Some(minus)) = both else { continue };
+                    slope.iter_mut().zip(minus).for_each(|(plus, minus)| *plus -= minus);
+                    slopes.push(slope);
+                }
+            }
+            self.read(window, reading);
+            for joint in 0..n {
+                let of = self.residual((window, reading), (joint, &values[joint]));
+                let Some([_, left]) = of else { continue };
+                let own = (0..pattern[joint].len()).map(|place| self.rows.column(joint, place));
+                let slopes = slopes[joint].iter().map(Vec::as_slice);
+                let columns: Vec<&[f64]> = own.chain(slopes).chain([left.as_slice()]).collect();
+                triangles[joint].push(&columns);
+            }
+        }
+        let weight = |(triangle, share): (&Triangle, &Option<f64>)| {
+            let size = triangle.squares(&vec![0.0; triangle.width()]).sqrt();
+            // rounding counts for nothing
+            let counts = (share.unwrap_or(0.0) / LEAST).min(1.0);
+            if size > 0.0 { counts / size } else { 0.0 }
+        };
+        let weights: Vec<f64> = triangles.iter().zip(&found.left).map(weight).collect();
+        let places = |own: &Vec<usize>| -> Vec<usize> {
+            own.iter().copied().chain(rank..rank + lines.len()).collect()
+        };
+        let pattern: Vec<Vec<usize>> = pattern.iter().map(places).collect();
+        explained(&stacked(&triangles, &pattern, &weights, &[], rank + lines.len()), rank)
+    }
+}
+
+/// phi by joint, in the order of its columns.
+fn of_joints(model: &RegressionModel, phi: &[f64]) -> Vec<Vec<f64>> {
+    let of = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
+    model.pattern().iter().map(of).collect()
+}
+
+/// A column that the others make up but for this share of its square is none of its own, and one
+/// that is shorter than this share of the longest has no direction.
+const ALIAS: f64 = 1e-6;
+const NOTHING: f64 = 1e-9;
+
+/// Of R of [W | L | e] for each column of L the share of what is left of e beside W that it
+/// explains, taken alone.
+fn explained(r: &DMatrix<f64>, rank: usize) -> Vec<f64> {
+    let last = r.ncols() - 1;
+    let mut w = r.columns(0, rank).into_owned();
+    let longest = w.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+    for mut column in w.column_iter_mut() {
+        let length = column.norm();
+        column /= if length > NOTHING * longest { length } else { f64::INFINITY };
+    }
+    let svd = w.svd(true, false);
+    let u = svd.u.expect("it was asked for");
+    let largest = svd.singular_values.max();
+    let sigma = svd.singular_values.iter().enumerate();
+    let kept: Vec<usize> =
+        sigma.filter(|(_, sigma)| **sigma > NOTHING * largest).map(|(at, _)| at).collect();
+    let u = u.select_columns(&kept);
+    let beside = |at: usize| {
+        let column = r.column(at).into_owned();
+        let along = u.tr_mul(&column);
+        &column - &u * along
+    };
+    let left = beside(last);
+    let of = |at: usize| {
+        let (all, own) = (r.column(at).norm_squared(), beside(at));
+        match own.norm_squared() {
+            size if size > ALIAS * all => own.dot(&left).powi(2) / (size * left.norm_squared()),
+            _ => 0.0,
+        }
+    };
+    (rank..last).map(of).map(|share| if share.is_finite() { share } else { 0.0 }).collect()
 }
 
 /// How shares differ, over the joints whose share does.

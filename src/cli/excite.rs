@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 /// joint, and with its contact points clear of the ground, the trajectory makes the condition
 /// number of the stacked base regressor small. Where the model has no limit of velocity or
 /// acceleration, that of one sine a lap over the whole range of positions is taken, and said.
-/// Exits with 1 if none keeps the limits.
+/// Exits with 1, and writes no trajectory, if none keeps the limits or excites all parameters.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -244,7 +244,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     };
     let found = excite(&robot, &options, &tell).map_err(Failure::Excite)?;
     progress.clear();
-    if let Some(path) = &arguments.output {
+    let answer = verdict(&found.found().ended);
+    // what a robot cannot run, or what shows nothing, is no trajectory to be run by mistake
+    if let (Some(path), Answer::Done) = (&arguments.output, answer) {
         write_whole(path, &trajectory(arguments, &found)?)?;
     }
     if let Some(path) = &arguments.svg {
@@ -252,16 +254,22 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     let (stack, check) = (&found.stack, &found.found().ended);
     let shown = Found { robot: &robot, effects: &effects, stack, check };
-    match (is_answered, arguments.json) {
+    let is_withheld = answer == Answer::Negative
+        && arguments.output.as_ref().is_some_and(|path| path.as_os_str() == "-");
+    match (is_answered && !is_withheld, arguments.json) {
         (true, _) => {}
         (_, true) => answer::write_json_answer(out, &shown, Some(&found))?,
         (_, false) => answer::write_text(out, &shown, Some(&found))?,
     }
-    Ok(verdict(shown.check))
+    Ok(answer)
 }
 
+/// Negative beyond limits, and where directions of the parameters are not excited at all.
 fn verdict(check: &Check) -> Answer {
-    if check.is_feasible() { Answer::Done } else { Answer::Negative }
+    match check.is_feasible() && check.excites() {
+        true => Answer::Done,
+        false => Answer::Negative,
+    }
 }
 
 fn checked(

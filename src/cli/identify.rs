@@ -352,7 +352,7 @@ impl Answered {
             read.instruments = controller.instruments(&updated.robot, &read, arguments)?;
         }
         let (mut found, mut updated) = estimated(&read, &options)?;
-        let allows_for_noise = matches!(options.method, Method::Instrumental | Method::Likelihood);
+        let allows_for_noise = options.method == Method::Instrumental;
         while let Some(lower) = conditions.lower(&read.train)
             && found.bias().is_some()
             && !allows_for_noise

@@ -134,6 +134,9 @@ pub(super) fn write_text(
             writeln!(out, "outside of a limit: {:.2} % of its range", 100.0 * check.worst())?;
         }
     }
+    if !check.excites() {
+        writeln!(out, "not all base parameters are excited: some are as good as invisible")?;
+    }
     Ok(())
 }
 

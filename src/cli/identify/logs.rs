@@ -35,9 +35,10 @@ pub(super) struct Conditions {
     halvings: u32,
 }
 
-/// Halvings of the cutoff, at most, and periods of it that a log must have.
+/// Halvings of the cutoff, at most, and periods of it that a log, or a lap, must have.
 const MOST_HALVINGS: u32 = 4;
 const FEWEST_PERIODS: f64 = 40.0;
+const FEWEST_OF_A_LAP: f64 = 20.0;
 
 /// Samples that are left, if nothing is said: standard errors are found from parts of a log, of
 /// which few say little.
@@ -127,9 +128,14 @@ impl Conditions {
         let lower = Self { halvings: self.halvings + 1, ..*self };
         let is_long = |log: &Conditioned| {
             let cutoff_hz = lower.filter(log.step_s).map_or(0.0, |filter| filter.cutoff_hz);
-            log.range.len() as f64 * log.step_s * cutoff_hz > FEWEST_PERIODS
+            // a lap has no edges that are cut
+            let (samples, fewest) = match &log.laps {
+                Some(laps) => (laps.samples, FEWEST_OF_A_LAP),
+                None => (log.range.len(), FEWEST_PERIODS),
+            };
+            samples as f64 * log.step_s * cutoff_hz > fewest
         };
-        (logs.iter().all(is_long) && self.average.is_none()).then_some(lower)
+        logs.iter().all(is_long).then_some(lower)
     }
 }
 

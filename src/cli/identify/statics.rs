@@ -45,12 +45,28 @@ pub(super) fn run(
         }
     }
     let found = knowledge.consequences();
+    remarks.extend(nothing_follows(&knowledge, &found).map(str::to_owned));
     match arguments.json {
         true => write_json(out, &as_json(&model, &knowledge, &found, &remarks))?,
         false => write(out, &model, (&knowledge, &found), &remarks)?,
     }
     let is_answer = !found.combinations.is_empty() && !found.contradicts();
     Ok(if is_answer { Answer::Done } else { Answer::Negative })
+}
+
+/// Why nothing follows, if nothing does.
+fn nothing_follows(knowledge: &Knowledge, found: &Consequences) -> Option<&'static str> {
+    match (knowledge.equations(), found.combinations.len()) {
+        (0, _) => Some(
+            "Nothing follows: the file has neither weighings nor torques of postures, and no log \
+             says more. `denavit schema statics` prints what it may have.",
+        ),
+        (_, 0) => Some(
+            "Nothing follows: no equation has an unknown parameter in it. What is on the scale, or \
+             weighs on the joints, is known, or the joints that were held carry nothing.",
+        ),
+        _ => None,
+    }
 }
 
 /// Adds what logs say; a remark if only a part of it can be added.

@@ -34,6 +34,10 @@ pub(super) struct Problem<'a> {
 /// Fewer parts say nothing of how residuals are correlated.
 pub(super) const FEWEST_PARTS: usize = 8;
 
+/// Sums of scores with neighbours counted half say as much as so many times fewer that are
+/// independent: 1 + 2 (1/2)^2.
+const NEIGHBOURS: f64 = 1.5;
+
 /// A larger share of what is known of a direction is taken for this one.
 const MOST_LEVERAGE: f64 = 0.95;
 
@@ -45,7 +49,9 @@ impl Problem<'_> {
         let parts = self.condensed.parts.len();
         let free = (rows as f64 - self.solution.excited() as f64).max(1.0);
         match errors {
-            Errors::Correlated if parts >= FEWEST_PARTS => (self.correlated(), (parts - 1) as f64),
+            Errors::Correlated if parts >= FEWEST_PARTS => {
+                (self.correlated(), (parts as f64 - 1.0) / NEIGHBOURS)
+            }
             Errors::Bootstrap { draws, seed } if parts >= FEWEST_PARTS => {
                 (self.bootstrap(draws.max(2), seed), (parts - 1) as f64)
             }

@@ -12,7 +12,7 @@ use super::total;
 use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
 /// Times that weights are found anew.
@@ -24,6 +24,10 @@ const SETTLED: f64 = 1e-3;
 /// Samples that are independent of each other which a parameter needs, at least: with fewer,
 /// residuals are far smaller than errors and standard errors say nothing.
 const ROWS_OF_ONE: usize = 4;
+
+/// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
+/// those that the filter's correlation makes, of which chance may show less.
+const ENOUGH_PARTS: usize = 48;
 
 /// How base parameters are estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -161,13 +165,26 @@ pub fn estimate(
         _ => problem.covariance(options.errors),
     };
     let parts = first.condensed.parts.len();
-    if options.errors == Errors::Correlated && parts < FEWEST_PARTS {
-        // too few parts to say how residuals are correlated: as the filter makes them
+    if options.errors == Errors::Correlated && parts < ENOUGH_PARTS {
+        // as the filter makes residuals correlated
         let rows: usize = first.condensed.parts.iter().flatten().map(Triangle::rows).sum();
         let used = first.solution.excited() as f64;
         let free = (independent(logs).min(rows as f64) - used).max(1.0);
-        covariance *= (rows as f64 - used).max(1.0) / free;
-        degrees_of_freedom = free;
+        let of_noise = match options.method {
+            Method::Ordinary => {
+                let squares: f64 = first.squares(&first.condensed.whole()).iter().sum();
+                squares / (rows as f64 - used).max(1.0)
+            }
+            _ => 1.0,
+        };
+        let wider = of_noise * (rows as f64 - used).max(1.0) / free;
+        if parts < FEWEST_PARTS {
+            // too few parts to say more
+            covariance *= wider;
+            degrees_of_freedom = free;
+        } else {
+            at_least(&mut covariance, &(first.solution.covariance() * wider));
+        }
     }
     if options.method == Method::Ordinary && options.errors == Errors::Classical {
         let triangles = first.condensed.whole();
@@ -175,6 +192,16 @@ pub fn estimate(
         covariance *= squares / degrees_of_freedom;
     }
     Ok(Estimate { covariance, degrees_of_freedom, ..first })
+}
+
+/// Makes variances at least as large as others, correlations as they are.
+fn at_least(covariance: &mut DMatrix<f64>, least: &DMatrix<f64>) {
+    let factor = |at: usize| {
+        let (own, least) = (covariance[(at, at)], least[(at, at)]);
+        if own > 0.0 && least > own { (least / own).sqrt() } else { 1.0 }
+    };
+    let factors = DMatrix::from_diagonal(&DVector::from_fn(covariance.nrows(), |at, _| factor(at)));
+    *covariance = &factors * &*covariance * &factors;
 }
 
 /// Samples of all torques that are independent of each other: a filter leaves two in a period of

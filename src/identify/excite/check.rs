@@ -5,6 +5,7 @@ use super::fault::LimitKind;
 use super::model::{Evaluators, ExcitedModel, JointLimits};
 use super::objective::{Excitation, Stacked};
 use super::stack::{Signs, Stack};
+use crate::identify::estimate::DEAD;
 use crate::trajectory::Reference;
 
 /// The extremes of a quantity of a joint.
@@ -78,6 +79,12 @@ impl Check {
     /// Whether all limits hold.
     pub fn is_feasible(&self) -> bool {
         self.worst() <= 1.0 + 1e-9
+    }
+
+    /// Whether an estimate from it would find all parameters that are meant, and not take the
+    /// least visible one for one that nothing is said of.
+    pub fn excites(&self) -> bool {
+        self.excitation.condition.is_finite() && self.excitation.condition_scaled * DEAD < 1.0
     }
 }
 

@@ -1,7 +1,7 @@
 //! `denavit excite` as a user meets it.
 
 use super::{Directory, run_in};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const QUICK: [&str; 6] = ["--starts", "1", "--evaluations", "40", "--harmonics", "2"];
 
@@ -102,4 +102,28 @@ fn limits_that_the_model_lacks_are_chosen_and_said() {
     assert!((velocity - std::f64::consts::PI * range / 10.0).abs() < 1e-9, "{waist}");
     let told = excite(&directory, &["tulip_leg_table34", "--starts", "1", "--evaluations", "5"]);
     assert!(!told.stdout.contains("does not give"), "{}", told.stdout);
+}
+
+/// Neither what breaks a limit nor what shows nothing is written as a trajectory to be run.
+#[test]
+fn no_trajectory_is_written_that_cannot_be_run_or_shows_nothing() {
+    let directory = Directory::new("excite-none");
+    let cases = [
+        ("planar_2r", json!({"position": [-1.5, 1.5], "torque": 1e-3}), "outside of a limit"),
+        ("tulip_leg_table34", json!({"position": [-1, 1], "velocity": 1e-9}), "as good as"),
+    ];
+    for (model, limits, expected) in cases {
+        let shipped = denavit::shipped::find(model).expect("shipped");
+        let mut robot: Value = serde_json::from_str(shipped.text).expect("JSON");
+        for link in robot["links"].as_array_mut().expect("links") {
+            link["limits"] = limits.clone();
+        }
+        std::fs::write(directory.path.join("robot.json"), robot.to_string()).expect("written");
+        for output in ["found.json", "-"] {
+            let run = excite(&directory, &[&["robot.json", "-o", output], &QUICK[..]].concat());
+            assert_eq!(run.code, Some(1), "{expected}: {}", run.stderr);
+            assert!(run.stdout.contains(expected), "{expected}: {}", run.stdout);
+            assert_eq!(directory.files(), ["robot.json"], "{expected}");
+        }
+    }
 }

@@ -349,3 +349,65 @@ fn short_logs_have_honest_errors() {
     let deviation = f64::sqrt(squares / count);
     assert!((0.4..2.0).contains(&deviation), "{deviation}");
 }
+
+/// A log for validation whose columns are off is named: the zero of a position, the time of a
+/// torque, a sign. A good one is not.
+#[test]
+fn logs_for_validation_are_asked_too() {
+    let directory = Directory::new("told-validation");
+    write_arm(&directory, None);
+    write_log(&directory, "train.csv", &GOOD.rows(&motions(1, 0.628)));
+    let rows = Made { seed: 2, ..GOOD }.rows(&motions(2, 0.7));
+    let zero = rows.iter().map(|&[t, a, b, c, d]| [t, a + 0.3, b, c, d]);
+    let last = rows.iter().map(|&[t, a, b, c, d]| [t, a, b - 0.2, c, d]);
+    let sign = rows.iter().map(|&[t, a, b, c, d]| [t, a, b, c, -d]);
+    let late = rows.windows(13).map(|both| {
+        let ([t, a, b, c, _], [.., d]) = (both[12], both[0]);
+        [t, a, b, c, d]
+    });
+    let cases: [(Vec<[f64; 5]>, &str); 5] = [
+        (rows.clone(), ""),
+        (zero.collect(), "other.csv: the position of link1 seems to be 0.3"),
+        (last.collect(), "other.csv: the position of link2 seems to be 0.2"),
+        (sign.collect(), "other.csv: the torque of link2 seems to have the wrong sign"),
+        (late.collect(), "other.csv: the torque of link2 seems to be 0.0600 s late"),
+    ];
+    for (rows, expected) in cases {
+        write_log(&directory, "other.csv", &rows);
+        let (code, text) = said(&directory, &["--train", "train.csv", "--validate", "other.csv"]);
+        assert_eq!(code == Some(0), expected.is_empty(), "{expected}: {text}");
+        assert!(text.replace('\n', " ").contains(expected), "{expected}: {text}");
+    }
+}
+
+/// Angles of an encoder of 4096 steps: maximum likelihood is as honest as least squares, and so
+/// are mean laps.
+#[test]
+fn steps_of_encoders_bias_no_method() {
+    let directory = Directory::new("told-steps");
+    write_arm(&directory, None);
+    let step = std::f64::consts::TAU / 4096.0;
+    for more in [&["--method", "wls"][..], &["--method", "ml"], &["--average", "found"]] {
+        let (mut squares, mut count) = (0.0, 0.0);
+        for seed in 1..=4 {
+            let made = Made { samples: 8000, seed, ..GOOD };
+            let mut rows = made.rows(&motions(seed, 0.628));
+            for row in &mut rows {
+                row[1..3].iter_mut().for_each(|q| *q = (*q / step).round() * step);
+            }
+            write_log(&directory, "steps.csv", &rows);
+            let words = [&["--train", "steps.csv", "--json"], more].concat();
+            let (code, text) = said(&directory, &words);
+            assert_eq!(code, Some(0), "{more:?}: {text}");
+            let json: Value = serde_json::from_str(&text).expect("JSON");
+            for one in json["parameters"].as_array().expect("a list") {
+                let [value, std, truth] =
+                    ["value", "std", "model_value"].map(|key| one[key].as_f64().expect("a number"));
+                squares += ((value - truth) / std).powi(2);
+                count += 1.0;
+            }
+        }
+        let deviation = f64::sqrt(squares / count);
+        assert!(deviation < 1.5, "{more:?}: {deviation}");
+    }
+}

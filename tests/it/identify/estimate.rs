@@ -223,7 +223,8 @@ fn intervals_of_robust_estimates_hold_on_plain_noise() {
     let clean = Experiment { samples: 1500, noise: 0.0, seed: 4, friction: false }.run(&robot);
     let truth = truth(&model);
     for loss in [Loss::Huber, Loss::Bisquare] {
-        for errors in [Errors::Classical, Errors::Correlated] {
+        let drawn = Errors::Bootstrap { draws: 100, seed: 3 };
+        for errors in [Errors::Classical, Errors::Correlated, drawn] {
             let options = Options { method: Method::Robust(loss), errors, ..Options::default() };
             let (mut squares, mut count) = (0.0, 0.0);
             for seed in 0..100 {
@@ -239,7 +240,6 @@ fn intervals_of_robust_estimates_hold_on_plain_noise() {
                 }
             }
             let size = f64::sqrt(squares / count);
-            println!("{loss:?} {errors:?}: {size}");
             assert!((0.9..1.12).contains(&size), "{loss:?} {errors:?}: {size}");
         }
     }

@@ -217,6 +217,9 @@ impl<'a> Balance<'a> {
         lines: &[[Reading; 2]],
     ) -> Vec<f64> {
         let (n, rank) = (self.model.joints.len(), self.model.rank());
+        if rank == 0 || lines.is_empty() {
+            return vec![0.0; lines.len()];
+        }
         let values = of_joints(self.model, &found.phi);
         let pattern: Vec<Vec<usize>> = self.model.pattern().to_vec();
         let width = |joint: usize| pattern[joint].len() + lines.len();

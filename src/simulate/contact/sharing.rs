@@ -12,6 +12,7 @@
 //! min |x|^2 in K with A x = b. What b has outside of the range of A (a drift in which redundant
 //! contacts contradict each other) reaches neither c nor x.
 
+use super::lemke::{LcpOutcome, Lemke};
 use super::length;
 use super::minimum_norm::MinimumNorm;
 
@@ -73,6 +74,7 @@ pub(crate) struct Sharing {
     matrix: Vec<f64>,
     newton: MinimumNorm,
     system: MinimumNorm,
+    lemke: Lemke,
 }
 
 impl Sharing {
@@ -130,8 +132,21 @@ impl Sharing {
         self.find(limits, Keep { spare: 0.0, leak: LEAK })
     }
 
+    /// Newton's method from the forces without limits; where it fails, from those that pivots find.
     fn find(&mut self, limits: &[Limit], keep: Keep) -> bool {
         self.start.clone_from(&self.forces);
+        let free = self.place.clone();
+        let found = self.approach(limits, keep)
+            || (self.pivot(&free, limits, keep) && self.approach(limits, keep));
+        if !found {
+            self.place = free;
+            self.forces.clone_from(&self.start);
+        }
+        found
+    }
+
+    /// Newton's method from `place`; says if the forces keep all limits then.
+    fn approach(&mut self, limits: &[Limit], keep: Keep) -> bool {
         let size = self.wanted.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
         let mut place = std::mem::take(&mut self.place);
         let mut trial = std::mem::take(&mut self.trial);
@@ -162,10 +177,49 @@ impl Sharing {
         }
         let found = self.spread(&place, limits, keep) <= RESIDUAL[1] * size;
         (self.place, self.trial) = (place, trial);
-        if !found {
-            self.forces.clone_from(&self.start);
-        }
         found
+    }
+
+    /// The place at which normal forces alone keep their limits, from the one without limits, by
+    /// pivots, which end also where Newton's steps go to and fro between sets of loaded points:
+    /// with the pushes v of the limits, n = n0 + M v, M = 1 - L (R L)^-1 R, and
+    ///
+    /// > 0 <= v  _|_  (1 - leak) n0 + ((1 - leak) M + leak) v >= 0.
+    ///
+    /// Steep friction makes M so unsymmetric that there are several solutions; the path is that of
+    /// a load on all points alike that is taken away again, so that the state alone decides.
+    fn pivot(&mut self, free: &[f64], limits: &[Limit], keep: Keep) -> bool {
+        if keep.spare > 0.0 || limits.iter().any(|limit| limit.cone.is_some()) {
+            return false;
+        }
+        let (rank, count, kept) = (free.len(), limits.len(), 1.0 - keep.leak);
+        self.place.clear();
+        self.place.extend_from_slice(free);
+        self.missed.clear();
+        self.missed.resize(rank, 0.0);
+        // columns of (R L)^-1 R
+        let mut moves = Vec::with_capacity(count * rank);
+        for limit in limits {
+            for (row, entry) in self.missed.iter_mut().enumerate() {
+                *entry = self.right[row * self.size + limit.at];
+            }
+            self.newton_step(&[], Keep::default());
+            moves.extend_from_slice(&self.step);
+        }
+        self.matrix.clear();
+        for (i, limit) in limits.iter().enumerate() {
+            let line = &self.left[limit.at * rank..(limit.at + 1) * rank];
+            for (j, column) in moves.chunks_exact(rank).enumerate() {
+                let along: f64 = line.iter().zip(column).map(|(l, m)| l * m).sum();
+                self.matrix.push(f64::from(u8::from(i == j)) - kept * along);
+            }
+        }
+        let normals: Vec<f64> = limits.iter().map(|limit| kept * self.start[limit.at]).collect();
+        let report = self.lemke.solve(&self.matrix, &normals, 50 * (count + 1));
+        for (push, column) in self.lemke.solution().iter().zip(moves.chunks_exact(rank)) {
+            self.place.iter_mut().zip(column).for_each(|(place, step)| *place -= push * step);
+        }
+        report.outcome == LcpOutcome::Solved
     }
 
     /// P(L c) into `forces`, R P(L c) - d into `missed`; returns the largest of it.

@@ -3,6 +3,9 @@
 use super::contact::Space;
 use crate::plants::{GroundModel, PlantModel};
 
+/// Points lower than this touch, and land at once with one that lands \[m\].
+pub(super) const TOUCH_M: f64 = 1e-8;
+
 /// The plane with its directions: tangents, then the normal; a planar plant has one tangent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ground {

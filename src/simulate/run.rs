@@ -3,15 +3,17 @@
 use super::audit::Audit;
 use super::breakdown::{Breakdown, Stop};
 use super::contact::Tolerance;
+use super::contact::sharing::Loads;
 use super::control::Control;
 use super::drive::Drives;
 use super::event::{Fired, Watch, Watched, look_ahead};
+use super::ground::TOUCH_M;
 use super::integrate::{Statistics, Stepper};
 use super::log::Log;
 use super::measure::Instrument;
 use super::motion::{Holding, Motion, SlipMemory};
 use super::record::Recorder;
-use super::settle::{Scuffing, Settled, Settler, TOUCH_M};
+use super::settle::{Scuffing, Settled, Settler};
 use super::simulation::Simulation;
 use super::start::{DEPTH_M, StartError, check, check_steps};
 use super::state::State;
@@ -245,6 +247,7 @@ impl Runner<'_> {
             self.y.copy_from_slice(self.stepper.state());
             self.t_s = self.stepper.time();
             self.motion.remember_slips(&self.y);
+            self.motion.remember_loads(self.t_s, &self.y)?;
             if self.stepper.time() - self.audited_s > AUDIT_S {
                 self.audited_s = self.stepper.time();
                 self.recorder.note(&mut self.motion, self.audited_s, &self.y, false)?;
@@ -327,6 +330,7 @@ impl Runner<'_> {
             self.reach_limit(t_s)
         } else {
             self.watch.slack = 0.0;
+            self.motion.want(Loads::Compliant);
             let law = &self.simulation.touching;
             self.settler.settle(&mut self.motion, law, touching, t_s, &mut self.y)
         };
@@ -367,6 +371,13 @@ impl Runner<'_> {
         let (motion, law) = (&mut self.motion, &self.simulation.touching);
         let mut ahead = self.y.clone();
         let (ahead_s, spare) = look_ahead(motion, &mut self.stepper, t_s, &mut ahead)?;
+        if motion.loads_fail(ahead_s, &ahead)? {
+            // the contacts stay as they are
+            motion.want(Loads::Least);
+            self.watch.slack = 0.0;
+            return Ok(Settled::default());
+        }
+        motion.want(Loads::Compliant);
         let before = motion.closed.clone();
         let settled = self.settler.switch(motion, law, (ahead_s, &ahead), &mut self.y)?;
         let same = before.len() == motion.closed.len()

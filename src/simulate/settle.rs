@@ -34,8 +34,6 @@ pub enum Scuffing {
     IgnoredBehind,
 }
 
-/// Heights below this are touching \[m\].
-pub(super) const TOUCH_M: f64 = 1e-8;
 /// Normal speeds above this, downwards, are impacts [m/s].
 const IMPACT_SPEED: f64 = 1e-9;
 /// Tangential speeds above this are slipping [m/s].

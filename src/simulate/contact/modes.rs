@@ -97,8 +97,9 @@ impl ModeSolver {
     ) -> Result<usize, ContactFailure> {
         self.solve(problem, modes)?;
         let redundancy = self.sharing.nullity();
-        if redundancy > 0 && least_slack(&self.limits, &self.values) < 0.0 {
-            if self.sharing.share(&self.limits, 0.0) {
+        let keeps = || least_slack(&self.limits, &self.values) >= 0.0;
+        if redundancy > 0 && !(self.sharing.is_free() && keeps()) {
+            if self.sharing.share(&self.limits, 0.0).is_some() {
                 self.values.copy_from_slice(self.sharing.forces());
             } else {
                 self.share_by_planes(problem, modes);
@@ -106,6 +107,11 @@ impl ModeSolver {
         }
         self.expand(force);
         Ok(redundancy)
+    }
+
+    /// Shares forces of redundant contacts.
+    pub(crate) fn sharing(&mut self) -> &mut Sharing {
+        &mut self.sharing
     }
 
     /// Forces where sharing finds none: there may be none.

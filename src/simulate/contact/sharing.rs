@@ -12,7 +12,10 @@
 //! min |x|^2 in K with A x = b. What b has outside of the range of A (a drift in which redundant
 //! contacts contradict each other) reaches neither c nor x.
 
-use super::lemke::{LcpOutcome, Lemke};
+mod choice;
+
+pub(crate) use self::choice::Loads;
+use super::lemke::Lemke;
 use super::length;
 use super::minimum_norm::MinimumNorm;
 
@@ -52,6 +55,9 @@ const PIVOT: f64 = 1e-14;
 /// Shares forces; memory that grows to the largest problem and stays.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sharing {
+    wanted_loads: Loads,
+    /// Which limits have carried load last; none if all do, or nothing is known.
+    loaded: Vec<bool>,
     /// Number of forces.
     size: usize,
     /// L, `size` x rank, row-major.
@@ -65,8 +71,9 @@ pub(crate) struct Sharing {
     trial: Vec<f64>,
     /// P(L c).
     forces: Vec<f64>,
-    /// Those without limits.
+    /// Those without limits, and c of them.
     start: Vec<f64>,
+    origin: Vec<f64>,
     missed: Vec<f64>,
     step: Vec<f64>,
     /// The derivative of P times L.
@@ -118,31 +125,8 @@ impl Sharing {
         place.extend(self.step.iter().map(|step| -step));
         self.spread(&place, &[], Keep::default());
         self.place = place;
-    }
-
-    /// The forces that keep every limit by `spare` at least; false, with the forces without limits,
-    /// if none were found. Only where forces are not determined by A x = b.
-    pub(crate) fn share(&mut self, limits: &[Limit], spare: f64) -> bool {
-        self.find(limits, Keep { spare, leak: 0.0 })
-    }
-
-    /// As `share`, for normal forces alone, which may pull where that must be: as points would that
-    /// are 1 / `LEAK` times as stiff against it. Continuous across the end of what is possible.
-    pub(crate) fn share_or_pull(&mut self, limits: &[Limit]) -> bool {
-        self.find(limits, Keep { spare: 0.0, leak: LEAK })
-    }
-
-    /// Newton's method from the forces without limits; where it fails, from those that pivots find.
-    fn find(&mut self, limits: &[Limit], keep: Keep) -> bool {
+        self.origin.clone_from(&self.place);
         self.start.clone_from(&self.forces);
-        let free = self.place.clone();
-        let found = self.approach(limits, keep)
-            || (self.pivot(&free, limits, keep) && self.approach(limits, keep));
-        if !found {
-            self.place = free;
-            self.forces.clone_from(&self.start);
-        }
-        found
     }
 
     /// Newton's method from `place`; says if the forces keep all limits then.
@@ -180,48 +164,6 @@ impl Sharing {
         found
     }
 
-    /// The place at which normal forces alone keep their limits, from the one without limits, by
-    /// pivots, which end also where Newton's steps go to and fro between sets of loaded points:
-    /// with the pushes v of the limits, n = n0 + M v, M = 1 - L (R L)^-1 R, and
-    ///
-    /// > 0 <= v  _|_  (1 - leak) n0 + ((1 - leak) M + leak) v >= 0.
-    ///
-    /// Steep friction makes M so unsymmetric that there are several solutions; the path is that of
-    /// a load on all points alike that is taken away again, so that the state alone decides.
-    fn pivot(&mut self, free: &[f64], limits: &[Limit], keep: Keep) -> bool {
-        if keep.spare > 0.0 || limits.iter().any(|limit| limit.cone.is_some()) {
-            return false;
-        }
-        let (rank, count, kept) = (free.len(), limits.len(), 1.0 - keep.leak);
-        self.place.clear();
-        self.place.extend_from_slice(free);
-        self.missed.clear();
-        self.missed.resize(rank, 0.0);
-        // columns of (R L)^-1 R
-        let mut moves = Vec::with_capacity(count * rank);
-        for limit in limits {
-            for (row, entry) in self.missed.iter_mut().enumerate() {
-                *entry = self.right[row * self.size + limit.at];
-            }
-            self.newton_step(&[], Keep::default());
-            moves.extend_from_slice(&self.step);
-        }
-        self.matrix.clear();
-        for (i, limit) in limits.iter().enumerate() {
-            let line = &self.left[limit.at * rank..(limit.at + 1) * rank];
-            for (j, column) in moves.chunks_exact(rank).enumerate() {
-                let along: f64 = line.iter().zip(column).map(|(l, m)| l * m).sum();
-                self.matrix.push(f64::from(u8::from(i == j)) - kept * along);
-            }
-        }
-        let normals: Vec<f64> = limits.iter().map(|limit| kept * self.start[limit.at]).collect();
-        let report = self.lemke.solve(&self.matrix, &normals, 50 * (count + 1));
-        for (push, column) in self.lemke.solution().iter().zip(moves.chunks_exact(rank)) {
-            self.place.iter_mut().zip(column).for_each(|(place, step)| *place -= push * step);
-        }
-        report.outcome == LcpOutcome::Solved
-    }
-
     /// P(L c) into `forces`, R P(L c) - d into `missed`; returns the largest of it.
     fn spread(&mut self, place: &[f64], limits: &[Limit], keep: Keep) -> f64 {
         let rank = place.len();
@@ -244,12 +186,16 @@ impl Sharing {
 
     /// (R P' L)^-1 times what is missed at `place`, into `step`.
     fn newton_step(&mut self, limits: &[Limit], keep: Keep) {
-        let rank = self.wanted.len();
-        self.slope.clear();
-        self.slope.extend_from_slice(&self.left);
+        self.slope.clone_from(&self.left);
         for limit in limits {
             self.bend(limit, keep);
         }
+        self.solve_slope();
+    }
+
+    /// (R S)^-1 times what is missed, into `step`, with S as `slope` has it.
+    fn solve_slope(&mut self) {
+        let rank = self.wanted.len();
         self.matrix.clear();
         self.matrix.resize(rank * rank, 0.0);
         for (row, target) in self.matrix.chunks_exact_mut(rank.max(1)).enumerate() {
@@ -385,12 +331,12 @@ mod tests {
         let limits = [0, 1, 2].map(|at| Limit { at, cone: None });
         let mut sharing = posed(&[1.0, -1.0, 2.0], &[1.0, 1.0, 1.0], 6.0);
         assert_close(sharing.forces(), &[3.0, -3.0, 6.0], 1e-13);
-        assert!(sharing.share(&limits, 0.0));
+        assert_eq!(sharing.share(&limits, 0.0), Some(Loads::Compliant));
         assert_close(sharing.forces(), &[2.0, 0.0, 4.0], 1e-13);
-        assert!(sharing.share(&limits, 0.5));
+        assert_eq!(sharing.share(&limits, 0.5), Some(Loads::Compliant));
         // c (1, -1, 2), at least a half each: c + 1/2 + 2 c = 6
         assert_close(sharing.forces(), &[5.5 / 3.0, 0.5, 11.0 / 3.0], 1e-13);
-        assert!(sharing.share_or_pull(&limits));
+        assert_eq!(sharing.share_or_pull(&limits), Some(Loads::Compliant));
         assert_close(sharing.forces(), &[2.0, 0.0, 4.0], 1e-8);
     }
 
@@ -400,7 +346,7 @@ mod tests {
         let limits = [2, 5].map(|at| Limit { at, cone });
         let w = [1.0, 0.0, 1.0, 0.0, 0.0, 1.0];
         let mut sharing = posed(&w, &w, 28.0);
-        assert!(sharing.share(&limits, 0.0));
+        assert_eq!(sharing.share(&limits, 0.0), Some(Loads::Compliant));
         // the projection of (1, 0, 1) is (0.6, 0, 1.2): 0.6 c + 1.2 c + c = 28
         assert_close(sharing.forces(), &[6.0, 0.0, 12.0, 0.0, 0.0, 10.0], 1e-11);
     }
@@ -409,9 +355,9 @@ mod tests {
     fn forces_that_must_pull_do_so_together() {
         let limits = [0, 1].map(|at| Limit { at, cone: None });
         let mut sharing = posed(&[1.0, 1.0], &[1.0, 1.0], -2.0);
-        assert!(!sharing.share(&limits, 0.0));
+        assert_eq!(sharing.share(&limits, 0.0), None);
         assert_close(sharing.forces(), &[-1.0, -1.0], 1e-14);
-        assert!(sharing.share_or_pull(&limits));
+        assert_eq!(sharing.share_or_pull(&limits), Some(Loads::Compliant));
         assert_close(sharing.forces(), &[-1.0, -1.0], 1e-6);
     }
 }

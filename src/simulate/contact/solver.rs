@@ -15,6 +15,7 @@ use super::gauss_seidel::{self, SweepLimits};
 use super::lemke::LcpOutcome;
 use super::modes::ModeSolver;
 use super::pyramid::Pyramid;
+use super::sharing::Sharing;
 use super::{
     Contact, ContactFailure, ContactProblem, ContactSolution, Friction, Mode, Space, closed_mode,
     length,
@@ -25,6 +26,9 @@ use super::{
 const COMBINATIONS: usize = 1 << 16;
 /// Facets of the pyramid that gives the first directions of slipping.
 const FACETS: usize = 16;
+
+/// Squares of forces that differ by less than this part are the same.
+const SAME: f64 = 1e-9;
 
 /// How often modes are changed at most, from one guess.
 const ROUNDS: usize = 120;
@@ -76,6 +80,20 @@ impl ContactSolver {
         self.modes.margin(problem, modes)
     }
 
+    /// Whether forces keep given modes, but not those of equally compliant points.
+    pub(crate) fn keeps_least_alone(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        modes: &[Mode],
+    ) -> bool {
+        self.modes.keeps_least_alone(problem, modes)
+    }
+
+    /// Shares forces of redundant contacts in given modes.
+    pub(crate) fn sharing(&mut self) -> &mut Sharing {
+        self.modes.sharing()
+    }
+
     /// Finds modes, forces and responses that obey all laws.
     pub fn decide(
         &mut self,
@@ -94,6 +112,7 @@ impl ContactSolver {
         let open_question = problem.space == Space::Spatial || !enumerable;
         let iterates = open_question && coulomb && problem.contacts.iter().any(begins_to_slip);
         if iterates && search == Search::First && self.iterate(problem) {
+            self.take_back(problem);
             solution.clone_from(&self.trial);
             return Ok(());
         }
@@ -139,7 +158,8 @@ impl ContactSolver {
         combinations
     }
 
-    /// Tries all combinations, by number of open contacts; says if a solution was found.
+    /// Tries all combinations, by number of open contacts; says if a solution was found: of those
+    /// with as few open ones the one with the least forces, whatever the contacts' order.
     fn enumerate(
         &mut self,
         problem: &ContactProblem<'_>,
@@ -147,7 +167,7 @@ impl ContactSolver {
         solution: &mut ContactSolution,
     ) -> Result<bool, ContactFailure> {
         let count = problem.contacts.len();
-        let mut found = false;
+        let mut least = f64::INFINITY;
         for open in 0..=count {
             self.choice.clear();
             self.choice.resize(count, 0);
@@ -155,22 +175,25 @@ impl ContactSolver {
                 let is_open = |(options, chosen): (&Vec<Mode>, &usize)| chosen + 1 == options.len();
                 let opened = self.options.iter().zip(&self.choice).filter(|pair| is_open(*pair));
                 if opened.count() == open && self.try_choice(problem) == Some(true) {
-                    if !found {
-                        found = true;
-                        solution.clone_from(&self.trial);
-                    } else if self.moves_otherwise(problem, solution) {
+                    let found = least < f64::INFINITY;
+                    if found && search == Search::All && self.moves_otherwise(problem, solution) {
                         return Err(ContactFailure::SeveralSolutions);
                     }
-                    if search == Search::First {
-                        return Ok(true);
+                    let size = self.trial.force.iter().map(|force| force * force).sum::<f64>();
+                    if !found || (search == Search::First && size < (1.0 - SAME) * least) {
+                        least = size;
+                        solution.clone_from(&self.trial);
                     }
                 }
                 if !self.advance() {
                     break;
                 }
             }
+            if least < f64::INFINITY && search == Search::First {
+                return Ok(true);
+            }
         }
-        Ok(found)
+        Ok(least < f64::INFINITY)
     }
 
     /// The next combination; says if there is one.
@@ -233,6 +256,28 @@ impl ContactSolver {
         let limits = SweepLimits { sweeps: 20_000, response: 1e-3 * problem.response_zero() };
         gauss_seidel::solve(problem, limits, &mut self.trial.force);
         self.refine(problem)
+    }
+
+    /// Closes what the trial left open though it does not leave the ground, if lawful modes follow:
+    /// points of a flat foot that pulled on the way may well carry load.
+    fn take_back(&mut self, problem: &ContactProblem<'_>) {
+        let found = self.trial.clone();
+        let zero = problem.response_zero();
+        let mut any = false;
+        for (index, contact) in problem.contacts.iter().enumerate() {
+            let touches = found.response[problem.normal(index)] <= zero && !contact.released;
+            if found.modes[index] == Mode::Open && touches {
+                let along = &found.response[problem.block(index)][..problem.space.tangents()];
+                let (speed, sticks) = (length(along), closed_mode(contact));
+                let slips = sticks == Mode::Stick && speed > zero;
+                self.trial.modes[index] =
+                    if slips { Mode::Slip(unit(along, speed)) } else { sticks };
+                any = true;
+            }
+        }
+        if any && !self.change_until_lawful(problem) {
+            self.trial = found;
+        }
     }
 
     /// From the forces of the trial to lawful modes; keeps what only nearly obeys the laws.

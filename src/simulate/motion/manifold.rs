@@ -5,9 +5,8 @@ use super::Motion;
 use crate::simulate::breakdown::Breakdown;
 use crate::simulate::contact::lemke::Lemke;
 use crate::simulate::contact::minimum_norm::MinimumNorm;
+use crate::simulate::ground::TOUCH_M;
 
-/// Contacts this near the ground stand on it \[m\].
-const LEVEL_M: f64 = 1e-8;
 /// Setting contacts down moves no point farther than this times their height.
 const LEVERAGE: f64 = 10.0;
 /// Slower is still [m/s].
@@ -44,9 +43,9 @@ impl Motion<'_> {
             self.place(&trial);
             let moved = |(new, old): (&f64, &f64)| (new - old).abs();
             let farthest = self.work.positions.iter().zip(&before).map(moved).fold(0.0, f64::max);
-            let stand = all.iter().all(|contact| self.gap(*contact).abs() <= LEVEL_M);
-            let sink = contacts.iter().any(|contact| self.gap(*contact) < -LEVEL_M);
-            if stand && !sink && farthest <= LEVERAGE * gaps[contact].abs().max(LEVEL_M) {
+            let stand = all.iter().all(|contact| self.gap(*contact).abs() <= TOUCH_M);
+            let sink = contacts.iter().any(|contact| self.gap(*contact) < -TOUCH_M);
+            if stand && !sink && farthest <= LEVERAGE * gaps[contact].abs().max(TOUCH_M) {
                 down = all;
                 y.copy_from_slice(&trial);
             }

@@ -4,7 +4,7 @@ use super::{Closed, Motion, Work};
 use crate::simulate::breakdown::Breakdown;
 use crate::simulate::contact::cholesky::dot;
 use crate::simulate::contact::independent::IndependentRows;
-use crate::simulate::contact::sharing::{Limit, Sharing};
+use crate::simulate::contact::sharing::{Limit, Loads, Sharing};
 use crate::simulate::contact::{ContactFailure, Mode};
 
 /// Memory of the right-hand side.
@@ -21,7 +21,7 @@ pub(super) struct MovedMemory {
     matrix: Vec<f64>,
     right: Vec<f64>,
     limits: Vec<Limit>,
-    sharing: Sharing,
+    pub(super) sharing: Sharing,
     force: Vec<f64>,
 }
 
@@ -39,6 +39,30 @@ impl Motion<'_> {
         self.hold();
         let all_stick = self.closed.iter().all(|closed| closed.mode == Mode::Stick);
         if all_stick && self.held_by_few(listed) { Ok(()) } else { self.held_and_sliding() }
+    }
+
+    /// Which loads redundant contacts that slip have from now on.
+    pub(in crate::simulate) fn want(&mut self, loads: Loads) {
+        self.moved.sharing.want(loads);
+        self.solver.sharing().want(loads);
+    }
+
+    /// Remembers which redundant contacts that slip are loaded.
+    pub(in crate::simulate) fn remember_loads(
+        &mut self,
+        t_s: f64,
+        y: &[f64],
+    ) -> Result<(), Breakdown> {
+        if self.moved.sharing.nullity() == 0 || !self.closed.iter().any(slips) {
+            return Ok(());
+        }
+        self.moved(t_s, y)?;
+        let moved = &mut self.moved;
+        let forces = moved.sharing.forces();
+        let loaded: Vec<bool> = moved.limits.iter().map(|limit| forces[limit.at] > 0.0).collect();
+        moved.sharing.remember(&loaded);
+        self.solver.sharing().remember(&loaded);
+        Ok(())
     }
 
     /// Smooth motion begins, with the contacts as they are from now on.
@@ -104,7 +128,7 @@ impl Motion<'_> {
             return Err(Breakdown::Contact(ContactFailure::Inconsistent));
         }
         let pulls = limits.iter().any(|limit| sharing.forces()[limit.at] < 0.0);
-        if pulls && sharing.nullity() > 0 {
+        if (pulls || !sharing.is_free()) && sharing.nullity() > 0 {
             // if nothing keeps them from pulling, an event is near
             sharing.share_or_pull(limits);
         }

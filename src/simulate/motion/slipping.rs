@@ -8,7 +8,9 @@
 //! by events alone.
 
 use super::{Closed, Motion};
-use crate::simulate::contact::Mode;
+use crate::simulate::breakdown::Breakdown;
+use crate::simulate::contact::sharing::Loads;
+use crate::simulate::contact::{ContactProblem, Mode};
 use crate::simulate::integrate::Method;
 
 /// v_s in units of the absolute accuracy of rates, and within which limits [m/s].
@@ -97,6 +99,27 @@ impl Motion<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// Whether what slips is loaded as equally compliant points are, and finds no such loads here
+    /// though others push.
+    pub(in crate::simulate) fn loads_fail(
+        &mut self,
+        t_s: f64,
+        y: &[f64],
+    ) -> Result<bool, Breakdown> {
+        if self.moved.sharing.wanted_loads() == Loads::Least {
+            return Ok(false);
+        }
+        self.pose(t_s, y)?;
+        let problem = ContactProblem {
+            space: self.ground.space,
+            contacts: &self.work.contacts,
+            delassus: self.delassus.matrix(),
+            free: &self.work.free,
+            tolerance: self.holding.tolerance,
+        };
+        Ok(self.solver.keeps_least_alone(&problem, &self.work.modes))
     }
 
     /// Whether the forces of what slips grow beyond all bounds here: its friction turns it into the

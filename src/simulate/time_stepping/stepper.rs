@@ -25,6 +25,10 @@ const NEARLY: f64 = 1e-6;
 const GAIN: f64 = 1e-3;
 const HALVINGS: usize = 12;
 
+/// Points this little above the ground take part \[m\]: rounding moves those of a flat foot apart,
+/// and would leave some without their load.
+const ROUNDING_M: f64 = 1e-10;
+
 /// Slower contacts have no direction of slipping that a solver finds [m/s].
 const SLIPS: f64 = 1e-4;
 
@@ -273,8 +277,8 @@ impl TimeStepper {
 
     fn find_closed(&mut self, model: &mut impl TimeSteppingModel) {
         let reach = match self.stepping.scheme {
-            Scheme::MoreauMidpoint => 0.0,
-            Scheme::Anitescu { reach_m } => reach_m,
+            Scheme::MoreauMidpoint => ROUNDING_M,
+            Scheme::Anitescu { reach_m } => reach_m.max(ROUNDING_M),
         };
         model.gaps(&self.middle, &mut self.gaps);
         self.closed.clear();

@@ -1,7 +1,7 @@
 //! How far forces of given modes are from violating a law.
 
 use super::super::lemke::LcpOutcome;
-use super::super::sharing::Limit;
+use super::super::sharing::{Limit, Loads};
 use super::super::{ContactFailure, ContactProblem, Mode, interior};
 use super::{ModeSolver, least_slack};
 
@@ -37,7 +37,7 @@ impl ModeSolver {
         }
         let enough = ENOUGH * largest;
         if self.has_cones_in_space() {
-            if self.sharing.share(&self.limits, enough) {
+            if self.sharing.share(&self.limits, enough).is_some() {
                 return Ok((enough, largest));
             }
             self.find_null_vectors();
@@ -54,21 +54,48 @@ impl ModeSolver {
         Ok((margin, largest))
     }
 
+    /// Whether forces that push keep the modes, but not those of equally compliant points.
+    pub(crate) fn keeps_least_alone(
+        &mut self,
+        problem: &ContactProblem<'_>,
+        modes: &[Mode],
+    ) -> bool {
+        let solved = self.solve(problem, modes).is_ok();
+        if !solved || !self.slips() || self.sharing.nullity() == 0 {
+            return false;
+        }
+        self.list_normals();
+        self.sharing.share(&self.normals, 0.0) == Some(Loads::Least)
+    }
+
     /// The least normal force, as the motion has them where contacts slip: then it is not free
     /// which of all forces push, and where equally compliant points would pull, steep friction
-    /// leaves no others to them, though there may be some.
+    /// leaves no others to them, though there may be some. Forces that push but are not the `loads`
+    /// wanted count as what those would pull without limits.
     fn least_shared_normal(&mut self) -> f64 {
         let least = |forces: &[f64], limits: &[Limit]| {
             limits.iter().map(|limit| forces[limit.at]).fold(f64::INFINITY, f64::min)
         };
-        let slips = self.unknowns.iter().any(|unknown| unknown.tangents > 0);
-        if !slips || least(&self.values, &self.limits) >= 0.0 {
+        let unlimited = least(&self.values, &self.limits);
+        if !self.slips() || unlimited >= 0.0 {
             return 0.0;
         }
+        self.list_normals();
+        match self.sharing.share_or_pull(&self.normals) {
+            Some(found) if found == self.sharing.wanted_loads() => {
+                least(self.sharing.forces(), &self.normals)
+            }
+            _ => unlimited,
+        }
+    }
+
+    fn slips(&self) -> bool {
+        self.unknowns.iter().any(|unknown| unknown.tangents > 0)
+    }
+
+    fn list_normals(&mut self) {
         self.normals.clear();
         self.normals.extend(self.limits.iter().map(|limit| Limit { cone: None, ..*limit }));
-        self.sharing.share_or_pull(&self.normals);
-        least(self.sharing.forces(), &self.normals)
     }
 
     /// max t subject to A z + c >= t, as a complementarity problem of the multipliers y and of

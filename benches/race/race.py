@@ -18,6 +18,7 @@ import ctypes
 import json
 import os
 import pathlib
+import re
 import shutil
 import statistics
 import subprocess
@@ -42,7 +43,10 @@ ARGUMENTS = {
     "gravity_vector": ["q"],
     "regressor": ["q", "qd", "qdd"],
     "inverse_dynamics_derivatives": ["q", "qd", "qdd"],
+    "base_regressor": ["q", "qd", "qdd"],
 }
+# Ours alone, for many samples: CasADi has no base parameters.
+ALONE = "base_regressor"
 FIELDS = {
     "dynamics_terms": ["mass_matrix", "coriolis_matrix", "gravity_vector"],
     "inverse_dynamics_derivatives": ["dtau_dq", "dtau_dqd"],
@@ -171,6 +175,7 @@ def shapes_of(function, n, columns):
         "inverse_dynamics_derivatives": [(n, n), (n, n)],
         "mass_matrix": [(n, n)],
         "regressor": [(n, columns)],
+        ALONE: [(n, columns)],
     }.get(function, [(n,)])
 
 
@@ -208,6 +213,11 @@ def batch(name, module, function, symbol, n, columns, lanes, is_stored):
         call=call)
 
 
+def base_columns(module):
+    """How many base parameters an emitted module has."""
+    return int(re.search(r"fn base_regressor.*?-> \[\[S; (\d+)\]; DOF\]", module, re.DOTALL)[1])
+
+
 def build_ours(models, functions, folder, denavit, flags):
     """One library with every function of every model, baked and tunable."""
     source = folder / "ours" / "src"
@@ -220,7 +230,7 @@ def build_ours(models, functions, folder, denavit, flags):
         for flavour, options in FLAVOURS.items():
             module = f"{name}_{flavour}"
             emitted = source / f"{module}.rs"
-            run([denavit, "emit", path, *options, "--functions", ",".join(functions), "-o",
+            run([denavit, "emit", path, *options, "--functions", ",".join([*functions, ALONE]), "-o",
                  emitted], stdout=subprocess.DEVNULL)
             # So that the fields of a result stand where CasADi's entries do.
             emitted.write_text(emitted.read_text().replace("pub struct", "#[repr(C)]\npub struct"))
@@ -230,15 +240,16 @@ def build_ours(models, functions, folder, denavit, flags):
                     f"static PARAMETERS_{module.upper()}: std::sync::LazyLock<"
                     f"{module}::Parameters<f64>> = std::sync::LazyLock::new("
                     f"{module}::Parameters::default);")
-            for function in functions:
+            for function in [*functions, ALONE]:
                 symbol = f"{module}_{function}"
-                size, code = wrapper(name, module, function, symbol, len(model.joints),
-                                     10 * len(model.bodies))
+                columns = base_columns(emitted.read_text()) if function == ALONE \
+                    else 10 * len(model.bodies)
+                size, code = wrapper(name, module, function, symbol, len(model.joints), columns)
                 sizes[name, function] = size
                 text.append(code)
                 if flavour == "baked":
                     text += [batch(name, module, function, f"{name}_{label}_{function}",
-                                   len(model.joints), 10 * len(model.bodies), lanes, is_stored)
+                                   len(model.joints), columns, lanes, is_stored)
                              for label, (lanes, is_stored) in BATCHES.items()]
     (source / "lib.rs").write_text("\n".join(text))
     (folder / "ours" / "Cargo.toml").write_text(
@@ -418,6 +429,24 @@ def compete(name, function, model, libraries, folder):
     }
 
 
+def alone(name, model, libraries):
+    """A row of the table of base regressors."""
+    ours, sizes, timing = libraries
+    n, size = len(model.joints), sizes[name, ALONE]
+    variants = [Variant.new("baked", ours, f"{name}_baked_{ALONE}", size, OURS)]
+    variants += [Variant.new(label, ours, f"{name}_{label}_{ALONE}", size, OUR_BATCH)
+                 for label in BATCHES]
+    arguments = numpy.random.default_rng(7).uniform(-1, 1, (INPUTS, 3, n))
+    stored = variants[-1].evaluate(timing, arguments, n)
+    for row, vectors in enumerate(arguments):
+        if not numpy.array_equal(variants[0].evaluate(timing, vectors[None], n)[0], stored[row]):
+            sys.exit(f"{name} {ALONE}: a pack has other numbers")
+    times = timed(timing, variants, arguments, n)
+    return {"model": name, "function": ALONE, "columns": size // n,
+            **{f"{v.label}_ns": statistics.median(times[:, row].tolist())
+               for row, v in enumerate(variants)}}
+
+
 COLUMNS = {
     "times": [
         ("ours", "{baked_ns:.0f}"), ("without fusing", "{plain_ns:.0f}"),
@@ -437,6 +466,10 @@ COLUMNS = {
         ("ours", "{baked_error:.1e}"), ("without fusing", "{plain_error:.1e}"),
         ("CasADi, gcc", "{gcc_error:.1e}"), ("ours and CasADi", "{difference:.1e}"),
     ],
+    "base regressors": [
+        ("columns", "{columns}"), ("one at a time", "{baked_ns:.0f}"), ("f64x4", "{x4_ns:.0f}"),
+        ("f64x8", "{x8_ns:.0f}"), ("f64x4, stored", "{stored_ns:.0f}"),
+    ],
 }
 
 
@@ -453,7 +486,7 @@ def table(rows, title):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--models", default=",".join(MODELS))
-    parser.add_argument("--functions", default=",".join(ARGUMENTS))
+    parser.add_argument("--functions", default=",".join(f for f in ARGUMENTS if f != ALONE))
     parser.add_argument("--denavit", default=str(ROOT / "target/release/denavit"))
     parser.add_argument("--folder", default=str(ROOT / "target/race"))
     parser.add_argument("--rustflags", default="-C target-cpu=native")
@@ -477,7 +510,9 @@ def main():
             row = compete(name, function, model, (ours, sizes, timing), folder)
             rows.append(row)
             print(table([row], "times").splitlines()[-1], file=sys.stderr, flush=True)
-    text = "\n\n".join(f"{title}\n\n{table(rows, title)}" for title in COLUMNS) + "\n"
+    base = [alone(name, model, (ours, sizes, timing)) for name, (_, model) in models.items()]
+    text = "\n\n".join(f"{title}\n\n{table(base if title == 'base regressors' else rows, title)}"
+                       for title in COLUMNS) + "\n"
     print(text)
     if options.output:
         pathlib.Path(options.output).write_text(text)

@@ -1,13 +1,14 @@
 //! Laws of added effects in a simulation: their torques, and the rates of their states.
 
 use super::PlantError;
+use super::native::NativeRoutine;
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::dynamics::implicit_effects;
 use denavit_codegen::expr::{Dag, ExprId, SymbolClass, UnaryFunction, derivative, substitute};
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::model::{JointLaw, JointVariables, LinkId, Robot, Terms};
 use denavit_codegen::number::ratio;
-use denavit_codegen::program::{Evaluator, lower};
+use denavit_codegen::program::{Evaluate, lower};
 use rustc_hash::FxHashMap;
 
 /// Below this rate a jump of a law at rate 0 is a steep line, as that of Coulomb friction is:
@@ -46,8 +47,8 @@ pub(super) struct Laws {
     joints: usize,
     pub(super) states: usize,
     is_accelerated: bool,
-    evaluator: Evaluator<f64>,
-    initial: Evaluator<f64>,
+    evaluator: NativeRoutine,
+    initial: NativeRoutine,
     outputs: Vec<f64>,
 }
 
@@ -217,7 +218,7 @@ fn evaluator(
     dag: &Dag,
     arguments: &[Argument],
     entries: Vec<ExprId>,
-) -> Result<Evaluator<f64>, PlantError> {
+) -> Result<NativeRoutine, PlantError> {
     let output = Output {
         name: "tau",
         shape: vec![entries.len()],
@@ -233,5 +234,5 @@ fn evaluator(
         form: Form::Plain,
     };
     let program = lower(dag, &[function]).map_err(PlantError::Lower)?;
-    Ok(Evaluator::new(&program.routines[0], &[]))
+    Ok(NativeRoutine::new(&program.routines[0], &[]))
 }

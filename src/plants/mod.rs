@@ -32,6 +32,7 @@ pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
     SeriesElasticModel,
 };
+pub(crate) use native::NativeBatch;
 pub use native::native_code;
 
 /// The functions of a robot with n joints and c contact points. Each may use memory of its own,

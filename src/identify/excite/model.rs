@@ -2,13 +2,13 @@
 
 use super::fault::{ExciteFault, LimitKind};
 use crate::plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
-use crate::plants::{GroundModel, PointModel, point_positions};
+use crate::plants::{GroundModel, NativeBatch, PointModel, point_positions};
 use denavit_codegen::arena::Handle;
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{Contact, Robot, bake};
-use denavit_codegen::program::{BatchEvaluator, Program, constant_values, lower};
+use denavit_codegen::program::{EvaluateBatch, constant_values, lower};
 
 /// Which parameters the columns of the regressor belong to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,12 +71,12 @@ pub struct ExcitedModel {
     links: usize,
     /// Inverse dynamics without Coulomb friction; none if no joint has a torque limit.
     torques: Option<Torques>,
-    transforms: Option<Program>,
+    transforms: Option<NativeBatch>,
 }
 
 #[derive(Clone, Debug)]
 struct Torques {
-    smooth: Program,
+    smooth: NativeBatch,
     /// Coulomb friction of each joint, joint side [N m, N].
     coulomb: Vec<f64>,
 }
@@ -88,8 +88,8 @@ pub(super) struct Evaluators {
     pub regressor: RegressionEvaluator,
     /// Rows that are used again.
     pub rows: RegressionRows,
-    torques: Option<BatchEvaluator<f64>>,
-    transforms: Option<BatchEvaluator<f64>>,
+    torques: Option<NativeBatch>,
+    transforms: Option<NativeBatch>,
     outputs: Vec<f64>,
 }
 
@@ -140,12 +140,11 @@ impl ExcitedModel {
 
     /// Evaluators of a thread.
     pub(super) fn evaluators(&self) -> Evaluators {
-        let batch = |program: &Program| BatchEvaluator::new(&program.routines[0], &[]);
         Evaluators {
             regressor: self.regression.evaluator(),
             rows: RegressionRows::default(),
-            torques: self.torques.as_ref().map(|torques| batch(&torques.smooth)),
-            transforms: self.transforms.as_ref().map(batch),
+            torques: self.torques.as_ref().map(|torques| torques.smooth.clone()),
+            transforms: self.transforms.clone(),
             outputs: Vec::new(),
         }
     }
@@ -221,9 +220,10 @@ impl ExcitedModel {
     }
 }
 
-fn program(robot: &Robot, name: FunctionName) -> Result<Program, ExciteFault> {
+fn program(robot: &Robot, name: FunctionName) -> Result<NativeBatch, ExciteFault> {
     let derivation = derive(robot, Flavour::Baked, &[name]).map_err(ExciteFault::Bake)?;
-    lower(&derivation.dag, &derivation.functions).map_err(ExciteFault::Lower)
+    let program = lower(&derivation.dag, &derivation.functions).map_err(ExciteFault::Lower)?;
+    Ok(NativeBatch::new(&program.routines[0], &[]))
 }
 
 /// What Coulomb friction takes is the difference of two inverse dynamics at a positive rate.
@@ -238,11 +238,10 @@ fn torques(robot: &Robot, joints: usize) -> Result<Torques, ExciteFault> {
     let full = program(robot, FunctionName::InverseDynamics)?;
     let motion: Vec<f64> = (0..3 * joints).map(|at| f64::from(at / joints == 1)).collect();
     let motion: Vec<&[f64]> = motion.iter().map(std::slice::from_ref).collect();
-    let torque = |program: &Program| -> Vec<f64> {
+    let torque = |program: &NativeBatch| -> Vec<f64> {
         let mut values = vec![0.0; joints];
         let mut columns: Vec<&mut [f64]> = values.iter_mut().map(std::slice::from_mut).collect();
-        let mut batch = BatchEvaluator::new(&program.routines[0], &[]);
-        batch.evaluate(&motion, &mut columns).expect("one column for each joint");
+        program.clone().evaluate(&motion, &mut columns).expect("one column for each joint");
         values
     };
     let (full, plain) = (torque(&full), torque(&smooth));

@@ -171,6 +171,7 @@ fn summary(
         "stop": run.stop.word(),
         "message": run.stop.to_string(),
         "hint": scenario.hint(&run.stop),
+        "note": scenario.note(run),
         "end_s": run.end.t_s,
         "events": run.events.len(),
         "steps": cost.steps,
@@ -223,6 +224,9 @@ fn print(
     )?;
     if let Some(hint) = scenario.hint(&run.stop) {
         writeln!(out, "hint: {hint}")?;
+    }
+    if let Some(note) = scenario.note(run) {
+        writeln!(out, "note: {note}")?;
     }
     writeln!(out)?;
     for (_, law, worst) in run.audit.listed(scenario.plant.model()) {

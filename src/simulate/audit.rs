@@ -1,6 +1,7 @@
 //! Audits: laws of mechanics that a run must obey, measured on what it did.
 
 use super::ground::{Ground, cross, dot};
+use super::integrate::Method;
 use super::motion::Motion;
 use crate::plants::PlantModel;
 
@@ -30,11 +31,30 @@ pub struct Tolerances {
     pub friction_angle_rad: f64,
 }
 
+/// A fall by this height is an error of position that the balance of energy need not see \[m\]: a
+/// contact lands within 1e-8 m.
+const FALL_M: f64 = 1e-3;
+
+/// Closed contacts may move by so many times the accuracy of rates.
+const ERRORS: f64 = 100.0;
+
 /// Tolerances of forces, momentum and their products count once per so much kinetic energy: what a
 /// robot of human size has that walks \[J\].
 const MOTION_J: f64 = 4.0;
 
 impl Tolerances {
+    /// Those of motion from event to event, integrated like this.
+    pub fn of_method(method: Method) -> Self {
+        let standard = Self::default();
+        let separation_m_s = match method {
+            Method::DormandPrince(accuracy) | Method::Radau(accuracy) => {
+                standard.separation_m_s.max(ERRORS * accuracy.absolute)
+            }
+            Method::RungeKutta { .. } => standard.separation_m_s,
+        };
+        Self { separation_m_s, ..standard }
+    }
+
     /// Those of time stepping with steps of this length: in proportion to it, what a robot of
     /// human size that walks or stumbles is off by.
     pub fn of_steps(step_s: f64) -> Self {
@@ -94,6 +114,9 @@ pub struct Audit {
     pub exchanged_j: f64,
     /// Largest kinetic energy: what errors of forces and of momentum are compared with \[J\].
     pub motion_j: f64,
+    /// Weight: times a millimetre, it is what the energy error of a heavy body at rest is compared
+    /// with \[N\].
+    pub weight_n: f64,
     /// Linear momentum across impacts [N s].
     pub momentum_ns: f64,
     /// Largest energy that an impact made \[J\]; 0 if all lost.
@@ -127,8 +150,9 @@ pub struct Audit {
 }
 
 impl Audit {
-    pub(super) fn new() -> Self {
-        Self { zmp_margin_m: f64::INFINITY, ..Self::default() }
+    pub(super) fn new(model: &PlantModel) -> Self {
+        let weight_n = model.mass_kg * dot(model.gravity, &model.gravity).sqrt();
+        Self { zmp_margin_m: f64::INFINITY, weight_n, ..Self::default() }
     }
 
     /// The figures that have a meaning for a plant, each with the name in its log's header (none
@@ -173,7 +197,8 @@ impl Audit {
     /// The laws that were missed by more than is tolerated: name, by how much, tolerance.
     pub fn broken(&self, tolerances: &Tolerances) -> Vec<(&'static str, f64, f64)> {
         let t = tolerances;
-        let energy = t.energy_j * self.exchanged_j.max(self.motion_j).max(1.0);
+        let fall = FALL_M * self.weight_n;
+        let energy = t.energy_j * self.exchanged_j.max(self.motion_j).max(fall).max(1.0);
         let size = (self.motion_j / MOTION_J).max(1.0);
         let checks = [
             ("energy", self.energy_j, energy),

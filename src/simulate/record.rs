@@ -28,7 +28,7 @@ impl Recorder {
         let columns = columns(model, motion.control, &motion.drives.elastic);
         Self {
             log: Log { columns, ..Log::default() },
-            audit: Audit::new(),
+            audit: Audit::new(model),
             free: model.joints.first().is_some_and(|joint| !joint.drivable),
             start_energy,
             impact_energy: 0.0,

@@ -28,6 +28,9 @@ pub enum EventKind {
     Touch(usize),
     /// Forces reached a limit: a contact opens, or begins to slip.
     Limit,
+    /// A sole that slides on has no loads of equally compliant points any more: from here to the
+    /// next event they are the least that keep it flat.
+    LeastLoads,
     /// A contact stopped slipping.
     SlipEnds(usize),
     /// A guard of the plant fired.
@@ -359,6 +362,7 @@ impl Runner<'_> {
             .collect();
         let after = self.y[rates].to_vec();
         self.audit_momentum(&before, &after, &impulses);
+        let kind = if self.motion.takes_least() { EventKind::LeastLoads } else { kind };
         let fell_back = settled.fell_back;
         let q = self.y[..n].to_vec();
         let event = Event { t_s, kind, closed, impulses, energy_j, q, before, after, fell_back };

@@ -213,7 +213,10 @@ impl Settler {
         let rows = motion.ground.rows();
         motion.project(y, candidates);
         let normal = |index: usize| motion.work.velocity[index * rows + rows - 1];
-        let slow = (0..candidates.len()).filter(|index| normal(*index) <= touching.rest_speed);
+        // without restitution what parts by rounding does not part
+        let least = if touching.restitution > 0.0 { 0.0 } else { IMPACT_SPEED };
+        let rest_speed = touching.rest_speed.max(least);
+        let slow = (0..candidates.len()).filter(|index| normal(*index) <= rest_speed);
         let (slow, parting): (Vec<usize>, Vec<f64>) =
             slow.map(|index| (candidates[index], normal(index))).unzip();
         if slow.is_empty() {

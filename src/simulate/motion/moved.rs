@@ -21,7 +21,7 @@ pub(super) struct MovedMemory {
     matrix: Vec<f64>,
     right: Vec<f64>,
     limits: Vec<Limit>,
-    pub(super) sharing: Sharing,
+    sharing: Sharing,
     force: Vec<f64>,
 }
 
@@ -45,6 +45,11 @@ impl Motion<'_> {
     pub(in crate::simulate) fn want(&mut self, loads: Loads) {
         self.moved.sharing.want(loads);
         self.solver.sharing().want(loads);
+    }
+
+    /// Whether loads are the least.
+    pub(in crate::simulate) fn takes_least(&self) -> bool {
+        self.moved.sharing.wanted_loads() == Loads::Least
     }
 
     /// Remembers which redundant contacts that slip are loaded.

@@ -9,7 +9,6 @@
 
 use super::{Closed, Motion};
 use crate::simulate::breakdown::Breakdown;
-use crate::simulate::contact::sharing::Loads;
 use crate::simulate::contact::{ContactProblem, Mode};
 use crate::simulate::integrate::Method;
 
@@ -108,7 +107,7 @@ impl Motion<'_> {
         t_s: f64,
         y: &[f64],
     ) -> Result<bool, Breakdown> {
-        if self.moved.sharing.wanted_loads() == Loads::Least {
+        if self.takes_least() {
             return Ok(false);
         }
         self.pose(t_s, y)?;

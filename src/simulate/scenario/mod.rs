@@ -27,7 +27,7 @@ use super::audit::Tolerances;
 use super::breakdown::{Breakdown, Stop};
 use super::control::Control;
 use super::measured_log::measured_log;
-use super::run::{Run, simulate};
+use super::run::{EventKind, Run, simulate};
 use super::simulation::Simulation;
 use super::state::State;
 use super::time_stepping::{Scheme, StepSolver, Stepping, simulate_by_steps};
@@ -139,9 +139,27 @@ impl Scenario {
     /// What may help where a run missed these laws: fast turning is more than steps of first order
     /// follow.
     pub fn broken_hint(&self, broken: &[(&'static str, f64, f64)]) -> Option<&'static str> {
-        let first_order = self.scheme == RunScheme::TimeStepping && self.stepping.corrections == 0;
-        (first_order && !broken.is_empty())
-            .then_some("shorter steps (`--step`), or `\"corrections\": 1` in `time_stepping`")
+        if broken.is_empty() {
+            return None;
+        }
+        Some(match self.scheme {
+            RunScheme::Event => "a higher accuracy (`relative`, `absolute` in `integrator`)",
+            RunScheme::TimeStepping if self.stepping.corrections == 0 => {
+                "shorter steps (`--step`), or `\"corrections\": 1` in `time_stepping`"
+            }
+            RunScheme::TimeStepping => "shorter steps (`--step`)",
+        })
+    }
+
+    /// What a reader of a run must know beside its audits: where the laws of contact did not say
+    /// how a sole is loaded.
+    pub fn note(&self, run: &Run) -> Option<String> {
+        let first = run.events.iter().find(|event| event.kind == EventKind::LeastLoads)?;
+        Some(format!(
+            "at {:.6} s equally compliant points of a sliding sole found no loads; the least were \
+             taken until contacts changed (docs/scenario.md)",
+            first.t_s
+        ))
     }
 
     /// The laws that a run of this scenario missed by more than is tolerated: name, by how much,
@@ -174,6 +192,7 @@ impl Scenario {
             header.push(("step_s", format!("{:e}", self.stepping.step_s)));
         }
         header.push(("stop", run.stop.word().to_owned()));
+        header.extend(self.note(run).map(|note| ("note", note)));
         let mut header: Vec<(String, String)> =
             header.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
         for (key, _, worst) in run.audit.listed(model) {

@@ -114,7 +114,7 @@ fn scenario(
     };
     let (name, description) = (text("name", report), text("description", report));
     let mut simulation = options::simulation(fields, report);
-    let tolerances = options::tolerances(fields, Tolerances::default(), report);
+    let tolerances = options::tolerances(fields, Tolerances::of_method(simulation.method), report);
     let scheme = stepping::scheme(fields, report);
     let (stepping, stepping_tolerances) = stepping::stepping(fields, report);
     let mut plant = plant(fields, load, report)?;

@@ -79,7 +79,7 @@ impl StepRecorder {
         let start_energy = system.energy(q, qd);
         let mut recorder = Self {
             log: Log { columns, ..Log::default() },
-            audit: Audit::new(),
+            audit: Audit::new(&model),
             events: Vec::new(),
             pushing: Vec::new(),
             ground: Ground::new(&model),

@@ -163,7 +163,10 @@ impl Runner<'_> {
             None => self.control.next_break(self.t_s + 1e-12),
             Some(_) => None,
         };
-        [sample, jump, Some(row)].into_iter().flatten().fold(self.simulation.end_s, f64::min)
+        // what differs from the end by rounding would ask for a step as short as that
+        let end_s = self.simulation.end_s;
+        let before = |stop_s: &f64| *stop_s < end_s - 1e-12;
+        [sample, jump, Some(row)].into_iter().flatten().filter(before).fold(end_s, f64::min)
     }
 
     fn sample_control(&mut self) {

@@ -147,3 +147,39 @@ fn seven_points_slide_to_their_end() {
 fn eight_points_land_and_slide_to_rest() {
     assert!(ends("eight_points", &[]).0);
 }
+
+/// Where equally compliant points find no loads, the state alone must decide too, and be told.
+#[test]
+fn least_loads_are_told_and_do_not_depend_on_order() {
+    let [one, other] = ["least_loads", "least_loads_permuted"].map(|name| last_pose(name, &[]));
+    assert!(are_near(one, other, 1e-6), "{one:?} {other:?}");
+    let (_, log) = ends("least_loads", &[]);
+    assert!(log.lines().any(|line| line.starts_with("# note: ")), "{log}");
+    let (_, log) = ends("tall_sole", &[]);
+    assert!(!log.lines().any(|line| line.starts_with("# note: ")));
+}
+
+/// Three points in a line hit at once: none may be left out for rounding.
+#[test]
+fn a_landing_on_an_edge_does_not_depend_on_the_log_period() {
+    let [one, other] =
+        ["landing_on_an_edge", "landing_on_an_edge_logged"].map(|name| last_pose(name, &[]));
+    assert!(are_near(one, other, 1e-7), "{one:?} {other:?}");
+}
+
+/// Two distributions of the load would be taken in turns, by ever shorter steps.
+#[test]
+fn a_sole_with_two_loads_keeps_one() {
+    assert!(ends("two_loads", &[]).0);
+}
+
+#[test]
+fn a_landing_without_a_speed_of_rest_is_no_bounce() {
+    assert!(ends("no_rest_speed", &[]).0);
+}
+
+/// The last row is off the end by rounding, and asks for no step to it.
+#[test]
+fn no_step_is_as_short_as_rounding() {
+    assert!(ends("uneven_end", &[]).0);
+}

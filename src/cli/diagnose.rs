@@ -15,10 +15,11 @@ use super::model_effects::{EffectUse, ModelApart};
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    Candidate, Diagnosis, DiagnosisError, FoundEffect, Request, SearchOptions, Uncertainty,
-    Verdict, before_springs, candidates, diagnose, given_candidates,
+    Candidate, Diagnosis, DiagnosisError, ExactAliases, Experiment, ExperimentOptions, FoundEffect,
+    Moved, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose,
+    given_candidates,
 };
-use denavit::effect::Effect;
+use denavit::effect::{Channel, Effect};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::effect::ApartEffects;
@@ -128,6 +129,11 @@ const DIAGNOSIS: &str = "diagnosis.json";
 const MODEL: &str = "model.json";
 const REPORT: &str = "report.html";
 
+/// The file of the experiment that separates an effect from what would do as well.
+fn experiment_file(number: usize) -> String {
+    format!("separating_{}.json", number + 1)
+}
+
 impl Shown {
     /// What was found, in order.
     pub(super) fn named(&self) -> Vec<Named> {
@@ -162,7 +168,17 @@ impl Shown {
             (REPORT, "the diagnosis as a page"),
         ];
         let there = all.into_iter().filter(|(name, _)| has_model || *name != MODEL);
-        there.map(|(name, what)| (written.folder.join(name), what)).collect()
+        let there = there.map(|(name, what)| (written.folder.join(name), what));
+        let what = "a motion that separates names";
+        let motions = self.experiments();
+        let motions = motions.map(|(at, _)| (written.folder.join(experiment_file(at)), what));
+        there.chain(motions).collect()
+    }
+
+    /// Experiments that were found, each with the number of its effect.
+    fn experiments(&self) -> impl Iterator<Item = (usize, &Experiment)> {
+        let all = self.found.effects.iter().enumerate();
+        all.filter_map(|(number, one)| Some((number, one.experiment.as_ref()?.as_ref().ok()?)))
     }
 
     /// Why the folder has no model, if it has none.
@@ -245,21 +261,27 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
         None => (robot, model),
     };
     let effects = with_own(own);
-    let numbers = laws.iter().map(|law| law.number).collect();
-    let (mut all, given) = given_candidates(laws, Uncertainty::default());
-    let is_given = |one: &Candidate| {
-        all.iter().any(|given| (&given.effect, &given.at) == (&one.effect, &one.at))
+    let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
+    let numbers: Vec<usize> = kept.map(|law| law.number).collect();
+    let (given_laws, given) = given_candidates(laws, Uncertainty::default());
+    let candidates = with_given(given_laws, candidates(&effects, &robot, &model.joints));
+    let moved = Moved {
+        source: &source,
+        effects: &effects,
+        numbers: &numbers,
+        logs: [train.clone(), held_out.clone()],
     };
-    let mut searched = candidates(&effects, &robot, &model.joints);
-    searched.retain(|one| !is_given(one));
-    all.append(&mut searched);
-    let candidates = all;
+    let aliases = ExactAliases::new(&robot, &effects);
+    let experiment = ExperimentOptions { seed: arguments.seed, ..ExperimentOptions::default() };
     let request = Request {
         model: &model,
         train,
         held_out,
         candidates: &candidates,
         given,
+        aliases: aliases.as_ref(),
+        experiment: arguments.out.as_ref().map(|_| (&robot, experiment)),
+        moved: Some(&moved),
         uncertainty: Uncertainty::default(),
         options: SearchOptions {
             most_effects: usize::from(arguments.most),
@@ -303,6 +325,11 @@ fn write_folder(arguments: &Arguments, folder: &Path, shown: &mut Shown) -> Resu
         Completed::Refused(reason) => Err(reason.clone()),
     };
     shown.written = Some(Written { folder: folder.to_owned(), model });
+    for (number, experiment) in shown.experiments() {
+        let mut bytes = serde_json::to_vec_pretty(&experiment.file)?;
+        bytes.push(b'\n');
+        write_whole(&folder.join(experiment_file(number)), &bytes)?;
+    }
     write_whole(&folder.join(REPORT), page::of(arguments, shown).render().as_bytes())?;
     let mut bytes = Vec::new();
     json::write(&mut bytes, shown)?;
@@ -340,6 +367,15 @@ fn log(
     let found = std::mem::take(&mut log.remarks);
     remarks.extend(found.into_iter().map(|remark| (file.clone(), remark)));
     Ok(log)
+}
+
+/// What the model has, then everything else that may be missing.
+fn with_given(mut given: Vec<Candidate>, mut searched: Vec<Candidate>) -> Vec<Candidate> {
+    let is =
+        |one: &Candidate, other: &Candidate| (&one.effect, &one.at) == (&other.effect, &other.at);
+    searched.retain(|one| given.iter().all(|given| !is(given, one)));
+    given.append(&mut searched);
+    given
 }
 
 /// The catalogue, with a user's own effects.

@@ -130,7 +130,12 @@ impl<'a> Data<'a> {
 
     /// Torque less what the model gives with z, per row.
     pub fn residual_of(&self, z: &[f64]) -> Vec<f64> {
-        let mut residual = self.residual.clone();
+        self.without(None, z)
+    }
+
+    /// Rows, or those of the residual, less what z adds to what the model gives with z = 0.
+    pub(super) fn without(&self, rows: Option<&Vec<f64>>, z: &[f64]) -> Vec<f64> {
+        let mut residual = rows.unwrap_or(&self.residual).clone();
         for (column, factor) in self.columns.iter().zip(z).filter(|(_, factor)| **factor != 0.0) {
             residual.iter_mut().zip(column).for_each(|(sum, entry)| *sum -= factor * entry);
         }

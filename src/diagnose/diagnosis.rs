@@ -1,23 +1,27 @@
 //! The whole of it: logs and a model in, what is missing out, as data.
 
+use super::alias::ExactAliases;
 use super::candidate::Candidate;
 use super::curve::{Curve, curves};
 use super::data::Data;
-use super::family::{Alternative, family};
+use super::effects_found::{
+    FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
+};
+use super::experiment::ExperimentOptions;
 use super::fault::DiagnosisError;
 use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
-use super::given::is_driven;
 use super::nominal::{Nominal, Uncertainty};
 use super::regime::{Where, where_left};
 use super::repeat::unrepeatable;
-use super::search::{Screen, SearchOptions, Step, Stop, search};
+use super::search::{SearchOptions, Step, Stop, search};
 use super::signals::{Filters, Signals};
+use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
 use super::state::{Setting, State, Taken};
 use super::structure::{Structure, describe};
 use crate::identify::log::MeasuredLog;
-use crate::plants::effect::LawParameter;
 use crate::plants::regression::RegressionModel;
+use denavit_codegen::model::Robot;
 
 /// What is to be diagnosed, from what.
 pub struct Request<'a> {
@@ -33,6 +37,12 @@ pub struct Request<'a> {
     pub given: Vec<Taken>,
     /// How far numbers of the model may be off that state nothing.
     pub uncertainty: Uncertainty,
+    /// The symbolic regressor of the model, to tell exact aliases; none leaves them untold.
+    pub aliases: Option<&'a ExactAliases<'a>>,
+    /// The robot with its limits, for experiments that separate names; none looks for none.
+    pub experiment: Option<(&'a Robot, ExperimentOptions)>,
+    /// The model as a file, to be moved along the logs; none leaves that gap out.
+    pub moved: Option<&'a Moved<'a>>,
     /// What the search asks for.
     pub options: SearchOptions,
     /// The filters; found from the steps of the encoders if none are given.
@@ -67,43 +77,6 @@ impl Verdict {
     }
 }
 
-/// A parameter of an effect, with its error.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EffectValue {
-    /// Its name.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Its standard deviation.
-    pub std: f64,
-    /// Its unit.
-    pub unit: String,
-}
-
-/// An effect that was found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FoundEffect {
-    /// Its number among the candidates.
-    pub candidate: usize,
-    /// Its parameters.
-    pub parameters: Vec<EffectValue>,
-    /// The share of what can be explained that is open again without it, on held-out logs.
-    pub share: f64,
-    /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
-    pub is_named: bool,
-    /// Effects that would do as well in its place.
-    pub alternatives: Vec<Alternative>,
-}
-
-/// An effect that the model has.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GivenEffect {
-    /// Its number among the candidates.
-    pub candidate: usize,
-    /// Its parameters, estimated again.
-    pub parameters: Vec<EffectValue>,
-}
-
 /// Gaps of one set of logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaps {
@@ -113,6 +86,20 @@ pub struct Gaps {
     pub after: Gap,
     /// Of noise alone.
     pub floor: Gap,
+}
+
+impl Gaps {
+    fn new(
+        (data, floors): (&Data<'_>, &[NoiseFloor]),
+        [before, after]: [&[f64]; 2],
+        trust: &[f64],
+    ) -> Self {
+        Self {
+            before: Gap::new(data, before, trust),
+            after: Gap::new(data, after, trust),
+            floor: Gap::of_floor(data, floors, trust),
+        }
+    }
 }
 
 /// What a model lacks.
@@ -138,6 +125,8 @@ pub struct Diagnosis {
     pub train: Gaps,
     /// Gaps of the logs that were held out.
     pub held_out: Gaps,
+    /// Gaps of the models in motion, or why they are not moved; none if that was not asked for.
+    pub motion: Option<Result<MotionGaps, NotMoved>>,
     /// Torques of held-out logs over time.
     pub curves: Vec<Curve>,
     /// The filters.
@@ -148,11 +137,6 @@ pub struct Diagnosis {
 
 /// Shares of the rate of sampling that the filter of positions may pass.
 const SHARES: [f64; 6] = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018];
-
-/// A law that closes less than this share of what a joint leaves does not fit it, if more than so
-/// many times the deviation of noise stays.
-const FITS: f64 = 0.5;
-const MISFIT: f64 = 2.5;
 
 /// What is left within so many times the deviation of noise is noise.
 const NOISE: f64 = 1.6;
@@ -178,6 +162,7 @@ pub fn diagnose(
     let setting = Setting {
         train: &train,
         held_out: &held_out,
+        moved: request.moved.map(|moved| (moved, filters.motion_hz)),
         candidates: request.candidates,
         given: request.given,
         coarse: train.signals.iter().map(Signals::coarse).collect(),
@@ -192,12 +177,15 @@ pub fn diagnose(
     let left = |state: &State| {
         where_left(&train, &state.residual, &state.torques[0], &train_floor, filter_s)
     };
-    let effects = found_effects(
-        (&setting, &outcome.screen),
-        &request.options,
-        [&outcome.before, &outcome.after],
-    );
-    let (before, after) = (&outcome.before, &outcome.after);
+    let states = [&outcome.before, &outcome.after];
+    let mut effects = found_effects((&setting, &outcome.screen), &request.options, states);
+    if let Some(aliases) = request.aliases {
+        tell_aliases(request.candidates, aliases, &mut effects);
+    }
+    if let Some((robot, options)) = request.experiment {
+        separate(&setting, (robot, &options), (&outcome.after, filters), &mut effects);
+    }
+    let [before, after] = states;
     let trust = after.trust();
     let mut diagnosis = Diagnosis {
         verdict: Verdict::CannotTell,
@@ -206,18 +194,15 @@ pub fn diagnose(
         after: left(after),
         given: given_effects(&setting, after),
         effects,
-        train: Gaps {
-            before: Gap::new(&train, &before.residual, &trust[0]),
-            after: Gap::new(&train, &after.residual, &trust[0]),
-            floor: Gap::of_floor(&train, &train_floor, &trust[0]),
-        },
-        held_out: Gaps {
-            before: Gap::new(&held_out, &before.held_out_residual, &trust[1]),
-            after: Gap::new(&held_out, &after.held_out_residual, &trust[1]),
-            floor: Gap::of_floor(&held_out, &held_out_floor, &trust[1]),
-        },
+        train: Gaps::new((&train, &train_floor), [&before.residual, &after.residual], &trust[0]),
+        held_out: Gaps::new(
+            (&held_out, &held_out_floor),
+            [&before.held_out_residual, &after.held_out_residual],
+            &trust[1],
+        ),
         structures: structures(&setting, after),
         curves: curves(&held_out, [&before.held_out_residual, &after.held_out_residual]),
+        motion: request.moved.map(|_| motion_gaps(&setting, [before, after])),
         filters,
         driven: [before, after].map(|state| driven_names(&setting, state)),
         steps: outcome.steps,
@@ -252,84 +237,21 @@ fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters,
     last
 }
 
+/// The gaps of the models before and after in motion.
+fn motion_gaps(setting: &Setting<'_>, states: [&State; 2]) -> Result<MotionGaps, NotMoved> {
+    let of = |set: usize| -> Result<[MotionGap; 2], NotMoved> {
+        let [before, after] = states.map(|state| setting.motion_gap(set, (&state.taken, &state.z)));
+        Ok([before?, after?])
+    };
+    Ok(MotionGaps { train: of(0)?, held_out: of(1)? })
+}
+
 /// What joints still lack that are left with more than noise.
 fn structures(setting: &Setting<'_>, state: &State) -> Vec<Structure> {
     let squares = setting.held_out_squares(state, &state.held_out_residual);
     let is_left = |joint: &usize| squares[*joint][0] > NOISE * NOISE * squares[*joint][1];
     let joints = (0..squares.len()).filter(is_left);
     joints.filter_map(|joint| describe(setting, state, joint)).collect()
-}
-
-/// The effects of a state, each with its share, its errors and what would do as well.
-fn found_effects(
-    (setting, screen): (&Setting<'_>, &Screen),
-    options: &SearchOptions,
-    [before, after]: [&State; 2],
-) -> Vec<FoundEffect> {
-    let [_, trust] = after.trust();
-    let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
-    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &trust).all;
-    let squares = |left: &[f64]| setting.held_out_squares(after, left);
-    let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
-    let fits = |joint: usize| {
-        let ([from, _], [to, noise]) = (from[joint], to[joint]);
-        to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
-    };
-    let mut found = Vec::new();
-    for (place, taken) in after.taken.iter().enumerate().skip(setting.given.len()) {
-        let mut others = after.taken.clone();
-        others.remove(place);
-        let whole = gap(before) - floor;
-        found.push(FoundEffect {
-            candidate: taken.candidate,
-            parameters: values(setting, after, place),
-            share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
-            is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
-            alternatives: family((setting, screen), options, after, place),
-        });
-    }
-    found
-}
-
-/// The parameters of the effect in one place of a state, with their errors.
-fn values(setting: &Setting<'_>, state: &State, place: usize) -> Vec<EffectValue> {
-    let before: usize = state.taken[..place].iter().map(|taken| taken.values.len()).sum();
-    let taken = &state.taken[place];
-    let parameters = setting.candidates[taken.candidate].law.parameters();
-    let value = |(k, (value, parameter)): (usize, (&f64, &LawParameter))| EffectValue {
-        name: parameter.name.clone(),
-        value: *value,
-        std: state.covariance[(before + k, before + k)].max(0.0).sqrt(),
-        unit: parameter.unit.clone(),
-    };
-    taken.values.iter().zip(parameters).enumerate().map(value).collect()
-}
-
-/// What these logs say of the effects that the model has.
-fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEffect> {
-    let of = |(place, taken): (usize, &Taken)| GivenEffect {
-        candidate: taken.candidate,
-        parameters: values(setting, state, place),
-    };
-    setting.given.iter().enumerate().map(of).collect()
-}
-
-/// The names of what the logs would move beyond what the model says of it: its own numbers, and
-/// those of its effects.
-fn driven_names(setting: &Setting<'_>, state: &State) -> Vec<String> {
-    let numbers = state.held.iter().zip(&setting.train.nominal.uncertain);
-    let mut names: Vec<String> =
-        numbers.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect();
-    for taken in &state.taken {
-        let candidate = &setting.candidates[taken.candidate];
-        let parameters = candidate.law.parameters().iter().zip(candidate.law.beliefs());
-        for ((parameter, belief), value) in parameters.zip(&taken.values) {
-            if is_driven(belief, *value) {
-                names.push(format!("{}_{}_{}", parameter.name, candidate.effect, candidate.at));
-            }
-        }
-    }
-    names
 }
 
 impl Diagnosis {
@@ -405,6 +327,14 @@ impl Diagnosis {
             |log: &Signals| setting.train.signals.iter().any(|other| other.q == log.q);
         if setting.held_out.signals.iter().any(is_searched) {
             reasons.push("judged with a log that was searched: nothing is held out".to_owned());
+        }
+        for one in self.effects.iter().filter(|one| !one.exact.is_empty()) {
+            let name = setting.candidates[one.candidate].name();
+            reasons.push(format!(
+                "exact alias: {name} does what parameters of the model do in every motion ({}); \
+                 what is told is that they are off by more than the model states",
+                one.exact.join(", ")
+            ));
         }
         if stop == Stop::MostEffects {
             reasons.push("as many effects were found as are allowed".to_owned());

@@ -20,6 +20,8 @@ pub struct Alternative {
     /// The cosine of the angle between what the two do to the torques that the model's own
     /// parameters cannot.
     pub cosine: f64,
+    /// Whether no motion could tell the two apart: by the symbolic regressor.
+    pub is_exact: bool,
 }
 
 /// The effects that would do as well as the one in a place of `state.taken`, with the others as
@@ -54,7 +56,9 @@ pub fn family(
         if trial.held_out_cost() <= most && worse_by < DISTINCT {
             let held_out_gap = gap(&trial.held_out_residual);
             let cosine = cosine(setting, &problem, &rest, [&own, &other]);
-            found.push(Alternative { candidate, values, held_out_gap, worse_by, cosine });
+            let is_exact = false;
+            let one = Alternative { candidate, values, held_out_gap, worse_by, cosine, is_exact };
+            found.push(one);
         }
     }
     found.sort_by(|a, b| a.held_out_gap.total_cmp(&b.held_out_gap));

@@ -9,13 +9,16 @@
 //! - [`Problem`]: fits of effects with the model's own uncertainty eliminated
 //! - [`search()`]: which effects are missing
 
+mod alias;
 mod candidate;
 mod catalogue;
 mod curve;
 mod data;
 mod diagnosis;
+mod effects_found;
 mod elastic;
 mod evidence;
+mod experiment;
 mod family;
 mod fault;
 mod floor;
@@ -30,19 +33,21 @@ mod repeat;
 mod rows;
 mod search;
 mod signals;
+mod simulated;
 mod state;
 mod structure;
 mod turning;
 
+pub use alias::{ExactAliases, Named};
 pub use candidate::{Candidate, starts};
 pub use catalogue::candidates;
 pub use curve::Curve;
 pub use data::{Data, ModelTorques, RowResponse, Stretch};
-pub use diagnosis::{
-    Diagnosis, EffectValue, FoundEffect, Gaps, GivenEffect, Request, Verdict, diagnose,
-};
+pub use diagnosis::{Diagnosis, Gaps, Request, Verdict, diagnose};
+pub use effects_found::{EffectValue, FoundEffect, GivenEffect};
 pub use elastic::before_springs;
 pub use evidence::{block_costs, by_ranks, paired};
+pub use experiment::{Experiment, ExperimentOptions, NoExperiment};
 pub use family::{Alternative, family};
 pub use fault::DiagnosisError;
 pub use floor::{NoiseFloor, rms};
@@ -55,5 +60,6 @@ pub use regime::{Part, Regime, Where, where_left};
 pub use rows::PerJoint;
 pub use search::{Outcome, Scored, Screen, SearchOptions, Step, Stop, score, search};
 pub use signals::{Filters, Signals};
+pub use simulated::{MotionGap, MotionGaps, Moved, NotMoved};
 pub use state::{Setting, State, Taken, Trial};
 pub use structure::Structure;

@@ -31,6 +31,8 @@ pub struct Problem<'a> {
     factors: Rc<Factors>,
     held: Held,
     residual: DVector<f64>,
+    /// The rows as they are, if they are others than those of the data.
+    rows: Option<Rc<Vec<f64>>>,
 }
 
 /// [A; I] = Q R, of Q the rows of A.
@@ -133,7 +135,14 @@ impl<'a> Problem<'a> {
         let (q, r) = (qr.q().rows(0, rows).into_owned(), qr.r());
         let held = Held::new(&r, &vec![None; width]);
         let factors = Rc::new(Factors { q, r });
-        Self { data, signals: &data.signals, weights, factors, held, residual }
+        Self { data, signals: &data.signals, weights, factors, held, residual, rows: None }
+    }
+
+    /// The same problem for other rows in place of those of the data.
+    pub fn of_rows(&self, rows: Vec<f64>) -> Self {
+        let weighted = rows.iter().zip(&self.weights).map(|(row, weight)| row * weight);
+        let residual = DVector::from_iterator(rows.len(), weighted);
+        Self { residual, rows: Some(Rc::new(rows)), ..self.clone() }
     }
 
     /// The same problem with entries of z that have values: the first ones of `held`, others are
@@ -249,7 +258,7 @@ impl<'a> Problem<'a> {
 
     fn found(&self, laws: &[Fitted<'_>], responses: &[RowResponse], view: &View) -> Found {
         let z = self.z(&view.explained);
-        let mut residual = self.data.residual_of(&z);
+        let mut residual = self.data.without(self.rows.as_deref(), &z);
         responses.iter().for_each(|response| response.subtract_from(&mut residual));
         Found {
             values: laws.iter().map(|fitted| fitted.values.clone()).collect(),

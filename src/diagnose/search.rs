@@ -56,6 +56,9 @@ pub struct Step {
     pub share: f64,
     /// The gap of held-out logs with it.
     pub held_out_gap: f64,
+    /// Standard errors by which held-out logs are better when the model is moved along them; none
+    /// if it was not, or if that says nothing.
+    pub in_motion: Option<f64>,
     /// The candidates that came next, with the held-out gap that each would have left.
     pub runners_up: Vec<(usize, f64)>,
 }
@@ -86,7 +89,7 @@ pub struct Outcome {
 }
 
 /// Rows that count as one: what is left is correlated over the time of the filter.
-const ROWS_PER_SAMPLE: f64 = 4.0;
+pub(super) const ROWS_PER_SAMPLE: f64 = 4.0;
 
 /// Searches which candidates are missing. `watch` hears of every step.
 pub fn search(
@@ -198,9 +201,24 @@ fn forward(
     let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
         && significance > asked
         && !most.is_some_and(is_noise);
-    let is_taken = is_more && of_rest >= options.least_share;
+    let is_enough = is_more && of_rest >= options.least_share;
+    // Torques that are right for the wrong reason move the robot otherwise.
+    let own = is_enough
+        .then(|| setting.in_motion((&state.taken, &state.z), (&best.taken, &best.found.z)));
+    let in_motion = own.flatten();
+    let is_taken = is_enough && in_motion.is_none_or(|better| better > -DISTINCT);
     let held_out_gap = held_out_gap(&best.held_out_residual);
-    let step = Step { added, is_taken, gain, decoy, significance, share, held_out_gap, runners_up };
+    let step = Step {
+        added,
+        is_taken,
+        gain,
+        decoy,
+        significance,
+        share,
+        held_out_gap,
+        in_motion,
+        runners_up,
+    };
     Some((best.clone(), step))
 }
 

@@ -274,6 +274,12 @@ impl Signals {
         self.row_samples(&self.filtered(self.cell_means(signal)))
     }
 
+    /// White noise at the log's samples, through the filter, in the rows.
+    pub(super) fn white_rows(&self, mut draw: impl FnMut() -> f64) -> Vec<f64> {
+        let noise = (0..self.samples() / self.rows.within).map(|_| draw()).collect();
+        self.row_samples(&self.filtered(noise))
+    }
+
     /// A signal of the log's samples through the filter of torques.
     pub fn filtered(&self, mut signal: Vec<f64>) -> Vec<f64> {
         self.filter.zero_phase(&mut signal);

@@ -3,10 +3,11 @@
 
 use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
-use super::evidence::block_costs;
+use super::evidence::{block_costs, paired};
 use super::floor::{NoiseFloor, rms};
 use super::problem::{Fitted, Found, Problem};
 use super::signals::Signals;
+use super::simulated::{MotionGap, Moved, NotMoved};
 use super::turning::turning;
 
 /// An effect that was taken into the model.
@@ -28,6 +29,8 @@ pub struct Setting<'a> {
     pub candidates: &'a [Candidate],
     /// What the model has of them: the first effects of every state.
     pub given: Vec<Taken>,
+    /// The model as a file, to be moved along the logs, with the filter of these \[Hz\].
+    pub moved: Option<(&'a Moved<'a>, f64)>,
     /// Coarse views of the logs to fit; none if their filter leaves nothing to save.
     pub coarse: Option<Vec<Signals>>,
     /// Floors of the logs to fit.
@@ -239,6 +242,30 @@ impl<'a> Setting<'a> {
         residual
     }
 
+    /// The gap of the model in motion along a set of logs: those fitted, or the others.
+    pub(super) fn motion_gap(
+        &self,
+        set: usize,
+        (taken, z): (&[Taken], &[f64]),
+    ) -> Result<MotionGap, NotMoved> {
+        let Some((moved, cutoff_hz)) = self.moved else { return Ok(MotionGap::default()) };
+        moved.gap((set, cutoff_hz), (self.train.nominal, z), (self.candidates, taken))
+    }
+
+    /// Standard errors by which effects in place of others lessen the gap of the model in motion
+    /// along held-out logs, from its windows; none where that cannot be told: laws with states
+    /// begin each window as if at rest.
+    pub(super) fn in_motion(
+        &self,
+        than: (&[Taken], &[f64]),
+        now: (&[Taken], &[f64]),
+    ) -> Option<f64> {
+        self.moved?;
+        let gap = |one| self.motion_gap(1, one).ok().filter(|gap| !gap.has_states);
+        let (before, after) = (gap(than)?, gap(now)?);
+        Some(paired(&before.windows, &after.windows))
+    }
+
     /// Weighted squares of what is `left` of held-out logs, for each joint, and those of noise
     /// alone.
     pub fn held_out_squares(&self, state: &State, left: &[f64]) -> Vec<[f64; 2]> {
@@ -291,7 +318,11 @@ impl<'a> Setting<'a> {
 }
 
 /// Fits laws with every entry of z free until it is at a bound.
-fn within(problem: &Problem<'_>, laws: &mut [Fitted<'_>], torques: &[ModelTorques]) -> Found {
+pub(super) fn within(
+    problem: &Problem<'_>,
+    laws: &mut [Fitted<'_>],
+    torques: &[ModelTorques],
+) -> Found {
     let mut held = vec![None; problem.data.columns.len()];
     let mut found = problem.fit(laws, torques);
     for _ in 0..MOST_HELD {

@@ -3,7 +3,10 @@
 use super::effects::formulas;
 use super::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section, mathml};
 use super::{diagnosis_picture, percent, short};
-use crate::diagnose::{Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, Step, Verdict, Where};
+use crate::diagnose::{
+    Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Verdict,
+    Where,
+};
 use denavit_codegen::effect::{Effect, Law};
 
 /// Joints whose torques are drawn, at most.
@@ -69,6 +72,22 @@ pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String 
     text
 }
 
+/// The motion that would tell an effect from what would do as well.
+fn separating(one: &FoundEffect) -> Option<Part> {
+    let text = match one.experiment.as_ref()? {
+        Ok(found) => format!(
+            "A motion of {} s within the limits of the robot tells it from these in {} of \
+             simulated logs with the same noise: its separation is {}, that of these logs {}.",
+            found.duration_s,
+            percent(found.power),
+            short(found.separation),
+            short(found.separation_before)
+        ),
+        Err(reason) => format!("No motion was found that would tell it from these: {reason}."),
+    };
+    Some(Part::Paragraph { text })
+}
+
 impl DiagnosisPage<'_> {
     /// The page.
     pub fn page(&self) -> Page {
@@ -118,8 +137,41 @@ impl DiagnosisPage<'_> {
                        and after the effects, and what noise alone leaves. All: root of mean \
                        square over the joints."
                 .to_owned();
-        let parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
+        let mut parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
+        parts.extend(self.in_motion());
         Section { heading: "Gap".to_owned(), parts }
+    }
+
+    /// The gap of the models in motion.
+    fn in_motion(&self) -> Option<Part> {
+        let MotionGaps { train, held_out } = match self.found.motion.as_ref()? {
+            Ok(gaps) => gaps,
+            Err(reason) => {
+                return Some(Part::Paragraph { text: format!("Not simulated: {reason}.") });
+            }
+        };
+        let columns = headings(&[
+            ("joint", false),
+            ("train before", true),
+            ("after", true),
+            ("held out before", true),
+            ("after", true),
+        ]);
+        let row = |name: &str, value: &dyn Fn(&MotionGap) -> Option<f64>| -> Vec<Cell> {
+            let gaps = train.iter().chain(held_out);
+            let cells = gaps.map(|gap| value(gap).map_or_else(|| Cell::text(""), share));
+            std::iter::once(Cell::text(name)).chain(cells).collect()
+        };
+        let of_joint = |(joint, name): (usize, &&str)| Row {
+            cells: row(name, &|gap| gap.per_joint.get(joint).copied().flatten()),
+            is_marked: false,
+        };
+        let mut rows: Vec<Row> = self.joints.iter().enumerate().map(of_joint).collect();
+        rows.push(Row { cells: row("all", &|gap| Some(gap.all)), is_marked: true });
+        let caption = "Simulation gap: errors of positions in short windows from measured states \
+                       under measured torques, over how far joints went (root of mean square)."
+            .to_owned();
+        Some(Part::Table(HtmlTable { caption, columns, rows }))
     }
 
     /// The joints that leave most, at least one.
@@ -194,14 +246,16 @@ impl DiagnosisPage<'_> {
         let caption = format!("Parameters of {}.", own.name());
         parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
         for other in &one.alternatives {
+            let which = if other.is_exact { "No motion tells" } else { "These logs do not tell" };
             let text = format!(
-                "These logs do not tell it from {}, which would leave {} (cosine: {:.2}).",
+                "{which} it from {}, which would leave {} (cosine: {:.2}).",
                 self.candidates[other.candidate].name(),
                 percent(other.held_out_gap),
                 other.cosine
             );
             parts.push(Part::Paragraph { text });
         }
+        parts.extend(separating(one));
         parts
     }
 

@@ -4,8 +4,11 @@ use super::Shown;
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
 use crate::cli::model_effects::EffectUse;
-use denavit::diagnose::{Candidate, EffectValue, Gaps, GivenEffect, Step, Where};
+use denavit::diagnose::{
+    Candidate, EffectValue, FoundEffect, Gaps, GivenEffect, MotionGap, MotionGaps, Step, Where,
+};
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::Write;
 
@@ -23,6 +26,8 @@ struct DiagnosisJson<'a> {
     rounds: Vec<RoundJson<'a>>,
     noise_floor: f64,
     gap: GapJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    simulation_gap: Option<Value>,
     share_closed: Option<f64>,
     driven: [&'a [String]; 2],
     remarks: Vec<String>,
@@ -51,6 +56,12 @@ struct EffectJson<'a> {
     share: f64,
     parameters: BTreeMap<&'a str, ValueJson<'a>>,
     indistinguishable: Vec<OtherJson<'a>>,
+    /// Parameters of the model that do exactly the same, whatever the motion.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    exact_alias: &'a [String],
+    /// A motion that would tell these apart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    separating_experiment: Option<Value>,
 }
 
 /// An effect that the model has; what its equations took up has no parameters here.
@@ -75,6 +86,8 @@ struct OtherJson<'a> {
     at: &'a str,
     gap: f64,
     cosine: f64,
+    /// Whether no motion tells the two apart.
+    exact: bool,
 }
 
 #[derive(Serialize)]
@@ -93,6 +106,8 @@ struct RoundJson<'a> {
     decoy: f64,
     significance: f64,
     share: f64,
+    /// Standard errors by which simulated windows are better.
+    in_motion: Option<f64>,
     runners_up: Vec<RunnerUpJson<'a>>,
 }
 
@@ -147,13 +162,14 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
             over_noise: one.over_noise,
         }
     });
-    let effects = found.effects.iter().map(|one| {
+    let effects = found.effects.iter().enumerate().map(|(number, one)| {
         let own = &candidates[one.candidate];
         let others = one.alternatives.iter().map(|other| OtherJson {
             effect: &candidates[other.candidate].effect,
             at: &candidates[other.candidate].at,
             gap: other.held_out_gap,
             cosine: other.cosine,
+            exact: other.is_exact,
         });
         EffectJson {
             effect: if one.is_named { &own.effect } else { "unnamed" },
@@ -162,6 +178,8 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
             share: one.share,
             parameters: values(&one.parameters),
             indistinguishable: others.collect(),
+            exact_alias: &one.exact,
+            separating_experiment: experiment(shown, number, one),
         }
     });
     let structures = found.structures.iter().map(|one| StructureJson {
@@ -171,7 +189,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     });
     let written = shown.written.as_ref();
     let has_model = written.is_some_and(|written| written.model == Ok(true));
-    let json = DiagnosisJson {
+    let answer = DiagnosisJson {
         model: &robot.name,
         verdict: found.verdict.word(),
         reasons: &found.reasons,
@@ -182,6 +200,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         rounds: found.steps.iter().map(|step| round(shown, step)).collect(),
         noise_floor: found.held_out.floor.all,
         gap: GapJson { train: (&found.train).into(), validate: (&found.held_out).into() },
+        simulation_gap: motion(shown),
         share_closed: found.share_closed(),
         driven: [&found.driven[0], &found.driven[1]],
         remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
@@ -189,7 +208,48 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         model_refused: written.and_then(|w| w.model.as_ref().err()).map(String::as_str),
         report: written.map(|_| super::REPORT),
     };
-    write_json(out, &json)
+    write_json(out, &answer)
+}
+
+/// The motion that tells an effect from what would do as well, or why there is none.
+fn experiment(shown: &Shown, number: usize, one: &FoundEffect) -> Option<Value> {
+    let name = |&rival: &usize| {
+        let Candidate { effect, at, .. } = &shown.candidates[rival];
+        json!({"effect": effect, "at": at})
+    };
+    Some(match one.experiment.as_ref()? {
+        Ok(found) => json!({
+            "from": found.rivals.iter().map(name).collect::<Vec<Value>>(),
+            "file": shown.written.as_ref().map(|_| super::experiment_file(number)),
+            "duration_s": found.duration_s,
+            "separation": found.separation,
+            "separation_before": found.separation_before,
+            "power": found.power,
+            "draws": found.draws,
+        }),
+        Err(reason) => json!({"refused": reason.to_string()}),
+    })
+}
+
+/// The gap of the models in motion, or why they are not moved.
+fn motion(shown: &Shown) -> Option<Value> {
+    let of = |[before, after]: &[MotionGap; 2]| {
+        json!({
+            "before": before.all,
+            "after": after.all,
+            "per_joint_before": before.per_joint,
+            "per_joint_after": after.per_joint,
+        })
+    };
+    Some(match shown.found.motion.as_ref()? {
+        Ok(MotionGaps { train, held_out }) => json!({
+            "before": held_out[0].all,
+            "after": held_out[1].all,
+            "train": of(train),
+            "validate": of(held_out),
+        }),
+        Err(reason) => json!({"refused": reason.to_string()}),
+    })
 }
 
 fn values(parameters: &[EffectValue]) -> BTreeMap<&str, ValueJson<'_>> {
@@ -225,6 +285,7 @@ fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {
         decoy: step.decoy,
         significance: step.significance,
         share: step.share,
+        in_motion: step.in_motion,
         runners_up: others.map(|&(other, gap)| runner_up(shown, other, gap)).collect(),
     }
 }

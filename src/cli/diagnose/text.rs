@@ -2,7 +2,7 @@
 
 use super::Shown;
 use crate::cli::failure::Failure;
-use denavit::diagnose::{EffectValue, FoundEffect, Gap, Gaps};
+use denavit::diagnose::{EffectValue, FoundEffect, Gap, Gaps, MotionGap, MotionGaps};
 use denavit::report::{Align, Table, paragraph, percent, short};
 use std::io::Write;
 
@@ -38,6 +38,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         )?;
     }
     gaps(out, shown)?;
+    motion(out, shown)?;
     for (file, remark) in remarks {
         writeln!(out, "{file}: {remark}")?;
     }
@@ -79,7 +80,22 @@ fn effect(out: &mut dyn Write, shown: &Shown, one: &FoundEffect) -> Result<(), F
     one.parameters.iter().try_for_each(|one| writeln!(out, "  {}", value(one)))?;
     for other in &one.alternatives {
         let name = shown.candidates[other.candidate].name();
-        writeln!(out, "  or {name}, which would leave {}", percent(other.held_out_gap))?;
+        let left = percent(other.held_out_gap);
+        let exact = if other.is_exact { "; no motion tells them apart" } else { "" };
+        writeln!(out, "  or {name}, which would leave {left}{exact}")?;
+    }
+    match &one.experiment {
+        Some(Ok(found)) => writeln!(
+            out,
+            "  a motion of {} s tells them apart in {} of logs like these (separation {}; these \
+             logs: {})",
+            found.duration_s,
+            percent(found.power),
+            short(found.separation),
+            short(found.separation_before)
+        )?,
+        Some(Err(reason)) => writeln!(out, "  no motion is found to tell them apart: {reason}")?,
+        None => {}
     }
     Ok(())
 }
@@ -110,6 +126,36 @@ fn gaps(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     table.push(row("all", &|gap| Some(gap.all)));
     writeln!(out, "\ngap: what is left of the torques, over the torques\n{table}")?;
     Ok(())
+}
+
+/// The gap of the models in motion.
+fn motion(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+    use Align::{Left, Right};
+    let MotionGaps { train, held_out } = match &shown.found.motion {
+        None => return Ok(()),
+        Some(Err(reason)) => return Ok(writeln!(out, "not simulated: {reason}\n")?),
+        Some(Ok(gaps)) => gaps,
+    };
+    let mut table = Table::new(&[
+        ("joint", Left),
+        ("train before", Right),
+        ("after", Right),
+        ("held out before", Right),
+        ("after", Right),
+    ]);
+    let row = |name: &str, value: &dyn Fn(&MotionGap) -> Option<f64>| -> Vec<String> {
+        let cells = train.iter().chain(held_out);
+        let cells = cells.map(|gap| value(gap).map_or_else(String::new, percent));
+        std::iter::once(name.to_owned()).chain(cells).collect()
+    };
+    for (joint, described) in shown.model.joints.iter().enumerate() {
+        let of_joint = |gap: &MotionGap| gap.per_joint.get(joint).copied().flatten();
+        table.push(row(&described.name, &of_joint));
+    }
+    table.push(row("all", &|gap| Some(gap.all)));
+    let what = "simulation gap: errors of positions in windows of 0.2 s under measured torques, \
+                over how far joints went";
+    Ok(writeln!(out, "{what}\n{table}")?)
 }
 
 fn files(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {

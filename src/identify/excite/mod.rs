@@ -3,6 +3,7 @@
 //! - [`excite`]: trajectories within the limits of a robot that make the condition number of the
 //!   stacked base regressor small, or its determinant large
 //! - [`check_trajectory`]: a trajectory against the limits
+//! - [`Feasible`]: trajectories within the limits, for who judges them otherwise
 //! - [`Family`], [`Ends`]: samples, Fourier series, polynomials, and what is asked of their ends
 //! - [`Objective`], [`Check`]: what is made small, and what a trajectory is judged by
 //!
@@ -13,6 +14,7 @@
 
 mod check;
 mod fault;
+mod feasible;
 mod model;
 mod objective;
 mod options;
@@ -23,6 +25,7 @@ mod stack;
 
 pub use check::{Check, Extremes, JointUse};
 pub use fault::{ExciteError, ExciteFault, LimitKind};
+pub use feasible::Feasible;
 pub use model::{Columns, ExcitedModel, JointLimits};
 pub use objective::{Excitation, Objective};
 pub use options::ExciteOptions;
@@ -194,30 +197,40 @@ impl Excited {
 
     /// The trajectory file.
     pub fn to_json(&self, name: &str, remarks: &Value) -> Value {
-        let count = self.space.coordinates();
         let coordinates = &self.found().coordinates;
-        let mut joints = Map::new();
-        for (place, joint) in self.model.moving().into_iter().enumerate() {
-            let limits = &self.model.joints[joint];
-            let own = &coordinates[place * count..(place + 1) * count];
-            let written = self.space.written(own, limits.middle(), limits.half());
-            joints.insert(limits.name.clone(), written);
-        }
-        for limits in &self.model.joints {
-            if let Some(held) = limits.held.filter(|_| !limits.name.starts_with("base_")) {
-                joints.insert(limits.name.clone(), json!(held));
-            }
-        }
-        json!({
-            "format": TRAJECTORY_FORMAT,
-            "name": name,
-            "model": self.model.regression.model,
-            "duration_s": self.space.duration_s(),
-            "periodic": self.space.is_periodic(),
-            "joints": joints,
-            "excitation": remarks,
-        })
+        trajectory_file(&self.model, &self.space, coordinates, (name, remarks))
     }
+}
+
+/// A trajectory as a file, with its name and how it was found.
+fn trajectory_file(
+    model: &ExcitedModel,
+    space: &Space,
+    coordinates: &[f64],
+    (name, remarks): (&str, &Value),
+) -> Value {
+    let count = space.coordinates();
+    let mut joints = Map::new();
+    for (place, joint) in model.moving().into_iter().enumerate() {
+        let limits = &model.joints[joint];
+        let own = &coordinates[place * count..(place + 1) * count];
+        let written = space.written(own, limits.middle(), limits.half());
+        joints.insert(limits.name.clone(), written);
+    }
+    for limits in &model.joints {
+        if let Some(held) = limits.held.filter(|_| !limits.name.starts_with("base_")) {
+            joints.insert(limits.name.clone(), json!(held));
+        }
+    }
+    json!({
+        "format": TRAJECTORY_FORMAT,
+        "name": name,
+        "model": model.regression.model,
+        "duration_s": space.duration_s(),
+        "periodic": space.is_periodic(),
+        "joints": joints,
+        "excitation": remarks,
+    })
 }
 
 fn references(model: &ExcitedModel, space: &Space, coordinates: &[f64]) -> Vec<Reference> {
@@ -286,7 +299,7 @@ impl Search<'_> {
             reserve: RESERVE,
             sharpness: SHARPNESS[0],
         };
-        let mut x = self.beginning(&problem, start);
+        let mut x = self.beginning(start);
         let began = self.judged(&x, evaluators);
         let (mut evaluations, mut iterates) = (0, Vec::new());
         let mut stop = SolverStop::Stuck;
@@ -319,10 +332,10 @@ impl Search<'_> {
 
     /// Coordinates at random whose motion uses the limits of position, rate and acceleration by as
     /// much as asked for.
-    fn beginning(&self, problem: &Problem<'_>, start: usize) -> Vec<f64> {
+    fn beginning(&self, start: usize) -> Vec<f64> {
         let mut random = Random::new(self.options.seed);
         let mut random = Random::new(random.bits().wrapping_add(start as u64));
-        let mut x = Vec::with_capacity(problem.coordinates());
+        let mut x = Vec::new();
         for joint in self.model.moving() {
             let limits = &self.model.joints[joint];
             let own = self.space.random(|| random.uniform());

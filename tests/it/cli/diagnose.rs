@@ -59,6 +59,9 @@ fn a_drag_that_is_added_to_a_log_is_named_with_its_joint() {
     assert_eq!(json["where"][0]["joint"], "knee");
     // One log for both: nothing is held out, and that is said.
     assert!(json["reasons"].to_string().contains("nothing is held out"), "{}", json["reasons"]);
+    // The model with the effect moves as the leg did.
+    let gap = |when: &str| json["simulation_gap"]["validate"][when].as_f64().expect("a gap");
+    assert!(gap("after") < 0.3 * gap("before"), "{}", json["simulation_gap"]);
     let effect = json["effects"][0]["parameters"]["c"].clone();
     the_model_has_the_effect(&directory, &effect);
     the_model_is_used(&directory);
@@ -140,6 +143,7 @@ fn the_page_tells_it(directory: &Directory) {
         "<math",
         "knee, drag.csv",
         "left of it after",
+        "Simulation gap",
         "Round 1",
         "best decoy",
         "N m s^2",

@@ -1,6 +1,10 @@
 //! What a model lacks.
 
+mod alias;
 mod elastic;
 mod held;
 mod laws;
+mod motion;
+mod one_joint;
 mod search;
+mod separate;

@@ -124,6 +124,7 @@ fn found(
         held_out: &held_out,
         candidates: &candidates,
         given: Vec::new(),
+        moved: None,
         coarse: train.signals.iter().map(Signals::coarse).collect(),
         train_floor: &train_floor,
         held_out_floor: &held_out_floor,

@@ -1,0 +1,190 @@
+//! What is said of effects: those that were found, with what would do as well, and those that the
+//! model has.
+
+use super::alias::{ExactAliases, Named};
+use super::candidate::Candidate;
+use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
+use super::family::{Alternative, family};
+use super::gap::Gap;
+use super::given::is_driven;
+use super::search::{Screen, SearchOptions};
+use super::signals::Filters;
+use super::state::{Setting, State, Taken};
+use crate::plants::effect::LawParameter;
+use denavit_codegen::model::Robot;
+
+/// A parameter of an effect, with its error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectValue {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Its unit.
+    pub unit: String,
+}
+
+/// An effect that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundEffect {
+    /// Its number among the candidates.
+    pub candidate: usize,
+    /// Its parameters.
+    pub parameters: Vec<EffectValue>,
+    /// The share of what can be explained that is open again without it, on held-out logs.
+    pub share: f64,
+    /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
+    pub is_named: bool,
+    /// Effects that would do as well in its place.
+    pub alternatives: Vec<Alternative>,
+    /// Parameters of the model that do exactly what it does, together, whatever the motion; none
+    /// where there are no such.
+    pub exact: Vec<String>,
+    /// A motion that would tell it from these, or why there is none; none if it was not asked for,
+    /// or if nothing is to be told apart.
+    pub experiment: Option<Result<Experiment, NoExperiment>>,
+}
+
+/// An effect that the model has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenEffect {
+    /// Its number among the candidates.
+    pub candidate: usize,
+    /// Its parameters, estimated again.
+    pub parameters: Vec<EffectValue>,
+}
+
+/// A law that closes less than this share of what a joint leaves does not fit it, if more than so
+/// many times the deviation of noise stays.
+const FITS: f64 = 0.5;
+const MISFIT: f64 = 2.5;
+
+/// The effects of a state, each with its share, its errors and what would do as well.
+pub(super) fn found_effects(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    [before, after]: [&State; 2],
+) -> Vec<FoundEffect> {
+    let [_, trust] = after.trust();
+    let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
+    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &trust).all;
+    let squares = |left: &[f64]| setting.held_out_squares(after, left);
+    let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
+    let fits = |joint: usize| {
+        let ([from, _], [to, noise]) = (from[joint], to[joint]);
+        to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
+    };
+    let mut found = Vec::new();
+    for (place, taken) in after.taken.iter().enumerate().skip(setting.given.len()) {
+        let mut others = after.taken.clone();
+        others.remove(place);
+        let whole = gap(before) - floor;
+        found.push(FoundEffect {
+            candidate: taken.candidate,
+            parameters: values(setting, after, place),
+            share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
+            is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
+            alternatives: family((setting, screen), options, after, place),
+            exact: Vec::new(),
+            experiment: None,
+        });
+    }
+    found
+}
+
+/// Says of what was found which of it no motion tells apart.
+pub(super) fn tell_aliases(
+    candidates: &[Candidate],
+    aliases: &ExactAliases<'_>,
+    found: &mut [FoundEffect],
+) {
+    let named = |candidate: usize| {
+        let Candidate { effect, at, .. } = &candidates[candidate];
+        Named { effect, at }
+    };
+    for one in found {
+        let own = named(one.candidate);
+        one.exact = aliases.of_parameters(own);
+        for other in &mut one.alternatives {
+            other.is_exact = aliases.are_alike(own, named(other.candidate));
+        }
+    }
+}
+
+/// The parameters of the effect in one place of a state, with their errors.
+fn values(setting: &Setting<'_>, state: &State, place: usize) -> Vec<EffectValue> {
+    let before: usize = state.taken[..place].iter().map(|taken| taken.values.len()).sum();
+    let taken = &state.taken[place];
+    let parameters = setting.candidates[taken.candidate].law.parameters();
+    let value = |(k, (value, parameter)): (usize, (&f64, &LawParameter))| EffectValue {
+        name: parameter.name.clone(),
+        value: *value,
+        std: state.covariance[(before + k, before + k)].max(0.0).sqrt(),
+        unit: parameter.unit.clone(),
+    };
+    taken.values.iter().zip(parameters).enumerate().map(value).collect()
+}
+
+/// What these logs say of the effects that the model has.
+pub(super) fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEffect> {
+    let of = |(place, taken): (usize, &Taken)| GivenEffect {
+        candidate: taken.candidate,
+        parameters: values(setting, state, place),
+    };
+    setting.given.iter().enumerate().map(of).collect()
+}
+
+/// The names of what the logs would move beyond what the model says of it: its own numbers, and
+/// those of its effects.
+pub(super) fn driven_names(setting: &Setting<'_>, state: &State) -> Vec<String> {
+    let numbers = state.held.iter().zip(&setting.train.nominal.uncertain);
+    let mut names: Vec<String> =
+        numbers.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect();
+    for taken in &state.taken {
+        let candidate = &setting.candidates[taken.candidate];
+        let parameters = candidate.law.parameters().iter().zip(candidate.law.beliefs());
+        for ((parameter, belief), value) in parameters.zip(&taken.values) {
+            if is_driven(belief, *value) {
+                names.push(format!("{}_{}_{}", parameter.name, candidate.effect, candidate.at));
+            }
+        }
+    }
+    names
+}
+
+/// Alternatives that an experiment is to exclude, at most: the best ones.
+const MOST_RIVALS: usize = 3;
+
+/// Looks for motions that tell what was found from what would do as well.
+pub(super) fn separate(
+    setting: &Setting<'_>,
+    (robot, options): (&Robot, &ExperimentOptions),
+    (state, filters): (&State, Filters),
+    found: &mut [FoundEffect],
+) {
+    let given = setting.given.len();
+    for (place, one) in found.iter_mut().enumerate() {
+        let rivals = one.alternatives.iter().filter(|other| !other.is_exact).take(MOST_RIVALS);
+        let rivals: Vec<Taken> = rivals
+            .map(|other| Taken { candidate: other.candidate, values: other.values.clone() })
+            .collect();
+        if rivals.is_empty() {
+            continue;
+        }
+        let mut others = state.taken.clone();
+        let own = others.remove(given + place);
+        let ambiguity = Ambiguity {
+            nominal: setting.train.nominal,
+            candidates: setting.candidates,
+            log: &setting.train.signals[0],
+            filters,
+            floor: &setting.train_floor[0],
+            z: &state.z,
+            names: [vec![own], rivals].concat(),
+            others,
+        };
+        one.experiment = Some(ambiguity.separate(robot, options));
+    }
+}

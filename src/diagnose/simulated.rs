@@ -1,0 +1,221 @@
+//! The second gap: models in motion. A model that gives the right torques for a motion need not
+//! move as the robot does; so each is simulated in short windows from measured states under
+//! measured torques, before and after.
+
+use super::candidate::Candidate;
+use super::nominal::Nominal;
+use super::state::Taken;
+use crate::identify::condition::{ConditionError, Filter};
+use crate::identify::forward::{Forward, ForwardError, MotionLog, Windows, in_windows};
+use crate::identify::log::MeasuredLog;
+use crate::identify::{
+    EffectValues, NewEffect, NewPlace, NewValue, undo_logged_torques, undo_readings, updated_text,
+    with_effects,
+};
+use crate::plants::effect::apart;
+use crate::plants::{PlantError, plant_of};
+use denavit_codegen::effect::{Effect, EffectSite, read_model};
+use denavit_codegen::model::{ModelError, Robot};
+use std::fmt;
+
+/// How far simulated motions run away from measured ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MotionGap {
+    /// sqrt(mean over joints of (rms error of position / rms of how far it went)^2).
+    pub all: f64,
+    /// For each joint; none of one that does not move.
+    pub per_joint: Vec<Option<f64>>,
+    /// For each window the squares of it, all joints together.
+    pub windows: Vec<f64>,
+    /// Whether laws have states, which begin each window as if the robot had rested.
+    pub has_states: bool,
+}
+
+/// The gaps of the models before and after.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionGaps {
+    /// Of the logs that were searched: before, after.
+    pub train: [MotionGap; 2],
+    /// Of those that judge.
+    pub held_out: [MotionGap; 2],
+}
+
+/// Why a model is not moved.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotMoved {
+    /// Its file has no place for what was estimated; holds its name.
+    NoPlace(String),
+    /// Its file with what was found is not that of a model.
+    Unsound(Box<ModelError>),
+    /// It cannot be simulated.
+    Plant(PlantError),
+    /// A law lacks a value or a place.
+    Law(String),
+    /// A log cannot be filtered; holds its name.
+    Condition(String, ConditionError),
+    /// A log cannot be simulated again; holds its name.
+    Forward(String, ForwardError),
+    /// Drives have springs: logs are those of motors.
+    Springs,
+}
+
+impl fmt::Display for NotMoved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoPlace(model) => write!(f, "{model}: no place for what was estimated"),
+            Self::Unsound(error) => write!(f, "{error}"),
+            Self::Plant(error) => write!(f, "{error}"),
+            Self::Law(error) => write!(f, "{error}"),
+            Self::Condition(file, error) => write!(f, "{file}: {error}"),
+            Self::Forward(file, error) => write!(f, "{file}: {error}"),
+            Self::Springs => write!(f, "the logs are those of motors before springs"),
+        }
+    }
+}
+
+impl std::error::Error for NotMoved {}
+
+/// A model as a file, with the logs that it is moved along.
+pub struct Moved<'a> {
+    /// The text of the model's file.
+    pub source: &'a str,
+    /// All definitions of effects.
+    pub effects: &'a [Effect],
+    /// For each effect that the model has beside its equations its number in the file.
+    pub numbers: &'a [usize],
+    /// The logs that are searched, and those that judge.
+    pub logs: [Vec<MeasuredLog>; 2],
+}
+
+/// The longest motion of a log that is moved along \[s\].
+const LONGEST_S: f64 = 60.0;
+
+/// Windows of all logs of a set: of so many the least costs are known well enough to be paired.
+const MOST_WINDOWS: usize = 40;
+
+impl Moved<'_> {
+    /// The robot with effects at their values, and with the nominal model's numbers moved by z.
+    fn robot(
+        &self,
+        (nominal, z): (&Nominal<'_>, &[f64]),
+        (candidates, taken): (&[Candidate], &[Taken]),
+    ) -> Result<Robot, NotMoved> {
+        let (given, found) = taken.split_at(self.numbers.len().min(taken.len()));
+        let values = |one: &Taken| -> Vec<(String, f64)> {
+            let parameters = candidates[one.candidate].law.parameters().iter();
+            parameters.map(|one| one.name.clone()).zip(one.values.iter().copied()).collect()
+        };
+        let given: Vec<(usize, Vec<(String, f64)>)> =
+            given.iter().zip(self.numbers).map(|(one, &number)| (number, values(one))).collect();
+        let found: Vec<(&Candidate, Vec<(String, f64)>)> =
+            found.iter().map(|one| (&candidates[one.candidate], values(one))).collect();
+        fn shown(values: &[(String, f64)]) -> EffectValues<'_> {
+            values.iter().map(|(name, value)| (name.as_str(), *value, None)).collect()
+        }
+        let new: Vec<NewEffect<'_>> = found
+            .iter()
+            .map(|(own, values)| NewEffect {
+                effect: &own.effect,
+                at: self.place(own),
+                parameters: shown(values),
+            })
+            .collect();
+        let changed: Vec<(usize, EffectValues<'_>)> =
+            given.iter().map(|(number, values)| (*number, shown(values))).collect();
+        let name = || nominal.model.model.clone();
+        let with = with_effects(self.source, &new, &changed);
+        let with = with.ok_or_else(|| NotMoved::NoPlace(name()))?;
+        let moved = moved_numbers(nominal, z, &with).ok_or_else(|| NotMoved::NoPlace(name()))?;
+        let read = |text: &str| read_model("the model", text.as_bytes(), self.effects);
+        // Numbers that make no body together stay as they were.
+        read(&moved).or_else(|_| read(&with)).map_err(|error| NotMoved::Unsound(Box::new(error)))
+    }
+
+    fn place<'c>(&self, own: &'c Candidate) -> NewPlace<'c> {
+        let known = self.effects.iter().find(|effect| effect.name == own.effect);
+        match (known.map(|effect| effect.at), own.at.split_once(" with ")) {
+            (Some(EffectSite::Model), _) => NewPlace::Model,
+            (_, Some((joint, second))) => NewPlace::Pair(joint, second),
+            _ => NewPlace::Link(&own.at),
+        }
+    }
+
+    /// The gap of a set of logs: those that are searched, or those that judge.
+    pub(super) fn gap(
+        &self,
+        (set, cutoff_hz): (usize, f64),
+        nominal: (&Nominal<'_>, &[f64]),
+        taken: (&[Candidate], &[Taken]),
+    ) -> Result<MotionGap, NotMoved> {
+        let robot = self.robot(nominal, taken)?;
+        let has_states = robot.law_states().next().is_some();
+        let model = nominal.0.model;
+        let logs = &self.logs[set];
+        if logs.iter().flat_map(|log| &log.joints).any(|joint| joint.motor.is_some()) {
+            return Err(NotMoved::Springs);
+        }
+        let laws = apart(&robot, self.effects).map_err(|error| NotMoved::Law(error.to_string()))?;
+        let mut plant = plant_of(&robot, &[]).map_err(NotMoved::Plant)?;
+        let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
+        let mut joined: Option<Forward> = None;
+        let mut lengths = Vec::new();
+        let windows =
+            Windows { most: MOST_WINDOWS.div_ceil(logs.len().max(1)), ..Windows::default() };
+        for log in logs {
+            let mut log = log.head((LONGEST_S / log.step_s) as usize + 1);
+            undo_readings(&mut log, &laws.laws);
+            let filter = Some(Filter { order: 4, cutoff_hz });
+            let motion = MotionLog::new(&log, &names, filter);
+            let file = log.file.clone();
+            let mut motion = motion.map_err(|error| NotMoved::Condition(file.clone(), error))?;
+            undo_logged_torques(&mut motion, model, &laws.laws);
+            let one = in_windows(plant.as_mut(), &motion, windows)
+                .map_err(|error| NotMoved::Forward(file, error))?;
+            let length = ((windows.length_s / log.step_s).round() as usize).max(1);
+            lengths.extend(std::iter::repeat_n(length, one.t_s.len() / length));
+            match &mut joined {
+                Some(joined) => joined.append(one),
+                None => joined = Some(one),
+            }
+        }
+        let gap = joined.map(|forward| MotionGap::new(&forward, &names, &lengths));
+        Ok(MotionGap { has_states, ..gap.unwrap_or_default() })
+    }
+}
+
+/// The text with the nominal model's numbers moved by z.
+fn moved_numbers(nominal: &Nominal<'_>, z: &[f64], text: &str) -> Option<String> {
+    let parameters = &nominal.model.parameters;
+    let of = |(one, z): (&super::nominal::Uncertain, &f64)| {
+        let parameter = parameters.iter().find(|own| own.name == one.name)?;
+        let value = one.value + one.std * z;
+        let value = if one.is_positive { value.max(0.0) } else { value };
+        Some(NewValue { parameter, value, std: None })
+    };
+    let values: Vec<NewValue<'_>> = nominal.uncertain.iter().zip(z).filter_map(of).collect();
+    updated_text(text, &values)
+}
+
+impl MotionGap {
+    /// `lengths` are the samples of each window.
+    fn new(forward: &Forward, names: &[String], lengths: &[usize]) -> Self {
+        let of = |name: &String| {
+            let joint = forward.joints.iter().find(|joint| joint.name == *name);
+            joint.map(|joint| joint.position.relative)
+        };
+        let mut windows = vec![0.0; lengths.len()];
+        for joint in &forward.joints {
+            let mut errors = joint.position.residual();
+            for (window, &length) in windows.iter_mut().zip(lengths) {
+                let squares = errors.by_ref().take(length).map(|error| error * error);
+                *window += squares.sum::<f64>() / joint.position.size.powi(2);
+            }
+        }
+        Self {
+            all: forward.relative(),
+            per_joint: names.iter().map(of).collect(),
+            windows,
+            has_states: false,
+        }
+    }
+}

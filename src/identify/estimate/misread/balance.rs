@@ -300,12 +300,11 @@ fn explained(r: &DMatrix<f64>, rank: usize) -> Vec<f64> {
     let left = beside(last);
     let of = |at: usize| {
         let (all, own) = (r.column(at).norm_squared(), beside(at));
-        match own.norm_squared() {
-            size if size > ALIAS * all => own.dot(&left).powi(2) / (size * left.norm_squared()),
-            _ => 0.0,
-        }
+        let (size, both) = (own.norm_squared(), own.dot(&left));
+        let share = both * both / (size * left.norm_squared());
+        if size > ALIAS * all && share.is_finite() { share } else { 0.0 }
     };
-    (rank..last).map(of).map(|share| if share.is_finite() { share } else { 0.0 }).collect()
+    (rank..last).map(of).collect()
 }
 
 /// How shares differ, over the joints whose share does.
@@ -317,6 +316,8 @@ pub(super) struct Change {
     pub(super) left: [f64; 2],
     /// The share of joints whose share differs.
     pub(super) joints: f64,
+    /// The least and the largest ratio of a joint.
+    pub(super) ratios: [f64; 2],
 }
 
 /// The least change of a joint's share, as a logarithm, that is one.
@@ -325,10 +326,12 @@ const CHANGED: f64 = 0.1;
 impl Change {
     pub(super) fn of(before: &Shares, after: &Shares) -> Self {
         let (mut sum, mut count, mut squares) = (0.0, 0, [0.0; 2]);
+        let mut ratios: [f64; 2] = [1.0; 2];
         let measured = before.iter().flatten().count();
         for (before, after) in before.iter().zip(after) {
             let (Some(before), Some(after)) = (before, after) else { continue };
             let change = (after.max(LEAST) / before.max(LEAST)).ln();
+            ratios = [ratios[0].min(change.exp()), ratios[1].max(change.exp())];
             if change.abs() > CHANGED {
                 sum += change;
                 count += 1;
@@ -338,7 +341,8 @@ impl Change {
         }
         let joints = f64::from(count) / measured.max(1) as f64;
         let count = f64::from(count.max(1));
-        Self { joints, ratio: (sum / count).exp(), left: squares.map(|sum| (sum / count).sqrt()) }
+        let left = squares.map(|sum| (sum / count).sqrt());
+        Self { joints, ratio: (sum / count).exp(), left, ratios }
     }
 }
 

@@ -4,9 +4,6 @@ use super::reading::{OF_ANGLES, Signal};
 use crate::plants::regression::RegressionJoint;
 use std::fmt;
 
-/// Zeros that differ by less are nearly the same [rad, m].
-const NEAR_ZERO: f64 = 0.2;
-
 /// Which columns of two joints have each other's names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExchangedColumns {
@@ -74,16 +71,6 @@ impl Misreading {
             | (Self::LatePosition(one, _), Self::LatePosition(other, _)) => one == other,
             (Self::Late(_), Self::Late(_)) => true,
             _ => self == other,
-        }
-    }
-
-    /// Whether another is the zero of the same joint, nearly as far off.
-    pub(super) fn is_near(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Zero(one, here), Self::Zero(other, there)) => {
-                one == other && (here - there).abs() < NEAR_ZERO
-            }
-            _ => false,
         }
     }
 

@@ -1,6 +1,6 @@
 //! The search for the reading that is believed most.
 
-use super::balance::{Balance, Fitted, Shares, root_mean_square};
+use super::balance::{Balance, Change, Fitted, LEAST, Shares, root_mean_square};
 use super::misreading::Misreading;
 use super::reading::{Reading, hypotheses};
 use super::verdict::{BETTER, EXPLAINED, NEAR, PROMPT, Verdict};
@@ -102,7 +102,7 @@ impl Search<'_> {
             let other = reading.with(one, &self.model.joints);
             let after = own.as_ref().and_then(|_| self.balance.left(&other, false).own);
             let both = own.as_ref().zip(after.as_ref());
-            let ratio = both.map(|(own, after)| super::balance::Change::of(own, after).ratio);
+            let ratio = both.map(|(own, after)| Change::of(own, after).ratio);
             // without a misfit an estimate can speak against a reading, not for it
             if is_misfit || along.contains(&one) || ratio.is_some_and(|ratio| ratio < BETTER) {
                 judged.push((one, after, ratio.unwrap_or(1.0)));
@@ -165,12 +165,9 @@ impl Search<'_> {
             if is_followed {
                 tried.extend(self.along(reading, line, (Witness::Fit, fit)));
             }
-            let own = own.map(root_mean_square).filter(|own| *own > EXPLAINED && *own > 2.0 * fit);
-            if let (Some(own), true) = (own, is_zero) {
-                let by_own = self.along(reading, line, (Witness::Own, own));
-                // where both see it, an estimate sees it better
-                let is_new = |one: &Misreading| !tried.iter().any(|other| one.is_near(*other));
-                tried.extend(by_own.filter(is_new));
+            let is_open = |own: &f64| *own > 2.0 * fit.max(LEAST);
+            if let (Some(own), true) = (own.map(root_mean_square).filter(is_open), is_zero) {
+                tried.extend(self.along(reading, line, (Witness::Own, own)));
             }
         }
         tried

@@ -61,10 +61,14 @@ impl Verdict {
             late if late.is_late() => PROMPT,
             _ => EXPLAINED,
         };
-        let by_fit = is_explained
-            && fit.ratio < BETTER
-            && fit.left[0] > least
-            && fit.left[1] < LEFT_BY_ESTIMATE;
+        // what a zero does to the torques of one joint is little to the others
+        let is_zero = matches!(misreading, Misreading::Zero(..));
+        let is_halved = |change: Change| {
+            let of_one = is_zero && change.ratios[0] < BETTER && change.ratios[1] < WORSE;
+            change.ratio < BETTER || of_one
+        };
+        let by_fit =
+            is_explained && is_halved(fit) && fit.left[0] > least && fit.left[1] < LEFT_BY_ESTIMATE;
         // a torque against that of the model is no parameter that is far off
         let is_sign = matches!(misreading, Misreading::Torque(_, -1.0));
         let most = match (misreading.is_of_all() || is_sign, by_fit) {
@@ -77,16 +81,13 @@ impl Verdict {
             let is_enough = !misreading.is_of_all() || own.joints >= HALF;
             let left_by_fit = TRUE * root_mean_square(after).max(LEAST);
             let is_true = root_mean_square(own_after) < left_by_fit.min(EXPLAINED);
-            let is_guess = match misreading {
+            let is_guess = match is_zero {
                 // a body that is turned about its joint is alike
-                Misreading::Zero(..) => !by_fit && !is_true,
-                _ => own.left[0] < NEAR && root_mean_square(before) < CLEAN,
+                true => !by_fit && !is_true,
+                false => own.left[0] < NEAR && root_mean_square(before) < CLEAN,
             };
-            is_enough
-                && !is_guess
-                && own.ratio < BETTER
-                && own.left[0] > EXPLAINED
-                && own.left[1] < most
+            let least = if is_zero && is_true { LEAST } else { EXPLAINED };
+            is_enough && !is_guess && is_halved(own) && own.left[0] > least && own.left[1] < most
         });
         let of_all = root_mean_square(after).max(LEAST) / root_mean_square(before).max(LEAST);
         Self { misreading, own: change, fit, by_own, by_fit, of_all }

@@ -104,6 +104,9 @@ fn module(registers: Registers) -> Result<JITModule, Unsupported> {
         ("enable_verifier", if cfg!(debug_assertions) { "true" } else { "false" }),
         ("use_colocated_libcalls", "false"),
         ("is_pic", "false"),
+        // Frames of large functions are longer than the page that guards a stack.
+        ("enable_probestack", "true"),
+        ("probestack_strategy", "inline"),
         (
             "regalloc_algorithm",
             match registers {

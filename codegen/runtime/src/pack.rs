@@ -21,7 +21,10 @@ pub trait Packed: Copy {
 }
 
 impl<T: Packed, const N: usize> Packed for [T; N] {
-    const LANES: usize = T::LANES;
+    const LANES: usize = {
+        assert!(T::ENTRIES > 0, "nothing has no samples");
+        T::LANES
+    };
     const ENTRIES: usize = N * T::ENTRIES;
     const ZEROS: Self = [T::ZEROS; N];
 
@@ -44,7 +47,10 @@ impl<T: Packed, const N: usize> Packed for [T; N] {
 macro_rules! packed_tuple {
     ($($name:ident $row:tt),+) => {
         impl<First: Packed, $($name: Packed),+> Packed for (First, $($name),+) {
-            const LANES: usize = First::LANES;
+            const LANES: usize = {
+                assert!(true $(&& $name::LANES == First::LANES)+, "members are packed alike");
+                First::LANES
+            };
             const ENTRIES: usize = First::ENTRIES $(+ $name::ENTRIES)+;
             const ZEROS: Self = (First::ZEROS, $($name::ZEROS),+);
 

@@ -211,8 +211,13 @@ pub enum Cause {
     BodyOnFixedBase,
     /// An entry that a fixed joint cannot have.
     NotOnFixedJoint(&'static str),
-    /// An angle that is near a multiple of a quarter turn, and not one; holds that multiple.
-    RoundedAngle(String),
+    /// An angle that is near a multiple of a quarter turn, and not one.
+    RoundedAngle {
+        /// What is written.
+        found: String,
+        /// The multiple.
+        exact: String,
+    },
     /// An unknown in a row of the table.
     UnknownInRow(String),
     /// A drive of a fixed joint.

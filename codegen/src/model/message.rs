@@ -125,7 +125,9 @@ impl Cause {
             }
             Self::BodyOnFixedBase => write!(f, "a fixed base has no body"),
             Self::NotOnFixedJoint(key) => write!(f, "a fixed joint has no `{key}`"),
-            Self::RoundedAngle(exact) => write!(f, "this is almost {exact}, and not quite"),
+            Self::RoundedAngle { found, exact } => {
+                write!(f, "\"{}\" is almost {exact}, and not quite", clip(found))
+            }
             Self::UnknownInRow(name) => {
                 write!(f, "the unknown `{name}` stands in a row, which must be known")
             }
@@ -207,9 +209,9 @@ impl Explained for Cause {
                 )
             }
             Self::Unit(_, UnitError::NotCoherent(_, advice)) => (*advice).to_owned(),
-            Self::RoundedAngle(exact) => format!(
-                "write \"{exact}\": rounded, axes are a little out of line, and what cancels in \
-                 theory does not"
+            Self::RoundedAngle { exact, .. } => format!(
+                "write \"{exact}\": with rounded angles what cancels in theory does not; axes that \
+                 really are out of line are \"{exact} + 0.0002\""
             ),
             Self::Unphysical(reason) => return reason.hint(),
             other => return other.fixed_hint().map(str::to_owned),

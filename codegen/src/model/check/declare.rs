@@ -40,6 +40,13 @@ impl Check<'_> {
             let expected = dimension.map(|dimension| ("the value", dimension));
             self.scope.value(scalar, expected, self.report)
         });
+        if let (Some(scalar), Some(unit)) = (&declaration.value, &declaration.unit)
+            && unit.text.trim() == "rad"
+            && let Some(value) = value
+            && let Some(cause) = self.scope.rounded_angle(scalar, value)
+        {
+            self.push(scalar.at, cause);
+        }
         let std = declaration.std.as_ref().and_then(|std| {
             let std_value = self.scope.number(std, self.report)?;
             self.require_not_negative(std_value, "a standard deviation", std.at);

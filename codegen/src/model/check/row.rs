@@ -53,7 +53,7 @@ impl Check<'_> {
                     let (name, dimension) = (names[entry], dimensions[entry]);
                     self.scope.expect(expr, name, dimension, scalar.at, self.report);
                     if dimension == Dimension::NONE
-                        && let Some(cause) = self.scope.rounded_angle(expr)
+                        && let Some(cause) = self.scope.rounded_angle(scalar, expr)
                     {
                         self.push(scalar.at, cause);
                     }

@@ -1,6 +1,6 @@
 //! Names and expressions: what is declared, and the reading of everything that refers to it.
 
-use super::angle::rounded_quarter_turn;
+use super::angle::{nearly_aligned, rounded_decimal};
 use super::measure::{Facts, Measure, NodeFault, approximate, near_pi};
 use crate::expr::text::nearest;
 use crate::expr::text::{self, ParseCause};
@@ -144,11 +144,14 @@ impl Scope {
         approximate(&self.dag, self.facts.value(expr)?)
     }
 
-    /// The fault of an angle that is a number near a multiple of a quarter turn.
-    pub(crate) fn rounded_angle(&mut self, angle: ExprId) -> Option<Cause> {
+    /// The fault of an angle that is almost a multiple of a quarter turn.
+    pub(crate) fn rounded_angle(&mut self, scalar: &Scalar, angle: ExprId) -> Option<Cause> {
         self.facts.update(&mut self.dag);
-        let value = self.dag.as_constant(self.facts.value(angle)?)?;
-        rounded_quarter_turn(value, &near_pi())
+        let by_value = || {
+            let value = self.dag.as_constant(self.facts.value(angle)?)?;
+            nearly_aligned(&scalar.text, value, &near_pi())
+        };
+        rounded_decimal(&scalar.text, &near_pi()).or_else(by_value)
     }
 
     /// Whether an expression depends on a symbol.

@@ -7,6 +7,7 @@
 //! step are below the error of its dense output: then a shorter step is taken in its place, until
 //! the crossing is a matter of the whole step.
 
+use super::alighting::Alighting;
 use super::breakdown::Breakdown;
 use super::contact::{ContactProblem, Mode};
 use super::integrate::Stepper;
@@ -73,6 +74,7 @@ pub(super) struct Watch {
     /// Height at which each open contact counts as on the ground: below 0 by the error it had when
     /// it opened, until it has risen.
     pub(super) level: Vec<f64>,
+    alighting: Alighting,
     /// How much less than no force to spare is no event \[N\]: none, unless the laws of contact saw
     /// nothing to change where the forces were short by a part of that.
     pub(super) slack: f64,
@@ -87,6 +89,7 @@ impl Watch {
     pub(super) fn new(contacts: usize, links: usize, fall_points: usize, len: usize) -> Self {
         Self {
             level: vec![0.0; contacts],
+            alighting: Alighting::new(contacts, len),
             slack: 0.0,
             margin: 0.0,
             transforms: vec![0.0; 12 * links],
@@ -133,7 +136,9 @@ impl Watch {
             let crossings = self.crossings(motion, stepper, &list, retakes > 0)?;
             let Some(earliest) = first(&crossings) else {
                 self.lower_levels(motion, stepper);
-                return Ok(None);
+                let touches =
+                    |contact| Fired { watched: Watched::Gap(contact), t_s: stepper.time() };
+                return Ok(self.alighting.find(motion, stepper).map(touches));
             };
             let (t0, length) = (stepper.start_time(), stepper.time() - stepper.start_time());
             let part = (earliest.t_s - t0) / length;

@@ -6,6 +6,7 @@
 //! - [`constraint_drift`]: how far joints come apart where they are explicit constraints
 //! - [`time_stepping`]: the schemes that take contacts into account over whole steps
 
+mod alighting;
 mod audit;
 mod breakdown;
 pub mod constraint_drift;

@@ -11,7 +11,6 @@ use crate::simulate::contact::hold::Hold;
 use crate::simulate::contact::lemke::LcpOutcome;
 use crate::simulate::contact::pyramid::Pyramid;
 use crate::simulate::contact::{Contact, ContactProblem, Friction, Space, Tolerance};
-use crate::simulate::ground::TOUCH_M;
 
 /// Facets of the pyramid that stands in for cones on which sweeps do not converge.
 const FALLBACK_FACETS: usize = 16;
@@ -25,6 +24,10 @@ const NEARLY: f64 = 1e-6;
 /// restitution is reduced by one factor, found by so many halvings.
 const GAIN: f64 = 1e-3;
 const HALVINGS: usize = 12;
+
+/// Points this little above the ground take part \[m\]: rounding moves those of a flat foot apart,
+/// and would leave some without their load.
+const ROUNDING_M: f64 = 1e-10;
 
 /// Slower contacts have no direction of slipping that a solver finds [m/s].
 const SLIPS: f64 = 1e-4;
@@ -274,9 +277,8 @@ impl TimeStepper {
 
     fn find_closed(&mut self, model: &mut impl TimeSteppingModel) {
         let reach = match self.stepping.scheme {
-            // Rounding moves points of a flat foot apart, and would leave some without their load.
-            Scheme::MoreauMidpoint => TOUCH_M,
-            Scheme::Anitescu { reach_m } => reach_m.max(TOUCH_M),
+            Scheme::MoreauMidpoint => ROUNDING_M,
+            Scheme::Anitescu { reach_m } => reach_m.max(ROUNDING_M),
         };
         model.gaps(&self.middle, &mut self.gaps);
         self.closed.clear();

@@ -290,7 +290,8 @@ class Variant(ctypes.Structure):
         """The results of one input, or of all of them for a batch."""
         self.result[:] = numpy.nan
         inputs = INPUTS if self.kind == OUR_BATCH else 1
-        timing.evaluate(ctypes.byref(self), address(vectors), address(columns_of(vectors)), inputs, n)
+        columns = columns_of(vectors)  # an address does not keep an array
+        timing.evaluate(ctypes.byref(self), address(vectors), address(columns), inputs, n)
         results = self.result[:inputs * self.size].reshape(-1, inputs).T.copy()
         if not numpy.isfinite(results).all():
             sys.exit(f"{self.label}: results that are missing, or not finite")

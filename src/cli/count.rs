@@ -93,6 +93,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let flavour = arguments.flavour.flavour();
     let wanted = arguments.functions.wanted();
     let functions = function_counts(&robot, flavour, &wanted)?;
+    arguments.functions.refuse_missing(&robot.name, functions.iter().map(|row| row.name))?;
     if arguments.json {
         let flavour = flavour.to_string();
         let counts = functions.iter().map(|row| (row.full_name(), (&row.counts).into()));

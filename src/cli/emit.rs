@@ -73,6 +73,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     progress.show(&format!("deriving and emitting {}", robot.name));
     let emitted = Emitted::new(&robot, flavour, arguments.fused, &arguments.functions.wanted())?;
     drop(progress);
+    let found = emitted.program.routines.iter().map(|routine| routine.name);
+    arguments.functions.refuse_missing(&robot.name, found)?;
     let text = &emitted.text;
     write_whole(&arguments.output, text.as_bytes())?;
     if is_answered {

@@ -139,7 +139,7 @@ impl Failure {
             Self::Lower(..) | Self::Emit(..) => {
                 "check the exponents of the numbers in the model".to_owned()
             }
-            Self::NoFunction { asked, .. } => why_no_function(asked).to_owned(),
+            Self::NoFunction { asked, .. } => why_no_function(asked),
             Self::NotOfEquations(_) => "write the terms into the equations".to_owned(),
             Self::TooLongToSet { .. } => {
                 "leave out terms (--terms inertia,gravity), or take --json".to_owned()
@@ -175,14 +175,21 @@ impl Failure {
 }
 
 /// Why a model has none of these functions.
-fn why_no_function(asked: &[String]) -> &'static str {
-    if asked.iter().all(|name| name.contains("contact")) {
-        "contacts are declared under \"contacts\""
-    } else if asked.iter().all(|name| name.starts_with("base_")) {
-        "`denavit base` says why its base parameters are not found"
-    } else {
-        "its mass matrix has no inverse: a joint moves no mass, or none of its own"
-    }
+fn why_no_function(asked: &[String]) -> String {
+    let why = |name: &String| match name.as_str() {
+        name if name.contains("contact") => "contacts are declared under \"contacts\"",
+        name if name.starts_with("base_") => {
+            "`denavit base` says why its base parameters are not found"
+        }
+        "state_rates" => "it has no effects with states",
+        _ => {
+            "its mass matrix has no inverse (a joint moves no mass, or none of its own), or an \
+             effect depends on what would have to be found"
+        }
+    };
+    let mut reasons: Vec<&str> = asked.iter().map(why).collect();
+    reasons.dedup();
+    reasons.join("; ")
 }
 
 impl fmt::Display for Failure {

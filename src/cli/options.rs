@@ -1,5 +1,6 @@
 //! Options that several commands have.
 
+use super::failure::Failure;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use denavit::derive::Flavour;
@@ -26,7 +27,8 @@ pub(crate) struct EffectsOption {
 /// Functions, given as a list of names.
 #[derive(Debug, Args)]
 pub(crate) struct FunctionList {
-    /// Functions, separated by commas; all that the model has if none are named
+    /// Functions, separated by commas; if none are named, all that the model has but regressor,
+    /// base_regressor and base_parameters
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = function_names())]
     functions: Vec<FunctionName>,
 }
@@ -39,6 +41,21 @@ impl FunctionList {
         let named =
             FunctionName::REGRESSORS.into_iter().filter(|name| self.functions.contains(name));
         FunctionName::ALL.into_iter().filter(asked).chain(named).collect()
+    }
+
+    /// Refuses what was named and is not among the functions that were found.
+    pub(crate) fn refuse_missing(
+        &self,
+        model: &str,
+        found: impl IntoIterator<Item = FunctionName>,
+    ) -> Result<(), Failure> {
+        let found: Vec<FunctionName> = found.into_iter().collect();
+        let missing = self.functions.iter().filter(|name| !found.contains(name));
+        let asked: Vec<String> = missing.map(|name| name.to_string()).collect();
+        match asked.is_empty() {
+            true => Ok(()),
+            false => Err(Failure::NoFunction { model: model.to_owned(), asked }),
+        }
     }
 }
 

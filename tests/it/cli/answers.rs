@@ -106,6 +106,24 @@ fn functions_that_a_robot_cannot_have_are_left_out() {
     assert!(json(&["count", "tulip", "--json"])["functions"].get("contact_positions").is_some());
 }
 
+/// What is asked for by name is there, or the answer says why it is not.
+#[test]
+fn functions_that_are_named_are_not_left_out() {
+    let directory = Directory::new("named_functions");
+    for command in ["count", "emit"] {
+        let asked = ["--functions", "state_rates,mass_matrix,contact_positions"];
+        let to = if command == "emit" { &["-o", "-"][..] } else { &[] };
+        let run = run_in(&directory.path, &[&[command, "puma560"][..], &asked, to].concat());
+        assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""));
+        assert!(run.stderr.contains("puma560: the model has no state_rates, contact_positions"));
+        assert!(
+            run.stderr.contains("no effects with states; contacts are declared"),
+            "{}",
+            run.stderr
+        );
+    }
+}
+
 /// The value of an entry that `derive --json` printed, intermediates included.
 struct Entries {
     dag: Dag,

@@ -52,6 +52,12 @@ fn text_is_escaped_and_nothing_is_loaded() {
 }
 
 #[test]
+fn spaces_of_formulas_are_spaces() {
+    let text = mathml(r"\tau_{\mathrm{ankle~y}}", false).unwrap();
+    assert!(text.contains("<mspace") && !text.contains("nbsp"), "{text}");
+}
+
+#[test]
 fn formulas_become_elements() {
     let text = mathml(r"\frac{a}{b_{1}}", false).unwrap();
     for element in ["<math", "<mfrac>", "<msub>"] {

@@ -1,8 +1,12 @@
 //! Formulas as MathML, which browsers show by themselves.
 
 use pulldown_latex::config::{DisplayMode, RenderConfig};
-use pulldown_latex::{Event, Parser, ParserError, Storage, push_mathml};
+use pulldown_latex::event::{Content, Dimension, DimensionUnit, Event};
+use pulldown_latex::{Parser, ParserError, Storage, push_mathml};
 use std::fmt;
+
+/// A space between words.
+const SPACE_EM: f32 = 0.33;
 
 /// Why a formula is not written as MathML.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +34,15 @@ pub fn mathml(latex: &str, display: bool) -> Result<String, FormulaError> {
     let events = Parser::new(latex, &storage)
         .collect::<Result<Vec<Event<'_>>, ParserError>>()
         .map_err(|error| failed(error.to_string()))?;
-    let events = events.into_iter().map(Ok::<_, ParserError>);
+    // its reader makes an entity of a space, which its writer escapes
+    let width = Some(Dimension::new(SPACE_EM, DimensionUnit::Em));
+    let events = events.into_iter().map(|event| match event {
+        Event::Content(Content::Text("&nbsp;")) => {
+            Event::Space { width, height: None, depth: None }
+        }
+        other => other,
+    });
+    let events = events.map(Ok::<_, ParserError>);
     let display_mode = if display { DisplayMode::Block } else { DisplayMode::Inline };
     let config = RenderConfig { display_mode, ..RenderConfig::default() };
     let mut text = String::new();

@@ -1,5 +1,6 @@
 //! `denavit identify`: parameters from logs.
 
+mod estimation;
 mod failure;
 mod forward;
 mod json;
@@ -17,16 +18,14 @@ use super::model_effects::{EffectUse, ModelApart};
 use super::options::EffectsOption;
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::effect::{self, Effect};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow, SlowRows};
 use denavit::identify::log::LogRemark;
-use denavit::identify::{
-    Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
-};
+use denavit::identify::{Identification, UpdateError, UpdatedModel};
 use denavit::model::Robot;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};
 use denavit::report::{TorquePicture, torque_picture};
 use denavit::simulate::STICTION_RATE;
+use estimation::Estimation;
 pub(crate) use failure::IdentifyFailure;
 use forward::{Controlled, SimulationGap};
 use logs::Conditions;
@@ -305,13 +304,6 @@ const TAKEN_OUT: (&str, &str) = (
     "a law beside the equations of the bodies: taken out of the logs with the values of the model",
 );
 
-/// The identified model with all of its effects: what is simulated.
-fn with_all_effects(updated: UpdatedModel, own: &[Effect]) -> Result<UpdatedModel, UpdateError> {
-    let UpdatedModel { text, .. } = updated;
-    let robot = effect::read_model("the identified model", text.as_bytes(), own);
-    robot.map(|robot| UpdatedModel { text, robot }).map_err(UpdateError::Unsound)
-}
-
 impl Answered {
     fn new(arguments: &Arguments, progress: &Progress) -> Result<Self, Failure> {
         let given = arguments.model_apart()?;
@@ -323,45 +315,21 @@ impl Answered {
             .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
         model.law = arguments.friction;
         progress.show("reading logs");
-        let mut conditions = arguments.conditions;
-        let mut read = logs::read((arguments, &conditions), (&robot, laws), &model)?;
+        let (own, source) = (&own[..], &source);
+        let estimation = Estimation { arguments, robot: &robot, laws, model: &model, own, source };
+        let mut read = estimation.read(&arguments.conditions)?;
         let controller = arguments.controller.as_deref();
         let controller = controller.map(|path| Controlled::read(path, &whole)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone())?;
         progress.show("estimating");
-        let estimated = |read: &logs::Read, options: &Options| {
-            let request = Request {
-                model: &model,
-                train: &read.train,
-                validate: &read.validate,
-                instruments: &read.instruments,
-                options,
-            };
-            let found = identify(request)
-                .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
-            let both = (&found.consistent, &found.parameters[..]);
-            let updated = updated_model(&robot, &model, both, &source);
-            let updated = updated.and_then(|updated| with_all_effects(updated, &own));
-            Ok::<_, Failure>((found, updated))
-        };
         if options.method == Method::Instrumental && read.instruments.is_empty() {
             let controller = controller.as_ref().ok_or(IdentifyFailure::NoInstruments)?;
             let first = Options { method: Method::Weighted, ..options.clone() };
-            let updated = estimated(&read, &first)?.1.map_err(IdentifyFailure::Update)?;
+            let updated = estimation.found(&read, &first)?.1.map_err(IdentifyFailure::Update)?;
             progress.show("simulating instruments");
             read.instruments = controller.instruments(&updated.robot, &read, arguments)?;
         }
-        let (mut found, mut updated) = estimated(&read, &options)?;
-        let allows_for_noise = options.method == Method::Instrumental;
-        while let Some(lower) = conditions.lower(&read.train)
-            && found.bias().is_some()
-            && !allows_for_noise
-        {
-            conditions = lower;
-            drop(read); // logs are large: not all of them twice
-            read = logs::read((arguments, &conditions), (&robot, laws), &model)?;
-            (found, updated) = estimated(&read, &options)?;
-        }
+        let (read, (found, updated)) = estimation.unbiased(read, &options)?;
         let is_sure = found.misread.iter().any(|one| one.is_sure);
         if is_sure && !arguments.accept_suspicious {
             return Err(IdentifyFailure::Misread(found.misread).into());

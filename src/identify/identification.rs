@@ -36,9 +36,6 @@ pub struct Identification {
     /// What is left with the values that the model had of the logs that were not used, or, without
     /// any, of those that were; none if the model lacks a value.
     pub before: Option<f64>,
-    /// The joint of whose torque noise of the positions makes most by itself, and how much: a share
-    /// of its root of mean square. Parameters are biased if it is more than some percent.
-    pub position_noise: Option<(String, f64)>,
     /// Columns that seem to be other ones than they are taken for, one after the other: each with
     /// those before it mended; those of the logs for validation at last.
     pub misread: Vec<MisreadColumns>,
@@ -72,24 +69,32 @@ pub struct LeftOutRows {
     pub of: usize,
 }
 
-/// The share of a torque from which on noise of the positions is said to bias parameters: columns
-/// have as much, so that its square is their bias, and standard errors of a good log are a
-/// thousandth.
-const BIASING: f64 = 0.01;
+/// Biased parameters that are named.
+const LISTED: usize = 6;
 
-/// The same of what the filter makes of a motion that is too fast for it, if it is also this share
-/// of what is left.
+/// The share of a torque from which on it is said what the filter makes of a motion that is too
+/// fast for it, if it is also this share of what is left.
 const SMEARED: [f64; 2] = [0.01, 0.3];
 
 impl Identification {
     /// What is to be said if noise of the positions biases the parameters.
     pub fn bias(&self) -> Option<String> {
-        let (joint, share) = self.position_noise.as_ref().filter(|(_, share)| *share > BIASING)?;
-        Some(format!(
-            "Noise of the positions alone makes {:.0} % of the torque of {joint}: parameters are \
-             biased, and their intervals too narrow. A filter with a lower cutoff has less of it.",
-            100.0 * share
-        ))
+        let own = |one: &IdentifiedParameter| Some((one.name.clone(), one.noise_bias?));
+        let all = self.parameters.iter().filter(|one| one.is_biased());
+        let mut biased: Vec<_> = all.filter_map(own).collect();
+        biased.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let listed: Vec<String> =
+            biased.iter().take(LISTED).map(|(name, bias)| format!("{name} by {bias:.1}")).collect();
+        let more = biased.len().saturating_sub(LISTED);
+        let more = if more > 0 { format!(" and {more} others") } else { String::new() };
+        (!biased.is_empty()).then(|| {
+            format!(
+                "Noise of the positions biases parameters, in standard errors: {}{more}. Their \
+                 intervals hold less often than they say. A filter with a lower cutoff (--filter) \
+                 has less of it, or --method iv none.",
+                listed.join(", ")
+            )
+        })
     }
 
     /// What is to be said if the filter itself makes a part of the torques.
@@ -174,12 +179,9 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let left = validate(model, phi, train);
     let torques = torques(model, &left);
     let deviations = &options.position_noise;
-    let noise = noise_of_positions(model, train, (phi, deviations), &torques, true);
-    let names = model.joints.iter().map(|joint| joint.name.clone());
-    let most = names.zip(noise).max_by(|a, b| a.1.total_cmp(&b.1));
     let listed = parameters(model, &found);
     let noise_of_own = nominal_values(model)
-        .map(|own| noise_of_positions(model, train, (&own, deviations), &torques, false));
+        .map(|own| noise_of_positions(model, train, (&own, deviations), &torques));
     let held_out_left = judged(phi);
     let share = |(noise, torque): (&f64, &f64)| if *torque > 0.0 { noise / torque } else { 0.0 };
     let counted: Vec<f64> = found.noise.iter().zip(&torques).map(share).collect();
@@ -206,7 +208,6 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         parameters: listed,
         filter_error: filter_error(model, train, (phi, &left)),
         train: left,
-        position_noise: most.filter(|(_, share)| *share > 0.0),
         validate: held_out_left,
         before: given.map(|phi| {
             let logs = if held_out.is_empty() { train } else { held_out };
@@ -238,7 +239,7 @@ fn held_out_misread(
         let log = std::slice::from_ref(log);
         let left = validate(model, phi, log);
         let torques = torques(model, &left);
-        let noise = noise_of_positions(model, log, (phi, deviations), &torques, false);
+        let noise = noise_of_positions(model, log, (phi, deviations), &torques);
         let evidence = Evidence { values: Some(phi), listed: &[], noise: Some(&noise) };
         let mut misread = misread_apart(model, log, evidence);
         if left.relative < CLEAN {

@@ -42,6 +42,8 @@ pub(super) struct ParameterJson<'a> {
     value: f64,
     std: Option<f64>,
     interval: Option<[f64; 2]>,
+    /// In standard errors.
+    noise_bias: Option<f64>,
     unit: &'a str,
     identifiable: bool,
     status: &'static str,
@@ -57,6 +59,7 @@ impl<'a> ParameterJson<'a> {
             value: one.value,
             std: one.std,
             interval: one.interval.map(|half| [one.value - half, one.value + half]),
+            noise_bias: one.noise_bias,
             unit: &one.unit,
             identifiable: one.status != Status::NotExcited,
             status: one.status.word(),

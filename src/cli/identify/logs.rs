@@ -36,7 +36,7 @@ pub(super) struct Conditions {
 }
 
 /// Halvings of the cutoff, at most, and periods of it that a log, or a lap, must have.
-const MOST_HALVINGS: u32 = 4;
+const MOST_HALVINGS: u32 = 6;
 const FEWEST_PERIODS: f64 = 40.0;
 const FEWEST_OF_A_LAP: f64 = 20.0;
 

@@ -47,12 +47,15 @@ pub(super) fn parameter_table(parameters: &[IdentifiedParameter]) -> Table {
         ("parameter", Align::Left),
         ("value", Align::Right),
         ("std", Align::Right),
+        ("bias/std", Align::Right),
         ("model", Align::Right),
         ("unit", Align::Left),
         ("", Align::Left),
         ("formula", Align::Left),
     ]);
+    let is_biased = parameters.iter().any(IdentifiedParameter::is_biased);
     for one in parameters {
+        let bias = one.noise_bias.filter(|_| is_biased);
         let status = match one.status {
             Status::Identified => "",
             Status::Uncertain => "may be 0",
@@ -63,6 +66,7 @@ pub(super) fn parameter_table(parameters: &[IdentifiedParameter]) -> Table {
             one.name.clone(),
             short(one.value),
             one.std.map_or("-".to_owned(), |std| format!("{std:.1e}")),
+            bias.map_or(String::new(), |bias| format!("{bias:.1}")),
             one.model_value.map_or(String::new(), short),
             one.unit.clone(),
             status.to_owned(),

@@ -15,8 +15,10 @@ mod reversals;
 pub use butterworth::Butterworth;
 pub use decimate::Decimator;
 pub use laps::Laps;
+pub use noise::Encoder;
 
 use super::log::{JointSignals, MeasuredLog};
+use crate::report::short;
 use std::fmt;
 use std::ops::Range;
 
@@ -131,8 +133,10 @@ impl fmt::Display for ConditionError {
         match self {
             Self::Cutoff { cutoff_hz, nyquist_hz } => write!(
                 f,
-                "no filter of order 1 to 10 has its cutoff at {cutoff_hz} Hz: half the rate of \
-                 sampling is {nyquist_hz} Hz"
+                "no filter of order 1 to 10 has its cutoff at {} Hz: half the rate of \
+                 sampling is {} Hz",
+                short(*cutoff_hz),
+                short(*nyquist_hz)
             ),
             Self::TooShort { samples, needed } => write!(
                 f,
@@ -143,21 +147,24 @@ impl fmt::Display for ConditionError {
                 write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
             }
             Self::ShortPeriod { period_s, step_s } => {
-                write!(f, "a period of {period_s} s has too few samples of {step_s} s for a lap")
+                let [period, step] = [*period_s, *step_s].map(short);
+                write!(f, "a period of {period} s has too few samples of {step} s for a lap")
             }
             Self::OneLap { period_s } => {
-                write!(f, "the log has no two whole laps of {period_s} s")
+                write!(f, "the log has no two whole laps of {} s", short(*period_s))
             }
             Self::NotRepeated { period_s, misfit } => write!(
                 f,
-                "laps of {period_s} s do not repeat: they differ by {:.0} % of the variance of a \
-                 joint\n  hint: `found` looks for the period; or do not average",
+                "laps of {} s do not repeat: they differ by {:.0} % of the variance of a joint\n  \
+                 hint: `found` looks for the period; or do not average",
+                short(*period_s),
                 100.0 * misfit
             ),
             Self::OtherPeriod { period_s, longer } => write!(
                 f,
-                "laps of {period_s} s do not repeat: the motion repeats with a period that is {} \
-                 by a sample or more\n  hint: `found` looks for the period; or do not average",
+                "laps of {} s do not repeat: the motion repeats with a period that is {} by a \
+                 sample or more\n  hint: `found` looks for the period; or do not average",
+                short(*period_s),
                 if *longer { "longer" } else { "shorter" }
             ),
             Self::NotTheDerivative { column, factor, late_s } => write!(
@@ -204,6 +211,8 @@ pub struct Conditioned {
     /// Deviation of each measured position before the filter, from steps of its encoder or from
     /// what the log shows; 0 of a joint that rests [rad, m].
     pub position_noise: Vec<f64>,
+    /// Encoders whose steps make this noise; none where it is white.
+    pub encoders: Vec<Option<Encoder>>,
     /// Whether each joint moves no further than its noise: its position is taken for constant.
     pub resting: Vec<bool>,
 }
@@ -245,7 +254,7 @@ impl Conditioned {
         };
         let mut rates = [Vec::new(), Vec::new()];
         let of_joint = |joint: &JointSignals| noise::position_noise(joint, how.resolution);
-        found.position_noise = joints.iter().map(of_joint).collect();
+        (found.position_noise, found.encoders) = joints.iter().map(of_joint).unzip();
         for (joint, name) in joints.into_iter().zip(names) {
             let JointSignals { mut q, qd, qdd, mut tau, .. } = joint;
             if let Some(filter) = &filter {

@@ -1,7 +1,8 @@
 //! Noise of measured positions, and joints that move no further than it.
 
-use super::{Conditioned, rate};
+use super::{Conditioned, Decimator, rate};
 use crate::identify::log::JointSignals;
+use crate::simulate::Random;
 
 /// The order of the differences that noise is read from: of smooth signals they are next to
 /// nothing.
@@ -51,11 +52,20 @@ pub(crate) fn white_noise(signal: &[f64]) -> Option<f64> {
     (high > WHITE * low && high > 0.0).then(|| high.sqrt())
 }
 
-/// Deviation of a measured position [rad, m]: an encoder's error is anywhere within its step, whose
-/// size may be known from elsewhere; without steps, what the log shows.
-pub(super) fn position_noise(signals: &JointSignals, resolution: Option<f64>) -> f64 {
-    let of_steps = signals.step.or(resolution).map(|step| step / 12.0_f64.sqrt());
-    of_steps.or_else(|| white_noise(&signals.q)).unwrap_or(0.0)
+/// Deviation of a measured position [rad, m], and the encoder if its steps are what makes it: its
+/// error is anywhere within a step, whose size may be known from elsewhere; the log may show more
+/// noise than that.
+pub(super) fn position_noise(
+    signals: &JointSignals,
+    resolution: Option<f64>,
+) -> (f64, Option<Encoder>) {
+    let level = signals.q.first().copied().unwrap_or(0.0);
+    let encoder = signals.step.or(resolution).map(|step| Encoder { step, level });
+    let of_steps = encoder.map_or(0.0, |encoder| encoder.step / 12.0_f64.sqrt());
+    match white_noise(&signals.q) {
+        Some(white) if white > of_steps => (white, None),
+        _ => (of_steps, encoder),
+    }
 }
 
 impl Conditioned {
@@ -92,10 +102,112 @@ impl Conditioned {
     }
 }
 
+impl Conditioned {
+    /// So many samples that are left, from `first` on, with the noise of the positions once more:
+    /// added, and subtracted. Steps of an encoder are those that the motion makes, which while it
+    /// is slow are no white noise.
+    pub(crate) fn piece_with_noise(
+        &self,
+        first: usize,
+        samples: usize,
+        random: &mut Random,
+    ) -> [Self; 2] {
+        let edge = self.range.start;
+        let start = first * self.decimation;
+        let inner = 2 * Decimator::reach_of(self.decimation) + (samples - 1) * self.decimation + 1;
+        let end = (start + edge + inner + edge).min(self.q[0].len());
+        let part = |column: &Vec<f64>| column[start..end].to_vec();
+        let parts = |columns: &[Vec<f64>]| columns.iter().map(part).collect::<Vec<_>>();
+        let mut added = Self {
+            step_s: self.step_s,
+            q: parts(&self.q),
+            rates: self.rates.as_ref().map(|both| both.each_ref().map(|all| parts(all))),
+            torque: self.torque.iter().map(|torque| torque.as_ref().map(part)).collect(),
+            range: edge..edge + inner,
+            decimation: self.decimation,
+            filter: self.filter.clone(),
+            ..Self::default()
+        };
+        let mut subtracted = added.clone();
+        for joint in 0..added.q.len() {
+            let noise = self.noise_like(joint, &added.q[joint], random);
+            let both = added.q[joint].iter_mut().zip(&mut subtracted.q[joint]);
+            for ((plus, minus), noise) in both.zip(noise) {
+                *plus += noise;
+                *minus -= noise;
+            }
+        }
+        [added, subtracted]
+    }
+
+    /// Noise of a position after the filter.
+    fn noise_like(&self, joint: usize, q: &[f64], random: &mut Random) -> Vec<f64> {
+        let deviation = self.position_noise[joint];
+        let mut noise: Vec<f64> = match self.encoders[joint] {
+            _ if deviation == 0.0 => return vec![0.0; q.len()],
+            Some(encoder) => encoder.errors(q, random),
+            None => {
+                // laps are alike, but for their noise
+                let laps = self.laps.map_or(1, |laps| laps.count.max(1)) as f64;
+                q.iter().map(|_| deviation / laps.sqrt() * random.normal()).collect()
+            }
+        };
+        if let Some(filter) = &self.filter {
+            filter.zero_phase(&mut noise);
+        }
+        noise
+    }
+}
+
+/// An encoder whose steps are the noise of its position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Encoder {
+    /// The distance of its levels [rad, m].
+    pub step: f64,
+    /// One of them.
+    pub level: f64,
+}
+
+impl Encoder {
+    /// The errors of steps along a motion that was seen through them, with levels elsewhere.
+    fn errors(self, q: &[f64], random: &mut Random) -> Vec<f64> {
+        let zero = self.step * random.uniform();
+        let error = |q: f64| ((q + zero) / self.step).round() * self.step - zero - q;
+        self.between_steps(q).into_iter().map(error).collect()
+    }
+
+    /// A motion whose filter may follow the steps, without them: straight lines from where it goes
+    /// over from one level to the next to where it does so again.
+    fn between_steps(self, q: &[f64]) -> Vec<f64> {
+        let middles: Vec<f64> = q.iter().map(|q| (q - self.level) / self.step + 0.5).collect();
+        let mut lines = Vec::with_capacity(q.len());
+        // the last place where it went over, and what was left there
+        let (mut begin, mut from) = (-1.0, q.first().copied().unwrap_or(0.0));
+        let mut line_to = |lines: &mut Vec<f64>, end: f64, to: f64| {
+            while (lines.len() as f64) <= end && lines.len() < q.len() {
+                let along = (lines.len() as f64 - begin) / (end - begin);
+                lines.push(from + (to - from) * along);
+            }
+            (begin, from) = (end, to);
+        };
+        for (k, pair) in middles.windows(2).enumerate() {
+            let (one, other) = (pair[0], pair[1]);
+            if one.floor() != other.floor() {
+                // of several, the one before the second sample
+                let over = if other > one { other.floor() } else { other.floor() + 1.0 };
+                let at = k as f64 + (over - one) / (other - one);
+                line_to(&mut lines, at, self.level + (over - 0.5) * self.step);
+            }
+        }
+        let last = q.last().copied().unwrap_or(0.0);
+        line_to(&mut lines, q.len() as f64, last);
+        lines
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulate::Random;
 
     /// Noise far below the motion is seen, where samples are close enough to say so.
     #[test]

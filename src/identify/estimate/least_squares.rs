@@ -5,6 +5,7 @@ use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::instruments;
 use super::left_out::SlowRows;
 use super::likelihood;
+use super::noise_bias::noise_bias;
 use super::robust::{Loss, influences, scales};
 use super::rows::Block;
 use super::solve::{PriorRow, Solution, solve, stacked};
@@ -124,6 +125,8 @@ pub struct Estimate {
     pub covariance: DMatrix<f64>,
     /// Degrees of freedom of the errors.
     pub degrees_of_freedom: f64,
+    /// What noise of the positions adds to phi in the mean; 0 of instrumental variables.
+    pub noise_bias: DVector<f64>,
     /// Standard deviation of each joint's residuals [N m, N]; 0 where no torque was measured.
     pub noise: Vec<f64>,
     /// The rows, as they were weighted last.
@@ -156,6 +159,7 @@ pub fn estimate(
             return Ok(first);
         }
     }
+    first.noise_bias = fit.noise_bias(model, rows, &first);
     let problem = fit.problem(&first);
     let (mut covariance, mut degrees_of_freedom) = match options.method {
         Method::Robust(loss) => {
@@ -282,6 +286,7 @@ impl Fit<'_> {
             solution,
             covariance,
             degrees_of_freedom: 0.0,
+            noise_bias: DVector::zeros(condensed.rank),
             noise,
             condensed,
             weights,
@@ -310,25 +315,11 @@ impl Fit<'_> {
         loss: Loss,
     ) -> Result<Estimate, EstimateError> {
         for _ in 0..MAX_REWEIGHTING {
-            let phi = found.solution.phi.as_slice().to_vec();
-            let scales = scales(model, logs, &phi);
-            let factors = |_: usize, block: &Block, joint: usize| -> Vec<f64> {
-                let own = found.condensed.of_joint(joint, &phi);
-                let residual = block.residual(joint, &own).unwrap_or_default();
-                let scale = scales[joint].max(f64::MIN_POSITIVE);
-                residual.iter().map(|residual| loss.factor(residual / scale)).collect()
-            };
+            found.noise = scales(model, logs, found.solution.phi.as_slice());
+            let factors = factors_of_loss(&found, loss);
             let condensed = Condensed::weighted(model, (logs, left_out), &factors);
-            let triangles = condensed.whole();
-            let joint_weights = reciprocal(&scales, &triangles);
-            let next = self.solved(&condensed, &triangles, &joint_weights);
-            let change = moved(&found.solution, &next);
-            found.weights = joint_weights;
-            found.condensed = condensed;
-            found.solution = next;
-            found.noise = scales;
-            found.rounds += 1;
-            if change < SETTLED {
+            let weights = reciprocal(&found.noise, &condensed.whole());
+            if self.reweighted(&mut found, condensed, weights) < SETTLED {
                 return Ok(found);
             }
         }
@@ -342,28 +333,72 @@ impl Fit<'_> {
         mut found: Estimate,
     ) -> Result<Estimate, EstimateError> {
         for _ in 0..MAX_REWEIGHTING {
-            let phi = found.solution.phi.as_slice().to_vec();
-            let variance =
-                likelihood::Variance::new(model, logs, (&phi, &self.options.position_noise));
-            let noise = variance.torque_noise(&found.noise);
-            let factors = |log: usize, block: &Block, joint: usize| {
-                variance.factors((log, joint), block, &noise)
-            };
+            let factors = self.factors_of_noise(model, logs, &found);
             let condensed = Condensed::weighted(model, (logs, left_out), &factors);
-            let triangles = condensed.whole();
-            let ones: Vec<f64> =
-                triangles.iter().map(|one| if one.rows() > 0 { 1.0 } else { 0.0 }).collect();
-            let next = self.solved(&condensed, &triangles, &ones);
-            let change = moved(&found.solution, &next);
-            found.weights = ones;
-            found.condensed = condensed;
-            found.solution = next;
-            found.rounds += 1;
-            if change < SETTLED {
+            let of_joint = |one: &Triangle| if one.rows() > 0 { 1.0 } else { 0.0 };
+            let ones = condensed.whole().iter().map(of_joint).collect();
+            if self.reweighted(&mut found, condensed, ones) < SETTLED {
                 return Ok(found);
             }
         }
         Err(EstimateError::NotSettled)
+    }
+
+    /// Solves with other weights, and says how far phi moves, in its standard errors.
+    fn reweighted(&self, found: &mut Estimate, condensed: Condensed, weights: Vec<f64>) -> f64 {
+        let next = self.solved(&condensed, &condensed.whole(), &weights);
+        let change = moved(&found.solution, &next);
+        (found.weights, found.condensed, found.solution) = (weights, condensed, next);
+        found.rounds += 1;
+        change
+    }
+
+    /// 1 over the deviation of each row, of noise of torques and positions.
+    fn factors_of_noise(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        found: &Estimate,
+    ) -> impl Fn(usize, &Block, usize) -> Vec<f64> + use<> {
+        let of = (found.solution.phi.as_slice(), &self.options.position_noise[..]);
+        let variance = likelihood::Variance::new(model, logs, of);
+        let noise = variance.torque_noise(&found.noise);
+        move |log, block, joint| variance.factors((log, joint), block, &noise)
+    }
+
+    /// The bias of an estimate, with the weights of its rows.
+    fn noise_bias(
+        &self,
+        model: &RegressionModel,
+        rows: Rows<'_>,
+        found: &Estimate,
+    ) -> DVector<f64> {
+        let of = (&found.solution, &found.weights[..]);
+        match self.options.method {
+            Method::Robust(loss) => {
+                noise_bias(model, rows, of, Some(&factors_of_loss(found, loss)))
+            }
+            Method::Likelihood => {
+                let factors = self.factors_of_noise(model, rows.0, found);
+                noise_bias(model, rows, of, Some(&factors))
+            }
+            _ => noise_bias(model, rows, of, None),
+        }
+    }
+}
+
+/// What rows count by the loss of their residuals, whose deviations are the estimate's noise.
+fn factors_of_loss(
+    found: &Estimate,
+    loss: Loss,
+) -> impl Fn(usize, &Block, usize) -> Vec<f64> + use<> {
+    let own = |joint: usize| found.condensed.of_joint(joint, found.solution.phi.as_slice());
+    let phi: Vec<Vec<f64>> = (0..found.weights.len()).map(own).collect();
+    let scales = found.noise.clone();
+    move |_, block, joint| {
+        let residual = block.residual(joint, &phi[joint]).unwrap_or_default();
+        let scale = scales[joint].max(f64::MIN_POSITIVE);
+        residual.iter().map(|residual| loss.factor(residual / scale)).collect()
     }
 }
 

@@ -61,23 +61,19 @@ impl Variance {
     }
 }
 
-/// How much of each joint's torque noise of the positions makes up by itself, root of mean square
-/// over root of mean square, looked at in some blocks of each log. Columns of the regressor have as
-/// much noise, so that parameters are biased by about its square. That is after both filters, or,
-/// if it is not of `decimated` samples, after the first one alone.
+/// How much of each joint's torque noise of the positions makes up by itself after the filter,
+/// root of mean square over root of mean square, looked at in some blocks of each log.
 pub(in crate::identify) fn noise_of_positions(
     model: &RegressionModel,
     logs: &[Conditioned],
     (phi, deviations): (&[f64], &[f64]),
     torque_rms: &[f64],
-    decimated: bool,
 ) -> Vec<f64> {
     let mut sums = vec![0.0; model.joints.len()];
     let mut count = 0;
     for log in logs {
         let every = log.samples().div_ceil(BLOCK * LOOKED_AT).max(1);
-        let gains = if decimated { log.noise_gains() } else { log.filter_gains() };
-        let rows = of_log(model, (log, every), (phi, deviations), &gains);
+        let rows = of_log(model, (log, every), (phi, deviations), &log.filter_gains());
         for (sum, row) in sums.iter_mut().zip(rows) {
             *sum += row.iter().sum::<f64>();
         }

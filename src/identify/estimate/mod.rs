@@ -19,6 +19,7 @@ mod least_squares;
 mod left_out;
 mod likelihood;
 mod misread;
+mod noise_bias;
 mod report;
 mod robust;
 mod rows;

@@ -2,6 +2,7 @@
 
 use super::reader::LONGEST_LINE;
 use super::repair::FEWEST_ROWS;
+use crate::report::short;
 use std::fmt;
 
 /// All that is wrong with a log.
@@ -359,8 +360,9 @@ impl fmt::Display for LogRemark {
             }
             Self::LoweredFilter { cutoff_hz } => write!(
                 f,
-                "noise of positions would bias parameters: filtered below {cutoff_hz} Hz (--filter \
-                 says otherwise)"
+                "noise of positions would bias parameters: filtered below {} Hz (--filter says \
+                 otherwise)",
+                short(*cutoff_hz)
             ),
             Self::Averaged { laps, period_s } => {
                 write!(f, "{laps} laps of {period_s:.6} s are replaced by their mean")

@@ -101,14 +101,14 @@ fn noise_of_positions_that_biases_is_said() {
         let words = ["identify", "tulip_leg_table34", "--train", "log.csv", "--filter", cutoff];
         let run = run_in(&directory.path, &words);
         assert_eq!(run.code, Some(0), "{}", run.stderr);
-        assert_eq!(run.stdout.contains("parameters are biased"), is_said, "{}", run.stdout);
+        assert_eq!(run.stdout.contains("biases parameters"), is_said, "{}", run.stdout);
         assert!(!run.stdout.contains("filtered below"), "{}", run.stdout);
     }
     // a filter that nobody asked for gets out of the way
     let run = run_in(&directory.path, &["identify", "tulip_leg_table34", "--train", "log.csv"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(run.stdout.contains("filtered below"), "{}", run.stdout);
-    assert!(!run.stdout.contains("parameters are biased"), "{}", run.stdout);
+    assert!(!run.stdout.contains("biases parameters"), "{}", run.stdout);
 }
 
 /// The torque in a log is what the joint needs, Coulomb friction of its drive among it.

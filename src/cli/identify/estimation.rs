@@ -1,0 +1,83 @@
+//! Estimates of one run, with the filter that noise of the positions asks for.
+
+use super::logs::{self, Conditions};
+use super::{Arguments, IdentifyFailure};
+use crate::cli::failure::Failure;
+use denavit::effect::{self, Effect};
+use denavit::identify::estimate::{Method, Options};
+use denavit::identify::{
+    Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
+};
+use denavit::model::Robot;
+use denavit::plants::effect::AddedLaw;
+use denavit::plants::regression::RegressionModel;
+
+/// What estimates of one run have in common.
+pub(super) struct Estimation<'a> {
+    pub(super) arguments: &'a Arguments,
+    pub(super) robot: &'a Robot,
+    pub(super) laws: &'a [AddedLaw],
+    pub(super) model: &'a RegressionModel,
+    pub(super) own: &'a [Effect],
+    pub(super) source: &'a str,
+}
+
+/// What is found, and the model with it.
+pub(super) type Found = (Identification, Result<UpdatedModel, UpdateError>);
+
+impl Estimation<'_> {
+    pub(super) fn read(&self, conditions: &Conditions) -> Result<logs::Read, Failure> {
+        logs::read((self.arguments, conditions), (self.robot, self.laws), self.model)
+    }
+
+    pub(super) fn found(&self, read: &logs::Read, options: &Options) -> Result<Found, Failure> {
+        let Self { robot, model, own, source, .. } = *self;
+        let request = Request {
+            model,
+            train: &read.train,
+            validate: &read.validate,
+            instruments: &read.instruments,
+            options,
+        };
+        let found = identify(request)
+            .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
+        let both = (&found.consistent, &found.parameters[..]);
+        let updated = updated_model(robot, model, both, source);
+        Ok((found, updated.and_then(|updated| with_all_effects(updated, own))))
+    }
+
+    /// What is found with the highest filter, of those that nobody asked for, below which noise of
+    /// the positions biases nothing.
+    pub(super) fn unbiased(
+        &self,
+        mut read: logs::Read,
+        options: &Options,
+    ) -> Result<(logs::Read, Found), Failure> {
+        let mut conditions = self.arguments.conditions;
+        let mut found = self.found(&read, options)?;
+        let allows_for_noise = options.method == Method::Instrumental;
+        while let Some(lower) = conditions.lower(&read.train)
+            && found.0.bias().is_some()
+            && !allows_for_noise
+        {
+            drop(read); // logs are large: not all of them twice
+            read = self.read(&lower)?;
+            let next = self.found(&read, options)?;
+            if next.0.filter_error.is_some() {
+                // worse than the noise that it takes away
+                drop(read);
+                read = self.read(&conditions)?;
+                break;
+            }
+            (found, conditions) = (next, lower);
+        }
+        Ok((read, found))
+    }
+}
+
+/// The identified model with all of its effects: what is simulated.
+fn with_all_effects(updated: UpdatedModel, own: &[Effect]) -> Result<UpdatedModel, UpdateError> {
+    let UpdatedModel { text, .. } = updated;
+    let robot = effect::read_model("the identified model", text.as_bytes(), own);
+    robot.map(|robot| UpdatedModel { text, robot }).map_err(UpdateError::Unsound)
+}

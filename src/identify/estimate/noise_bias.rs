@@ -1,0 +1,129 @@
+//! The bias that noise of the positions makes of least squares, whose columns have it (errors in
+//! variables).
+//!
+//! Of W = Y(x + n) and y = Y(x) phi the estimate is C W^T y, with C = (W^T W)^+, and in the mean
+//! phi - C N phi, with N = E[W^T (W - Y(x))]. The noise is made once more, as it comes out of
+//! encoders, filter and differences, added to the motion and taken from it: the mean of both has
+//! what is of second order in it, which is N, and nothing of first order, which standard errors
+//! show.
+
+use super::condensed::Rows;
+use super::rows::{Block, BlockMaker};
+use super::solve::Solution;
+use crate::identify::condition::Conditioned;
+use crate::plants::regression::RegressionModel;
+use crate::simulate::Random;
+use nalgebra::{DMatrix, DVector};
+
+/// Samples of all logs that are looked at, before decimation, and in so many pieces.
+const SAMPLES: usize = 60_000;
+const PIECES: usize = 12;
+
+/// Samples in a block.
+const BLOCK: usize = 512;
+
+/// What the noise begins with: the same log has the same answer.
+const SEED: u64 = 1;
+
+/// The factors of a block's rows of a joint, beside the joint's weight: log, block, joint.
+pub(super) type RowFactors<'a> = &'a dyn Fn(usize, &Block, usize) -> Vec<f64>;
+
+/// The bias of phi, of joints with weights, and of rows that have factors too, if any have.
+pub(super) fn noise_bias(
+    model: &RegressionModel,
+    (logs, left_out): Rows<'_>,
+    (solution, weights): (&Solution, &[f64]),
+    factors: Option<RowFactors<'_>>,
+) -> DVector<f64> {
+    let mut noise = Noise::new(model);
+    let mut random = Random::new(SEED);
+    for (number, log) in logs.iter().enumerate() {
+        if log.position_noise.iter().all(|noise| *noise == 0.0) {
+            continue;
+        }
+        let pieces = pieces(log, SAMPLES / logs.len());
+        let seen: usize = pieces.iter().map(|(_, samples)| samples).sum();
+        let of_all = log.samples() as f64 / seen.max(1) as f64;
+        let mut straight = BlockMaker::new(model, log);
+        for (first, samples) in pieces {
+            let both = log.piece_with_noise(first, samples, &mut random);
+            let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
+            for from in (0..samples).step_by(BLOCK) {
+                let count = BLOCK.min(samples - from);
+                let block = straight.at(first + from, count);
+                let noisy = makers.each_mut().map(|maker| maker.at(from, count));
+                for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
+                    let mut squares = vec![weight * weight * of_all; count];
+                    if let Some(factors) = factors {
+                        let factors = factors(number, block, joint);
+                        squares.iter_mut().zip(factors).for_each(|(sq, by)| *sq *= by * by);
+                    }
+                    let counts = left_out.counts((number, log), joint, (first + from, count));
+                    for (square, _) in
+                        squares.iter_mut().zip(counts.unwrap_or_default()).filter(|(_, one)| !one)
+                    {
+                        *square = 0.0;
+                    }
+                    noise.add(model, joint, (block, noisy), &squares);
+                }
+            }
+        }
+    }
+    noise.bias(solution)
+}
+
+/// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
+/// of the target.
+struct Noise(DMatrix<f64>);
+
+impl Noise {
+    fn new(model: &RegressionModel) -> Self {
+        Self(DMatrix::zeros(model.rank(), model.rank() + 1))
+    }
+
+    /// Adds the rows of a joint without the noise and with it, added and subtracted, which count as
+    /// these squares of weights.
+    fn add(
+        &mut self,
+        model: &RegressionModel,
+        joint: usize,
+        (straight, both): (&Block, [&Block; 2]),
+        squares: &[f64],
+    ) {
+        let Some(clean) = straight.with_target(joint) else { return };
+        let places = &model.pattern()[joint];
+        for noisy in both.into_iter().filter_map(|block| block.with_target(joint)) {
+            for (at, (noise, clean)) in noisy.iter().zip(&clean).enumerate() {
+                let place = places.get(at).copied().unwrap_or(model.rank());
+                let rows = noise.iter().zip(*clean).zip(squares);
+                let change: Vec<f64> =
+                    rows.map(|((noisy, clean), square)| 0.5 * square * (noisy - clean)).collect();
+                for (&row, column) in places.iter().zip(&noisy) {
+                    let along = column.iter().zip(&change).map(|(a, b)| a * b);
+                    self.0[(row, place)] += along.sum::<f64>();
+                }
+            }
+        }
+    }
+
+    /// phi^ - phi of phi^ = phi - C (N phi + known): where noise makes most of W, phi^ is a small
+    /// part of phi.
+    fn bias(&self, solution: &Solution) -> DVector<f64> {
+        let rank = self.0.nrows();
+        let share = &solution.factor * solution.factor.tr_mul(&self.0);
+        let off = share.column(rank) - share.columns(0, rank) * &solution.phi;
+        let left = DMatrix::identity(rank, rank) - share.columns(0, rank);
+        left.lu().solve(&off).unwrap_or(off)
+    }
+}
+
+/// Samples of a log that is left after decimation that are looked at: first ones and numbers.
+fn pieces(log: &Conditioned, most: usize) -> Vec<(usize, usize)> {
+    let (samples, most) = (log.samples(), most / log.decimation.max(1));
+    let length = most / PIECES;
+    if samples <= most.max(PIECES) || length == 0 {
+        return vec![(0, samples)];
+    }
+    let first = |piece: usize| piece * (samples - length) / (PIECES - 1);
+    (0..PIECES).map(|piece| (first(piece), length)).collect()
+}

@@ -1,13 +1,14 @@
 //! How long a call takes: every emitted function, and beside them the interpreters and code that is
 //! compiled in memory.
 //!
-//! Each measurement is of 64 calls with different inputs, in hot caches; the throughput that is
-//! printed is calls per second.
+//! Each measurement is of 64 calls with different inputs, in hot caches, or of 65536 samples in
+//! columns; the throughput that is printed is calls or samples per second.
 
 use criterion::measurement::WallTime;
 use criterion::{
     BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main,
 };
+use denavit::batch::map_packs_in_parallel;
 use denavit::derive::{Flavour, derive};
 use denavit::function::FunctionName;
 use denavit::model;
@@ -17,6 +18,8 @@ use denavit::program::{
     prelude_values,
 };
 use denavit_jit::{Compiled, CompiledBatch};
+use denavit_runtime::map_packs;
+use denavit_runtime::wide::f64x4;
 use std::hint::black_box;
 
 /// Made for this measurement alone.
@@ -196,5 +199,44 @@ fn many(criterion: &mut Criterion, name: &str, routine: &mut dyn EvaluateBatch) 
     group.finish();
 }
 
-criterion_group!(benches, emitted, at_run_time);
+/// A function of three vectors on 65536 samples, in packs of four: by one thread and by all.
+macro_rules! log_of {
+    ($criterion:ident, $module:path, $name:literal, $function:ident) => {{
+        use $module as robot;
+        const LONG: usize = 65_536;
+        type Vector = [f64x4; robot::DOF];
+        let column = |entry| (0..LONG).map(|sample| number(sample, entry)).collect();
+        let columns: Vec<Vec<f64>> = (0..3 * robot::DOF).map(column).collect();
+        let columns: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
+        let inputs = [0, 1, 2].map(|row| &columns[row * robot::DOF..][..robot::DOF]);
+        let parameters = robot::Parameters::<f64x4>::default();
+        let function = |[q, qd, x]: [&Vector; 3]| robot::$function(&parameters, q, qd, x);
+        let mut results = vec![vec![0.0; LONG]; robot::DOF];
+        let mut outputs: Vec<&mut [f64]> =
+            results.iter_mut().map(|column| &mut column[..]).collect();
+        let mut group =
+            $criterion.benchmark_group(concat!("log/", $name, "/", stringify!($function)));
+        group.throughput(Throughput::Elements(LONG as u64));
+        group.bench_function("one thread", |b| {
+            b.iter(|| {
+                map_packs(black_box(inputs), &mut outputs, function).expect("columns that fit")
+            });
+        });
+        group.bench_function("all threads", |b| {
+            b.iter(|| {
+                map_packs_in_parallel(black_box(inputs), &mut outputs, function)
+                    .expect("columns that fit");
+            });
+        });
+        group.finish();
+    }};
+}
+
+fn logs(criterion: &mut Criterion) {
+    log_of!(criterion, denavit::puma560, "puma560", inverse_dynamics);
+    log_of!(criterion, denavit::tulip, "tulip", inverse_dynamics);
+    log_of!(criterion, denavit::tulip, "tulip", forward_dynamics);
+}
+
+criterion_group!(benches, emitted, at_run_time, logs);
 criterion_main!(benches);

@@ -5,7 +5,7 @@
 //!     cargo run --release --example constraint_drift -- docs/constraint-drift.svg
 
 use denavit::model;
-use denavit::plants::InterpretedPlant;
+use denavit::plants::LoadedPlant;
 use denavit::report::{Align, Table};
 use denavit::shipped;
 use denavit::simulate::constraint_drift::{ConstrainedBodies, DriftSample};
@@ -19,7 +19,7 @@ const RATE: f64 = 20.0;
 fn main() -> Result<(), Box<dyn Error>> {
     let shipped = shipped::find("double_pendulum").ok_or("a shipped model")?;
     let robot = model::read(shipped.name, shipped.text.as_bytes())?;
-    let mut plant = InterpretedPlant::new(&robot, &[])?;
+    let mut plant = LoadedPlant::new(&robot, &[])?;
     let mut run = |rate: f64| {
         ConstrainedBodies::new(&robot, rate)
             .map_err(|error| Box::new(error) as Box<dyn Error>)

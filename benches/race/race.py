@@ -3,6 +3,7 @@
 
     python3 -m venv .venv && .venv/bin/pip install casadi numpy mpmath
     .venv/bin/python benches/race/race.py [--models puma560,tulip] [--functions mass_matrix] [-o FILE]
+    .venv/bin/pip install pin && .venv/bin/python benches/race/race.py --pinocchio
 
 Both sides get the same model files (shipped ones without their drives and springs: rigid bodies),
 with all values folded in, and the same inputs. Each of CasADi's functions is compiled by gcc and by
@@ -10,7 +11,8 @@ clang, -O3 -march=native; ours by rustc for the native processor. Results are co
 is timed: with each other and, on four inputs, with 60 digits. A round times every variant once, in
 turns: calls one after the other, and calls in a chain, each of which waits for the result of the
 last one. Tables have medians over rounds of the nanoseconds of a call, and of ratios within a round, of
-which CasADi's better compiler counts. It runs on x86-64 alone, as it calls our functions by the way in
+which CasADi's better compiler counts. With `--pinocchio` its algorithms run beside; they are compiled by clang,
+which takes minutes. It runs on x86-64 alone, as it calls our functions by the way in
 which C returns arrays there.
 """
 import argparse
@@ -56,6 +58,10 @@ FLAVOURS = {"baked": ["--baked", "--fused"], "tunable": ["--fused"], "plain": ["
 # Ours on many samples: how many at a time, and whether results are stored or used and forgotten.
 BATCHES = {"x4": (4, False), "x8": (8, False), "stored": (4, True), "stored8": (8, True)}
 CASADI, OURS, OUR_BATCH = range(3)
+# Boost's variants of this many joints, as Pinocchio wants them.
+PINOCCHIO_FLAGS = ["-std=c++17", "-DNDEBUG", "-w", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
+                   "-DBOOST_FUSION_INVOKE_MAX_ARITY=12", "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
+                   "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30"]
 INPUTS, ROUNDS = 64, 21
 
 
@@ -139,6 +145,43 @@ def build_casadi(name, function, model, folder):
     return libraries, operations(compiled), compiled.sz_iw(), compiled.sz_w()
 
 
+def build_pinocchio(folder):
+    """Pinocchio's algorithms as a library, made of the headers for the native processor."""
+    source, library = HERE / "pinocchio.cpp", folder / "pinocchio.so"
+    if not library.exists() or library.stat().st_mtime < source.stat().st_mtime:
+        print("compiling Pinocchio, which takes minutes", file=sys.stderr, flush=True)
+        packages = pathlib.Path(casadi.__file__).parent
+        unfinished = folder / "pinocchio.unfinished.so"
+        run(["clang++", *C_FLAGS, *PINOCCHIO_FLAGS,
+             "-I", packages.parent / "cmeel.prefix" / "include",
+             "-isystem", packages / "include" / "eigen3", source, "-o", unfinished])
+        unfinished.rename(library)
+    return ctypes.CDLL(str(library))
+
+
+def told(pinocchio, model):
+    """Tells Pinocchio which robot is meant."""
+    joints = [[joint.parent, joint.is_revolute, *sum(joint.turn, []), *joint.shift,
+               joint.matter[0], *joint.matter[1], *sum(joint.matter[2], [])]
+              for joint in model.joints]
+    joints, gravity = (numpy.array(rows, dtype=float) for rows in (joints, model.gravity))
+    pinocchio.robot_of(address(joints), len(model.joints), address(gravity))
+
+
+def compare_pinocchio(pinocchio, variant, timing, function, model, arguments, theirs):
+    """The largest difference between Pinocchio's results and CasADi's for these arguments."""
+    n, worst = len(model.joints), 0.0
+    bodies = [10 * body.joint + k for body in model.bodies for k in range(10)]
+    found = numpy.full(10 * n * n + 2 * n * n + n, numpy.nan)
+    for vectors, expected in zip(arguments, theirs):
+        timing.evaluate(ctypes.byref(variant), address(vectors), address(vectors), 1, n)
+        pinocchio.results(function.encode(), address(found))
+        values = found[:10 * n * n].reshape(n, -1)[:, bodies].ravel() if function == "regressor" \
+            else found[:len(expected)]
+        worst = max(worst, abs(values - expected).max() / abs(expected).max())
+    return worst
+
+
 WRAPPER = """
 /// `{function}` of `{model}`, as C calls a function that returns a struct.
 #[unsafe(no_mangle)]
@@ -205,7 +248,7 @@ def batch(name, module, function, symbol, n, columns, lanes, is_stored):
     call = (f"denavit_runtime::map_packs([{values}], &mut results, |{pattern}| {{ let result = "
             f"{computed}; {result} }}).unwrap();" if is_stored else
             f"let _ = &mut results; denavit_runtime::for_each_pack([{values}], count as usize, "
-            f"|_, {pattern}| {{ std::hint::black_box({computed}); }}).unwrap();")
+            f"|_, {pattern}| {{ std::hint::black_box(&{computed}); }}).unwrap();")
     return BATCH.format(
         function=function, model=name, lanes=lanes, n=n, symbol=symbol, module=module,
         entries=entries,
@@ -357,7 +400,7 @@ def errors(function, model, variants, timing, arguments, n):
     """The largest error of each variant, in parts of the largest entry, against 60 digits."""
     mpmath.mp.dps = 60
     worst = [0.0] * len(variants)
-    for vectors in arguments[:2 if n > 8 else 4]:
+    for vectors in arguments[:16]:
         truth = exact(function, model,
                       *([mpmath.mpf(float(x)) for x in vector] for vector in vectors))
         own = in_own_frames(model, numpy.array(truth)) if function == "regressor" else truth
@@ -387,7 +430,7 @@ def timed(timing, variants, arguments, n):
 
 def compete(name, function, model, libraries, folder):
     """A row of the table."""
-    ours, sizes, timing = libraries
+    ours, sizes, timing, pinocchio = libraries
     n, size = len(model.joints), sizes[name, function]
     built, count, integers, numbers = build_casadi(name, function, model, folder)
     variants = [Variant.new(flavour, ours, f"{name}_{flavour}_{function}", size, OURS)
@@ -400,16 +443,23 @@ def compete(name, function, model, libraries, folder):
                              size, CASADI, integers, numbers) for compiler, path in built.items()]
     generator = numpy.random.default_rng(7)
     arguments = generator.uniform(-1, 1, (INPUTS, 3, n))
-    worst = 0.0
+    worst, expected = 0.0, []
     batches = [variant.evaluate(timing, arguments, n) for variant in variants[compared:first] if BATCHES[variant.label][1]]
     for row, vectors in enumerate(arguments):
         theirs = variants[first].evaluate(timing, vectors[None], n)[0]
+        expected.append(theirs)
         results = [variant.evaluate(timing, vectors[None], n)[0] for variant in variants[:compared]]
         for result in results + [batch[row] for batch in batches]:
             worst = max(worst, difference(function, model, result, theirs))
-    # Solving on a floating base loses some digits on either side.
-    if not worst < (1e-9 if function == "forward_dynamics" else 1e-12):
-        sys.exit(f"{name} {function}: ours and CasADi's differ by {worst:.1e}")
+    peers = {}
+    if pinocchio:
+        told(pinocchio, model)
+        peer = Variant.new("pinocchio", pinocchio, function, size, OURS)
+        peers["Pinocchio's"] = compare_pinocchio(pinocchio, peer, timing, function, model, arguments, expected)
+    for side, found in {"ours": worst, **peers}.items():
+        # Solving on a floating base loses some digits on either side.
+        if not found < (1e-9 if function == "forward_dynamics" else 1e-12):
+            sys.exit(f"{name} {function}: {side} and CasADi's differ by {found:.1e}")
     single = variants[:compared] + variants[first:]
     error = dict(zip([v.label for v in single],
                      errors(function, model, single, timing, arguments, n)))
@@ -417,15 +467,19 @@ def compete(name, function, model, libraries, folder):
     variants += [Variant.new("chained", ours, f"{name}_baked_{function}", size, OURS, is_chained=True)]
     variants += [Variant.new(f"chained_{v.label}", v.kept[0], f"{name}_{function}", size, CASADI,
                              integers, numbers, is_chained=True) for v in variants[first:chained]]
+    if pinocchio:
+        variants.append(peer)
     times = timed(timing, variants, arguments, n)
     best = times[:, first:chained].min(axis=1)
     latency = times[:, chained]
     median = lambda column: statistics.median(column.tolist())
+    slowest = times[:, -1] if pinocchio else numpy.full(ROUNDS, numpy.nan)
     return {
         "model": name, "function": function,
         **{f"{v.label}_ns": median(times[:, row]) for row, v in enumerate(variants)},
         "ratio": median(times[:, 0] / best), "tunable_ratio": median(times[:, 1] / times[:, 0]),
-        "chained_ratio": median(latency / times[:, chained + 1:].min(axis=1)),
+        "chained_ratio": median(latency / times[:, chained + 1:chained + 3].min(axis=1)),
+        "pinocchio_ns": median(slowest), "pinocchio_ratio": median(times[:, 0] / slowest),
         "batch_ratio": median(times[:, compared] / times[:, 0]),
         "latency_ratio": median(times[:, compared] / latency),
         "casadi_operations": count, "difference": worst,
@@ -435,7 +489,7 @@ def compete(name, function, model, libraries, folder):
 
 def alone(name, model, libraries):
     """A row of the table of base regressors."""
-    ours, sizes, timing = libraries
+    ours, sizes, timing, _ = libraries
     n, size = len(model.joints), sizes[name, ALONE]
     variants = [Variant.new("baked", ours, f"{name}_baked_{ALONE}", size, OURS)]
     variants += [Variant.new(label, ours, f"{name}_{label}_{ALONE}", size, OUR_BATCH)
@@ -461,6 +515,10 @@ COLUMNS = {
     "in a chain": [
         ("ours", "{chained_ns:.0f}"), ("CasADi, gcc", "{chained_gcc_ns:.0f}"),
         ("clang", "{chained_clang_ns:.0f}"), ("ours / CasADi", "{chained_ratio:.2f}"),
+    ],
+    "beside Pinocchio": [
+        ("ours", "{baked_ns:.0f}"), ("Pinocchio", "{pinocchio_ns:.0f}"),
+        ("ours / Pinocchio", "{pinocchio_ratio:.3f}"),
     ],
     "many samples": [
         ("one at a time", "{baked_ns:.0f}"), ("f64x4", "{x4_ns:.0f}"), ("f64x8", "{x8_ns:.0f}"),
@@ -495,6 +553,7 @@ def main():
     parser.add_argument("--denavit", default=str(ROOT / "target/release/denavit"))
     parser.add_argument("--folder", default=str(ROOT / "target/race"))
     parser.add_argument("--rustflags", default="-C target-cpu=native")
+    parser.add_argument("--pinocchio", action="store_true", help="race Pinocchio, too")
     parser.add_argument("-o", "--output")
     options = parser.parse_args()
     folder = pathlib.Path(options.folder)
@@ -509,15 +568,18 @@ def main():
     ours, sizes = build_ours(models, functions, folder, options.denavit, options.rustflags)
     run(["gcc", "-O2", "-shared", "-fPIC", HERE / "timing.c", "-o", folder / "timing.so"])
     timing = ctypes.CDLL(str(folder / "timing.so"))
+    pinocchio = build_pinocchio(folder) if options.pinocchio else None
+    libraries = ours, sizes, timing, pinocchio
     rows = []
     for name, (_, model) in models.items():
         for function in functions:
-            row = compete(name, function, model, (ours, sizes, timing), folder)
+            row = compete(name, function, model, libraries, folder)
             rows.append(row)
             print(table([row], "times").splitlines()[-1], file=sys.stderr, flush=True)
-    base = [alone(name, model, (ours, sizes, timing)) for name, (_, model) in models.items()]
+    base = [alone(name, model, libraries) for name, (_, model) in models.items()]
     text = "\n\n".join(f"{title}\n\n{table(base if title == 'base regressors' else rows, title)}"
-                       for title in COLUMNS) + "\n"
+                       for title in COLUMNS
+                       if pinocchio or title != "beside Pinocchio") + "\n"
     print(text)
     if options.output:
         pathlib.Path(options.output).write_text(text)

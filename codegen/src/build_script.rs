@@ -109,6 +109,11 @@ pub fn emit(model: impl AsRef<Path>) {
 pub fn emit_with(model: impl AsRef<Path>, request: &Request) {
     let model = model.as_ref();
     println!("cargo::rerun-if-changed={}", model.display());
+    let effects = effects_folder(model);
+    // Of a path that is not there cargo would run the script, and build the crate, every time.
+    if effects.exists() {
+        println!("cargo::rerun-if-changed={}", effects.display());
+    }
     let out_dir = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or(BuildError::NoOutDir);
     if let Err(error) = out_dir.and_then(|out_dir| generate(model, &out_dir, request)) {
         // A hint stands on a line of its own, indented; cargo shows it with its fault.
@@ -132,9 +137,14 @@ pub fn generate(model: &Path, out_dir: &Path, request: &Request) -> Result<PathB
     Ok(path)
 }
 
+/// Where a model's own effects are.
+fn effects_folder(model: &Path) -> PathBuf {
+    model.parent().unwrap_or(Path::new("")).join("effects")
+}
+
 /// The effects of the folder `effects` beside a model, by file name.
 fn own_effects(model: &Path) -> Result<Vec<Effect>, BuildError> {
-    let folder = model.parent().unwrap_or(Path::new("")).join("effects");
+    let folder = effects_folder(model);
     let files =
         effect::files(&folder).map_err(|error| BuildError::Read { path: folder.clone(), error })?;
     let read = |path: &PathBuf| {

@@ -1,12 +1,12 @@
 //! The modules that `build.rs` generated, as plants.
 
 use super::model::baked;
-use super::{InterpretedPlant, Override, Plant, PlantError, PlantModel};
+use super::{LoadedPlant, Override, Plant, PlantError, PlantModel};
 use crate::shipped;
 use denavit_codegen::model::{self, Robot};
 
 /// The plant of a robot: the generated module if it is the shipped model that the module was made
-/// of and no value differs that the module's plant cannot set, else interpreted.
+/// of and no value differs that the module's plant cannot set, else loaded and compiled in memory.
 pub fn plant_of(robot: &Robot, overrides: &[Override]) -> Result<Box<dyn Plant>, PlantError> {
     let made: [(&str, Make); 3] =
         [("tulip", tulip), ("puma560", puma560), ("planar_biped", planar_biped)];
@@ -18,7 +18,7 @@ pub fn plant_of(robot: &Robot, overrides: &[Override]) -> Result<Box<dyn Plant>,
             return Ok(plant);
         }
     }
-    Ok(Box::new(InterpretedPlant::new(robot, overrides)?))
+    Ok(Box::new(LoadedPlant::new(robot, overrides)?))
 }
 
 type Make = fn(&[Override]) -> Option<Box<dyn Plant>>;

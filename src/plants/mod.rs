@@ -3,7 +3,7 @@
 //!
 //! - [`Plant`]: the functions of a robot, into the caller's memory
 //! - [`PlantModel`]: what a simulation must know of it besides: names, drives, contact points
-//! - [`InterpretedPlant`]: any model file, derived and compiled in memory
+//! - [`LoadedPlant`]: any model file, derived and compiled in memory
 //! - [`Cradle`]: balls that collide with each other
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
@@ -15,8 +15,8 @@
 mod cradle;
 pub mod effect;
 mod generated;
-mod interpreted;
 mod laws;
+mod loaded;
 mod model;
 mod native;
 pub mod regression;
@@ -26,8 +26,8 @@ mod regression_values;
 
 pub use cradle::Cradle;
 pub use generated::{planar_biped, plant_of, puma560, tulip};
-pub use interpreted::InterpretedPlant;
 pub use laws::{LawMoment, LawResponse};
+pub use loaded::LoadedPlant;
 pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
     SeriesElasticModel,

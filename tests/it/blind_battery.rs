@@ -14,7 +14,7 @@ use crate::blind::rigid::{Body, MOST, Posture, Row};
 use crate::blind::robots::{ROBOTS, robot};
 use crate::blind::score::{Answer, Named, binomial_interval, score};
 use denavit::model;
-use denavit::plants::{InterpretedPlant, Plant as _};
+use denavit::plants::{LoadedPlant, Plant as _};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -84,7 +84,7 @@ fn files_say_what_the_plants_are_made_of() {
         let nominal = Nominal { robot: robot.clone(), relative_std: 0.05, coriolis: true };
         let text = nominal.file().to_string();
         let read = model::read(robot.name, text.as_bytes()).expect("a sound file");
-        let mut plant = InterpretedPlant::new(&read, &[]).expect("a plant");
+        let mut plant = LoadedPlant::new(&read, &[]).expect("a plant");
         let count = robot.joints.len();
         let mut draw = || (0..count).map(|_| random.normal()).collect::<Vec<_>>();
         let (q, qd) = (draw(), draw());

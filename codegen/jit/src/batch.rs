@@ -28,6 +28,9 @@ impl CompiledBatch {
     ///
     /// # Errors
     /// If there is no code generator for this processor.
+    ///
+    /// # Panics
+    /// If the routine reads beyond its arguments.
     pub fn new(routine: &Routine, prelude: &[f64]) -> Result<Self, Unsupported> {
         let machine = compile(4, routine, write_loop)?;
         Ok(Self {

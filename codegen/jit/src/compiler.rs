@@ -17,13 +17,6 @@ use std::fmt;
 /// 20 ms instead of 0.6 s, and takes 1.5 times as long.
 const LARGE: usize = 16_384;
 
-/// How registers are assigned.
-#[derive(Clone, Copy)]
-enum Registers {
-    Best,
-    Fast,
-}
-
 /// Why code is not compiled: there is no generator for this processor, or it has no answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unsupported {
@@ -49,7 +42,7 @@ impl std::error::Error for Unsupported {}
 /// # Errors
 /// If there is none.
 pub fn is_supported() -> Result<(), Unsupported> {
-    module(Registers::Best).map(drop)
+    module("backtracking").map(drop)
 }
 
 /// Compiles one function of `parameters` addresses (the last one may be a count); `body` writes it,
@@ -70,11 +63,8 @@ pub(crate) fn compile(
             assert!(entry < routine.arguments[argument].len, "an entry beyond its argument");
         }
     }
-    let registers = match routine.code.instructions.len() {
-        0..LARGE => Registers::Best,
-        _ => Registers::Fast,
-    };
-    let mut module = module(registers)?;
+    let is_large = routine.code.instructions.len() >= LARGE;
+    let mut module = module(if is_large { "single_pass" } else { "backtracking" })?;
     let mut context = module.make_context();
     let mut builders = FunctionBuilderContext::new();
     context.func.signature = signature(&module, &vec![I64; parameters], None);
@@ -96,7 +86,8 @@ pub(crate) fn compile(
     Ok(Machine::new(module, id))
 }
 
-fn module(registers: Registers) -> Result<JITModule, Unsupported> {
+/// The generator, with an algorithm that assigns registers.
+fn module(registers: &str) -> Result<JITModule, Unsupported> {
     let mut flags = settings::builder();
     // Expressions share what they can before they come here, so that optimising finds nothing.
     let wanted = [
@@ -107,13 +98,7 @@ fn module(registers: Registers) -> Result<JITModule, Unsupported> {
         // Frames of large functions are longer than the page that guards a stack.
         ("enable_probestack", "true"),
         ("probestack_strategy", "inline"),
-        (
-            "regalloc_algorithm",
-            match registers {
-                Registers::Best => "backtracking",
-                Registers::Fast => "single_pass",
-            },
-        ),
+        ("regalloc_algorithm", registers),
     ];
     for (name, value) in wanted {
         flags.set(name, value).map_err(Unsupported::because)?;

@@ -26,6 +26,9 @@ impl Compiled {
     ///
     /// # Errors
     /// If there is no code generator for this processor.
+    ///
+    /// # Panics
+    /// If the routine reads beyond its arguments.
     pub fn new(routine: &Routine, prelude: &[f64]) -> Result<Self, Unsupported> {
         let machine = compile(3, routine, |builder, callees, routine| {
             let block = builder.current_block().expect("the function has begun");

@@ -110,6 +110,10 @@ fn about(robot: &Robot, program: &Program) -> String {
         lines += "// products: fused with sums where denavit-runtime has its feature `fma` and\n\
                   // the target the instruction (`-C target-cpu=native`)\n";
     }
+    let routines = program.routines.iter().map(|routine| &routine.code);
+    if routines.chain([&program.prelude]).any(|code| code.is_transcendental()) {
+        lines += "// needs: denavit-runtime with its feature `libm`\n";
+    }
     for (label, text) in [("description", &robot.description), ("source", &robot.source)] {
         if !text.trim().is_empty() {
             lines += &wrapped("// ", &format!("{label}: {}", one_line(text)));

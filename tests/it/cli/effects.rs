@@ -61,7 +61,7 @@ fn emitted_code_has_arguments_for_time_and_states() {
     let name = arm(&directory, "");
     done(&directory, &["emit", "arm.json", "-o", "arm.rs"]);
     let code = fs::read_to_string(directory.path.join("arm.rs")).expect("a file");
-    assert_says(&code, &["t: S,", "states: &[S; 1],", "pub fn state_rates"]);
+    assert_says(&code, &["t: S,", "states: &[S; 1],", "pub fn state_rates", "feature `libm`"]);
     assert_says(&code, &["pub fn forward_dynamics", &format!("pub k_bungee_{name}: S")]);
     let counted = done(&directory, &["count", "arm.json", "--effects", "effects"]);
     assert_says(&counted, &["state_rates"]);

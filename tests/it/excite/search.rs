@@ -6,7 +6,7 @@ use denavit::identify::excite::{
     check_trajectory, excite,
 };
 use denavit::model::Robot;
-use denavit::plants::{InterpretedPlant, Plant};
+use denavit::plants::{LoadedPlant, Plant};
 use denavit::regressor::RegressorOptions;
 use denavit::simulate::scenario::{Trajectory, read_trajectory};
 
@@ -41,7 +41,7 @@ fn limits_hold_by_other_functions_than_those_that_were_optimised() {
     let found = found(&robot, &options());
     assert!(found.found().ended.is_feasible(), "{:?}", found.found().ended);
     let file = trajectory(&found);
-    let mut plant = InterpretedPlant::new(&robot, &[]).expect("a plant");
+    let mut plant = LoadedPlant::new(&robot, &[]).expect("a plant");
     let references: Vec<_> =
         ["link1", "link2"].iter().map(|joint| file.find(joint).expect("it moves")).collect();
     let (mut highest, mut lowest) = ([0.0_f64; 2], f64::INFINITY);

@@ -8,7 +8,7 @@ use denavit::identify::estimate::{
 };
 use denavit::model::Robot;
 use denavit::plants::regression::RegressionModel;
-use denavit::plants::{InterpretedPlant, Plant};
+use denavit::plants::{LoadedPlant, Plant};
 use denavit::regressor::RegressorOptions;
 use denavit::simulate::Random;
 use std::f64::consts::TAU;
@@ -27,7 +27,7 @@ pub(super) struct Experiment {
 
 impl Experiment {
     pub(super) fn run(&self, robot: &Robot) -> Conditioned {
-        let mut plant = InterpretedPlant::new(robot, &[]).expect("it has every value");
+        let mut plant = LoadedPlant::new(robot, &[]).expect("it has every value");
         let n = robot.degrees_of_freedom();
         let mut random = Random::new(self.seed);
         let harmonics: Vec<[f64; 10]> =

@@ -74,7 +74,7 @@ fn without_noise_every_method_finds_the_truth() {
 /// A log of positions and torques alone.
 fn log(step_s: f64, samples: usize, encoder: f64, laps: bool) -> MeasuredLog {
     let robot = bare("planar_2r");
-    let mut plant = denavit::plants::InterpretedPlant::new(&robot, &[]).expect("values");
+    let mut plant = denavit::plants::LoadedPlant::new(&robot, &[]).expect("values");
     let mut random = Random::new(77);
     let mut joints = vec![JointSignals::default(), JointSignals::default()];
     for k in 0..samples {

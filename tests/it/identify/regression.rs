@@ -2,7 +2,7 @@
 
 use super::{INERTIAL, random_motion, robot, torques};
 use denavit::plants::regression::{RegressionError, RegressionModel};
-use denavit::plants::{InterpretedPlant, Plant};
+use denavit::plants::{LoadedPlant, Plant};
 use denavit::regressor::RegressorOptions;
 use denavit::regressor::functions::modelled;
 
@@ -12,7 +12,7 @@ fn plant_torques(name: &str, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 fn torques_of(robot: &denavit::model::Robot, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let mut plant = InterpretedPlant::new(robot, &[]).expect("it has every value");
+    let mut plant = LoadedPlant::new(robot, &[]).expect("it has every value");
     let n = motion.len() / 3;
     let samples = motion[0].len();
     let mut torques = vec![vec![0.0; samples]; n];
@@ -167,7 +167,7 @@ fn numbers_of_bodies_that_are_known_to_be_0_are_no_symbols() {
         let motion = random_motion(2, 40, 6);
         let phi = model.model_axes().expect("it has values");
         let ours = torques(&model, &motion, &phi);
-        let mut plant = denavit::plants::InterpretedPlant::new(&robot, &[]).expect("values");
+        let mut plant = denavit::plants::LoadedPlant::new(&robot, &[]).expect("values");
         for k in 0..40 {
             let at = |order: usize| [motion[2 * order][k], motion[2 * order + 1][k]];
             let ([q, qd], qdd) = ([at(0), at(1)], at(2));

@@ -1,7 +1,7 @@
 //! Contacts and impacts against closed forms (each written out beside its test).
 
 use super::{assert_near, plant, plant_with};
-use denavit::plants::{Cradle, InterpretedPlant, Plant};
+use denavit::plants::{Cradle, LoadedPlant, Plant};
 use denavit::simulate::contact::{ContactFailure, Friction};
 use denavit::simulate::integrate::{Accuracy, Method};
 use denavit::simulate::{
@@ -24,7 +24,7 @@ fn accurate() -> Simulation {
     }
 }
 
-fn run(plant: &mut InterpretedPlant, initial: &State, simulation: &Simulation) -> Run {
+fn run(plant: &mut LoadedPlant, initial: &State, simulation: &Simulation) -> Run {
     let control = Control::passive(plant.model().joints.len());
     let run = simulate(plant, &control, initial, simulation).unwrap();
     let broken = run.audit.broken(&Tolerances::default());

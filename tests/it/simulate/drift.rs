@@ -1,7 +1,7 @@
 //! Joints as explicit constraints come apart; minimal coordinates cannot (thesis 2.2.1).
 
 use denavit::model;
-use denavit::plants::InterpretedPlant;
+use denavit::plants::LoadedPlant;
 use denavit::shipped;
 use denavit::simulate::constraint_drift::{ConstrainedBodies, DriftSample};
 
@@ -9,7 +9,7 @@ use denavit::simulate::constraint_drift::{ConstrainedBodies, DriftSample};
 fn drift(stabilisation_per_s: f64, step_s: f64) -> Vec<DriftSample> {
     let text = shipped::find("double_pendulum").unwrap().text;
     let robot = model::read("double_pendulum", text.as_bytes()).unwrap();
-    let mut plant = InterpretedPlant::new(&robot, &[]).unwrap();
+    let mut plant = LoadedPlant::new(&robot, &[]).unwrap();
     let mut bodies = ConstrainedBodies::new(&robot, stabilisation_per_s).unwrap();
     bodies.run(&mut plant, &[-1.2, 0.3], step_s, 0.1, 200).unwrap()
 }

@@ -2,7 +2,7 @@
 
 use super::assert_near;
 use denavit::model;
-use denavit::plants::InterpretedPlant;
+use denavit::plants::LoadedPlant;
 use denavit::simulate::contact::Friction;
 use denavit::simulate::integrate::{Accuracy, Method};
 use denavit::simulate::time_stepping::{StepSolver, Stepping, simulate_by_steps};
@@ -43,7 +43,7 @@ impl Body {
         self
     }
 
-    pub(super) fn plant(&self) -> InterpretedPlant {
+    pub(super) fn plant(&self) -> LoadedPlant {
         let contacts: Vec<_> = (0..self.contacts.len())
             .map(|index| {
                 serde_json::json!({"name": format!("p{index}"), "link": "base_pitch",
@@ -63,7 +63,7 @@ impl Body {
             "ground": {"point": [0, 0, 0], "normal": [0, 0, 1]},
         });
         let robot = model::read("body", file.to_string().as_bytes()).unwrap();
-        InterpretedPlant::new(&robot, &[]).unwrap()
+        LoadedPlant::new(&robot, &[]).unwrap()
     }
 }
 

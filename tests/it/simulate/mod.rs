@@ -13,20 +13,20 @@ mod trajectory;
 mod walkers;
 
 use denavit::model;
-use denavit::plants::{InterpretedPlant, Override};
+use denavit::plants::{LoadedPlant, Override};
 use std::path::Path;
 
 /// The plant of a model file, by its path below `models`.
-fn plant(path: &str) -> InterpretedPlant {
+fn plant(path: &str) -> LoadedPlant {
     plant_with(path, &[])
 }
 
-fn plant_with(path: &str, overrides: &[(&str, f64)]) -> InterpretedPlant {
+fn plant_with(path: &str, overrides: &[(&str, f64)]) -> LoadedPlant {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(format!("{path}.json"));
     let robot = model::read(path, &std::fs::read(file).unwrap()).unwrap();
     let set =
         |(name, value): &(&str, f64)| Override { parameter: (*name).to_owned(), value: *value };
-    InterpretedPlant::new(&robot, &overrides.iter().map(set).collect::<Vec<_>>()).unwrap()
+    LoadedPlant::new(&robot, &overrides.iter().map(set).collect::<Vec<_>>()).unwrap()
 }
 
 #[track_caller]

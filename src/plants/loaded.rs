@@ -24,7 +24,7 @@ const FUNCTIONS: [FunctionName; 10] = [
 
 /// A plant of any model file.
 #[derive(Clone, Debug)]
-pub struct InterpretedPlant {
+pub struct LoadedPlant {
     model: PlantModel,
     /// In the order of `FUNCTIONS`; none where the robot has no contact point.
     evaluators: [Option<NativeRoutine>; FUNCTIONS.len()],
@@ -32,7 +32,7 @@ pub struct InterpretedPlant {
     laws: Option<Laws>,
 }
 
-impl InterpretedPlant {
+impl LoadedPlant {
     /// Derives the functions of a robot, with values that replace the model's own.
     pub fn new(robot: &Robot, overrides: &[Override]) -> Result<Self, PlantError> {
         let mut robot = baked(robot, overrides)?;
@@ -68,7 +68,7 @@ fn evaluator(program: &Program, function: FunctionName) -> Option<NativeRoutine>
     Some(NativeRoutine::new(routine, &[]))
 }
 
-impl Plant for InterpretedPlant {
+impl Plant for LoadedPlant {
     fn model(&self) -> &PlantModel {
         &self.model
     }

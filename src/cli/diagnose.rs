@@ -15,11 +15,11 @@ use super::model_effects::{EffectUse, ModelApart};
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    Candidate, Diagnosis, DiagnosisError, ExactAliases, Experiment, ExperimentOptions, FoundEffect,
-    Moved, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose,
-    given_candidates,
+    Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, FoundEffect, Moved, Request,
+    SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose, given_candidates,
 };
 use denavit::effect::{Channel, Effect};
+use denavit::identify::Ground;
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::effect::ApartEffects;
@@ -245,11 +245,18 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     let model_effects = given.uses(ESTIMATED);
     let ModelApart { apart: ApartEffects { robot, laws, .. }, own, source, .. } = given;
     let model = regression(&robot)?;
-    // Before its logs are asked for columns of a base.
-    DiagnosisError::check_model(&model).map_err(Failure::Diagnose)?;
     let mut remarks = Vec::new();
+    let mut ground = Ground::under(&robot, &model)
+        .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
     let mut read = |paths: &[PathBuf]| -> Result<Vec<MeasuredLog>, Failure> {
-        paths.iter().map(|path| log(arguments, &robot, &model, path, &mut remarks)).collect()
+        let mut one = |path: &PathBuf| {
+            let mut log = log(arguments, &robot, &model, path, &mut remarks)?;
+            if let Some(ground) = &mut ground {
+                ground.load(&mut log);
+            }
+            Ok(log)
+        };
+        paths.iter().map(&mut one).collect()
     };
     let (mut train, mut held_out) = (read(&arguments.train)?, read(&arguments.validate)?);
     let before = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);

@@ -3,7 +3,6 @@
 use super::diagnosis::Request;
 use crate::identify::condition::ConditionError;
 use crate::identify::log::MeasuredLog;
-use crate::plants::regression::RegressionModel;
 use std::fmt;
 
 /// Why nothing is diagnosed.
@@ -11,8 +10,6 @@ use std::fmt;
 pub enum DiagnosisError {
     /// There is no log to search, or none to judge with.
     NoLog,
-    /// The model stands on a floating base; holds its name.
-    FloatingBase(String),
     /// A log has no torque of any joint; holds its name.
     NoTorque(String),
     /// A log cannot be filtered.
@@ -30,22 +27,10 @@ impl DiagnosisError {
         if request.train.is_empty() || request.held_out.is_empty() {
             return Err(Self::NoLog);
         }
-        Self::check_model(request.model)?;
         let is_mute = |log: &&MeasuredLog| log.joints.iter().all(|joint| joint.tau.is_none());
         match request.train.iter().chain(&request.held_out).find(is_mute) {
             Some(log) => Err(Self::NoTorque(log.file.clone())),
             None => Ok(()),
-        }
-    }
-
-    /// What keeps a model from being diagnosed, whatever the logs.
-    ///
-    /// # Errors
-    /// [`Self::FloatingBase`].
-    pub fn check_model(model: &RegressionModel) -> Result<(), Self> {
-        match model.joints.iter().any(|joint| joint.is_base) {
-            true => Err(Self::FloatingBase(model.model.clone())),
-            false => Ok(()),
         }
     }
 }
@@ -54,11 +39,6 @@ impl fmt::Display for DiagnosisError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoLog => write!(f, "a log to search and one to judge with are needed"),
-            Self::FloatingBase(model) => write!(
-                f,
-                "{model}: forces of contacts on a floating base are not diagnosed yet\n  hint: a \
-                 model of the leg or arm alone on a fixed base can be"
-            ),
             Self::NoTorque(file) => write!(
                 f,
                 "{file}: no joint has a torque\n  hint: give columns `tau_JOINT`, or name them \

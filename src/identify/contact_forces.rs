@@ -4,7 +4,34 @@
 //! floating base have no torque of their own, so their rows are the wrench that contacts put on it.
 
 use super::log::MeasuredLog;
-use crate::plants::Plant;
+use crate::plants::regression::RegressionModel;
+use crate::plants::{Plant, PlantError, plant_of};
+use denavit_codegen::model::Robot;
+
+/// The ground under a robot on a floating base, as its logs know it.
+pub struct Ground {
+    plant: Box<dyn Plant>,
+    is_base: Vec<bool>,
+}
+
+impl Ground {
+    /// The ground under a robot; none under one that is fixed.
+    ///
+    /// # Errors
+    /// If the robot's contacts cannot be derived.
+    pub fn under(robot: &Robot, model: &RegressionModel) -> Result<Option<Self>, PlantError> {
+        let is_base: Vec<bool> = model.joints.iter().map(|joint| joint.is_base).collect();
+        if !is_base.contains(&true) {
+            return Ok(None);
+        }
+        Ok(Some(Self { plant: plant_of(robot, &[])?, is_base }))
+    }
+
+    /// Puts the forces that a log has on its joints: [`add_contact_forces`].
+    pub fn load(&mut self, log: &mut MeasuredLog) {
+        add_contact_forces(log, self.plant.as_mut(), &self.is_base);
+    }
+}
 
 /// Adds W lambda to the torques of a log, and gives the virtual joints of a floating base their
 /// rows. `is_base` says which joints these are.

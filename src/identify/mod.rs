@@ -29,7 +29,7 @@ mod statics_file;
 pub mod two_stage;
 mod updated_model;
 
-pub use contact_forces::add_contact_forces;
+pub use contact_forces::{Ground, add_contact_forces};
 pub use identification::{Identification, LeftOutRows, Request, identify};
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
 pub use model_text::{

@@ -7,11 +7,10 @@ use clap::{Args, ValueEnum};
 use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
 use denavit::identify::forward::{LONGEST_S, MotionLog};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
-use denavit::identify::{add_contact_forces, take_out, undo_logged_torques, undo_readings};
+use denavit::identify::{Ground, take_out, undo_logged_torques, undo_readings};
 use denavit::model::Robot;
 use denavit::plants::effect::AddedLaw;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};
-use denavit::plants::{Plant, plant_of};
 use std::path::{Path, PathBuf};
 
 /// How logs are conditioned.
@@ -160,9 +159,8 @@ pub(super) fn read(
     model: &RegressionModel,
 ) -> Result<Read, Failure> {
     let mapping = mapping(arguments)?;
-    let needs_plant = model.joints.iter().any(|joint| joint.is_base);
-    let plant = needs_plant.then(|| plant_of(robot, &[])).transpose();
-    let plant = plant.map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
+    let ground = Ground::under(robot, model)
+        .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
     let contacts = robot.contacts.values().map(|contact| contact.name.clone()).collect();
     let mut reader = Reader {
         arguments,
@@ -170,7 +168,7 @@ pub(super) fn read(
         model,
         laws,
         mapping,
-        plant,
+        ground,
         contacts,
         names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
         remarks: Vec::new(),
@@ -248,7 +246,7 @@ struct Reader<'a> {
     /// Effects that the model has beside its equations.
     laws: &'a [AddedLaw],
     mapping: ColumnMapping,
-    plant: Option<Box<dyn Plant>>,
+    ground: Option<Ground>,
     contacts: Vec<String>,
     names: Vec<String>,
     remarks: Vec<(String, LogRemark)>,
@@ -282,9 +280,8 @@ impl Reader<'_> {
         let remarks = std::mem::take(&mut log.remarks);
         self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
         undo_readings(&mut log, self.laws);
-        if let Some(plant) = &mut self.plant {
-            let is_base: Vec<bool> = self.model.joints.iter().map(|joint| joint.is_base).collect();
-            add_contact_forces(&mut log, plant.as_mut(), &is_base);
+        if let Some(ground) = &mut self.ground {
+            ground.load(&mut log);
         }
         let how = Conditioning {
             resolution: self.arguments.resolution,

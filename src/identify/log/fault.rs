@@ -32,6 +32,8 @@ pub enum LogFault {
     MissingColumn { column: String, nearest: Option<String> },
     /// A joint has no torque, and others have; holds its column and the one that is meant, perhaps.
     MissingTorque { column: String, nearest: Option<String> },
+    /// A robot on a floating base lacks forces of its contacts; holds their columns.
+    MissingForces { columns: Vec<String> },
     /// Several of our columns are taken from one of the log.
     SharedColumn { column: String, ours: Vec<String> },
     /// A number that nothing of a robot can be.
@@ -177,6 +179,19 @@ fn missing_torque(
     write!(f, "; {{\"{column}\": null}} there leaves it out")
 }
 
+fn missing_forces(f: &mut fmt::Formatter<'_>, columns: &[String]) -> fmt::Result {
+    let (first, count) = (&columns[0], columns.len());
+    write!(f, "there is no column `{first}`")?;
+    if count > 1 {
+        write!(f, ", nor {} more with forces of contacts", count - 1)?;
+    }
+    write!(
+        f,
+        ", and the base floats: its weight would rest on nothing\n  hint: --columns MAP.json says \
+         which column of the log it is; {{\"{first}\": null}} there is for what never touches"
+    )
+}
+
 fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> fmt::Result {
     let ours: Vec<String> = ours.iter().map(|one| format!("`{one}`")).collect();
     write!(
@@ -200,6 +215,7 @@ impl fmt::Display for LogFault {
                 meant(f, nearest, "--columns MAP.json says which column of the log it is")
             }
             Self::MissingTorque { column, nearest } => missing_torque(f, column, nearest),
+            Self::MissingForces { columns } => missing_forces(f, columns),
             Self::SharedColumn { column, ours } => shared_column(f, column, ours),
             Self::Impossible { column, value, .. } => {
                 write!(f, "{value:e} in column `{column}`: nothing of a robot is so large")

@@ -285,6 +285,7 @@ impl Wanted {
         }
         faults.extend(shared(head, &columns));
         faults.extend(missing_torques(head, robot, &columns, mapping));
+        faults.extend(missing_forces(robot, &columns, mapping));
         faults.extend(other_robot(head, robot));
         let torque_side = torque_side(head).unwrap_or_else(|fault| {
             faults.push(fault);
@@ -405,6 +406,24 @@ fn missing_torques(
         faults.push(LogFault::MissingTorque { column, nearest });
     }
     faults
+}
+
+/// Forces on a floating base that the log does not have: without them its weight rests on nothing.
+fn missing_forces(
+    robot: LogOf<'_>,
+    columns: &[Column],
+    mapping: &ColumnMapping,
+) -> Option<LogFault> {
+    if !robot.joints.iter().any(|joint| joint.is_base) {
+        return None;
+    }
+    let is_there = |name: &String| columns.iter().any(|column| column.name == *name);
+    let of_contact = |name: &String| ["x", "y", "z"].map(|axis| format!("f_{name}_{axis}"));
+    // Null in the mapping leaves a column out on purpose.
+    let is_left_out = |name: &String| mapping.source(name).is_none();
+    let all = robot.contacts.iter().flat_map(of_contact);
+    let missing: Vec<String> = all.filter(|name| !is_there(name) && !is_left_out(name)).collect();
+    (!missing.is_empty()).then_some(LogFault::MissingForces { columns: missing })
 }
 
 /// Where the log says that its torques were measured.

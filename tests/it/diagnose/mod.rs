@@ -5,6 +5,7 @@ mod elastic;
 mod held;
 mod laws;
 mod motion;
+mod on_ground;
 mod one_joint;
 mod search;
 mod separate;

@@ -54,7 +54,8 @@ FIELDS = {
     "inverse_dynamics_derivatives": ["dtau_dq", "dtau_dqd"],
 }
 # Ours: how a module is emitted.
-FLAVOURS = {"baked": ["--baked", "--fused"], "tunable": ["--fused"], "plain": ["--baked"]}
+FLAVOURS = {"baked": ["--baked", "--fused"], "tunable": ["--fused"],
+            "sparse": ["--sparse", "--fused"], "plain": ["--baked"]}
 # Ours on many samples: how many at a time, and whether results are stored or used and forgotten.
 BATCHES = {"x4": (4, False), "x8": (8, False), "stored": (4, True), "stored8": (8, True)}
 CASADI, OURS, OUR_BATCH = range(3)
@@ -230,7 +231,7 @@ def wrapper(name, module, function, symbol, n, columns):
         kind = f"[{kind}; {length}]"
     if function in FIELDS:
         kind = f"{module}::{''.join(word.title() for word in function.split('_'))}<f64>"
-    baked = not module.endswith("tunable")
+    baked = not module.endswith(("tunable", "sparse"))
     return entries, WRAPPER.format(
         function=function, model=name, symbol=symbol, module=module, kind=kind, values=", ".join(ARGUMENTS[function]),
         parameters=f"{module}::Parameters::default()" if baked
@@ -278,7 +279,7 @@ def build_ours(models, functions, folder, denavit, flags):
             # So that the fields of a result stand where CasADi's entries do.
             emitted.write_text(emitted.read_text().replace("pub struct", "#[repr(C)]\npub struct"))
             text.append(f"#[allow(dead_code)]\nmod {module};")
-            if flavour == "tunable":
+            if flavour in ("tunable", "sparse"):
                 text.append(
                     f"static PARAMETERS_{module.upper()}: std::sync::LazyLock<"
                     f"{module}::Parameters<f64>> = std::sync::LazyLock::new("
@@ -478,6 +479,7 @@ def compete(name, function, model, libraries, folder):
         "model": name, "function": function,
         **{f"{v.label}_ns": median(times[:, row]) for row, v in enumerate(variants)},
         "ratio": median(times[:, 0] / best), "tunable_ratio": median(times[:, 1] / times[:, 0]),
+        "sparse_ratio": median(times[:, 2] / times[:, 0]),
         "chained_ratio": median(latency / times[:, chained + 1:chained + 3].min(axis=1)),
         "pinocchio_ns": median(slowest), "pinocchio_ratio": median(times[:, 0] / slowest),
         "batch_ratio": median(times[:, compared] / times[:, 0]),
@@ -511,6 +513,7 @@ COLUMNS = {
         ("ours", "{baked_ns:.0f}"), ("without fusing", "{plain_ns:.0f}"),
         ("CasADi, gcc", "{gcc_ns:.0f}"), ("clang", "{clang_ns:.0f}"),
         ("ours / CasADi", "{ratio:.2f}"), ("tunable / baked", "{tunable_ratio:.2f}"),
+        ("sparse / baked", "{sparse_ratio:.2f}"),
     ],
     "in a chain": [
         ("ours", "{chained_ns:.0f}"), ("CasADi, gcc", "{chained_gcc_ns:.0f}"),

@@ -245,20 +245,7 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     let model_effects = given.uses(ESTIMATED);
     let ModelApart { apart: ApartEffects { robot, laws, .. }, own, source, .. } = given;
     let model = regression(&robot)?;
-    let mut remarks = Vec::new();
-    let mut ground = Ground::under(&robot, &model)
-        .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
-    let mut read = |paths: &[PathBuf]| -> Result<Vec<MeasuredLog>, Failure> {
-        let mut one = |path: &PathBuf| {
-            let mut log = log(arguments, &robot, &model, path, &mut remarks)?;
-            if let Some(ground) = &mut ground {
-                ground.load(&mut log);
-            }
-            Ok(log)
-        };
-        paths.iter().map(&mut one).collect()
-    };
-    let (mut train, mut held_out) = (read(&arguments.train)?, read(&arguments.validate)?);
+    let ([mut train, mut held_out], remarks) = logs(arguments, &robot, &model)?;
     let before = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);
     let (robot, model) = match before {
         Some(robot) => {
@@ -346,6 +333,27 @@ fn write_folder(arguments: &Arguments, folder: &Path, shown: &mut Shown) -> Resu
 fn regression(robot: &Robot) -> Result<RegressionModel, Failure> {
     let model = RegressionModel::new(robot, modelled(robot), &[]);
     Ok(model.map_err(|error| IdentifyFailure::Regression(Box::new(error)))?)
+}
+
+/// Reads the logs that are searched and those that judge, with what was found in each.
+fn logs(
+    arguments: &Arguments,
+    robot: &Robot,
+    model: &RegressionModel,
+) -> Result<([Vec<MeasuredLog>; 2], Vec<(String, LogRemark)>), Failure> {
+    let mut remarks = Vec::new();
+    let mut ground = Ground::under(robot, model)
+        .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
+    let mut read = |path: &PathBuf| {
+        let mut log = log(arguments, robot, model, path, &mut remarks)?;
+        if let Some(ground) = &mut ground {
+            ground.load(&mut log);
+        }
+        Ok(log)
+    };
+    let mut all = |paths: &[PathBuf]| paths.iter().map(&mut read).collect::<Result<_, Failure>>();
+    let both = [all(&arguments.train)?, all(&arguments.validate)?];
+    Ok((both, remarks))
 }
 
 fn log(

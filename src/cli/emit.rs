@@ -27,6 +27,7 @@ Examples:
   denavit emit puma560 -o puma560_dynamics.rs
   denavit emit tulip --baked --functions inverse_dynamics,mass_matrix -o tulip.rs
   denavit emit tulip_leg6 --baked --fused -o leg.rs
+  denavit emit puma560 --sparse -o puma560.rs
   denavit emit scara -o -")]
 pub(crate) struct Arguments {
     #[command(flatten)]

@@ -72,12 +72,19 @@ pub(crate) struct FlavourOption {
     /// Fold the model's values into the functions (otherwise parameters are set at run time)
     #[arg(long)]
     baked: bool,
+    /// Parameters that the model gives as 0 stay 0 (all others are set at run time)
+    #[arg(long, conflicts_with = "baked")]
+    sparse: bool,
 }
 
 impl FlavourOption {
     /// The flavour asked for.
     pub(crate) fn flavour(&self) -> Flavour {
-        if self.baked { Flavour::Baked } else { Flavour::Tunable }
+        match (self.baked, self.sparse) {
+            (true, _) => Flavour::Baked,
+            (false, true) => Flavour::Sparse,
+            (false, false) => Flavour::Tunable,
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::dynamics::portfolio::Portfolio;
 use crate::expr::{Dag, Operations};
 use crate::function::{Function, FunctionName};
 use crate::kinematics::Mechanism;
-use crate::model::{BakeError, Robot, bake};
+use crate::model::{BakeError, Robot, bake, bake_zeros};
 use crate::regressor;
 use crate::regroup::regroup;
 use std::fmt;
@@ -15,6 +15,8 @@ use std::time::{Duration, Instant};
 pub enum Flavour {
     /// Parameters are set at run time; what depends on them alone is computed once.
     Tunable,
+    /// The same, but what the model gives as 0 stays 0 and drops out.
+    Sparse,
     /// The model's values are folded into the code; zeros drop out.
     Baked,
 }
@@ -23,6 +25,7 @@ impl fmt::Display for Flavour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Tunable => "tunable",
+            Self::Sparse => "sparse",
             Self::Baked => "baked",
         })
     }
@@ -65,6 +68,7 @@ pub fn derive(
     let mut log = Log { report: Vec::new(), started: Instant::now() };
     let robot = match flavour {
         Flavour::Tunable => robot.clone(),
+        Flavour::Sparse => bake_zeros(robot),
         Flavour::Baked => bake(robot)?,
     };
     let mut dag = robot.dag.clone();

@@ -35,6 +35,22 @@ pub fn bake(robot: &Robot) -> Result<Robot, BakeError> {
     bake_where(robot, |_| true)
 }
 
+/// The robot without the parameters that it gives as 0: they are numbers in its expressions, and
+/// nobody can set them.
+pub fn bake_zeros(robot: &Robot) -> Robot {
+    let zero = robot.dag.zero();
+    let is_zero = |parameter: &Parameter| parameter.default == Some(zero);
+    let mut baked = bake_where(robot, is_zero).expect("a zero is a value");
+    let (zeros, kept): (Vec<Parameter>, Vec<Parameter>) =
+        robot.parameters.values().cloned().partition(is_zero);
+    baked.parameters = kept.into_iter().collect();
+    if !zeros.is_empty() {
+        let names: Vec<&str> = zeros.iter().map(|parameter| parameter.name.as_str()).collect();
+        baked.assumptions.push(format!("always 0: {}", names.join(", ")));
+    }
+    baked
+}
+
 /// The robot with numbers for lengths, angles and gravity, and for what is known of its bodies;
 /// what is identified stays a symbol.
 pub fn bake_geometry(robot: &Robot) -> Result<Robot, BakeError> {

@@ -122,6 +122,11 @@ fn tunable_programs_give_the_engines_numbers() {
 }
 
 #[test]
+fn programs_without_zeros_give_the_engines_numbers() {
+    check(Flavour::Sparse);
+}
+
+#[test]
 fn baked_programs_give_the_engines_numbers() {
     check(Flavour::Baked);
 }

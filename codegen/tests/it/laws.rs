@@ -3,7 +3,7 @@
 
 use crate::robots::{fixture, load, shipped};
 use denavit_codegen::derive::{Derivation, Flavour, derive};
-use denavit_codegen::expr::{ExprId, Floats, Residues, derivative, evaluate};
+use denavit_codegen::expr::{ExprId, Floats, Residues, derivative, evaluate, substitute};
 use denavit_codegen::function::FunctionName::{self, *};
 use denavit_codegen::model::{JointVariables, Robot};
 use denavit_codegen::number::Residue;
@@ -459,4 +459,35 @@ fn momentum_of_a_free_robot_obeys_newton_and_euler() {
         let spin = robot.values(&angular_rate, seed)[2];
         assert_eq!(tau[3], spin + x * force(1) - y * force(0), "yaw");
     }
+}
+
+/// What is left out because the model gives it as 0 is what all parameters give with zeros there.
+#[test]
+fn sparse_functions_are_those_of_all_parameters_with_zeros() {
+    let wanted = [InverseDynamics, MassMatrix, CoriolisMatrix, GravityVector, ForwardDynamics];
+    let mut left_out = 0;
+    for name in shipped() {
+        let robot = load(&name);
+        let sparse = derive(&robot, Flavour::Sparse, &wanted).unwrap();
+        let Derivation { mut dag, functions, .. } =
+            derive(&robot, Flavour::Tunable, &wanted).unwrap();
+        let is_kept = |name: &str| sparse.robot.find_parameter(name).is_some();
+        let zero = dag.zero();
+        let zeros: FxHashMap<ExprId, ExprId> = robot
+            .parameters
+            .values()
+            .filter(|parameter| !is_kept(&parameter.name))
+            .map(|parameter| (parameter.symbol, zero))
+            .collect();
+        left_out += zeros.len();
+        for (own, full) in sparse.functions.iter().zip(&functions) {
+            let with_zeros = substitute(&mut dag, &full.entries(), &zeros);
+            for seed in SEEDS {
+                let expected = evaluate(&dag, &with_zeros, &mut Residues::new(seed)).unwrap();
+                let found = evaluate(&sparse.dag, &own.entries(), &mut Residues::new(seed));
+                assert_eq!(found.unwrap(), expected, "{:?} of {name}", own.name);
+            }
+        }
+    }
+    assert!(left_out > 100, "{left_out}");
 }

@@ -122,7 +122,9 @@ fn a_log_of_a_floating_base_has_forces_of_all_contacts() {
         let names: Vec<String> = joints.clone().chain(forces.iter().cloned()).collect();
         let mut csv = format!("t,{}\n", names.join(","));
         for k in 0..200 {
-            csv += &format!("{}{}\n", 0.01 * f64::from(k), ",0.1".repeat(names.len()));
+            let t = 0.01 * f64::from(k);
+            let value = |row: usize| format!(",{}", 0.1 * (t * (2.0 + row as f64)).sin());
+            csv += &format!("{t}{}\n", (0..names.len()).map(value).collect::<String>());
         }
         let of = LogOf {
             model: &model.model,

@@ -70,7 +70,7 @@ fn emitted_text_has_the_operations_that_are_counted() {
     for path in models() {
         let file = path.to_string_lossy();
         let robot = model::read(&file, &std::fs::read(&path).unwrap()).unwrap();
-        let flavours = [Flavour::Tunable, Flavour::Baked];
+        let flavours = [Flavour::Tunable, Flavour::Sparse, Flavour::Baked];
         let wanted = [&FunctionName::ALL[..], &FunctionName::REGRESSORS].concat();
         for flavour in flavours {
             let Ok(derivation) = derive(&robot, flavour, &wanted) else {
@@ -90,7 +90,7 @@ fn emitted_text_has_the_operations_that_are_counted() {
                 });
                 assert!(row.unwrap().contains(&format!(" {} ", stated.mul)), "{name}");
             }
-            if flavour == Flavour::Tunable && !program.parameters.is_empty() {
+            if flavour != Flavour::Baked && !program.parameters.is_empty() {
                 let after = text.split("pub fn new(").nth(1).unwrap();
                 let prelude: Vec<&str> =
                     after.lines().skip(1).take_while(|line| *line != "    }").collect();

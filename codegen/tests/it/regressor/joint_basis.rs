@@ -21,8 +21,8 @@ fn dot(a: &[Residue], b: &[Residue]) -> Residue {
 }
 
 /// The emitted functions of a name, with the graph that holds them.
-fn derived(robot: &Robot, name: FunctionName) -> (Dag, Function) {
-    let mut derivation = derive(robot, Flavour::Tunable, &[name]).unwrap();
+fn derived(robot: &Robot, flavour: Flavour, name: FunctionName) -> (Dag, Function) {
+    let mut derivation = derive(robot, flavour, &[name]).unwrap();
     (derivation.dag, derivation.functions.remove(0))
 }
 
@@ -38,28 +38,35 @@ fn variants(name: &str) -> Vec<Robot> {
     [robot, plain.clone(), slow].into_iter().chain(still).collect()
 }
 
-/// Y theta + known = tau, with as many columns as the rank, on every robot.
+/// Y theta + known = tau, with as many columns as the rank.
+fn regressor_is_the_torque(robot: &Robot, flavour: Flavour) {
+    let (dag, regressor) = derived(robot, flavour, FunctionName::BaseRegressor);
+    let (of_values, parameters) = derived(robot, flavour, FunctionName::BaseParameters);
+    let rank = parameters.entries().len();
+    assert_eq!(regressor.outputs[0].shape, [robot.degrees_of_freedom(), rank]);
+    assert_eq!(parameters.outputs[0].shape, [rank]);
+    assert!(parameters.arguments.is_empty());
+    let (inverse, torques) = derived(robot, flavour, FunctionName::InverseDynamics);
+    for seed in [5, 6] {
+        let entries = values(&dag, &regressor.outputs[0].entries, seed);
+        let theta = values(&of_values, &parameters.entries(), seed);
+        let mut sum: Vec<_> = entries.chunks(rank).map(|row| dot(row, &theta)).collect();
+        if let Some(known) = regressor.outputs.get(1) {
+            let known = values(&dag, &known.entries, seed);
+            sum = sum.iter().zip(known).map(|(&a, b)| a + b).collect();
+        }
+        let expected = values(&inverse, &torques.entries(), seed);
+        assert_eq!(sum, expected, "{} {:?} {flavour}", robot.name, robot.terms);
+    }
+}
+
 #[test]
 fn base_regressor_times_base_parameters_is_the_torque() {
     for robot in shipped().iter().flat_map(|name| variants(name)) {
-        let (dag, regressor) = derived(&robot, FunctionName::BaseRegressor);
-        let (of_values, parameters) = derived(&robot, FunctionName::BaseParameters);
-        let rank = base(&robot, modelled(&robot)).rank();
-        assert_eq!(regressor.outputs[0].shape, [robot.degrees_of_freedom(), rank]);
-        assert_eq!(parameters.outputs[0].shape, [rank]);
-        assert!(parameters.arguments.is_empty());
-        let (inverse, torques) = derived(&robot, FunctionName::InverseDynamics);
-        for seed in [5, 6] {
-            let entries = values(&dag, &regressor.outputs[0].entries, seed);
-            let theta = values(&of_values, &parameters.entries(), seed);
-            let mut sum: Vec<_> = entries.chunks(rank).map(|row| dot(row, &theta)).collect();
-            if let Some(known) = regressor.outputs.get(1) {
-                let known = values(&dag, &known.entries, seed);
-                sum = sum.iter().zip(known).map(|(&a, b)| a + b).collect();
-            }
-            let expected = values(&inverse, &torques.entries(), seed);
-            assert_eq!(sum, expected, "{} {:?}", robot.name, robot.terms);
-        }
+        let (_, parameters) = derived(&robot, Flavour::Tunable, FunctionName::BaseParameters);
+        assert_eq!(parameters.entries().len(), base(&robot, modelled(&robot)).rank());
+        regressor_is_the_torque(&robot, Flavour::Tunable);
+        regressor_is_the_torque(&robot, Flavour::Sparse);
     }
 }
 
@@ -104,7 +111,7 @@ fn change_is_exact(robot: &Robot, options: RegressorOptions, seed: u64) {
     if options != modelled(robot) {
         return;
     }
-    let (graph, regressor) = derived(robot, FunctionName::BaseRegressor);
+    let (graph, regressor) = derived(robot, Flavour::Tunable, FunctionName::BaseRegressor);
     let entries = values(&graph, &regressor.outputs[0].entries, seed);
     let kept: Vec<usize> = found.parameters.iter().map(|parameter| parameter.column).collect();
     for (joint, row) in entries.chunks(found.rank()).enumerate() {

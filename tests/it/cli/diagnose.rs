@@ -188,7 +188,7 @@ fn what_cannot_be_diagnosed_is_said_and_exits_with_2() {
             &[MODEL, "--train", "leg.csv", "--validate", "leg.csv", "--effects", "nowhere"],
             "nowhere",
         ),
-        (&["tulip", "--train", "base.csv", "--validate", "base.csv"], "tulip"),
+        (&["tulip", "--train", "base.csv", "--validate", "base.csv"], "forces of contacts"),
     ];
     for (words, said) in cases {
         let run = run_in(&directory.path, &[&["diagnose"], words].concat());

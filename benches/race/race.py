@@ -56,6 +56,8 @@ FIELDS = {
 # Ours: how a module is emitted.
 FLAVOURS = {"baked": ["--baked", "--fused"], "tunable": ["--fused"],
             "sparse": ["--sparse", "--fused"], "plain": ["--baked"]}
+# A parameter that is always 0 has no column.
+ALL_COLUMNS = ["regressor", ALONE]
 # Ours on many samples: how many at a time, and whether results are stored or used and forgotten.
 BATCHES = {"x4": (4, False), "x8": (8, False), "stored": (4, True), "stored8": (8, True)}
 CASADI, OURS, OUR_BATCH = range(3)
@@ -285,6 +287,8 @@ def build_ours(models, functions, folder, denavit, flags):
                     f"{module}::Parameters<f64>> = std::sync::LazyLock::new("
                     f"{module}::Parameters::default);")
             for function in [*functions, ALONE]:
+                if flavour == "sparse" and function in ALL_COLUMNS:
+                    continue
                 symbol = f"{module}_{function}"
                 columns = base_columns(emitted.read_text()) if function == ALONE \
                     else 10 * len(model.bodies)
@@ -435,7 +439,7 @@ def compete(name, function, model, libraries, folder):
     n, size = len(model.joints), sizes[name, function]
     built, count, integers, numbers = build_casadi(name, function, model, folder)
     variants = [Variant.new(flavour, ours, f"{name}_{flavour}_{function}", size, OURS)
-                for flavour in FLAVOURS]
+                for flavour in FLAVOURS if flavour != "sparse" or function not in ALL_COLUMNS]
     compared = len(variants)
     variants += [Variant.new(label, ours, f"{name}_{label}_{function}", size, OUR_BATCH)
                  for label in BATCHES]
@@ -474,12 +478,14 @@ def compete(name, function, model, libraries, folder):
     best = times[:, first:chained].min(axis=1)
     latency = times[:, chained]
     median = lambda column: statistics.median(column.tolist())
-    slowest = times[:, -1] if pinocchio else numpy.full(ROUNDS, numpy.nan)
+    own = {v.label: times[:, row] for row, v in enumerate(variants)}
+    nothing = numpy.full(ROUNDS, numpy.nan)
+    sparse, slowest = (own.get(label, nothing) for label in ("sparse", "pinocchio"))
     return {
         "model": name, "function": function,
         **{f"{v.label}_ns": median(times[:, row]) for row, v in enumerate(variants)},
-        "ratio": median(times[:, 0] / best), "tunable_ratio": median(times[:, 1] / times[:, 0]),
-        "sparse_ratio": median(times[:, 2] / times[:, 0]),
+        "ratio": median(times[:, 0] / best), "tunable_ratio": median(own["tunable"] / own["baked"]),
+        "sparse_ratio": median(sparse / own["baked"]),
         "chained_ratio": median(latency / times[:, chained + 1:chained + 3].min(axis=1)),
         "pinocchio_ns": median(slowest), "pinocchio_ratio": median(times[:, 0] / slowest),
         "batch_ratio": median(times[:, compared] / times[:, 0]),
@@ -544,7 +550,7 @@ def table(rows, title):
     lines = ["| model | function | " + " | ".join(name for name, _ in columns) + " |",
              "|---|---|" + "---:|" * len(columns)]
     for row in rows:
-        cells = " | ".join(cell.format(**row) for _, cell in columns)
+        cells = " | ".join(cell.format(**row).replace("nan", "") for _, cell in columns)
         lines.append("| {model} | {function} | ".format(**row) + cells + " |")
     return "\n".join(lines)
 

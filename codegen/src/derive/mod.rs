@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 pub enum Flavour {
     /// Parameters are set at run time; what depends on them alone is computed once.
     Tunable,
-    /// The same, but what the model gives as 0 stays 0 and drops out.
+    /// The same, but what the model gives as 0 stays 0 and drops out, columns of regressors too.
     Sparse,
     /// The model's values are folded into the code; zeros drop out.
     Baked,

@@ -5,7 +5,7 @@ mod answer;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{check_outputs, load_beside, on_stdout, read_file, write_whole};
+use super::files::{check_outputs, load_beside, on_stdout, read_file, say_written, write_whole};
 use super::model_effects::{EffectUse, ModelApart};
 use super::progress::Progress;
 use answer::Found;
@@ -259,7 +259,11 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     match (is_answered && !is_withheld, arguments.json) {
         (true, _) => {}
         (_, true) => answer::write_json_answer(out, &shown, Some(&found))?,
-        (_, false) => answer::write_text(out, &shown, Some(&found))?,
+        (_, false) => {
+            answer::write_text(out, &shown, Some(&found))?;
+            let output = arguments.output.as_ref().filter(|_| answer == Answer::Done);
+            say_written(out, &[output, arguments.svg.as_ref()])?;
+        }
     }
     Ok(answer)
 }

@@ -239,6 +239,19 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })
 }
 
+/// Says which files were written.
+pub(crate) fn say_written(
+    out: &mut dyn Write,
+    outputs: &[Option<&PathBuf>],
+) -> Result<(), Failure> {
+    let files = outputs.iter().flatten().filter(|path| path.as_os_str() != "-");
+    for (at, path) in files.enumerate() {
+        let begin = if at == 0 { "\n" } else { "" };
+        writeln!(out, "{begin}wrote {}", path.display())?;
+    }
+    Ok(())
+}
+
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // a link stays a link: its target is replaced
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());

@@ -13,7 +13,7 @@ mod two_stage;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{check_outputs, on_stdout, write_whole};
+use super::files::{check_outputs, on_stdout, say_written, write_whole};
 use super::model_effects::{EffectUse, ModelApart};
 use super::options::EffectsOption;
 use super::progress::Progress;
@@ -422,7 +422,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     match (is_answered, arguments.json) {
         (true, _) => {}
         (_, true) => json::write(out, &shown)?,
-        (_, false) => text::write(out, &shown)?,
+        (_, false) => {
+            text::write(out, &shown)?;
+            say_written(out, &outputs)?;
+        }
     }
     let judged = found.validate.as_ref().unwrap_or(&found.train);
     let is_doubted = !(found.misread.is_empty() || arguments.accept_suspicious);

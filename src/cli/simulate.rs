@@ -2,7 +2,7 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{check_outputs, load_beside, on_stdout, read_file, write_whole};
+use super::files::{check_outputs, load_beside, on_stdout, read_file, say_written, write_whole};
 use super::json::write_json;
 use clap::{Args, ValueEnum};
 use denavit::expr::text::nearest;
@@ -109,7 +109,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     match (is_answered, arguments.json) {
         (true, _) => {}
         (_, true) => write_json(out, &summary(&scenario, &run, &broken))?,
-        (_, false) => print(out, &scenario, &run, &broken, took)?,
+        (_, false) => {
+            print(out, &scenario, &run, &broken, took)?;
+            say_written(out, &outputs)?;
+        }
     }
     let good = run.stop == Stop::End && broken.is_empty();
     Ok(if good { Answer::Done } else { Answer::Negative })

@@ -3,9 +3,10 @@
 use super::condition::Conditioned;
 use super::estimate::{
     CLEAN, Consistent, Convergence, Estimate, EstimateError, Evidence, IdentifiedParameter,
-    MisreadColumns, Options, SlowRows, Status, Validation, biased_frictions, consistent,
-    convergence, estimate, filter_errors, long_enough, misread_apart, misread_columns,
-    noise_of_positions, nominal_values, parameters, unexplained_joints, validate,
+    MisreadColumns, Options, SlowRows, Status, Triangle, Validation, biased_frictions, consistent,
+    constants_off, convergence, estimate, filter_errors, long_enough, misread_apart,
+    misread_columns, noise_of_positions, nominal_values, parameters, solve, stacked,
+    unexplained_joints, validate,
 };
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -59,7 +60,7 @@ pub struct Identification {
 }
 
 /// Rows of a joint that do not count, since it turns round or is slow there.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LeftOutRows {
     /// The joint.
     pub joint: String,
@@ -67,6 +68,8 @@ pub struct LeftOutRows {
     pub samples: usize,
     /// Of so many.
     pub of: usize,
+    /// The share of the joint's torque that is left of the others, as roots of mean squares.
+    pub left: f64,
 }
 
 /// Biased parameters that are named.
@@ -110,14 +113,16 @@ impl Identification {
 
     /// What is to be said of rows that do not count.
     pub fn rows_left_out(&self) -> Option<String> {
-        let of =
-            |one: &LeftOutRows| format!("{} of {} samples of {}", one.samples, one.of, one.joint);
+        let of = |one: &LeftOutRows| {
+            let left = 100.0 * one.left;
+            format!("{} of {} samples of {} ({left:.2} %)", one.samples, one.of, one.joint)
+        };
         let listed: Vec<String> = self.left_out.iter().map(of).collect();
         (!listed.is_empty()).then(|| {
             format!(
                 "Left out of the estimate, since the joint turns round or is slow there, where \
                  friction is not the sign of its rate: {} (--skip-slow off keeps them). What is \
-                 left of torques is that of all samples.",
+                 left of torques above is that of all samples; in brackets, that of the others.",
                 listed.join(", ")
             )
         })
@@ -192,6 +197,12 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     if (squares / measured).sqrt() < CLEAN {
         misread.retain(|one| !one.is_guess());
     }
+    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, train, &found)) {
+        misread = held_out_misread(model, log, (&phi, deviations));
+    }
+    if misread.is_empty() {
+        misread = constants_off(model, train, &found);
+    }
     let others = held_out_misread(model, held_out, (phi, deviations));
     let is_told = |one: &MisreadColumns| {
         let is_same = |told: &MisreadColumns| told.misreading.is_like(one.misreading);
@@ -204,7 +215,7 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         unexplained: unexplained_joints(model, all_left.0, (all_left.1, &counted)),
         misread,
         reversals: reversals(model, train, (&found, options)),
-        left_out: left_out(model, train, &found),
+        left_out: left_out(model, train, (&found, &counted)),
         parameters: listed,
         filter_error: filter_error(model, train, (phi, &left)),
         train: left,
@@ -226,6 +237,34 @@ fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
         found.map_or(0.0, |one| one.torque_rms)
     };
     model.joints.iter().map(of_joint).collect()
+}
+
+/// Of several logs the one without which the others agree best, and phi of the others.
+fn odd_log<'a>(
+    model: &RegressionModel,
+    logs: &'a [Conditioned],
+    found: &Estimate,
+) -> Option<(&'a [Conditioned], Vec<f64>)> {
+    let condensed = &found.condensed;
+    if logs.len() < 2 || condensed.rank != model.rank() {
+        return None;
+    }
+    let without = |log: usize| {
+        let others = (0..condensed.parts.len()).filter(|&part| condensed.log_of_part[part] != log);
+        let triangles = condensed.merged(others);
+        let rank = condensed.rank;
+        let r = stacked(&triangles, &condensed.pattern, &found.weights, &[], rank);
+        let phi = solve(&r, found.solution.phi.as_slice()).phi.as_slice().to_vec();
+        let of_joint = |(joint, triangle): (usize, &Triangle)| {
+            let left = triangle.squares(&condensed.of_joint(joint, &phi));
+            [found.weights[joint].powi(2) * left, triangle.rows() as f64]
+        };
+        let all: Vec<[f64; 2]> = triangles.iter().enumerate().map(of_joint).collect();
+        let sum = |at: usize| all.iter().map(|one| one[at]).sum::<f64>();
+        (sum(0) / sum(1).max(1.0), log, phi)
+    };
+    let least = (0..logs.len()).map(without).min_by(|a, b| a.0.total_cmp(&b.0));
+    least.map(|(_, log, phi)| (&logs[log..=log], phi))
 }
 
 /// Columns that seem to be other ones in each of the logs for validation: by what was found in the
@@ -274,15 +313,19 @@ fn reversals(
     if !matches!(options.slow, SlowRows::Biasing | SlowRows::Kept) {
         return Vec::new();
     }
-    let without = left_out(model, logs, found);
+    let without = left_out(model, logs, (found, &[]));
     let of = |(joint, share): (usize, f64)| (model.joints[joint].name.clone(), share);
     let biased = biased_frictions(model, logs, (&found.solution.phi, &found.covariance));
     let counted = biased.into_iter().map(of);
     counted.filter(|(name, _)| without.iter().all(|one| one.joint != *name)).collect()
 }
 
-/// The rows of each joint that do not count.
-fn left_out(model: &RegressionModel, logs: &[Conditioned], found: &Estimate) -> Vec<LeftOutRows> {
+/// The rows of each joint that do not count, with the shares that are left of the others.
+fn left_out(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (found, counted): (&Estimate, &[f64]),
+) -> Vec<LeftOutRows> {
     let parts = &found.condensed.parts;
     let rows = |joint: usize| parts.iter().map(|part| part[joint].rows()).sum::<usize>();
     let of = |joint: usize| -> usize {
@@ -293,6 +336,7 @@ fn left_out(model: &RegressionModel, logs: &[Conditioned], found: &Estimate) -> 
         joint: model.joints[joint].name.clone(),
         samples: of(joint) - rows(joint),
         of: of(joint),
+        left: counted.get(joint).copied().unwrap_or(0.0),
     };
     (0..model.joints.len()).map(one).filter(|one| one.samples > 0).collect()
 }

@@ -27,6 +27,9 @@ impl CoulombLaw {
     }
 }
 
+/// Numbers in a line of the cache.
+const LINE: usize = 8;
+
 /// Computes rows of tau - known = Y phi for many samples at once.
 #[derive(Clone, Debug)]
 pub struct RegressionEvaluator {
@@ -42,6 +45,9 @@ pub struct RegressionEvaluator {
 #[derive(Clone, Debug, Default)]
 pub struct RegressionRows {
     samples: usize,
+    /// Distance of the columns: were it a power of two, all of them would share few lines of the
+    /// cache.
+    stride: usize,
     /// Where the columns of each joint begin; one more for the end.
     first: Vec<usize>,
     known: Vec<usize>,
@@ -57,7 +63,7 @@ impl RegressionRows {
     /// The entries of one joint's rows in the `place`-th column of its
     /// [pattern](super::regression::RegressionModel::pattern), one for each sample.
     pub fn column(&self, joint: usize, place: usize) -> &[f64] {
-        let at = (self.first[joint] + place) * self.samples;
+        let at = (self.first[joint] + place) * self.stride;
         &self.values[at..at + self.samples]
     }
 
@@ -65,7 +71,7 @@ impl RegressionRows {
     /// that is nothing.
     pub fn known(&self, joint: usize) -> Option<&[f64]> {
         let place = self.known.iter().position(|&known| known == joint)?;
-        let at = (self.first[self.first.len() - 1] + place) * self.samples;
+        let at = (self.first[self.first.len() - 1] + place) * self.stride;
         Some(&self.values[at..at + self.samples])
     }
 
@@ -123,11 +129,17 @@ impl RegressionEvaluator {
         }
         rows.known.clone_from(&self.known);
         rows.samples = samples;
-        rows.values.resize((total + self.known.len()) * samples, 0.0);
+        // an odd number of lines
+        rows.stride = LINE * (samples.div_ceil(LINE) | 1);
+        rows.values.resize((total + self.known.len()) * rows.stride, 0.0);
         if samples == 0 {
             return Ok(());
         }
-        let mut columns: Vec<&mut [f64]> = rows.values.chunks_exact_mut(samples).collect();
+        let mut columns: Vec<&mut [f64]> = rows
+            .values
+            .chunks_exact_mut(rows.stride)
+            .map(|column| &mut column[..samples])
+            .collect();
         self.batch.evaluate(motion, &mut columns).expect("the shapes were compared before");
         if self.law != CoulombLaw::Sign {
             for &(joint, place) in &self.coulomb {

@@ -11,7 +11,7 @@ use denavit::identify::forward::{
 use denavit::identify::{UpdateError, UpdatedModel};
 use denavit::model::Robot;
 use denavit::plants::{Plant, PlantError, plant_of};
-use denavit::report::motion_picture;
+use denavit::report::{motion_picture, short};
 use denavit::shipped;
 use denavit::simulate::scenario::{Controller, read_controller};
 use std::fmt;
@@ -134,8 +134,9 @@ impl SimulationGap {
                 "simulated again under the controller, from the first state".to_owned()
             }
             Some(ForwardKind::Windows { count, length_s }) => format!(
-                "simulated again in {count} windows of {length_s} s, from measured states under \
-                 measured torques"
+                "simulated again in {count} windows of {} s, from measured states under measured \
+                 torques",
+                short(length_s)
             ),
         }
     }

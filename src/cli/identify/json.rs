@@ -92,6 +92,8 @@ struct LeftOutJson<'a> {
     joint: &'a str,
     samples: usize,
     of: usize,
+    /// The share of the torque that is left of the others.
+    left: f64,
 }
 
 #[derive(Serialize)]
@@ -247,7 +249,12 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         left_out: found
             .left_out
             .iter()
-            .map(|one| LeftOutJson { joint: &one.joint, samples: one.samples, of: one.of })
+            .map(|one| LeftOutJson {
+                joint: &one.joint,
+                samples: one.samples,
+                of: one.of,
+                left: one.left,
+            })
             .collect(),
         consistent: ConsistentJson::new(model, &found.consistent),
         convergence: convergence.collect(),

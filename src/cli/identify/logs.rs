@@ -20,7 +20,7 @@ pub(super) struct Conditions {
     /// or none. A tenth of the rate of sampling if nothing is said
     #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter)]
     filter: Option<FilterChoice>,
-    /// Leave one sample in so many; if nothing is said, as the filter allows and 1000 are left
+    /// Leave one sample in so many; if nothing is said, as the filter allows and 1200 are left
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     decimate: Option<u32>,
     /// Average laps of this period [s], or of the one that is found
@@ -41,7 +41,7 @@ const FEWEST_OF_A_LAP: f64 = 20.0;
 
 /// Samples that are left, if nothing is said: standard errors are found from parts of a log, of
 /// which few say little.
-const FEWEST_LEFT: f64 = 1000.0;
+const FEWEST_LEFT: f64 = 1200.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FilterChoice {

@@ -147,11 +147,12 @@ fn write(
     }
     write!(out, "{}", table.without_empty_columns())?;
     if found.degrees_of_freedom > 0 {
-        let share = found.chi_squared / found.degrees_of_freedom as f64;
+        let missed = (found.chi_squared / found.degrees_of_freedom as f64).sqrt();
+        let missed = if missed < 0.01 { "less than 0.01".to_owned() } else { short(missed) };
         let text = format!(
             "The equations miss each other by {} standard deviations ({} more than are needed): \
              about 1 is what the stated deviations lead one to expect.{}",
-            short(share.sqrt()),
+            missed,
             found.degrees_of_freedom,
             if found.contradicts() { CONTRADICTION } else { "" }
         );

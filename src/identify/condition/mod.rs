@@ -10,12 +10,14 @@ mod derivatives;
 mod laps;
 mod noise;
 mod overlap;
+mod pieces;
 mod reversals;
 
 pub use butterworth::Butterworth;
 pub use decimate::Decimator;
 pub use laps::Laps;
 pub use noise::Encoder;
+pub(crate) use pieces::Piece;
 
 use super::log::{JointSignals, MeasuredLog};
 use crate::report::short;

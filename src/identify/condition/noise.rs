@@ -1,6 +1,6 @@
 //! Noise of measured positions, and joints that move no further than it.
 
-use super::{Conditioned, Decimator, rate};
+use super::{Conditioned, Piece, rate};
 use crate::identify::log::JointSignals;
 use crate::simulate::Random;
 
@@ -103,31 +103,10 @@ impl Conditioned {
 }
 
 impl Conditioned {
-    /// So many samples that are left, from `first` on, with the noise of the positions once more:
-    /// added, and subtracted. Steps of an encoder are those that the motion makes, which while it
-    /// is slow are no white noise.
-    pub(crate) fn piece_with_noise(
-        &self,
-        first: usize,
-        samples: usize,
-        random: &mut Random,
-    ) -> [Self; 2] {
-        let edge = self.range.start;
-        let start = first * self.decimation;
-        let inner = 2 * Decimator::reach_of(self.decimation) + (samples - 1) * self.decimation + 1;
-        let end = (start + edge + inner + edge).min(self.q[0].len());
-        let part = |column: &Vec<f64>| column[start..end].to_vec();
-        let parts = |columns: &[Vec<f64>]| columns.iter().map(part).collect::<Vec<_>>();
-        let mut added = Self {
-            step_s: self.step_s,
-            q: parts(&self.q),
-            rates: self.rates.as_ref().map(|both| both.each_ref().map(|all| parts(all))),
-            torque: self.torque.iter().map(|torque| torque.as_ref().map(part)).collect(),
-            range: edge..edge + inner,
-            decimation: self.decimation,
-            filter: self.filter.clone(),
-            ..Self::default()
-        };
+    /// A piece with the noise of the positions once more: added, and subtracted. Steps of an
+    /// encoder are those that the motion makes, which while it is slow are no white noise.
+    pub(crate) fn piece_with_noise(&self, piece: Piece, random: &mut Random) -> [Self; 2] {
+        let mut added = self.piece(piece);
         let mut subtracted = added.clone();
         for joint in 0..added.q.len() {
             let noise = self.noise_like(joint, &added.q[joint], random);

@@ -3,7 +3,7 @@
 use super::condensed::{Condensed, Rows};
 use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::instruments;
-use super::left_out::SlowRows;
+use super::left_out::{LeftOut, SlowRows};
 use super::likelihood;
 use super::noise_bias::noise_bias;
 use super::robust::{Loss, influences, scales};
@@ -135,6 +135,8 @@ pub struct Estimate {
     pub weights: Vec<f64>,
     /// Times that weights were found.
     pub rounds: usize,
+    /// Rows that do not count.
+    pub(super) left_out: LeftOut,
 }
 
 /// Estimates phi from logs. `instruments` are logs of the same samples, for
@@ -148,6 +150,7 @@ pub fn estimate(
 ) -> Result<Estimate, EstimateError> {
     let fit = Fit { options, start };
     let (mut first, left_out) = fit.counted(model, logs)?;
+    first.left_out = left_out.clone();
     let rows = (logs, &left_out);
     match options.method {
         Method::Ordinary | Method::Weighted => {}
@@ -291,6 +294,7 @@ impl Fit<'_> {
             condensed,
             weights,
             rounds: 1,
+            left_out: LeftOut::none(&[]),
         };
         found.noise = found.deviations(&triangles);
         while is_weighted && found.rounds < MAX_REWEIGHTING {

@@ -2,7 +2,7 @@
 //! sign of its rate says, and the filter smears that over its own time.
 
 use super::Options;
-use crate::identify::condition::Conditioned;
+use crate::identify::condition::{Conditioned, Piece};
 use crate::plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 
@@ -94,6 +94,16 @@ impl LeftOut {
             (0..log.joints()).map(slow).collect()
         };
         Self(logs.iter().map(of_log).collect())
+    }
+
+    /// The same of pieces of logs, each with the number of its log.
+    pub(super) fn of_pieces(&self, logs: &[Conditioned], pieces: &[(usize, Piece)]) -> Self {
+        let of = |&(number, piece): &(usize, Piece)| {
+            let first = piece.first * logs[number].decimation;
+            let part = |all: &Vec<bool>| all[first..].to_vec();
+            self.0[number].iter().map(|one| one.as_ref().map(part)).collect()
+        };
+        Self(pieces.iter().map(of).collect())
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.

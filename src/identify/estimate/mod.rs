@@ -38,7 +38,7 @@ pub use least_squares::{Estimate, EstimateError, Method, Options, estimate, long
 pub use left_out::SlowRows;
 pub(in crate::identify) use left_out::{biased_frictions, is_biased};
 pub(in crate::identify) use likelihood::noise_of_positions;
-pub(in crate::identify) use misread::{CLEAN, misread_apart, nominal_values};
+pub(in crate::identify) use misread::{CLEAN, constants_off, misread_apart, nominal_values};
 pub use misread::{Evidence, ExchangedColumns, MisreadColumns, Misreading, misread_columns};
 pub use report::{Convergence, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;

@@ -10,14 +10,13 @@
 use super::condensed::Rows;
 use super::rows::{Block, BlockMaker};
 use super::solve::Solution;
-use crate::identify::condition::Conditioned;
+use crate::identify::condition::Piece;
 use crate::plants::regression::RegressionModel;
 use crate::simulate::Random;
 use nalgebra::{DMatrix, DVector};
 
-/// Samples of all logs that are looked at, before decimation, and in so many pieces.
+/// Samples of all logs that are looked at, before decimation.
 const SAMPLES: usize = 60_000;
-const PIECES: usize = 12;
 
 /// Samples in a block.
 const BLOCK: usize = 512;
@@ -41,12 +40,13 @@ pub(super) fn noise_bias(
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             continue;
         }
-        let pieces = pieces(log, SAMPLES / logs.len());
-        let seen: usize = pieces.iter().map(|(_, samples)| samples).sum();
+        let pieces = log.pieces(SAMPLES / logs.len());
+        let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
         let of_all = log.samples() as f64 / seen.max(1) as f64;
         let mut straight = BlockMaker::new(model, log);
-        for (first, samples) in pieces {
-            let both = log.piece_with_noise(first, samples, &mut random);
+        for piece in pieces {
+            let Piece { first, samples } = piece;
+            let both = log.piece_with_noise(piece, &mut random);
             let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
             for from in (0..samples).step_by(BLOCK) {
                 let count = BLOCK.min(samples - from);
@@ -115,15 +115,4 @@ impl Noise {
         let left = DMatrix::identity(rank, rank) - share.columns(0, rank);
         left.lu().solve(&off).unwrap_or(off)
     }
-}
-
-/// Samples of a log that is left after decimation that are looked at: first ones and numbers.
-fn pieces(log: &Conditioned, most: usize) -> Vec<(usize, usize)> {
-    let (samples, most) = (log.samples(), most / log.decimation.max(1));
-    let length = most / PIECES;
-    if samples <= most.max(PIECES) || length == 0 {
-        return vec![(0, samples)];
-    }
-    let first = |piece: usize| piece * (samples - length) / (PIECES - 1);
-    (0..PIECES).map(|piece| (first(piece), length)).collect()
 }

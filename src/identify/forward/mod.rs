@@ -16,6 +16,7 @@ pub use windows::{Windows, in_windows};
 use super::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
 use super::log::{JointSignals, MeasuredLog};
 use crate::plants::PlantModel;
+use crate::report::short;
 use crate::simulate::scenario::Controller;
 use crate::simulate::{
     DriveModelling, Log, STICTION_RATE, Simulation, StartError, State, Stop, integrate::Accuracy,
@@ -289,7 +290,7 @@ impl fmt::Display for ForwardError {
                  without"
             ),
             Self::TooShort(length_s) => {
-                write!(f, "the log is shorter than a window of {length_s} s")
+                write!(f, "the log is shorter than a window of {} s", short(*length_s))
             }
             Self::Start(error) => write!(f, "{error}"),
             Self::Stopped { t_s, stop } => {

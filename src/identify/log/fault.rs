@@ -279,8 +279,9 @@ impl fmt::Display for Suspicion {
         match self {
             Self::TimeUnit { step, factor } => write!(
                 f,
-                "a step of `t` is {step}, as if it did not count seconds\n  hint: map it: {{\"t\": \
-                 {{\"scale\": {factor}}}}}"
+                "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
+                 {{\"scale\": {factor}}}}}",
+                short(*step)
             )?,
             Self::Degrees { column, largest } => write!(
                 f,

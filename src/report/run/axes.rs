@@ -3,6 +3,10 @@
 use super::super::camera::Vec2;
 use super::super::svg::{Svg, number};
 
+/// Decimals of a mark, at most: longer ones have a power of ten, so that they do not reach into the
+/// name of the axis.
+const LONGEST: usize = 3;
+
 /// The numbers of a scale: a range whose ends are marks, or that is cut where the data end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
@@ -56,11 +60,13 @@ impl Scale {
     fn text(&self, value: f64) -> String {
         let text = format!("{value:.*}", self.decimals);
         let is_zero = text.trim_matches(['-', '0', '.']).is_empty();
-        if is_zero {
-            text.trim_start_matches('-').to_owned()
-        } else {
-            text.replace('-', "\u{2212}")
-        }
+        let text = match (self.decimals > LONGEST, text.parse::<f64>()) {
+            (true, Ok(_)) if is_zero => "0".to_owned(),
+            (true, Ok(rounded)) => format!("{rounded:e}"),
+            _ if is_zero => text.trim_start_matches('-').to_owned(),
+            _ => text,
+        };
+        text.replace('-', "\u{2212}")
     }
 
     /// Where a value stands, from 0 to 1.
@@ -194,6 +200,9 @@ mod tests {
     fn scales_are_round_and_hold_their_values() {
         let scale = Scale::around([-0.37, 0.81, f64::NAN].into_iter(), 4.0);
         assert_eq!((scale.step, scale.decimals), (0.5, 1));
+        let small = Scale::around([-4e-5, 9e-5].into_iter(), 3.0);
+        let marks: Vec<String> = small.marks().map(|mark| small.text(mark)).collect();
+        assert_eq!(marks, ["\u{2212}5e\u{2212}5", "0", "5e\u{2212}5", "1e\u{2212}4"]);
         assert_eq!((scale.low, scale.high), (-0.5, 1.0));
         let marks: Vec<String> = scale.marks().map(|mark| scale.text(mark)).collect();
         assert_eq!(marks, ["\u{2212}0.5", "0.0", "0.5", "1.0"]);

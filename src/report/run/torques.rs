@@ -115,7 +115,7 @@ fn diagrams(svg: &mut Svg, signal: &Signal, corner: [f64; 2], width: f64) {
     torques.curve(svg, &times, &measured, BLUE);
     torques.curve(svg, &times, &computed, WANTED);
     let left = Axes {
-        corner: [corner[0], corner[1] + 34.0 + TALL],
+        corner: [corner[0], corner[1] + 42.0 + TALL],
         size: [width, TORQUE],
         x,
         y: Scale::around(residual.iter().copied(), 2.0),

@@ -5,6 +5,7 @@ use super::Directory;
 use super::identify_told::{
     GOOD, Made, deviations, motions, round_positions, said, spread, write_arm, write_log,
 };
+use serde_json::Value;
 use std::f64::consts::TAU;
 
 /// A slow motion seen by encoders of 14 bits at 1 kHz.
@@ -56,5 +57,81 @@ fn the_bias_that_is_said_is_that_of_the_estimates() {
     assert!(biased.len() >= 4, "{means:?}");
     for [found, said] in biased {
         assert!((0.65..1.5).contains(&(found / said)), "{found} {said}: {means:?}");
+    }
+}
+
+/// What a constant does to the torques is less than their noise, and it moves parameters by many of
+/// their errors: the zero of a position, the offset of a torque.
+#[test]
+fn constants_below_the_noise_are_told_with_their_size() {
+    let directory = Directory::new("noise-constants");
+    write_arm(&directory, None);
+    let made = Made { step_s: 0.002, samples: 10_000, torque_noise: 0.1, seed: 3, ..GOOD };
+    let cases = [
+        ([0.0; 4], "", 0.0),
+        ([0.02, 0.0, 0.0, 0.0], "the position of link1 seems to be ", 0.02),
+        ([0.0, 0.0, 0.0, -0.2], "the torque of link2 seems to be ", 0.2),
+    ];
+    for (constants, expected, size) in cases {
+        let mut rows = made.rows(&motions(3, 1.0));
+        for row in &mut rows {
+            row[1..].iter_mut().zip(constants).for_each(|(value, constant)| *value += constant);
+        }
+        round_positions(&mut rows, TAU / 16_384.0);
+        write_log(&directory, "constant.csv", &rows);
+        let (code, text) = said(&directory, &["--train", "constant.csv"]);
+        let line = text.replace('\n', " ");
+        if expected.is_empty() {
+            assert_eq!(code, Some(0), "{text}");
+            assert!(!line.contains("seems to be"), "{text}");
+            continue;
+        }
+        assert_eq!(code, Some(1), "{text}");
+        assert!((number_after(&line, expected) / size - 1.0).abs() < 0.2, "{text}");
+        assert!(line.contains("of its standard errors large"), "{text}");
+        assert_eq!(line.contains("--with friction,offset"), size == 0.2, "{text}");
+    }
+}
+
+/// The number that follows some words.
+fn number_after(line: &str, words: &str) -> f64 {
+    let rest = line.split_once(words).expect(words).1;
+    let word = rest.split(' ').next().expect("there is a word");
+    word.parse().expect("a number")
+}
+
+/// Of three logs to estimate from the one whose last joint counts from another zero is told by its
+/// name: by the others, since the model's own values are off, and its body could turn instead.
+#[test]
+fn one_misread_log_among_others_is_named() {
+    let directory = Directory::new("noise-odd-log");
+    write_arm(&directory, None);
+    let path = directory.path.join("arm.json");
+    let mut arm: Value =
+        serde_json::from_slice(&std::fs::read(&path).expect("written")).expect("JSON");
+    for link in arm["links"].as_array_mut().expect("a list") {
+        let body = &mut link["body"];
+        let heavier = |value: &mut Value| *value = (1.4 * value.as_f64().expect("a number")).into();
+        heavier(&mut body["mass"]);
+        body["inertia"].as_object_mut().expect("entries").values_mut().for_each(heavier);
+    }
+    std::fs::write(&path, arm.to_string()).expect("written");
+    let rows = |seed: u64| Made { samples: 4000, seed, ..GOOD }.rows(&motions(seed, 0.628));
+    for (name, seed) in [("one.csv", 1), ("two.csv", 2)] {
+        write_log(&directory, name, &rows(seed));
+    }
+    for zero in [0.0, 0.1] {
+        let mut odd = rows(3);
+        odd.iter_mut().for_each(|row| row[2] += zero);
+        write_log(&directory, "odd.csv", &odd);
+        let words = ["--train", "one.csv", "odd.csv", "two.csv"];
+        let (code, text) = said(&directory, &words);
+        assert_eq!(code, Some(i32::from(zero != 0.0)), "{text}");
+        if zero != 0.0 {
+            let line = text.replace('\n', " ");
+            let found = number_after(&line, "odd.csv: the position of link2 seems to be ");
+            assert!((found / zero - 1.0).abs() < 0.05, "{text}");
+            assert!(line.contains("the values that the other logs give"), "{text}");
+        }
     }
 }

@@ -36,6 +36,8 @@ pub enum Misreading {
     Position(usize, f64),
     /// The position of a joint is counted from another zero: what is to be added to it [rad, m].
     Zero(usize, f64),
+    /// The torque of a joint is off by a constant: what is to be added to it [N m, N].
+    TorqueOffset(usize, f64),
     /// Columns of two joints have each other's names.
     Exchanged([usize; 2], ExchangedColumns),
     /// Torques are so many samples late.
@@ -60,13 +62,14 @@ impl Misreading {
 
     /// Whether it is one of many that differ by a number.
     pub(super) fn is_by_degrees(self) -> bool {
-        self.is_late() || matches!(self, Self::Zero(..))
+        self.is_late() || matches!(self, Self::Zero(..) | Self::TorqueOffset(..))
     }
 
     /// Whether another is the same mistake, but for how large it is.
     pub(in crate::identify) fn is_like(self, other: Self) -> bool {
         match (self, other) {
             (Self::Zero(one, _), Self::Zero(other, _))
+            | (Self::TorqueOffset(one, _), Self::TorqueOffset(other, _))
             | (Self::LateTorque(one, _), Self::LateTorque(other, _))
             | (Self::LatePosition(one, _), Self::LatePosition(other, _)) => one == other,
             (Self::Late(_), Self::Late(_)) => true,
@@ -114,7 +117,9 @@ impl Misreading {
             Self::TorquesOfMotors(_) | Self::Late(_) => "torques seem".to_owned(),
             Self::Angles(factor) => of_all("positions", factor),
             Self::Lengths(_) => "positions of joints that slide seem".to_owned(),
-            Self::Torque(joint, _) | Self::LateTorque(joint, _) => of_joint("torque", joint),
+            Self::Torque(joint, _) | Self::LateTorque(joint, _) | Self::TorqueOffset(joint, _) => {
+                of_joint("torque", joint)
+            }
             Self::Position(joint, _) | Self::Zero(joint, _) | Self::LatePosition(joint, _) => {
                 of_joint("position", joint)
             }
@@ -158,6 +163,12 @@ impl Misreading {
                 let side = if offset < 0.0 { "above" } else { "below" };
                 return format!("be {size} {side} its true value, all the time");
             }
+            Self::TorqueOffset(joint, offset) => {
+                let unit = if joints[joint].slides { "N" } else { "N m" };
+                let side = if offset < 0.0 { "above" } else { "below" };
+                let size = offset.abs();
+                return format!("be {size:.4} {unit} {side} its true value, all the time");
+            }
             Self::Late(samples) | Self::LateTorque(_, samples) | Self::LatePosition(_, samples) => {
                 let late_s = samples as f64 * step_s;
                 let how = if late_s < 0.0 { "early" } else { "late" };
@@ -193,6 +204,11 @@ impl Misreading {
                 let column = of(Signal::Position, joint);
                 mends(&column, "offset", format!("{offset:.5}"))
                     + ", if the model's zero is that of the robot"
+            }
+            Self::TorqueOffset(joint, offset) => {
+                let column = of(Signal::Torque, joint);
+                "--with friction,offset estimates it; ".to_owned()
+                    + &mends(&column, "offset", format!("{offset:.5}"))
             }
             Self::Exchanged(..) => "--columns can name them the other way round".to_owned(),
             Self::Late(_) | Self::LateTorque(..) | Self::LatePosition(..) => {

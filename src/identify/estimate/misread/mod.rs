@@ -8,6 +8,7 @@
 //! one of them speaks for and the other speaks against is none.
 
 mod balance;
+mod constants;
 mod misreading;
 mod reading;
 mod search;
@@ -17,6 +18,7 @@ pub(in crate::identify) use balance::nominal_values;
 pub use misreading::{ExchangedColumns, Misreading};
 pub(in crate::identify) use verdict::CLEAN;
 
+use super::least_squares::Estimate;
 use super::report::{IdentifiedParameter, Status};
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::{RegressionJoint, RegressionModel};
@@ -60,6 +62,8 @@ pub struct MisreadColumns {
     /// Whether nothing else explains it as well. What may be a model's parameters or a law of
     /// friction that it lacks is not sure.
     pub is_sure: bool,
+    /// Its size in standard errors, of a constant that an estimate has beside the parameters.
+    pub errors: Option<f64>,
     joints: Vec<RegressionJoint>,
     step_s: f64,
     /// Whose values `left_by_model` is of, in words.
@@ -106,7 +110,14 @@ impl fmt::Display for MisreadColumns {
             )?,
             (Some(own), None) => write!(f, ": {values} leave {}", percent(own))?,
             (None, Some(fit)) => write!(f, ": an estimate leaves {}", percent(fit))?,
-            (None, None) => write!(f, ": its friction would be below 0")?,
+            (None, None) => match self.errors {
+                Some(errors) => write!(
+                    f,
+                    ": an estimate sees it, {:.0} of its standard errors large",
+                    errors.abs()
+                )?,
+                None => write!(f, ": its friction would be below 0")?,
+            },
         }
         write!(f, "\n  hint: {}", self.hint())
     }
@@ -149,19 +160,36 @@ pub fn misread_columns(
             _ => false,
         };
         if !found.iter().any(is_told) {
-            found.push(MisreadColumns {
-                misreading: Misreading::Torque(joint, -1.0),
-                left_by_model: None,
-                left_by_estimate: None,
-                file: None,
-                is_sure: false,
-                joints: model.joints.clone(),
-                step_s: 0.0,
-                values: "",
-            });
+            found.push(of_logs(model, Misreading::Torque(joint, -1.0)));
         }
     }
     found
+}
+
+/// Of columns that neither witness speaks of.
+fn of_logs(model: &RegressionModel, misreading: Misreading) -> MisreadColumns {
+    MisreadColumns {
+        misreading,
+        left_by_model: None,
+        left_by_estimate: None,
+        file: None,
+        is_sure: false,
+        errors: None,
+        joints: model.joints.clone(),
+        step_s: 0.0,
+        values: "",
+    }
+}
+
+/// Constants that are off, as an estimate has them beside the parameters.
+pub(in crate::identify) fn constants_off(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    found: &Estimate,
+) -> Vec<MisreadColumns> {
+    let all = constants::constant_errors(model, logs, found).into_iter();
+    all.map(|(one, errors)| MisreadColumns { errors: Some(errors), ..of_logs(model, one) })
+        .collect()
 }
 
 /// The same of each log by itself, with its name.
@@ -206,6 +234,7 @@ fn misread_alike(
             left_by_estimate: verdict.by_fit.then_some(verdict.fit.left),
             file: None,
             is_sure,
+            errors: None,
             joints: model.joints.clone(),
             step_s,
             values: match evidence.values {

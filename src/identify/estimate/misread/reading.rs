@@ -87,6 +87,7 @@ impl Reading {
             }
             Misreading::Position(joint, factor) => new.positions[joint].scale(factor),
             Misreading::Zero(joint, offset) => new.positions[joint].offset += offset,
+            Misreading::TorqueOffset(joint, offset) => new.torques[joint].offset += offset,
             Misreading::Exchanged([a, b], columns) => {
                 if columns != ExchangedColumns::Torques {
                     new.positions.swap(a, b);

@@ -129,11 +129,13 @@ impl Search<'_> {
         let joints = self.joints();
         let real: Vec<usize> = (0..joints.len()).filter(|&joint| !joints[joint].is_base).collect();
         let mut lines = Vec::new();
-        if root_mean_square(fit) > PROMPT && self.latest > 0 && !reading.is_shifted() {
+        // what is late in one joint may show in its torque alone
+        let shows = |left: &Option<f64>| left.is_some_and(|left| left > PROMPT);
+        if fit.iter().any(shows) && self.latest > 0 && !reading.is_shifted() {
             lines.push(Line::Late);
             for &joint in real.iter().filter(|_| real.len() > 1) {
                 lines.push(Line::LatePosition(joint));
-                lines.extend(fit[joint].map(|_| Line::LateTorque(joint)));
+                lines.extend(shows(&fit[joint]).then_some(Line::LateTorque(joint)));
             }
         }
         let is_open = |joint: &&usize| reading.positions[**joint].offset == 0.0;

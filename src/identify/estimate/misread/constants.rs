@@ -1,0 +1,305 @@
+//! Constant errors: zeros of positions and offsets of torques, as parameters beside the others.
+//!
+//! What a constant does to the torques may be less than their noise, and yet move parameters by
+//! many of their errors. An estimate sees it if it is many of its own errors large, and nothing
+//! but noise is left with it: else it stands for something that the model lacks.
+
+use super::Misreading;
+use crate::identify::condition::{Butterworth, Conditioned, Piece};
+use crate::identify::estimate::condensed::Condensed;
+use crate::identify::estimate::errors::{Errors, Problem};
+use crate::identify::estimate::least_squares::Estimate;
+use crate::identify::estimate::left_out::LeftOut;
+use crate::identify::estimate::rows::{Block, BlockMaker};
+use crate::identify::estimate::solve::{solve, stacked};
+use crate::identify::estimate::triangle::Triangle;
+use crate::plants::regression::RegressionModel;
+use std::borrow::Cow;
+
+/// Samples of all logs that are looked at, before decimation.
+const SAMPLES: usize = 40_000;
+
+/// Standard errors by which a constant is surely not 0.
+const SURE: f64 = 5.0;
+
+/// Constants that are found, at most.
+const MOST: usize = 3;
+
+/// Half the difference of positions that a slope is found with [rad, m].
+const STEP: f64 = 1e-3;
+
+/// How much what is left may still be like itself so many periods of the filter's cutoff later,
+/// after which noise is another one.
+const ALIKE: f64 = 0.3;
+const PERIODS: f64 = 2.0;
+
+/// A share of a direction that counts for nothing.
+const NOTHING: f64 = 1e-6;
+
+/// The constant errors that an estimate sees, each with its size in standard errors.
+pub(super) fn constant_errors(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    found: &Estimate,
+) -> Vec<(Misreading, f64)> {
+    let (pieces, left_out) = pieces(logs, &found.left_out);
+    let mut columns = Columns::new(model, &pieces, found.solution.phi.as_slice());
+    let extended = Extended::new(model, (&pieces, &left_out), (found, &mut columns));
+    let lines = columns.lines.clone();
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut sizes: Vec<Size> = Vec::new();
+    while chosen.len() < MOST {
+        let with = |line: usize| [&chosen[..], &[line]].concat();
+        let seen = |line: usize| {
+            let own = extended.sizes(&with(line), Errors::Classical)?[chosen.len()];
+            Some((line, own.of_error().abs()))
+        };
+        let others = (0..lines.len()).filter(|line| !chosen.contains(line));
+        let surest = others.filter_map(seen).max_by(|a, b| a.1.total_cmp(&b.1));
+        let next = surest.map_or_else(Vec::new, |(line, _)| with(line));
+        let own = extended.sizes(&next, Errors::Correlated).unwrap_or_default();
+        if own.last().is_none_or(|last| last.of_error().abs() < SURE) {
+            break;
+        }
+        (chosen, sizes) = (next, own);
+    }
+    if chosen.is_empty() {
+        return Vec::new();
+    }
+    let size = |line: usize| {
+        let at = chosen.iter().position(|&one| one == line);
+        at.map_or(0.0, |at| sizes[at].value)
+    };
+    let size: Vec<f64> = (0..lines.len()).map(size).collect();
+    let phi = extended.phi(&chosen);
+    if !columns.is_noise((&pieces, &left_out), (&phi, &size)) {
+        return Vec::new();
+    }
+    let of = |(&line, size): (&usize, &Size)| match lines[line] {
+        Line::Zero(joint) => (Misreading::Zero(joint, size.value), size.of_error()),
+        // what is to be added is what is too little
+        Line::Offset(joint) => (Misreading::TorqueOffset(joint, -size.value), size.of_error()),
+    };
+    chosen.iter().zip(&sizes).map(of).collect()
+}
+
+/// Pieces all along the logs, as logs, with the rows of them that do not count.
+fn pieces(logs: &[Conditioned], left_out: &LeftOut) -> (Vec<Conditioned>, LeftOut) {
+    let most = SAMPLES / logs.len();
+    let of = |(number, log): (usize, &Conditioned)| -> Vec<(usize, Piece)> {
+        log.pieces(most).into_iter().map(|piece| (number, piece)).collect()
+    };
+    let all: Vec<(usize, Piece)> = logs.iter().enumerate().flat_map(of).collect();
+    let pieces = all.iter().map(|&(number, piece)| logs[number].piece(piece)).collect();
+    (pieces, left_out.of_pieces(logs, &all))
+}
+
+/// A constant that may be off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Line {
+    Zero(usize),
+    Offset(usize),
+}
+
+/// A constant and its standard error.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    value: f64,
+    std: f64,
+}
+
+impl Size {
+    fn of_error(self) -> f64 {
+        if self.std > 0.0 { self.value / self.std } else { 0.0 }
+    }
+}
+
+/// The columns of constants beside those of a regressor.
+struct Columns<'a> {
+    model: &'a RegressionModel,
+    lines: Vec<Line>,
+    /// phi by joint.
+    own: Vec<Vec<f64>>,
+    /// For each piece and zero the piece with the position above and below.
+    shifted: Vec<Vec<[Shifted; 2]>>,
+}
+
+/// A piece with other positions, and its last block.
+struct Shifted {
+    log: Conditioned,
+    first: Option<usize>,
+    block: Block,
+}
+
+impl<'a> Columns<'a> {
+    fn new(model: &'a RegressionModel, pieces: &[Conditioned], phi: &[f64]) -> Self {
+        let joints = (0..model.joints.len()).filter(|&joint| !model.joints[joint].is_base);
+        let moves = |joint: &usize| pieces.iter().any(|log| log.resting.get(*joint) != Some(&true));
+        let is_measured = |joint: &usize| pieces.iter().any(|log| log.torque[*joint].is_some());
+        let zeros: Vec<usize> = joints.clone().filter(moves).collect();
+        let shifted = |log: &Conditioned| {
+            let by = |joint: usize, step: f64| {
+                let mut log = log.clone();
+                log.q[joint].iter_mut().for_each(|q| *q += step);
+                Shifted { log, first: None, block: Block::default() }
+            };
+            zeros.iter().map(|&joint| [STEP, -STEP].map(|step| by(joint, step))).collect()
+        };
+        let of_joint = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
+        let offsets = joints.filter(is_measured).map(Line::Offset);
+        Self {
+            model,
+            lines: zeros.iter().map(|&joint| Line::Zero(joint)).chain(offsets).collect(),
+            own: model.pattern().iter().map(of_joint).collect(),
+            shifted: pieces.iter().map(shifted).collect(),
+        }
+    }
+
+    /// One column for each line, of the rows of a joint in a block of a piece.
+    fn of(&mut self, piece: usize, block: &Block, joint: usize) -> Vec<Vec<f64>> {
+        let mut columns = Vec::with_capacity(self.lines.len());
+        for both in &mut self.shifted[piece] {
+            let left = both.each_mut().map(|one| {
+                if one.first != Some(block.first) {
+                    let mut maker = BlockMaker::new(self.model, &one.log);
+                    one.block = maker.at(block.first, block.samples).clone();
+                    one.first = Some(block.first);
+                }
+                one.block.residual(joint, &self.own[joint]).unwrap_or_default()
+            });
+            let slope = |(above, below): (&f64, &f64)| (below - above) / (2.0 * STEP);
+            columns.push(left[0].iter().zip(&left[1]).map(slope).collect());
+        }
+        for line in &self.lines[columns.len()..] {
+            let is_own = *line == Line::Offset(joint);
+            columns.push(vec![f64::from(u8::from(is_own)); block.samples]);
+        }
+        columns
+    }
+
+    /// Whether what is left with phi and constants of these sizes is noise of all joints.
+    fn is_noise(
+        &mut self,
+        (pieces, left_out): (&[Conditioned], &LeftOut),
+        (phi, sizes): (&[f64], &[f64]),
+    ) -> bool {
+        let n = self.own.len();
+        let mut sums = vec![[0.0; 4]; n];
+        for (number, log) in pieces.iter().enumerate() {
+            let cutoff = log.filter.as_ref().map_or(0.5, Butterworth::cutoff);
+            let lag = (PERIODS / (cutoff * log.decimation.max(1) as f64)).ceil() as usize;
+            BlockMaker::new(self.model, log).for_each(|block| {
+                for (joint, sums) in sums.iter_mut().enumerate() {
+                    let own: Vec<f64> =
+                        self.model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+                    let Some(mut left) = block.residual(joint, &own) else { continue };
+                    for (column, size) in self.of(number, block, joint).iter().zip(sizes) {
+                        left.iter_mut().zip(column).for_each(|(left, by)| *left -= size * by);
+                    }
+                    let range = (block.first, block.samples);
+                    let counts = left_out.counts((number, log), joint, range);
+                    let counts = |at: usize| counts.as_ref().is_none_or(|counts| counts[at]);
+                    for at in (0..left.len()).filter(|&at| counts(at)) {
+                        sums[0] += left[at] * left[at];
+                        sums[1] += 1.0;
+                        if at >= lag && counts(at - lag) {
+                            sums[2] += left[at] * left[at - lag];
+                            sums[3] += 1.0;
+                        }
+                    }
+                }
+            });
+        }
+        let is_noise =
+            |[squares, rows, lagged, pairs]: &[f64; 4]| lagged * rows < ALIKE * squares * pairs;
+        sums.iter().filter(|sums| sums[3] > 0.0).all(is_noise)
+    }
+}
+
+/// Logs condensed with the columns of all constants.
+struct Extended {
+    condensed: Condensed,
+    weights: Vec<f64>,
+    /// Columns of the regressor of each joint, and of phi.
+    own: Vec<Vec<usize>>,
+    rank: usize,
+}
+
+impl Extended {
+    fn new(
+        model: &RegressionModel,
+        rows: (&[Conditioned], &LeftOut),
+        (found, columns): (&Estimate, &mut Columns<'_>),
+    ) -> Self {
+        let (own, rank) = (model.pattern().to_vec(), model.rank());
+        let count = columns.lines.len();
+        let with = |places: &Vec<usize>| places.iter().copied().chain(rank..rank + count).collect();
+        let pattern = own.iter().map(with).collect();
+        let mut of = |piece: usize, block: &Block, joint: usize| -> Option<Vec<Vec<f64>>> {
+            block.torque[joint].as_ref()?;
+            Some(columns.of(piece, block, joint))
+        };
+        let condensed =
+            Condensed::of_rows(model, rows, (pattern, rank + count), &mut |piece, block, joint| {
+                let mut all: Vec<Cow<'_, [f64]>> =
+                    block.with_target(joint)?.into_iter().map(Cow::Borrowed).collect();
+                let target = all.pop()?;
+                all.extend(of(piece, block, joint)?.into_iter().map(Cow::Owned));
+                all.push(target);
+                Some(all)
+            });
+        let weight = |noise: &f64| if *noise > 0.0 { 1.0 / noise } else { 0.0 };
+        let weights = found.noise.iter().map(weight).collect();
+        Self { condensed, weights, own, rank }
+    }
+
+    /// The same with some of the constants alone.
+    fn with(&self, chosen: &[usize]) -> Condensed {
+        let of_joint = |joint: usize, triangle: &Triangle| {
+            let width = self.own[joint].len();
+            let constants = chosen.iter().map(|line| width + line);
+            triangle.with_columns(&(0..width).chain(constants).collect::<Vec<_>>())
+        };
+        let rank = self.rank + chosen.len();
+        let with =
+            |places: &Vec<usize>| places.iter().copied().chain(self.rank..rank).collect::<Vec<_>>();
+        let of_part = |part: &Vec<Triangle>| {
+            part.iter().enumerate().map(|(joint, one)| of_joint(joint, one)).collect()
+        };
+        Condensed {
+            pattern: self.own.iter().map(with).collect(),
+            parts: self.condensed.parts.iter().map(of_part).collect(),
+            log_of_part: self.condensed.log_of_part.clone(),
+            end_s: self.condensed.end_s.clone(),
+            rank,
+        }
+    }
+
+    /// The constants that are chosen; none if the others make up for one of them.
+    fn sizes(&self, chosen: &[usize], errors: Errors) -> Option<Vec<Size>> {
+        let condensed = self.with(chosen);
+        let r = stacked(&condensed.whole(), &condensed.pattern, &self.weights, &[], condensed.rank);
+        let solution = solve(&r, &vec![0.0; condensed.rank]);
+        let problem = Problem {
+            condensed: &condensed,
+            weights: &self.weights,
+            prior: &[],
+            solution: &solution,
+        };
+        let (covariance, _) = problem.covariance(errors);
+        let of = |at: usize| {
+            let [dead, alive] = [&solution.dead, &solution.factor].map(|one| one.row(at).norm());
+            let std = covariance[(at, at)].max(0.0).sqrt();
+            (alive > 0.0 && dead <= NOTHING * alive)
+                .then_some(Size { value: solution.phi[at], std })
+        };
+        (self.rank..condensed.rank).map(of).collect()
+    }
+
+    /// phi beside the constants that are chosen.
+    fn phi(&self, chosen: &[usize]) -> Vec<f64> {
+        let condensed = self.with(chosen);
+        let r = stacked(&condensed.whole(), &condensed.pattern, &self.weights, &[], condensed.rank);
+        solve(&r, &vec![0.0; condensed.rank]).phi.as_slice()[..self.rank].to_vec()
+    }
+}

@@ -245,7 +245,8 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     let model_effects = given.uses(ESTIMATED);
     let ModelApart { apart: ApartEffects { robot, laws, .. }, own, source, .. } = given;
     let model = regression(&robot)?;
-    let ([mut train, mut held_out], remarks) = logs(arguments, &robot, &model)?;
+    let mut remarks = Vec::new();
+    let [mut train, mut held_out] = logs(arguments, &robot, &model, &mut remarks)?;
     let before = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);
     let (robot, model) = match before {
         Some(robot) => {
@@ -335,25 +336,24 @@ fn regression(robot: &Robot) -> Result<RegressionModel, Failure> {
     Ok(model.map_err(|error| IdentifyFailure::Regression(Box::new(error)))?)
 }
 
-/// Reads the logs that are searched and those that judge, with what was found in each.
+/// Reads the logs that are searched and those that judge.
 fn logs(
     arguments: &Arguments,
     robot: &Robot,
     model: &RegressionModel,
-) -> Result<([Vec<MeasuredLog>; 2], Vec<(String, LogRemark)>), Failure> {
-    let mut remarks = Vec::new();
+    remarks: &mut Vec<(String, LogRemark)>,
+) -> Result<[Vec<MeasuredLog>; 2], Failure> {
     let mut ground = Ground::under(robot, model)
         .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
     let mut read = |path: &PathBuf| {
-        let mut log = log(arguments, robot, model, path, &mut remarks)?;
+        let mut log = log(arguments, robot, model, path, remarks)?;
         if let Some(ground) = &mut ground {
             ground.load(&mut log);
         }
         Ok(log)
     };
     let mut all = |paths: &[PathBuf]| paths.iter().map(&mut read).collect::<Result<_, Failure>>();
-    let both = [all(&arguments.train)?, all(&arguments.validate)?];
-    Ok((both, remarks))
+    Ok([all(&arguments.train)?, all(&arguments.validate)?])
 }
 
 fn log(

@@ -380,13 +380,13 @@ impl Fit<'_> {
         let of = (&found.solution, &found.weights[..]);
         match self.options.method {
             Method::Robust(loss) => {
-                noise_bias(model, rows, of, Some(&factors_of_loss(found, loss)))
+                noise_bias((model, self.start), rows, of, Some(&factors_of_loss(found, loss)))
             }
             Method::Likelihood => {
                 let factors = self.factors_of_noise(model, rows.0, found);
-                noise_bias(model, rows, of, Some(&factors))
+                noise_bias((model, self.start), rows, of, Some(&factors))
             }
-            _ => noise_bias(model, rows, of, None),
+            _ => noise_bias((model, self.start), rows, of, None),
         }
     }
 }

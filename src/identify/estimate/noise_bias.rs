@@ -27,9 +27,10 @@ const SEED: u64 = 1;
 /// The factors of a block's rows of a joint, beside the joint's weight: log, block, joint.
 pub(super) type RowFactors<'a> = &'a dyn Fn(usize, &Block, usize) -> Vec<f64>;
 
-/// The bias of phi, of joints with weights, and of rows that have factors too, if any have.
+/// The bias of phi, of joints with weights, and of rows that have factors too, if any have. `given`
+/// is phi of the model's values.
 pub(super) fn noise_bias(
-    model: &RegressionModel,
+    (model, given): (&RegressionModel, &[f64]),
     (logs, left_out): Rows<'_>,
     (solution, weights): (&Solution, &[f64]),
     factors: Option<RowFactors<'_>>,
@@ -69,7 +70,7 @@ pub(super) fn noise_bias(
             }
         }
     }
-    noise.bias(solution)
+    noise.bias(solution, given)
 }
 
 /// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
@@ -107,12 +108,21 @@ impl Noise {
     }
 
     /// phi^ - phi of phi^ = phi - C (N phi + known): where noise makes most of W, phi^ is a small
-    /// part of phi.
-    fn bias(&self, solution: &Solution) -> DVector<f64> {
+    /// part of phi. Where it makes nearly all of W the rest of it hangs on the last digits of N: of
+    /// that and of what the model's values would lose, the larger one.
+    fn bias(&self, solution: &Solution, given: &[f64]) -> DVector<f64> {
         let rank = self.0.nrows();
         let share = &solution.factor * solution.factor.tr_mul(&self.0);
-        let off = share.column(rank) - share.columns(0, rank) * &solution.phi;
+        let lost = |phi: &DVector<f64>| share.column(rank) - share.columns(0, rank) * phi;
         let left = DMatrix::identity(rank, rank) - share.columns(0, rank);
-        left.lu().solve(&off).unwrap_or(off)
+        let off = lost(&solution.phi);
+        let by_estimate = left.lu().solve(&off).unwrap_or(off);
+        let by_model = lost(&DVector::from_column_slice(given));
+        let in_errors = |bias: &DVector<f64>| {
+            let own = solution.factor.row_iter().map(|row| row.norm());
+            let ratios = bias.iter().zip(own).filter(|(_, error)| *error > 0.0);
+            ratios.map(|(bias, error)| bias.abs() / error).fold(0.0, f64::max)
+        };
+        if in_errors(&by_model) > in_errors(&by_estimate) { by_model } else { by_estimate }
     }
 }

@@ -200,7 +200,8 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, train, &found)) {
         misread = held_out_misread(model, log, (&phi, deviations));
     }
-    if misread.is_empty() {
+    // noise of the positions makes constants, too
+    if misread.is_empty() && !listed.iter().any(IdentifiedParameter::is_biased) {
         misread = constants_off(model, train, &found);
     }
     let others = held_out_misread(model, held_out, (phi, deviations));

@@ -11,7 +11,7 @@ use crate::identify::estimate::errors::{Errors, Problem};
 use crate::identify::estimate::least_squares::Estimate;
 use crate::identify::estimate::left_out::LeftOut;
 use crate::identify::estimate::rows::{Block, BlockMaker};
-use crate::identify::estimate::solve::{solve, stacked};
+use crate::identify::estimate::solve::{Solution, solve, stacked};
 use crate::identify::estimate::triangle::Triangle;
 use crate::plants::regression::RegressionModel;
 use std::borrow::Cow;
@@ -71,8 +71,9 @@ pub(super) fn constant_errors(
         at.map_or(0.0, |at| sizes[at].value)
     };
     let size: Vec<f64> = (0..lines.len()).map(size).collect();
-    let phi = extended.phi(&chosen);
-    if !columns.is_noise((&pieces, &left_out), (&phi, &size)) {
+    let (_, solution) = extended.solved(&chosen);
+    let phi = &solution.phi.as_slice()[..model.rank()];
+    if !columns.is_noise((&pieces, &left_out), (phi, &size)) {
         return Vec::new();
     }
     let of = |(&line, size): (&usize, &Size)| match lines[line] {
@@ -275,31 +276,26 @@ impl Extended {
         }
     }
 
+    /// phi with the constants that are chosen behind it.
+    fn solved(&self, chosen: &[usize]) -> (Condensed, Solution) {
+        let condensed = self.with(chosen);
+        let (rank, triangles) = (condensed.rank, condensed.whole());
+        let r = stacked(&triangles, &condensed.pattern, &self.weights, &[], rank);
+        (condensed, solve(&r, &vec![0.0; rank]))
+    }
+
     /// The constants that are chosen; none if the others make up for one of them.
     fn sizes(&self, chosen: &[usize], errors: Errors) -> Option<Vec<Size>> {
-        let condensed = self.with(chosen);
-        let r = stacked(&condensed.whole(), &condensed.pattern, &self.weights, &[], condensed.rank);
-        let solution = solve(&r, &vec![0.0; condensed.rank]);
-        let problem = Problem {
-            condensed: &condensed,
-            weights: &self.weights,
-            prior: &[],
-            solution: &solution,
-        };
+        let (condensed, solution) = self.solved(chosen);
+        let (condensed, solution, weights) = (&condensed, &solution, &self.weights[..]);
+        let problem = Problem { condensed, weights, prior: &[], solution };
         let (covariance, _) = problem.covariance(errors);
         let of = |at: usize| {
             let [dead, alive] = [&solution.dead, &solution.factor].map(|one| one.row(at).norm());
             let std = covariance[(at, at)].max(0.0).sqrt();
-            (alive > 0.0 && dead <= NOTHING * alive)
-                .then_some(Size { value: solution.phi[at], std })
+            let is_seen = alive > 0.0 && dead <= NOTHING * alive;
+            is_seen.then_some(Size { value: solution.phi[at], std })
         };
         (self.rank..condensed.rank).map(of).collect()
-    }
-
-    /// phi beside the constants that are chosen.
-    fn phi(&self, chosen: &[usize]) -> Vec<f64> {
-        let condensed = self.with(chosen);
-        let r = stacked(&condensed.whole(), &condensed.pattern, &self.weights, &[], condensed.rank);
-        solve(&r, &vec![0.0; condensed.rank]).phi.as_slice()[..self.rank].to_vec()
     }
 }

@@ -68,8 +68,7 @@ fn run(command: &Path, files: Files<'_>) -> Answer {
     if let Some(before) = std::fs::read(&said).ok().and_then(|bytes| parsed(&bytes)) {
         return before;
     }
-    let folder = files.model.with_file_name("diagnosis");
-    let output = blind::battery::command(command, files).arg("--out").arg(folder).output();
+    let output = blind::battery::command(command, files).output();
     let failed = |why: &str| {
         eprintln!("{}: {why}", files.model.display());
         Answer { verdict: "failed".into(), ..Answer::default() }

@@ -13,7 +13,7 @@ use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
 use super::nominal::{Nominal, Uncertainty};
 use super::regime::{Where, where_left};
-use super::repeat::unrepeatable;
+use super::repeat::{raise_floors, unrepeatable};
 use super::search::{SearchOptions, Step, Stop, search};
 use super::signals::{Filters, Signals};
 use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
@@ -157,8 +157,8 @@ pub fn diagnose(
         Ok(Data::new(&nominal, signals.collect::<Result<Vec<Signals>, _>>()?))
     };
     let (train, held_out) = (read(request.train)?, read(request.held_out)?);
-    let train_floor = NoiseFloor::of_logs(&nominal, &train.signals);
-    let held_out_floor = NoiseFloor::of_logs(&nominal, &held_out.signals);
+    let floors = [&train, &held_out].map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
+    let [train_floor, held_out_floor] = &floors;
     let setting = Setting {
         train: &train,
         held_out: &held_out,
@@ -166,16 +166,18 @@ pub fn diagnose(
         candidates: request.candidates,
         given: request.given,
         coarse: train.signals.iter().map(Signals::coarse).collect(),
-        train_floor: &train_floor,
-        held_out_floor: &held_out_floor,
+        train_floor,
+        held_out_floor,
     };
+    let [train_floor, held_out_floor] = &with_scatter(&setting);
+    let setting = Setting { train_floor, held_out_floor, ..setting };
     let outcome = search(&setting, &request.options, &mut |state| {
         let taken: Vec<usize> = state.taken.iter().map(|one| one.candidate).collect();
         watch(&taken, Gap::new(&held_out, &state.held_out_residual, &state.trust()[1]).all);
     });
     let filter_s = 0.35 / filters.torque_hz;
     let left = |state: &State| {
-        where_left(&train, &state.residual, &state.torques[0], &train_floor, filter_s)
+        where_left(&train, &state.residual, &state.torques[0], train_floor, filter_s)
     };
     let states = [&outcome.before, &outcome.after];
     let mut effects = found_effects((&setting, &outcome.screen), &request.options, states);
@@ -194,9 +196,9 @@ pub fn diagnose(
         after: left(after),
         given: given_effects(&setting, after),
         effects,
-        train: Gaps::new((&train, &train_floor), [&before.residual, &after.residual], &trust[0]),
+        train: Gaps::new((&train, train_floor), [&before.residual, &after.residual], &trust[0]),
         held_out: Gaps::new(
-            (&held_out, &held_out_floor),
+            (&held_out, held_out_floor),
             [&before.held_out_residual, &after.held_out_residual],
             &trust[1],
         ),
@@ -235,6 +237,20 @@ fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters,
         }
     }
     last
+}
+
+/// The floors of both sets of logs, with what differs from lap to lap if that is little of what the
+/// model leaves.
+fn with_scatter(setting: &Setting<'_>) -> [Vec<NoiseFloor>; 2] {
+    let mut floors = [setting.train_floor, setting.held_out_floor].map(<[NoiseFloor]>::to_vec);
+    if floors.iter().flatten().any(NoiseFloor::is_exceeded_by_laps) {
+        let state = setting.state(&setting.given);
+        let [of_train, of_held_out] = &state.trust();
+        let train = (setting.train, &state.residual[..], &of_train[..]);
+        let held_out = (setting.held_out, &state.held_out_residual[..], &of_held_out[..]);
+        raise_floors([train, held_out], &mut floors);
+    }
+    floors
 }
 
 /// The gaps of the models before and after in motion.

@@ -3,7 +3,7 @@
 use super::evidence::paired;
 use super::gap::Gap;
 use super::problem::Problem;
-use super::search::{ALIKE, DISTINCT, Screen, SearchOptions, refine, score};
+use super::search::{ALIKE, Screen, SearchOptions, is_worse, refine, score};
 use super::state::{Setting, State, Taken};
 
 /// An effect that would do as well in the place of one that was found.
@@ -53,7 +53,7 @@ pub fn family(
             continue;
         }
         let worse_by = paired(&trial.blocks.concat(), &chosen.blocks.concat());
-        if trial.held_out_cost() <= most && worse_by < DISTINCT {
+        if trial.held_out_cost() <= most && !is_worse(setting, &rest, &trial, &chosen) {
             let held_out_gap = gap(&trial.held_out_residual);
             let cosine = cosine(setting, &problem, &rest, [&own, &other]);
             let is_exact = false;

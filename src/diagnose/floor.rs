@@ -84,6 +84,12 @@ impl NoiseFloor {
             laps: of_laps,
         }
     }
+
+    /// Whether laps differ so much that the floor of some joint was found without them.
+    pub(super) fn is_exceeded_by_laps(&self) -> bool {
+        let mut both = self.laps.iter().flatten().zip(&self.deviation);
+        both.any(|(laps, deviation)| *laps >= UNREPEATABLE * deviation)
+    }
 }
 
 /// Deviation of white noise in a signal, from what it has above a quarter of its rate; steps and

@@ -46,9 +46,9 @@ impl Gap {
     }
 }
 
-/// The share of the gap that can be closed that was closed: 1 if only noise is left.
+/// The share of the gap that can be closed that was closed: 1 if only noise is left, or less.
 ///
 /// (before - after) / (before - floor); none where there is nothing to close.
 pub fn share_closed(before: f64, after: f64, floor: f64) -> Option<f64> {
-    (before > floor).then(|| (before - after) / (before - floor))
+    (before > floor).then(|| ((before - after) / (before - floor)).min(1.0))
 }

@@ -152,11 +152,12 @@ fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
     let sum: f64 = own().map(|joint| closed[joint]).sum();
     [from, now].map(|all| {
         let excess: f64 = own().map(|joint| (all[joint][0] - all[joint][1]).max(0.0)).sum();
-        sum / excess.max(f64::MIN_POSITIVE)
+        if excess > 0.0 { sum / excess } else { 0.0 }
     })
 }
 
-/// The effect that explains most of what is left, if it is more than chance.
+/// The effect that explains most of what is left, if it is more than chance; else the best one of
+/// another joint that is. If none is, the first of them.
 fn forward(
     (setting, screen): (&Setting<'_>, &Screen),
     options: &SearchOptions,
@@ -165,61 +166,102 @@ fn forward(
 ) -> Option<(Trial, Step)> {
     let mut scored = score(setting, screen, (state, &state.taken), None);
     scored.retain(|one| !idle.contains(&one.candidate));
-    let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
     let problem = Problem::new(setting.train, &state.deviation[0], &[]);
-    let trials = refine(setting, options.refined, state, (&problem, &scored));
+    let mut trials = refine(setting, options.refined, state, (&problem, &scored));
     let idle = setting.trial(&problem, state, &state.taken);
-    let best = best(&trials, &idle)?;
-    // What chance explains: of what would be left with the effect, since turned by some share of
-    // the log it may still be like itself.
-    let decoys = score(setting, screen, (state, &best.taken), Some(turn));
-    let decoy = decoys.first().map_or(0.0, |best| best.gain);
-    let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
-    let significance = paired(worse, better).max(by_ranks(worse, better));
-    let added = best.taken.last().expect("an effect was added").candidate;
-    let gain = idle.found.cost - best.found.cost;
-    let [_, trust] = state.trust();
-    let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust).all;
-    let of = |left: &[f64]| setting.held_out_squares(state, left);
-    let [from, now, then] = [before, &idle.held_out_residual, &best.held_out_residual].map(of);
-    let [share, of_rest] = closed(&from, &now, &then);
-    let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
-    let most = (0..now.len())
-        .max_by(|&a, &b| (now[a][0] - then[a][0]).total_cmp(&(now[b][0] - then[b][0])));
-    let mut runners_up: Vec<(usize, f64)> = trials
-        .iter()
-        .filter_map(|trial| {
-            let last = trial.taken.last()?.candidate;
-            (last != added).then(|| (last, held_out_gap(&trial.held_out_residual)))
-        })
-        .collect();
-    runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
-    // Blocks in which another missing effect weighs scatter much: a large share needs less.
-    let asked = if share > LARGE { 2.0 } else { options.significance };
-    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    let parameters = (best.parameters() - idle.parameters()) as f64;
-    let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
-        && significance > asked
-        && !most.is_some_and(is_noise);
-    let is_enough = is_more && of_rest >= options.least_share;
-    // Torques that are right for the wrong reason move the robot otherwise.
-    let own = is_enough
-        .then(|| setting.in_motion((&state.taken, &state.z), (&best.taken, &best.found.z)));
-    let in_motion = own.flatten();
-    let is_taken = is_enough && in_motion.is_none_or(|better| better > -DISTINCT);
-    let held_out_gap = held_out_gap(&best.held_out_residual);
-    let step = Step {
-        added,
-        is_taken,
-        gain,
-        decoy,
-        significance,
-        share,
-        held_out_gap,
-        in_motion,
-        runners_up,
-    };
-    Some((best.clone(), step))
+    let round = Round { setting, screen, options, state, before, idle: &idle };
+    let mut first = None;
+    while let Some(best) = best(setting, state, &trials, &idle).cloned() {
+        let step = round.weigh(&best, &trials);
+        let joint = setting.candidates[step.added].joint;
+        if step.is_taken {
+            return Some((best, step));
+        }
+        first = first.or(Some((best, step)));
+        trials.retain(|trial| round.joint(trial) != joint);
+    }
+    first
+}
+
+/// One round of a search: a state to which an effect may be added.
+struct Round<'r, 's> {
+    setting: &'r Setting<'s>,
+    screen: &'r Screen,
+    options: &'r SearchOptions,
+    state: &'r State,
+    /// What was left of held-out logs before the search.
+    before: &'r [f64],
+    /// The state as a trial.
+    idle: &'r Trial,
+}
+
+impl Round<'_, '_> {
+    fn added(trial: &Trial) -> usize {
+        trial.taken.last().expect("an effect was added").candidate
+    }
+
+    fn joint(&self, trial: &Trial) -> Option<usize> {
+        self.setting.candidates[Self::added(trial)].joint
+    }
+
+    /// What chance explains where `best` acts: of what would be left with it, since turned by some
+    /// share of the log it may still be like itself.
+    fn decoy(&self, best: &Trial) -> f64 {
+        let Self { setting, screen, options, state, .. } = self;
+        let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
+        let decoys = score(setting, screen, (state, &best.taken), Some(turn));
+        let joint = self.joint(best);
+        let is_there =
+            |one: &&Scored| joint.is_none() || setting.candidates[one.candidate].joint == joint;
+        decoys.iter().find(is_there).map_or(0.0, |best| best.gain)
+    }
+
+    /// Whether a trial is more than chance, against all `trials`.
+    fn weigh(&self, best: &Trial, trials: &[Trial]) -> Step {
+        let Self { setting, options, state, idle, .. } = self;
+        let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
+        let significance = paired(worse, better).max(by_ranks(worse, better));
+        let added = Self::added(best);
+        let [gain, decoy] = [idle.found.cost - best.found.cost, self.decoy(best)];
+        let [_, trust] = state.trust();
+        let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust).all;
+        let of = |left: &[f64]| setting.held_out_squares(state, left);
+        let [from, now, then] =
+            [self.before, &idle.held_out_residual, &best.held_out_residual].map(of);
+        let [share, of_rest] = closed(&from, &now, &then);
+        let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
+        let most = (0..now.len())
+            .max_by(|&a, &b| (now[a][0] - then[a][0]).total_cmp(&(now[b][0] - then[b][0])));
+        let mut runners_up: Vec<(usize, f64)> = trials
+            .iter()
+            .filter(|trial| Self::added(trial) != added)
+            .map(|trial| (Self::added(trial), held_out_gap(&trial.held_out_residual)))
+            .collect();
+        runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
+        // Blocks in which another missing effect weighs scatter much: a large share needs less.
+        let asked = if share > LARGE { 2.0 } else { options.significance };
+        let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
+        let parameters = (best.parameters() - idle.parameters()) as f64;
+        let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
+            && significance > asked
+            && !most.is_some_and(is_noise);
+        let is_enough = is_more && of_rest >= options.least_share;
+        // Torques that are right for the wrong reason move the robot otherwise.
+        let own = is_enough
+            .then(|| setting.in_motion((&state.taken, &state.z), (&best.taken, &best.found.z)));
+        let in_motion = own.flatten();
+        Step {
+            added,
+            is_taken: is_enough && in_motion.is_none_or(|better| better > -DISTINCT),
+            gain,
+            decoy,
+            significance,
+            share,
+            held_out_gap: held_out_gap(&best.held_out_residual),
+            in_motion,
+            runners_up,
+        }
+    }
 }
 
 /// All candidates that are not `taken`, by what they would explain; as decoys, if they are turned.
@@ -285,8 +327,10 @@ fn range(data: &Data<'_>, joint: usize) -> [f64; 2] {
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
 }
 
-/// How many are fitted to the whole motion, of all that are fitted roughly.
+/// How many are fitted to the whole motion, of all that are fitted roughly; and how much more the
+/// rough fits of others may leave that are fitted as well.
 const FINE: usize = 3;
+const ROUGHLY: f64 = 1.1;
 
 /// The best scored candidates, each fitted together with what a state has; best first.
 pub(super) fn refine(
@@ -305,11 +349,22 @@ pub(super) fn refine(
     };
     let candidates = scored.iter().take(count).filter(|one| one.gain > 0.0);
     let mut trials: Vec<Trial> = candidates.map(rough).collect();
-    trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
-    for trial in trials.iter_mut().take(FINE) {
-        *trial = setting.trial(problem, state, &trial.taken);
+    let sort = |trials: &mut [Trial]| {
+        trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
+    };
+    sort(&mut trials);
+    let mut least: Option<(f64, usize)> = None;
+    for (place, trial) in trials.iter_mut().enumerate() {
+        let is_near = least.is_none_or(|(cost, parameters)| {
+            trial.cost() < ROUGHLY * cost && trial.parameters() <= parameters
+        });
+        if place < FINE || is_near {
+            *trial = setting.trial(problem, state, &trial.taken);
+            let own = (trial.cost(), trial.parameters());
+            least = least.filter(|(cost, _)| *cost <= own.0).or(Some(own));
+        }
     }
-    trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
+    sort(&mut trials);
     trials
 }
 
@@ -324,21 +379,39 @@ const LEAVES: f64 = 0.1;
 
 /// The trial that explains most of held-out logs, or nearly that with fewer parameters; `idle` is
 /// without it.
-fn best<'t>(trials: &'t [Trial], idle: &Trial) -> Option<&'t Trial> {
+fn best<'t>(
+    setting: &Setting<'_>,
+    state: &State,
+    trials: &'t [Trial],
+    idle: &Trial,
+) -> Option<&'t Trial> {
     let by_cost = |a: &&Trial, b: &&Trial| a.held_out_cost().total_cmp(&b.held_out_cost());
     let least = trials.iter().min_by(by_cost)?;
     let [none, least_cost] = [idle, least].map(Trial::held_out_cost);
     let most = (1.0 + ALIKE).powi(2) * least_cost;
     // Joints that this is not about weigh in the whole, but not in what is explained.
     let most = most.min(least_cost + LEAVES * (none - least_cost).max(0.0));
-    let alike = trials.iter().filter(|trial| {
-        trial.held_out_cost() <= most
-            && paired(&trial.blocks.concat(), &least.blocks.concat()) < DISTINCT
-    });
+    let alike = trials
+        .iter()
+        .filter(|trial| trial.held_out_cost() <= most && !is_worse(setting, state, trial, least));
     alike.min_by(|a, b| a.parameters().cmp(&b.parameters()).then(by_cost(a, b)))
 }
 
-/// Exchanges effects for candidates that explain more in their place, until none does.
+/// Whether a trial is worse than another for sure, and by more than a parameter costs (Schwarz
+/// 1978): laws that become each other differ by little, but for sure.
+pub(super) fn is_worse(setting: &Setting<'_>, state: &State, trial: &Trial, than: &Trial) -> bool {
+    let [of_trial, of_other] =
+        [trial, than].map(|one| setting.held_out_squares(state, &one.held_out_residual));
+    let rows = setting.held_out.rows() as f64;
+    let own = of_trial.iter().zip(&of_other).zip(setting.held_out_rows());
+    let more =
+        own.map(|(([a, noise], [b, _]), rows)| rows * (a - b) / noise.max(f64::MIN_POSITIVE));
+    more.sum::<f64>() > ROWS_PER_SAMPLE * (rows / ROWS_PER_SAMPLE).ln()
+        && paired(&trial.blocks.concat(), &than.blocks.concat()) >= DISTINCT
+}
+
+/// Exchanges effects for candidates that explain more in their place, or as much with fewer
+/// parameters.
 fn swap(
     (setting, screen): (&Setting<'_>, &Screen),
     options: &SearchOptions,
@@ -355,18 +428,29 @@ fn swap(
         let now = setting.trial(&problem, &rest, &state.taken);
         let trials = refine(setting, options.refined, &rest, (&problem, &scored));
         let idle = setting.trial(&problem, &rest, &rest.taken);
-        let Some(best) = best(&trials, &idle) else { continue };
-        let is_other = best.taken.last().is_some_and(|last| last.candidate != own.candidate);
-        let is_better = paired(&now.blocks.concat(), &best.blocks.concat()) > options.significance;
-        if is_other && is_better && best.score(samples) < now.score(samples) {
+        let is_other =
+            |trial: &&Trial| trial.taken.last().is_some_and(|last| last.candidate != own.candidate);
+        let is_better = |trial: &&Trial| {
+            paired(&now.blocks.concat(), &trial.blocks.concat()) > options.significance
+                && trial.score(samples) < now.score(samples)
+        };
+        let better = best(setting, &state, &trials, &idle).filter(is_other).filter(is_better);
+        let is_simpler = |trial: &&Trial| {
+            trial.parameters() < now.parameters() && !is_worse(setting, &state, trial, &now)
+        };
+        let simplest = trials.iter().filter(is_other).filter(is_simpler);
+        let simplest = simplest.min_by_key(|trial| trial.parameters());
+        if let Some(best) = better.or(simplest) {
             state = setting.state(&best.taken);
         }
     }
     state
 }
 
-/// The least share of what could be explained at its joints that an effect must close.
+/// The least share of what could be explained at its joints in the beginning that an effect must
+/// close, or else of what would be left without it.
 const IDLE: f64 = 0.05;
+const IDLE_OF_REST: f64 = 0.3;
 
 /// Takes effects out that the others have made idle, the idlest first.
 fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> State {
@@ -384,8 +468,9 @@ fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> Stat
             // Rows are weighted by what is left of them: squares count as those of unit noise.
             let worth = (less.cost() - now.cost()) / ROWS_PER_SAMPLE;
             let parameters = (now.parameters() - less.parameters()) as f64;
-            let [share, _] = closed(&from, &squares(&less.held_out_residual), &then);
-            let is_idle = worth <= parameters * samples.ln() || share < IDLE;
+            let [share, of_rest] = closed(&from, &squares(&less.held_out_residual), &then);
+            let is_small = share < IDLE && of_rest < IDLE_OF_REST;
+            let is_idle = worth <= parameters * samples.ln() || is_small;
             if is_idle && idlest.as_ref().is_none_or(|(least, _)| worth < *least) {
                 idlest = Some((worth, others));
             }

@@ -281,6 +281,13 @@ impl<'a> Setting<'a> {
         squares
     }
 
+    /// The rows of each joint in held-out logs.
+    pub fn held_out_rows(&self) -> Vec<f64> {
+        let mut rows = vec![0.0; self.train.nominal.model.joints.len()];
+        self.held_out.stretches.iter().for_each(|own| rows[own.joint] += own.rows as f64);
+        rows
+    }
+
     fn floor_of_joints(&self, joints: usize) -> Vec<f64> {
         let of_joint = |joint: usize| {
             let all: Vec<f64> = self.train_floor.iter().map(|log| log.deviation[joint]).collect();

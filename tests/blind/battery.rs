@@ -79,18 +79,16 @@ pub(crate) fn answer(value: &Value) -> Answer {
     };
     let named = |effect: &Value| {
         let name = text(&effect["effect"]);
-        let place = effect["at"].as_str().or_else(|| effect["at"]["link"].as_str());
+        // A law of two joints acts on the first.
+        let joint = |one: &Value| {
+            let at = one["at"].as_str().filter(|at| *at != "model")?;
+            Some(at.split(" with ").next().unwrap_or(at).to_owned())
+        };
         let others = effect["indistinguishable"].as_array().map_or(&[][..], Vec::as_slice);
-        let member =
-            |one: &Value| one.as_str().or_else(|| one["effect"].as_str()).map(str::to_owned);
-        let mut family: Vec<String> = others.iter().filter_map(member).collect();
-        if !family.is_empty() && !family.contains(&name) {
-            family.push(name.clone());
-        }
         Named {
             name: if name == "unnamed" { String::new() } else { name },
-            joint: place.filter(|place| *place != "model").map(str::to_owned),
-            family,
+            joint: joint(effect),
+            others: others.iter().map(|one| (text(&one["effect"]), joint(one))).collect(),
             parameters: numbers(effect),
         }
     };

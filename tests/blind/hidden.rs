@@ -98,7 +98,8 @@ const fn entry(
 ///
 /// Same physics: laws of dry friction with memory stand for each other (each reduces to the others
 /// where data do not show the shape of a loop), so do one-sided springs (a stop is a stiff one),
-/// delay and lag (equal to first order), friction of load and of a cable (equal where the wrap
+/// delay and lag (equal to first order), Stribeck friction and stiction (the plant's drives stick
+/// with both, and the catalogue's stiction is Stribeck's curve with a bristle for its sign), friction of load and of a cable (equal where the wrap
 /// does not change). Aliases: offset and asymmetric Coulomb while a joint moves; the inertia of a
 /// rotor and of the first link; payload and last link; a zero error and a tilt or a displaced mass.
 pub(crate) const TABLE: [Entry; 45] = [
@@ -121,7 +122,14 @@ pub(crate) const TABLE: [Entry; 45] = [
     ),
     entry(Law::AsymmetricCoulomb, "asymmetric_coulomb", &["torque_offset"], Site::Joint, "d", 1),
     entry(Law::AsymmetricViscous, "asymmetric_viscous", &[], Site::Joint, "d", 2),
-    entry(Law::Stribeck, "stribeck", &["stribeck_exponential", "lugre"], Site::Joint, "fs", 3),
+    entry(
+        Law::Stribeck,
+        "stribeck",
+        &["stribeck_exponential", "lugre", "stiction"],
+        Site::Joint,
+        "fs",
+        3,
+    ),
     entry(
         Law::Stiction,
         "stiction",
@@ -177,7 +185,7 @@ pub(crate) const TABLE: [Entry; 45] = [
         2,
     ),
     entry(Law::Damper, "damper", &[], Site::Joint, "d", 1),
-    entry(Law::Backlash, "backlash", &[], Site::Joint, "b", 2),
+    entry(Law::Backlash, "backlash", &[], Site::Joint, "", 2),
     entry(Law::Payload, "payload", &["payload_point", "link_parameters"], Site::Model, "m", 2),
     entry(
         Law::LinkInertia,

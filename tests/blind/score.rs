@@ -14,8 +14,9 @@ pub(crate) struct Named {
     pub(crate) name: String,
     /// Joint, or none for an effect of the whole model.
     pub(crate) joint: Option<String>,
-    /// Names that the data cannot tell apart, with `name` itself; empty for an unambiguous answer.
-    pub(crate) family: Vec<String>,
+    /// Names with their joints that the data cannot tell from this one; empty for an unambiguous
+    /// answer.
+    pub(crate) others: Vec<(String, Option<String>)>,
     /// Parameters with their standard deviations.
     pub(crate) parameters: BTreeMap<String, [f64; 2]>,
 }
@@ -63,25 +64,29 @@ fn level(strength: f64) -> &'static str {
 }
 
 impl Named {
-    /// Whether this names the physics of a hidden effect, at its joint.
+    /// Whether this names the physics of a hidden effect, at its joint: alone, or, with `family`,
+    /// as one of few.
     fn is(&self, hidden: &Hidden, robot: &Robot, family: bool) -> bool {
-        let entry = hidden.law.entry();
-        let same = |name: &str| hidden.is_called(name, robot);
-        let by_family = family
-            && self.family.len() <= LARGEST_FAMILY
-            && self.family.iter().any(|name| same(name));
-        let alone = self.family.len() <= 1;
-        if !(same(&self.name) && (alone || family)) && !by_family {
-            return false;
-        }
-        let Some(joint) = &self.joint else { return entry.site == Site::Model };
-        let at = |index: usize| robot.joints[index].name == joint;
-        match entry.site {
-            Site::Joint => at(hidden.joint),
-            Site::Pair => at(hidden.joint) || at(hidden.other),
-            Site::Link => at(hidden.joint) || at(hidden.joint.saturating_sub(1)),
-            Site::Model => true,
-        }
+        let most = if family { LARGEST_FAMILY } else { 1 };
+        let is_it = |name: &str, joint: &Option<String>| {
+            hidden.is_called(name, robot) && is_there(hidden, robot, joint.as_deref())
+        };
+        self.others.len() < most
+            && (is_it(&self.name, &self.joint)
+                || self.others.iter().any(|(name, joint)| is_it(name, joint)))
+    }
+}
+
+/// Whether a joint, or none for the whole model, is where a hidden effect is.
+fn is_there(hidden: &Hidden, robot: &Robot, joint: Option<&str>) -> bool {
+    let site = hidden.law.entry().site;
+    let Some(joint) = joint else { return site == Site::Model };
+    let at = |index: usize| robot.joints[index].name == joint;
+    match site {
+        Site::Joint => at(hidden.joint),
+        Site::Pair => at(hidden.joint) || at(hidden.other),
+        Site::Link => at(hidden.joint) || at(hidden.joint.saturating_sub(1)),
+        Site::Model => true,
     }
 }
 
@@ -151,19 +156,23 @@ fn intervals(case: &Case, named: &[&Named]) -> [usize; 2] {
     within
 }
 
+/// The probability of at most `hits` of `count` that are probable by `p` each.
+fn at_most(hits: usize, count: usize, p: f64) -> f64 {
+    let mut term = (count as f64 * (-p).ln_1p()).exp();
+    let mut sum = term;
+    for i in 0..hits {
+        term *= (count - i) as f64 / (i + 1) as f64 * p / (1.0 - p);
+        sum += term;
+    }
+    sum
+}
+
+/// Probability of each tail beyond an interval.
+const TAIL: f64 = 0.025;
+
 /// Exact interval of 95 % of a probability, after `hits` of `count` (Clopper, Pearson 1934): at its
 /// ends the tails of the binomial distribution have 2.5 % each.
 pub(crate) fn binomial_interval(hits: usize, count: usize) -> [f64; 2] {
-    // probability of at most k
-    let at_most = |k: usize, p: f64| {
-        let mut term = (count as f64 * (-p).ln_1p()).exp();
-        let mut sum = term;
-        for i in 0..k {
-            term *= (count - i) as f64 / (i + 1) as f64 * p / (1.0 - p);
-            sum += term;
-        }
-        sum
-    };
     let bisect = |is_low: &dyn Fn(f64) -> bool| {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
@@ -172,9 +181,18 @@ pub(crate) fn binomial_interval(hits: usize, count: usize) -> [f64; 2] {
         }
         0.5 * (low + high)
     };
-    let lower = if hits == 0 { 0.0 } else { bisect(&|p| 1.0 - at_most(hits - 1, p) < 0.025) };
-    let upper = if hits == count { 1.0 } else { bisect(&|p| at_most(hits, p) > 0.025) };
+    let lower = if hits == 0 { 0.0 } else { bisect(&|p| 1.0 - at_most(hits - 1, count, p) < TAIL) };
+    let upper = if hits == count { 1.0 } else { bisect(&|p| at_most(hits, count, p) > TAIL) };
     [lower, upper]
+}
+
+/// The median and its interval of 95 %, between two of the values, whatever their distribution.
+fn median(mut values: Vec<f64>) -> Option<[f64; 3]> {
+    values.sort_by(f64::total_cmp);
+    let count = values.len();
+    let outside = (0..count / 2).take_while(|&k| at_most(k, count, 0.5) <= TAIL).count();
+    let median = *values.get(count / 2)?;
+    Some([median, values[outside.saturating_sub(1)], values[count - outside.max(1)]])
 }
 
 /// Figures of many cases, as lines of a table.
@@ -191,14 +209,18 @@ pub(crate) fn table(scores: &[Score]) -> String {
         }
     };
     let of = |kind: Kind| scores.iter().filter(move |score| score.kind == kind);
-    for (level, _) in LEVELS {
-        let these: Vec<&Score> = of(Kind::Single).filter(|score| score.level == level).collect();
-        let found = these.iter().filter(|score| score.found > 0).count();
-        line(&format!("{level}: name and joint"), found, these.len());
-        let clear = these.iter().filter(|score| score.unambiguous > 0).count();
-        line(&format!("{level}: unambiguously"), clear, these.len());
-        let clean = these.iter().filter(|score| score.right).count();
-        line(&format!("{level}: and nothing else"), clean, these.len());
+    let levels = LEVELS.map(|(level, _)| level);
+    let groups = [&levels[..2], &levels[2..], &levels[..1], &levels[1..2], &levels[..]];
+    for group in groups {
+        let name = group.join(" and ");
+        let these: Vec<&Score> =
+            of(Kind::Single).filter(|score| group.contains(&score.level)).collect();
+        let counted =
+            |is_it: &dyn Fn(&Score) -> bool| these.iter().filter(|score| is_it(score)).count();
+        let all = these.len();
+        line(&format!("{name}: name and joint"), counted(&|score| score.found > 0), all);
+        line(&format!("{name}: unambiguously"), counted(&|score| score.unambiguous > 0), all);
+        line(&format!("{name}: and nothing else"), counted(&|score| score.right), all);
     }
     let rights = |kind: Kind| of(kind).filter(|score| score.right).count();
     let seen = || of(Kind::Pair).filter(|score| score.level != "hidden");
@@ -217,11 +239,13 @@ pub(crate) fn table(scores: &[Score]) -> String {
         scores.iter().fold([0, 0], |[a, b], score| [a + score.within[0], b + score.within[1]]);
     line("parameters within their intervals", sums[0], sums[1]);
     let named = |score: &&Score| !score.truth.is_empty() && score.found > 0;
-    let mut closed: Vec<f64> =
-        scores.iter().filter(named).filter_map(|score| score.closed).collect();
-    closed.sort_by(f64::total_cmp);
-    if let Some(median) = closed.get(closed.len() / 2) {
-        text += &format!("\nMedian share of the explainable gap closed: {:.1} %\n", 100.0 * median);
+    let closed = scores.iter().filter(named).filter_map(|score| score.closed).collect();
+    if let Some(shares) = median(closed) {
+        let [median, low, high] = shares.map(|share| 100.0 * share);
+        text += &format!(
+            "\nMedian share of the explainable gap closed: {median:.1} % \
+             (95 % interval {low:.1} .. {high:.1} %)\n"
+        );
     }
     text
 }

@@ -304,9 +304,14 @@ fn scores_know_right_from_wrong() {
     let more = says(vec![named("coulomb", &joint), named("cogging", &joint)]);
     assert!(more.found == 1 && more.false_names == 1 && !more.right);
     let mut vague = named("viscous", &joint);
-    vague.family = vec!["viscous".into(), "coulomb".into()];
-    let vague = says(vec![vague.clone()]);
-    assert!(vague.right && vague.unambiguous == 0);
+    let at = |joint: &str| ("coulomb".to_owned(), Some(joint.to_owned()));
+    vague.others = vec![at(&joint)];
+    let seen = says(vec![vague.clone()]);
+    assert!(seen.right && seen.unambiguous == 0);
+    vague.others = vec![at("nowhere")];
+    assert!(!says(vec![vague.clone()]).right, "the right name elsewhere");
+    vague.others = vec![at(&joint), at("nowhere"), at("elsewhere")];
+    assert!(!says(vec![vague]).right, "four names");
 }
 
 /// Torque of a law with states after sliding at a rate for a distance.

@@ -5,6 +5,7 @@ mod base;
 mod blind;
 mod decompose;
 mod diagnose;
+mod diagnose_emps;
 mod effects;
 mod errors;
 mod excite;

@@ -99,8 +99,7 @@ impl ReadingLaw {
             _ => signals.qd[joint] = truth,
         }
         let mut torques = motion.torques_of(&signals);
-        let own = motion.torques_of(logged);
-        for (torque, own) in torques.iter_mut().flatten().zip(own.iter().flatten()) {
+        for (torque, own) in torques.iter_mut().flatten().zip(motion.total.iter().flatten()) {
             *torque -= own;
         }
         torques
@@ -118,15 +117,12 @@ impl Law for ReadingLaw {
             let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
             let size = sizes.fold(values[place].abs(), f64::max);
             let step = DIFFERENCE * if size > 0.0 { size } else { 1.0 };
-            let at = |sign: f64| {
-                let mut moved = values.to_vec();
-                moved[place] += sign * step;
-                self.torques(&motion, &moved)
-            };
-            let slope = |(a, b): (&f64, &f64)| (a - b) / (2.0 * step);
+            let mut moved = values.to_vec();
+            moved[place] += step;
+            let slope = |(a, b): (&f64, &f64)| (a - b) / step;
             let of_joint =
                 |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(slope).collect::<Vec<f64>>();
-            at(1.0).iter().zip(&at(-1.0)).map(of_joint).collect()
+            self.torques(&motion, &moved).iter().zip(&torque).map(of_joint).collect()
         };
         Response {
             joints: (0..torque.len()).collect(),

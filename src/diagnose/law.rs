@@ -18,7 +18,7 @@ pub struct Motion<'a> {
     pub load: &'a PerJoint,
     /// Their derivatives by time [N m/s, N/s].
     pub load_rate: &'a PerJoint,
-    /// All torques of the model with the effects that it has so far [N m, N].
+    /// All torques of the model without effects [N m, N].
     pub total: &'a PerJoint,
 }
 

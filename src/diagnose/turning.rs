@@ -5,6 +5,7 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
+use super::law::Motion;
 use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
@@ -25,9 +26,10 @@ pub(super) fn turning(data: &Data<'_>, torques: &[ModelTorques], laws: &[Fitted<
     let mut unsure = vec![0.0; data.rows()];
     for (log, (signals, torques)) in data.signals.iter().zip(torques).enumerate() {
         let bends = bends(signals, |moved| {
-            let mut sum = torques_of(data.nominal, moved, &torques.phi);
+            let total = torques_of(data.nominal, moved, &torques.phi);
+            let motion = Motion { total: &total, ..torques.motion(data.nominal, moved) };
+            let mut sum = total.clone();
             for fitted in laws {
-                let motion = torques.motion(data.nominal, moved);
                 let response = fitted.law.response(motion, &fitted.values);
                 for (&joint, torque) in response.joints.iter().zip(&response.torque) {
                     sum[joint].iter_mut().zip(torque).for_each(|(sum, torque)| *sum += torque);

@@ -310,13 +310,15 @@ fn names(model: &PlantModel) -> Result<Vec<&str>, ForwardError> {
     }
 }
 
+/// How accurately a log is simulated again: far below what a log knows.
+const ACCURACY: Accuracy = Accuracy { relative: 1e-6, absolute: 1e-8, max_step_s: 0.02 };
+
 /// How a log is simulated again: rows at its samples.
 fn simulation(drives: DriveModelling, end_s: f64, log: &MotionLog) -> Simulation {
-    let accuracy = Accuracy { relative: 1e-6, absolute: 1e-8, ..Accuracy::default() };
     Simulation {
         end_s,
         drives,
-        method: Method::DormandPrince(accuracy),
+        method: Method::DormandPrince(ACCURACY),
         log_period_s: log.step_s,
         stiction_rate: log.stiction_rate,
         ..Simulation::default()

@@ -1,11 +1,12 @@
 //! Short windows from measured states, under measured torques.
 
 use super::{
-    Compared, Forward, ForwardError, ForwardJoint, ForwardKind, MotionLog, column, names, rms,
-    simulation,
+    ACCURACY, Compared, Forward, ForwardError, ForwardJoint, ForwardKind, MotionLog, column, names,
+    rms, simulation,
 };
 use crate::plants::Plant;
-use crate::simulate::{Control, DriveModelling, JointControl, Stop, simulate};
+use crate::simulate::integrate::Method;
+use crate::simulate::{Control, DriveModelling, JointControl, Simulation, Stop, simulate};
 use crate::trajectory::{CubicSpline, EndCondition, Reference};
 
 /// Which windows.
@@ -50,6 +51,8 @@ pub fn in_windows(
     for from in (0..count).map(begin) {
         let initial = log.state(&model, from, false);
         let how = simulation(DriveModelling::Required, log.time_s(from + steps), log);
+        // Friction that is a steep line at rest makes explicit steps short, with light links most.
+        let how = Simulation { method: Method::Radau(ACCURACY), ..how };
         let run = simulate(plant, &torques, &initial, &how).map_err(ForwardError::Start)?;
         if run.stop != Stop::End {
             return Err(ForwardError::Stopped { t_s: run.end.t_s, stop: run.stop });

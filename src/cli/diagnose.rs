@@ -380,7 +380,12 @@ fn log(
     };
     let mut log = read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::Log)?;
     let found = std::mem::take(&mut log.remarks);
-    remarks.extend(found.into_iter().map(|remark| (file.clone(), remark)));
+    for remark in found.into_iter().map(|remark| (file.clone(), remark)) {
+        // A log may be given twice.
+        if !remarks.contains(&remark) {
+            remarks.push(remark);
+        }
+    }
     Ok(log)
 }
 

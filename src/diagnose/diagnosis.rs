@@ -7,6 +7,7 @@ use super::data::Data;
 use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
+use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
 use super::fault::DiagnosisError;
 use super::floor::{NoiseFloor, UNREPEATABLE};
@@ -117,6 +118,8 @@ pub struct Diagnosis {
     pub given: Vec<GivenEffect>,
     /// The effects, in the order in which they were found.
     pub effects: Vec<FoundEffect>,
+    /// How small other effects of one parameter would have been seen in the logs for training.
+    pub visible: Vec<Visible>,
     /// What is left at joints that no effect explains.
     pub structures: Vec<Structure>,
     /// How they were found.
@@ -202,6 +205,7 @@ pub fn diagnose(
             [&before.held_out_residual, &after.held_out_residual],
             &trust[1],
         ),
+        visible: visible(&setting, &outcome.screen, after),
         structures: structures(&setting, after),
         curves: curves(&held_out, [&before.held_out_residual, &after.held_out_residual]),
         motion: request.moved.map(|_| motion_gaps(&setting, [before, after])),
@@ -310,12 +314,16 @@ impl Diagnosis {
             ));
             Verdict::CannotTell
         } else if self.effects.is_empty() {
-            match is_noise {
-                true => Verdict::NothingMissing,
-                false => {
-                    reasons.push("nothing in the catalogue explains what is left".to_owned());
-                    Verdict::Unexplained
-                }
+            let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+            let unseen = unseen(setting, &self.visible);
+            if !is_noise {
+                reasons.push("nothing in the catalogue explains what is left".to_owned());
+                Verdict::Unexplained
+            } else if unseen.is_empty() {
+                Verdict::NothingMissing
+            } else {
+                reasons.extend(unseen.iter().map(|one| one.sentence(&names)));
+                Verdict::CannotTell
             }
         } else if self.effects.iter().all(|one| !one.is_named) {
             let nearest: Vec<String> =

@@ -66,8 +66,8 @@ pub(super) fn unrepeatable(
 const OF_LEFT: f64 = 1.0 / 3.0;
 
 /// Raises floors to what differs from lap to lap of each joint in the log where that is least, of
-/// those where it is little of what the model leaves. `all` are sets of logs, each with what is left
-/// and how far rows count.
+/// those where it is little of what the model leaves. `all` are sets of logs, each with what is
+/// left and how far rows count.
 pub(super) fn raise_floors<const N: usize>(
     all: [(&Data<'_>, &[f64], &[f64]); N],
     floors: &mut [Vec<NoiseFloor>; N],

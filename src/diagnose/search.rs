@@ -2,9 +2,9 @@
 
 use super::candidate::{Candidate, starts};
 use super::data::{Data, RowResponse};
-use super::evidence::{by_ranks, paired};
-use super::gap::Gap;
+use super::evidence::paired;
 use super::problem::{Fitted, Problem};
+use super::round::{closed, forward};
 use super::state::{Setting, State, Taken, Trial};
 
 /// What a search is allowed, and asks for.
@@ -44,6 +44,8 @@ pub struct Scored {
 pub struct Step {
     /// The candidate that explained most.
     pub added: usize,
+    /// The one that explains it together with this, where neither does alone.
+    pub with: Option<usize>,
     /// Whether it was added: the last one of a search may not have been.
     pub is_taken: bool,
     /// By how much the weighted squares that are left of the training logs fall.
@@ -137,133 +139,6 @@ pub fn search(
     Outcome { before, after: state, screen, steps, stop }
 }
 
-/// A share of what can be explained that is found at two standard errors.
-const LARGE: f64 = 0.2;
-
-/// A joint with less than so many times the squares of noise has nothing to explain.
-const QUIET: f64 = 1.3;
-
-/// The shares that are closed of what could be explained in the beginning, and now, at the joints
-/// that this is about: those with a tenth of what one of them has.
-fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
-    let closed: Vec<f64> = now.iter().zip(then).map(|(now, then)| now[0] - then[0]).collect();
-    let most = closed.iter().copied().fold(0.0, f64::max);
-    let own = || (0..closed.len()).filter(|&joint| closed[joint] > 0.1 * most);
-    let sum: f64 = own().map(|joint| closed[joint]).sum();
-    [from, now].map(|all| {
-        let excess: f64 = own().map(|joint| (all[joint][0] - all[joint][1]).max(0.0)).sum();
-        if excess > 0.0 { sum / excess } else { 0.0 }
-    })
-}
-
-/// The effect that explains most of what is left, if it is more than chance; else the best one of
-/// another joint that is. If none is, the first of them.
-fn forward(
-    (setting, screen): (&Setting<'_>, &Screen),
-    options: &SearchOptions,
-    (state, idle): (&State, &[usize]),
-    before: &[f64],
-) -> Option<(Trial, Step)> {
-    let mut scored = score(setting, screen, (state, &state.taken), None);
-    scored.retain(|one| !idle.contains(&one.candidate));
-    let problem = Problem::new(setting.train, &state.deviation[0], &[]);
-    let mut trials = refine(setting, options.refined, state, (&problem, &scored));
-    let idle = setting.trial(&problem, state, &state.taken);
-    let round = Round { setting, screen, options, state, before, idle: &idle };
-    let mut first = None;
-    while let Some(best) = best(setting, state, &trials, &idle).cloned() {
-        let step = round.weigh(&best, &trials);
-        let joint = setting.candidates[step.added].joint;
-        if step.is_taken {
-            return Some((best, step));
-        }
-        first = first.or(Some((best, step)));
-        trials.retain(|trial| round.joint(trial) != joint);
-    }
-    first
-}
-
-/// One round of a search: a state to which an effect may be added.
-struct Round<'r, 's> {
-    setting: &'r Setting<'s>,
-    screen: &'r Screen,
-    options: &'r SearchOptions,
-    state: &'r State,
-    /// What was left of held-out logs before the search.
-    before: &'r [f64],
-    /// The state as a trial.
-    idle: &'r Trial,
-}
-
-impl Round<'_, '_> {
-    fn added(trial: &Trial) -> usize {
-        trial.taken.last().expect("an effect was added").candidate
-    }
-
-    fn joint(&self, trial: &Trial) -> Option<usize> {
-        self.setting.candidates[Self::added(trial)].joint
-    }
-
-    /// What chance explains where `best` acts: of what would be left with it, since turned by some
-    /// share of the log it may still be like itself.
-    fn decoy(&self, best: &Trial) -> f64 {
-        let Self { setting, screen, options, state, .. } = self;
-        let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
-        let decoys = score(setting, screen, (state, &best.taken), Some(turn));
-        let joint = self.joint(best);
-        let is_there =
-            |one: &&Scored| joint.is_none() || setting.candidates[one.candidate].joint == joint;
-        decoys.iter().find(is_there).map_or(0.0, |best| best.gain)
-    }
-
-    /// Whether a trial is more than chance, against all `trials`.
-    fn weigh(&self, best: &Trial, trials: &[Trial]) -> Step {
-        let Self { setting, options, state, idle, .. } = self;
-        let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
-        let significance = paired(worse, better).max(by_ranks(worse, better));
-        let added = Self::added(best);
-        let [gain, decoy] = [idle.found.cost - best.found.cost, self.decoy(best)];
-        let [_, trust] = state.trust();
-        let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust).all;
-        let of = |left: &[f64]| setting.held_out_squares(state, left);
-        let [from, now, then] =
-            [self.before, &idle.held_out_residual, &best.held_out_residual].map(of);
-        let [share, of_rest] = closed(&from, &now, &then);
-        let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
-        let most = (0..now.len())
-            .max_by(|&a, &b| (now[a][0] - then[a][0]).total_cmp(&(now[b][0] - then[b][0])));
-        let mut runners_up: Vec<(usize, f64)> = trials
-            .iter()
-            .filter(|trial| Self::added(trial) != added)
-            .map(|trial| (Self::added(trial), held_out_gap(&trial.held_out_residual)))
-            .collect();
-        runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
-        // Blocks in which another missing effect weighs scatter much: a large share needs less.
-        let asked = if share > LARGE { 2.0 } else { options.significance };
-        let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-        let parameters = (best.parameters() - idle.parameters()) as f64;
-        let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
-            && significance > asked
-            && !most.is_some_and(is_noise);
-        let is_enough = is_more && of_rest >= options.least_share;
-        // Torques that are right for the wrong reason move the robot otherwise.
-        let own = is_enough
-            .then(|| setting.in_motion((&state.taken, &state.z), (&best.taken, &best.found.z)));
-        let in_motion = own.flatten();
-        Step {
-            added,
-            is_taken: is_enough && in_motion.is_none_or(|better| better > -DISTINCT),
-            gain,
-            decoy,
-            significance,
-            share,
-            held_out_gap: held_out_gap(&best.held_out_residual),
-            in_motion,
-            runners_up,
-        }
-    }
-}
-
 /// All candidates that are not `taken`, by what they would explain; as decoys, if they are turned.
 pub fn score(
     setting: &Setting<'_>,
@@ -301,6 +176,11 @@ pub struct Screen {
 }
 
 impl Screen {
+    /// The starts of a candidate with their responses.
+    pub(super) fn of(&self, candidate: usize) -> &[(Vec<f64>, RowResponse)] {
+        &self.responses[candidate]
+    }
+
     /// Evaluates all candidates on the motion, or coarse views of it.
     pub fn new(setting: &Setting<'_>, state: &State) -> Self {
         let problem = Problem::new(setting.train, &state.deviation[0], &[]);
@@ -339,16 +219,27 @@ pub(super) fn refine(
     state: &State,
     (problem, scored): (&Problem<'_>, &[Scored]),
 ) -> Vec<Trial> {
+    let candidates = scored.iter().take(count).filter(|one| one.gain > 0.0);
+    let of = |one: &Scored| Taken { candidate: one.candidate, values: one.values.clone() };
+    let added: Vec<Vec<Taken>> = candidates.map(|one| vec![of(one)]).collect();
+    fitted(setting, state, problem, &added)
+}
+
+/// Effects that are added to those of a state, fitted together with these; best first.
+pub(super) fn fitted(
+    setting: &Setting<'_>,
+    state: &State,
+    problem: &Problem<'_>,
+    added: &[Vec<Taken>],
+) -> Vec<Trial> {
     let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    let rough = |one: &Scored| {
-        let mut taken = state.taken.clone();
-        taken.push(Taken { candidate: one.candidate, values: one.values.clone() });
+    let rough = |added: &Vec<Taken>| {
+        let taken = [state.taken.as_slice(), added].concat();
         let taken = setting.roughly(problem, state, &taken);
         // Judged on the whole motion, with the values as they are.
         setting.judged(problem, state, &taken)
     };
-    let candidates = scored.iter().take(count).filter(|one| one.gain > 0.0);
-    let mut trials: Vec<Trial> = candidates.map(rough).collect();
+    let mut trials: Vec<Trial> = added.iter().map(rough).collect();
     let sort = |trials: &mut [Trial]| {
         trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
     };
@@ -379,7 +270,7 @@ const LEAVES: f64 = 0.1;
 
 /// The trial that explains most of held-out logs, or nearly that with fewer parameters; `idle` is
 /// without it.
-fn best<'t>(
+pub(super) fn best<'t>(
     setting: &Setting<'_>,
     state: &State,
     trials: &'t [Trial],
@@ -479,10 +370,4 @@ fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> Stat
         state = setting.state(&others);
     }
     state
-}
-
-/// A number from 0 to 1 of a seed and a round.
-fn unit(seed: u64, round: usize) -> f64 {
-    let mut random = crate::simulate::Random::new(seed);
-    (0..=round).map(|_| random.uniform()).last().unwrap_or(0.5)
 }

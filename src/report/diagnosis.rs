@@ -333,11 +333,14 @@ impl DiagnosisPage<'_> {
 
     fn round(&self, round: usize, step: &Step) -> String {
         format!(
-            "Round {}: {} {}. It lowers the weighted squares of the logs for training by {}, the \
+            "Round {}: {}{} {}. It lowers the weighted squares of the logs for training by {}, the \
              best decoy by {}; held-out logs are better by {:.1} standard errors; it closes {} of \
              what can be explained.",
             round + 1,
             self.candidates[step.added].name(),
+            step.with.map_or_else(String::new, |with| {
+                format!(" together with {}", self.candidates[with].name())
+            }),
             if step.is_taken { "was taken" } else { "was not taken" },
             short(step.gain),
             short(step.decoy),

@@ -100,8 +100,9 @@ const fn entry(
 /// where data do not show the shape of a loop), so do one-sided springs (a stop is a stiff one),
 /// delay and lag (equal to first order), Stribeck friction and stiction (the plant's drives stick
 /// with both, and the catalogue's stiction is Stribeck's curve with a bristle for its sign),
-/// friction of load and of a cable (equal where the wrap does not change). Aliases: offset and asymmetric Coulomb while a joint moves; the inertia of a
-/// rotor and of the first link; payload and last link; a zero error and a tilt or a displaced mass.
+/// friction of load and of a cable (equal where the wrap does not change). Aliases: offset and
+/// asymmetric Coulomb while a joint moves; the inertia of a rotor and of the first link; payload
+/// and last link; a zero error and a tilt or a displaced mass.
 pub(crate) const TABLE: [Entry; 45] = [
     entry(
         Law::Coulomb,

@@ -6,6 +6,7 @@ mod blind;
 mod decompose;
 mod diagnose;
 mod diagnose_emps;
+mod diagnose_excitation;
 mod effects;
 mod errors;
 mod excite;

@@ -22,6 +22,7 @@ struct DiagnosisJson<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     given: Vec<GivenJson<'a>>,
     effects: Vec<EffectJson<'a>>,
+    visible: Vec<VisibleJson<'a>>,
     unnamed: Vec<StructureJson<'a>>,
     rounds: Vec<RoundJson<'a>>,
     noise_floor: f64,
@@ -90,6 +91,18 @@ struct OtherJson<'a> {
     exact: bool,
 }
 
+/// How small an effect that was not found would have been seen.
+#[derive(Serialize)]
+struct VisibleJson<'a> {
+    effect: &'a str,
+    at: &'a str,
+    /// The least value of its parameter; none where no value would be seen.
+    least: Option<f64>,
+    unit: &'a str,
+    /// What such an effect is of the joint's torque.
+    share: Option<f64>,
+}
+
 #[derive(Serialize)]
 struct StructureJson<'a> {
     joint: &'a str,
@@ -101,6 +114,9 @@ struct StructureJson<'a> {
 struct RoundJson<'a> {
     effect: &'a str,
     at: &'a str,
+    /// The effect that is needed together with it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with: Option<Value>,
     is_taken: bool,
     gain: f64,
     decoy: f64,
@@ -187,6 +203,16 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         formula: one.formula(),
         share: one.share,
     });
+    let visible = found.visible.iter().map(|one| {
+        let own = &candidates[one.candidate];
+        VisibleJson {
+            effect: &own.effect,
+            at: &own.at,
+            least: Some(one.least).filter(|least| least.is_finite()),
+            unit: &own.law.parameters()[0].unit,
+            share: Some(one.share).filter(|share| share.is_finite()),
+        }
+    });
     let written = shown.written.as_ref();
     let has_model = written.is_some_and(|written| written.model == Ok(true));
     let answer = DiagnosisJson {
@@ -196,6 +222,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         r#where: places.collect(),
         given: shown.model_effects.iter().map(|becomes| given(shown, becomes)).collect(),
         effects: effects.collect(),
+        visible: visible.collect(),
         unnamed: structures.collect(),
         rounds: found.steps.iter().map(|step| round(shown, step)).collect(),
         noise_floor: found.held_out.floor.all,
@@ -277,9 +304,14 @@ fn given<'a>(shown: &'a Shown, becomes: &'a EffectUse) -> GivenJson<'a> {
 fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {
     let added = &shown.candidates[step.added];
     let others = step.runners_up.iter();
+    let with = step.with.map(|with| {
+        let Candidate { effect, at, .. } = &shown.candidates[with];
+        json!({"effect": effect, "at": at})
+    });
     RoundJson {
         effect: &added.effect,
         at: &added.at,
+        with,
         is_taken: step.is_taken,
         gain: step.gain,
         decoy: step.decoy,

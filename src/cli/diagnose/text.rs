@@ -2,7 +2,9 @@
 
 use super::Shown;
 use crate::cli::failure::Failure;
-use denavit::diagnose::{EffectValue, FoundEffect, Gap, Gaps, MotionGap, MotionGaps};
+use denavit::diagnose::{
+    Candidate, EffectValue, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Visible,
+};
 use denavit::report::{Align, Table, paragraph, percent, short};
 use std::io::Write;
 
@@ -26,7 +28,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         let share = percent(one.share);
         writeln!(out, "\n{name} still lacks, without a name: {} ({share} of it)", one.formula())?;
     }
-    if let Some(step) = found.steps.last().filter(|step| !step.is_taken) {
+    if let Some(step) = found.steps.last().filter(|step| !step.is_taken && step.gain > 0.0) {
         writeln!(
             out,
             "\nnot taken: {}, which would close {} ({:.1} standard errors; the best decoy does {} \
@@ -37,12 +39,39 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
             percent(step.decoy / step.gain)
         )?;
     }
+    if found.effects.is_empty() {
+        visible(out, shown)?;
+    }
     gaps(out, shown)?;
     motion(out, shown)?;
     for (file, remark) in remarks {
         writeln!(out, "{file}: {remark}")?;
     }
     files(out, shown)
+}
+
+/// Effects that are listed for each joint: those that are seen worst.
+const WORST: usize = 3;
+
+/// How small effects would have been seen.
+fn visible(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+    for (joint, described) in shown.model.joints.iter().enumerate() {
+        let mut own: Vec<&Visible> =
+            shown.found.visible.iter().filter(|one| one.joint == joint).collect();
+        own.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let worst = own.iter().take(WORST).map(|one| {
+            let Candidate { effect, law, .. } = &shown.candidates[one.candidate];
+            match one.least.is_finite() {
+                true => format!("{effect} from {} {}", short(one.least), law.parameters()[0].unit),
+                false => format!("{effect} never"),
+            }
+        });
+        let worst: Vec<String> = worst.collect();
+        if !worst.is_empty() {
+            writeln!(out, "seen worst at {}: {}", described.name, worst.join(", "))?;
+        }
+    }
+    Ok(())
 }
 
 /// What the model has of effects.

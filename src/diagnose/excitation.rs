@@ -1,0 +1,133 @@
+//! What logs would have shown: an answer that nothing is missing says no more than that.
+
+use super::candidate::Candidate;
+use super::floor::rms;
+use super::problem::Problem;
+use super::search::{ROWS_PER_SAMPLE, Screen};
+use super::state::{Setting, State};
+
+/// An effect of one parameter, and how large it must be to be seen in a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visible {
+    /// The candidate.
+    pub candidate: usize,
+    /// Its joint.
+    pub joint: usize,
+    /// The least value of its parameter that would have been more than chance: it lowers the
+    /// squares by what Schwarz's criterion asks for. Infinite where the motion has nothing of it.
+    pub least: f64,
+    /// What such an effect would be of the joint's torque (root mean squares).
+    pub share: f64,
+}
+
+/// Why the logs say too little of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Unseen {
+    /// Of so many effects so many would not be seen though they were half of its torque.
+    Effects {
+        /// The joint.
+        joint: usize,
+        /// Those that would not be seen.
+        unseen: usize,
+        /// Those that were looked at.
+        of: usize,
+    },
+    /// It covers a small share of what its limits let it.
+    Range {
+        /// The joint.
+        joint: usize,
+        /// The share of its positions, or of its speed.
+        share: f64,
+        /// Whether it is that of its speed.
+        is_speed: bool,
+    },
+}
+
+/// An effect that is more of the torque than this should be seen.
+const LARGE: f64 = 0.5;
+
+/// A joint that covers less of its limits is at rest: what grows with position or speed is small.
+const LEAST_RANGE: f64 = 0.05;
+
+/// How small effects of one parameter would have been seen in the logs that are searched.
+pub(super) fn visible(setting: &Setting<'_>, screen: &Screen, state: &State) -> Vec<Visible> {
+    let data = setting.train;
+    let plain = Problem::new(data, &state.deviation[0], &[]);
+    let given = plain.responses(&setting.fitted(&state.taken), &state.torques[0]);
+    let problem = Problem::new(data, &state.deviation[0], &given).holding(&state.held);
+    let asked = ROWS_PER_SAMPLE * (data.rows() as f64 / ROWS_PER_SAMPLE).ln();
+    let rows = |joint: usize, of: &dyn Fn(usize, usize) -> Vec<f64>| -> Vec<f64> {
+        let own = data.stretches.iter().filter(|stretch| stretch.joint == joint);
+        own.flat_map(|stretch| of(stretch.first, stretch.rows)).collect()
+    };
+    let of_candidate = |(candidate, own): (usize, &Candidate)| {
+        let joint = own.joint.filter(|_| own.law.parameters().len() == 1)?;
+        if state.taken.iter().any(|taken| taken.candidate == candidate) {
+            return None;
+        }
+        let (_, response) = screen.of(candidate).first()?;
+        let measured = rows(joint, &|first, count| data.torque[first..first + count].to_vec());
+        if measured.is_empty() {
+            return None;
+        }
+        let own = response.stretches.iter().zip(&response.gradient);
+        let own = own.filter(|(stretch, _)| stretch.joint == joint);
+        let unit: Vec<f64> = own.flat_map(|(_, gradient)| gradient[0].clone()).collect();
+        let view = problem.look(std::slice::from_ref(response));
+        let seen = view.normal[(0, 0)];
+        // What z explains whole is left as rounding.
+        let least = match seen > 1e-9 * view.lengths[0] {
+            true => (asked / seen).sqrt(),
+            false => f64::INFINITY,
+        };
+        let share = if least.is_finite() { least * rms(&unit) / rms(&measured) } else { least };
+        Some(Visible { candidate, joint, least, share })
+    };
+    setting.candidates.iter().enumerate().filter_map(of_candidate).collect()
+}
+
+/// Joints of which the logs say too little for the answer that nothing is missing.
+pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> {
+    let joints = &setting.train.nominal.model.joints;
+    let mut found = Vec::new();
+    for (joint, described) in joints.iter().enumerate() {
+        let own = || visible.iter().filter(|one| one.joint == joint);
+        let (unseen, of) = (own().filter(|one| one.share > LARGE).count(), own().count());
+        if 2 * unseen > of {
+            found.push(Unseen::Effects { joint, unseen, of });
+        }
+        let signals = || setting.train.signals.iter();
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+        };
+        let [low, high] = range(&mut signals().flat_map(|log| log.q[joint].iter().copied()));
+        let fastest =
+            signals().flat_map(|log| &log.qd[joint]).fold(0.0, |a: f64, v| a.max(v.abs()));
+        let of_range = described.position_limits.map(|[l, h]| ((high - low) / (h - l), false));
+        let of_speed = described.velocity_limit.map(|limit| (fastest / limit, true));
+        let shares = [of_range, of_speed].into_iter().flatten();
+        let small = shares.filter(|(share, _)| *share < LEAST_RANGE);
+        found.extend(small.map(|(share, is_speed)| Unseen::Range { joint, share, is_speed }));
+    }
+    found
+}
+
+impl Unseen {
+    /// The reason in words, with the names of joints.
+    pub(super) fn sentence(&self, names: &[&str]) -> String {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        match self {
+            Self::Effects { joint, unseen, of } => format!(
+                "too little excitation: of {of} effects {unseen} would not be seen at {} though \
+                 they were half of its torque",
+                names[*joint]
+            ),
+            Self::Range { joint, share, is_speed } => format!(
+                "too little excitation: {} covers {} of {}",
+                names[*joint],
+                percent(*share),
+                if *is_speed { "its speed" } else { "its range" }
+            ),
+        }
+    }
+}

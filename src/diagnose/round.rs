@@ -1,0 +1,184 @@
+//! One round of a search: which effect is added to a state, if any.
+
+use super::data::RowResponse;
+use super::evidence::{by_ranks, paired};
+use super::gap::Gap;
+use super::problem::Problem;
+use super::search::{
+    DISTINCT, ROWS_PER_SAMPLE, Scored, Screen, SearchOptions, Step, best, fitted, refine, score,
+};
+use super::state::{Setting, State, Taken, Trial};
+
+/// A share of what can be explained that is found at two standard errors.
+const LARGE: f64 = 0.2;
+
+/// A joint with less than so many times the squares of noise has nothing to explain.
+const QUIET: f64 = 1.3;
+
+/// The shares that are closed of what could be explained in the beginning, and now, at the joints
+/// that this is about: those with a tenth of what one of them has.
+pub(super) fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
+    let closed: Vec<f64> = now.iter().zip(then).map(|(now, then)| now[0] - then[0]).collect();
+    let most = closed.iter().copied().fold(0.0, f64::max);
+    let own = || (0..closed.len()).filter(|&joint| closed[joint] > 0.1 * most);
+    let sum: f64 = own().map(|joint| closed[joint]).sum();
+    [from, now].map(|all| {
+        let excess: f64 = own().map(|joint| (all[joint][0] - all[joint][1]).max(0.0)).sum();
+        if excess > 0.0 { sum / excess } else { 0.0 }
+    })
+}
+
+/// The effect that explains most of what is left, if it is more than chance; else the best one of
+/// another joint that is, or two of one joint. If none is, the first of them.
+pub(super) fn forward(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    (state, idle): (&State, &[usize]),
+    before: &[f64],
+) -> Option<(Trial, Step)> {
+    let mut scored = score(setting, screen, (state, &state.taken), None);
+    scored.retain(|one| !idle.contains(&one.candidate));
+    let problem = Problem::new(setting.train, &state.deviation[0], &[]);
+    let mut trials = refine(setting, options.refined, state, (&problem, &scored));
+    let idle = setting.trial(&problem, state, &state.taken);
+    let round = Round { setting, screen, options, state, before, idle: &idle };
+    let mut first = None;
+    while let Some(best) = best(setting, state, &trials, &idle).cloned() {
+        let step = round.weigh(&best, &trials);
+        let joint = setting.candidates[step.added].joint;
+        if step.is_taken {
+            return Some((best, step));
+        }
+        first = first.or(Some((best, step)));
+        trials.retain(|trial| round.joint(trial) != joint);
+    }
+    let pairs = fitted(setting, state, &problem, &round.pairs(&problem, &scored));
+    let pair = best(setting, state, &pairs, &idle).cloned();
+    let weighed = pair.map(|pair| (round.weigh(&pair, &pairs), pair));
+    let taken = weighed.filter(|(step, _)| step.is_taken);
+    taken.map(|(step, pair)| (pair, step)).or(first)
+}
+
+/// Effects of a joint that are paired: those that would explain most alone.
+const PAIRED: usize = 7;
+
+/// Pairs that are fitted.
+const MOST_PAIRS: usize = 3;
+
+/// One round of a search: a state to which an effect may be added.
+struct Round<'r, 's> {
+    setting: &'r Setting<'s>,
+    screen: &'r Screen,
+    options: &'r SearchOptions,
+    state: &'r State,
+    /// What was left of held-out logs before the search.
+    before: &'r [f64],
+    /// The state as a trial.
+    idle: &'r Trial,
+}
+
+impl Round<'_, '_> {
+    fn added(trial: &Trial) -> usize {
+        trial.taken.last().expect("an effect was added").candidate
+    }
+
+    fn joint(&self, trial: &Trial) -> Option<usize> {
+        self.setting.candidates[Self::added(trial)].joint
+    }
+
+    /// What chance explains where `best` acts: of what would be left with it, since turned by some
+    /// share of the log it may still be like itself.
+    fn decoy(&self, best: &Trial) -> f64 {
+        let Self { setting, screen, options, state, .. } = self;
+        let turn = 0.2 + 0.6 * unit(options.seed, state.taken.len());
+        let decoys = score(setting, screen, (state, &best.taken), Some(turn));
+        let joint = self.joint(best);
+        let is_there =
+            |one: &&Scored| joint.is_none() || setting.candidates[one.candidate].joint == joint;
+        decoys.iter().find(is_there).map_or(0.0, |best| best.gain)
+    }
+
+    /// The pairs of effects in one joint that would explain most together, to first order.
+    fn pairs(&self, problem: &Problem<'_>, scored: &[Scored]) -> Vec<Vec<Taken>> {
+        let Self { setting, screen, state, .. } = self;
+        let given = problem.responses(&setting.fitted(&state.taken), &state.torques[0]);
+        let problem = Problem::new(setting.train, &state.deviation[0], &given).holding(&state.held);
+        let now = setting.held_out_squares(state, &self.idle.held_out_residual);
+        let response = |one: &Scored| {
+            let mut starts = screen.of(one.candidate).iter();
+            starts.find(|(values, _)| *values == one.values).map(|(_, response)| response.clone())
+        };
+        let mut pairs: Vec<(f64, [&Scored; 2])> = Vec::new();
+        for joint in (0..now.len()).filter(|&joint| now[joint][0] >= QUIET * now[joint][1]) {
+            let own = scored.iter().filter(|one| {
+                setting.candidates[one.candidate].joint == Some(joint) && one.gain > 0.0
+            });
+            let own: Vec<(&Scored, RowResponse)> =
+                own.filter_map(|one| Some((one, response(one)?))).take(PAIRED).collect();
+            for (place, (a, of_a)) in own.iter().enumerate() {
+                for (b, of_b) in &own[place + 1..] {
+                    let view = problem.look(&[of_a.clone(), of_b.clone()]);
+                    pairs.push((view.gain() - view.cost, [a, b]));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let taken = |one: &Scored| Taken { candidate: one.candidate, values: one.values.clone() };
+        pairs.iter().take(MOST_PAIRS).map(|(_, pair)| pair.map(taken).to_vec()).collect()
+    }
+
+    /// Whether a trial is more than chance, against all `trials`.
+    fn weigh(&self, best: &Trial, trials: &[Trial]) -> Step {
+        let Self { setting, options, state, idle, .. } = self;
+        let [worse, better] = [&idle.blocks[1], &best.blocks[1]];
+        let significance = paired(worse, better).max(by_ranks(worse, better));
+        let added = Self::added(best);
+        let [gain, decoy] = [idle.found.cost - best.found.cost, self.decoy(best)];
+        let [_, trust] = state.trust();
+        let held_out_gap = |left: &[f64]| Gap::new(setting.held_out, left, &trust).all;
+        let of = |left: &[f64]| setting.held_out_squares(state, left);
+        let [from, now, then] =
+            [self.before, &idle.held_out_residual, &best.held_out_residual].map(of);
+        let [share, of_rest] = closed(&from, &now, &then);
+        let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
+        let most = (0..now.len())
+            .max_by(|&a, &b| (now[a][0] - then[a][0]).total_cmp(&(now[b][0] - then[b][0])));
+        let mut runners_up: Vec<(usize, f64)> = trials
+            .iter()
+            .filter(|trial| Self::added(trial) != added)
+            .map(|trial| (Self::added(trial), held_out_gap(&trial.held_out_residual)))
+            .collect();
+        runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
+        // Blocks in which another missing effect weighs scatter much: a large share needs less.
+        let asked = if share > LARGE { 2.0 } else { options.significance };
+        let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
+        let parameters = (best.parameters() - idle.parameters()) as f64;
+        let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
+            && significance > asked
+            && !most.is_some_and(is_noise);
+        let is_enough = is_more && of_rest >= options.least_share;
+        // Torques that are right for the wrong reason move the robot otherwise.
+        let own = is_enough
+            .then(|| setting.in_motion((&state.taken, &state.z), (&best.taken, &best.found.z)));
+        let in_motion = own.flatten();
+        let before = &best.taken[state.taken.len()..best.taken.len() - 1];
+        Step {
+            added,
+            with: before.first().map(|one| one.candidate),
+            is_taken: is_enough && in_motion.is_none_or(|better| better > -DISTINCT),
+            gain,
+            decoy,
+            significance,
+            share,
+            held_out_gap: held_out_gap(&best.held_out_residual),
+            in_motion,
+            runners_up,
+        }
+    }
+}
+
+/// A number from 0 to 1 of a seed and a round.
+fn unit(seed: u64, round: usize) -> f64 {
+    let mut random = crate::simulate::Random::new(seed);
+    (0..=round).map(|_| random.uniform()).last().unwrap_or(0.5)
+}

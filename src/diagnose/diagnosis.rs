@@ -152,13 +152,7 @@ pub fn diagnose(
     DiagnosisError::check(&request)?;
     let nominal = Nominal::new(request.model, request.uncertainty);
     let filters = request.filters.map_or_else(|| quiet_filters(&nominal, &request.train), Ok)?;
-    let read = |logs: Vec<MeasuredLog>| -> Result<Data<'_>, DiagnosisError> {
-        let signals = logs.into_iter().map(|log| {
-            let file = log.file.clone();
-            Signals::new(log, filters).map_err(|error| DiagnosisError::Condition { file, error })
-        });
-        Ok(Data::new(&nominal, signals.collect::<Result<Vec<Signals>, _>>()?))
-    };
+    let read = |logs: Vec<MeasuredLog>| conditioned(&nominal, logs, filters);
     let (train, held_out) = (read(request.train)?, read(request.held_out)?);
     let floors = [&train, &held_out].map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
     let [train_floor, held_out_floor] = &floors;
@@ -215,6 +209,19 @@ pub fn diagnose(
     };
     diagnosis.judge(&setting, outcome.stop, &outcome.after);
     Ok(diagnosis)
+}
+
+/// Logs as rows.
+fn conditioned<'n>(
+    nominal: &'n Nominal<'n>,
+    logs: Vec<MeasuredLog>,
+    filters: Filters,
+) -> Result<Data<'n>, DiagnosisError> {
+    let signals = logs.into_iter().map(|log| {
+        let file = log.file.clone();
+        Signals::new(log, filters).map_err(|error| DiagnosisError::Condition { file, error })
+    });
+    Ok(Data::new(nominal, signals.collect::<Result<Vec<Signals>, _>>()?))
 }
 
 /// The widest filters with which the steps of the encoders make less of a torque than its noise.

@@ -55,7 +55,8 @@ impl LogRows {
 
     /// The torque of a joint that phi adds, in the rows; drives move with their joints.
     pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, phi: &Phi) -> Vec<f64> {
-        let samples = self.columns[joint].first().map_or(0, Vec::len);
+        // A joint that carries nothing has no columns.
+        let samples = self.target[joint].as_ref().map_or(0, Vec::len);
         let mut torque = vec![0.0; samples];
         for (column, &place) in self.columns[joint].iter().zip(&nominal.model.pattern()[joint]) {
             let factor = phi.axes[place];

@@ -5,7 +5,8 @@ use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
 use crate::cli::model_effects::EffectUse;
 use denavit::diagnose::{
-    Candidate, EffectValue, FoundEffect, Gaps, GivenEffect, MotionGap, MotionGaps, Step, Where,
+    Candidate, EffectValue, FoundEffect, Gaps, GivenEffect, MotionGap, MotionGaps, Step, Visible,
+    Where,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -203,16 +204,6 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         formula: one.formula(),
         share: one.share,
     });
-    let visible = found.visible.iter().map(|one| {
-        let own = &candidates[one.candidate];
-        VisibleJson {
-            effect: &own.effect,
-            at: &own.at,
-            least: Some(one.least).filter(|least| least.is_finite()),
-            unit: &own.law.parameters()[0].unit,
-            share: Some(one.share).filter(|share| share.is_finite()),
-        }
-    });
     let written = shown.written.as_ref();
     let has_model = written.is_some_and(|written| written.model == Ok(true));
     let answer = DiagnosisJson {
@@ -222,7 +213,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         r#where: places.collect(),
         given: shown.model_effects.iter().map(|becomes| given(shown, becomes)).collect(),
         effects: effects.collect(),
-        visible: visible.collect(),
+        visible: visible(shown),
         unnamed: structures.collect(),
         rounds: found.steps.iter().map(|step| round(shown, step)).collect(),
         noise_floor: found.held_out.floor.all,
@@ -236,6 +227,17 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         report: written.map(|_| super::REPORT),
     };
     write_json(out, &answer)
+}
+
+/// How small effects would have been seen.
+fn visible(shown: &Shown) -> Vec<VisibleJson<'_>> {
+    let known = |value: f64| Some(value).filter(|value| value.is_finite());
+    let of = |one: &Visible| {
+        let Candidate { effect, at, law, .. } = &shown.candidates[one.candidate];
+        let unit = &law.parameters()[0].unit;
+        VisibleJson { effect, at, least: known(one.least), unit, share: known(one.share) }
+    };
+    shown.found.visible.iter().map(of).collect()
 }
 
 /// The motion that tells an effect from what would do as well, or why there is none.

@@ -1,4 +1,4 @@
-//! What logs could not have shown: a pendulum that rests, and one that hardly moves.
+//! What logs could not have shown: a pendulum that hardly moves, and a joint on it that rests.
 
 use super::{Directory, run_in};
 use serde_json::{Value, json};
@@ -12,10 +12,11 @@ const G: f64 = 9.81;
 const MOMENT: f64 = 0.05;
 const SPEED_LIMIT: f64 = 6.0;
 
-/// A pendulum in a vertical plane, with its numbers stated to 1 %.
-fn model() -> Value {
+/// A pendulum in a vertical plane, with its numbers stated to 1 %; with a joint at its end that
+/// carries nothing, if `has_tip`.
+fn model(has_tip: bool) -> Value {
     let sure = |value: f64| json!({"value": value, "std": 0.01 * value.abs()});
-    json!({
+    let mut model = json!({
         "format": "denavit-model/1",
         "name": "pendulum",
         "convention": "standard",
@@ -31,13 +32,18 @@ fn model() -> Value {
                 "about": "com"
             }
         }]
-    })
+    });
+    if has_tip {
+        let tip = json!({"name": "tip", "joint": {"type": "revolute"}});
+        model["links"].as_array_mut().unwrap().push(tip);
+    }
+    model
 }
 
 /// 16 s at 500 Hz around 0.4 rad with so many times the usual reach; `more` is torque by rate.
 fn log(reach: f64, seed: u64, more: impl Fn(f64) -> f64) -> String {
     let mut random = denavit::simulate::Random::new(seed);
-    let mut text = String::from("t,q_rod,tau_rod\n");
+    let mut text = String::from("t,q_rod,tau_rod,q_tip,tau_tip\n");
     for k in 0..8000 {
         let t = f64::from(k) * 0.002;
         let parts = [[0.5, 0.5, 0.3], [0.2, 1.1, 1.0], [0.1, 2.3, 2.0]];
@@ -51,15 +57,21 @@ fn log(reach: f64, seed: u64, more: impl Fn(f64) -> f64) -> String {
         let tau = inertia * qdd + MASS * G * TO_CENTRE_M * q.cos() + more(qd);
         let steps = 2.0e5;
         let read = (q * steps).round() / steps;
-        writeln!(text, "{t:.3},{read:.8},{:.8}", tau + 0.02 * random.normal()).unwrap();
+        let [noise, of_tip] = [0.02 * random.normal(), 0.02 * random.normal()];
+        writeln!(text, "{t:.3},{read:.8},{:.8},0,{of_tip:.8}", tau + noise).unwrap();
     }
     text
 }
 
-fn said(directory: &Directory, logs: [String; 2]) -> Value {
-    let [train, held_out] = logs;
-    for (name, text) in [("model.json", model().to_string()), ("a.csv", train), ("b.csv", held_out)]
-    {
+fn said(directory: &Directory, has_tip: bool, logs: [String; 2]) -> Value {
+    let columns = if has_tip { 5 } else { 3 };
+    let cut = |log: &String| -> String {
+        let line = |line: &str| line.split(',').take(columns).collect::<Vec<&str>>().join(",");
+        log.lines().map(line).collect::<Vec<String>>().join("\n")
+    };
+    let [train, held_out] = logs.each_ref().map(cut);
+    let model = model(has_tip).to_string();
+    for (name, text) in [("model.json", model), ("a.csv", train), ("b.csv", held_out)] {
         fs::write(directory.path.join(name), text).unwrap();
     }
     let words = ["diagnose", "model.json", "--train", "a.csv", "--validate", "b.csv", "--json"];
@@ -68,15 +80,19 @@ fn said(directory: &Directory, logs: [String; 2]) -> Value {
 }
 
 #[test]
-fn a_pendulum_at_rest_lets_nothing_be_told() {
+fn joints_that_rest_or_hardly_move_let_nothing_be_told() {
     let directory = Directory::new("diagnose_rest");
-    let still = said(&directory, [1, 2].map(|seed| log(0.0, seed, |_| 0.0)));
-    assert_eq!(still["verdict"], "cannot_tell", "{still:#}");
-    assert!(still["reasons"].to_string().contains("too little excitation"), "{}", still["reasons"]);
-    let little = said(&directory, [1, 2].map(|seed| log(0.02, seed, |_| 0.0)));
-    assert_eq!(little["verdict"], "cannot_tell", "{little:#}");
-    assert!(little["reasons"].to_string().contains("rod covers"), "{}", little["reasons"]);
-    let moved = said(&directory, [1, 2].map(|seed| log(1.0, seed, |_| 0.0)));
+    let plain = |reach: f64, has_tip: bool| {
+        said(&directory, has_tip, [1, 2].map(|seed| log(reach, seed, |_| 0.0)))
+    };
+    let refused = |answer: &Value, why: &str| {
+        assert_eq!(answer["verdict"], "cannot_tell", "{answer:#}");
+        let reasons = answer["reasons"].to_string();
+        assert!(reasons.contains("too little excitation") && reasons.contains(why), "{reasons}");
+    };
+    refused(&plain(1.0, true), "would not be seen at tip");
+    refused(&plain(0.02, false), "rod covers");
+    let moved = plain(1.0, false);
     assert_eq!(moved["verdict"], "nothing_missing", "{moved:#}");
 }
 
@@ -85,12 +101,13 @@ fn a_pendulum_at_rest_lets_nothing_be_told() {
 #[test]
 fn what_is_said_to_be_visible_is_found_and_less_is_not() {
     let directory = Directory::new("diagnose_visible");
-    let without = said(&directory, [1, 2].map(|seed| log(1.0, seed, |_| 0.0)));
+    let without = said(&directory, false, [1, 2].map(|seed| log(1.0, seed, |_| 0.0)));
     let visible = without["visible"].as_array().unwrap();
     let own = visible.iter().find(|one| one["effect"] == "viscous").expect("viscous friction");
     let least = own["least"].as_f64().unwrap();
     let named = |size: f64| {
-        let answer = said(&directory, [1, 2].map(|seed| log(1.0, seed, |qd| size * least * qd)));
+        let answer =
+            said(&directory, false, [1, 2].map(|seed| log(1.0, seed, |qd| size * least * qd)));
         let all = answer["effects"].as_array().unwrap().iter();
         all.map(|one| one["effect"].as_str().unwrap().to_owned()).collect::<Vec<String>>()
     };

@@ -3,6 +3,7 @@
 use super::candidate::Candidate;
 use super::floor::rms;
 use super::problem::Problem;
+use super::round::QUIET;
 use super::search::{ROWS_PER_SAMPLE, Screen};
 use super::state::{Setting, State};
 
@@ -13,8 +14,9 @@ pub struct Visible {
     pub candidate: usize,
     /// Its joint.
     pub joint: usize,
-    /// The least value of its parameter that would have been more than chance: it lowers the
-    /// squares by what Schwarz's criterion asks for. Infinite where the motion has nothing of it.
+    /// The least value of its parameter that would have been looked for: it lowers the squares by
+    /// what Schwarz's criterion asks for, and its joint has more than noise. Infinite where the
+    /// motion has nothing of it.
     pub least: f64,
     /// What such an effect would be of the joint's torque (root mean squares).
     pub share: f64,
@@ -76,6 +78,7 @@ pub(super) fn visible(setting: &Setting<'_>, screen: &Screen, state: &State) -> 
         let view = problem.look(std::slice::from_ref(response));
         let seen = view.normal[(0, 0)];
         // What z explains whole is left as rounding.
+        let asked = asked.max((QUIET - 1.0) * measured.len() as f64);
         let least = match seen > 1e-9 * view.lengths[0] {
             true => (asked / seen).sqrt(),
             false => f64::INFINITY,

@@ -13,7 +13,7 @@ use super::state::{Setting, State, Taken, Trial};
 const LARGE: f64 = 0.2;
 
 /// A joint with less than so many times the squares of noise has nothing to explain.
-const QUIET: f64 = 1.3;
+pub(super) const QUIET: f64 = 1.3;
 
 /// The shares that are closed of what could be explained in the beginning, and now, at the joints
 /// that this is about: those with a tenth of what one of them has.

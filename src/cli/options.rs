@@ -72,7 +72,8 @@ pub(crate) struct FlavourOption {
     /// Fold the model's values into the functions (otherwise parameters are set at run time)
     #[arg(long)]
     baked: bool,
-    /// Parameters that the model gives as 0 stay 0 (all others are set at run time)
+    /// Parameters that the model gives as 0 stay 0, and have no field and no column of a regressor
+    /// (all others are set at run time)
     #[arg(long, conflicts_with = "baked")]
     sparse: bool,
 }

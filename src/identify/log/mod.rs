@@ -419,10 +419,12 @@ fn missing_forces(
     }
     let is_there = |name: &String| columns.iter().any(|column| column.name == *name);
     let of_contact = |name: &String| ["x", "y", "z"].map(|axis| format!("f_{name}_{axis}"));
-    // Null in the mapping leaves a column out on purpose.
-    let is_left_out = |name: &String| mapping.source(name).is_none();
-    let all = robot.contacts.iter().flat_map(of_contact);
-    let missing: Vec<String> = all.filter(|name| !is_there(name) && !is_left_out(name)).collect();
+    let all: Vec<String> = robot.contacts.iter().flat_map(of_contact).collect();
+    // Null in the mapping leaves a column out on purpose, but not all of them.
+    let carries = all.iter().any(is_there);
+    let is_left_out = |name: &String| carries && mapping.source(name).is_none();
+    let missing: Vec<String> =
+        all.into_iter().filter(|name| !is_there(name) && !is_left_out(name)).collect();
     (!missing.is_empty()).then_some(LogFault::MissingForces { columns: missing })
 }
 

@@ -141,4 +141,8 @@ fn a_log_of_a_floating_base_has_forces_of_all_contacts() {
     let never = forces[3..].iter().map(|name| format!("\"{name}\": null"));
     let mapping = format!("{{{}}}", never.collect::<Vec<_>>().join(","));
     assert!(read(&forces[..3], &mapping).is_ok());
+    // What carries the weight cannot be left out as a whole.
+    let all = forces.iter().map(|name| format!("\"{name}\": null"));
+    let mapping = format!("{{{}}}", all.collect::<Vec<_>>().join(","));
+    assert_eq!(read(&[], &mapping).unwrap_err(), [LogFault::MissingForces { columns: forces }]);
 }

@@ -72,7 +72,7 @@ pub struct LeftOutRows {
     pub left: f64,
 }
 
-/// Biased parameters that are named.
+/// Parameters that are named, at most.
 const LISTED: usize = 6;
 
 /// The share of a torque from which on it is said what the filter makes of a motion that is too
@@ -84,18 +84,32 @@ impl Identification {
     pub fn bias(&self) -> Option<String> {
         let own = |one: &IdentifiedParameter| Some((one.name.clone(), one.noise_bias?));
         let all = self.parameters.iter().filter(|one| one.is_biased());
-        let mut biased: Vec<_> = all.filter_map(own).collect();
-        biased.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        let listed: Vec<String> =
-            biased.iter().take(LISTED).map(|(name, bias)| format!("{name} by {bias:.1}")).collect();
-        let more = biased.len().saturating_sub(LISTED);
-        let more = if more > 0 { format!(" and {more} others") } else { String::new() };
-        (!biased.is_empty()).then(|| {
+        let biased =
+            listed(all.filter_map(own).collect(), |(name, bias)| format!("{name} by {bias:.1}"));
+        biased.map(|biased| {
             format!(
-                "Noise of the positions biases parameters, in standard errors: {}{more}. Their \
+                "Noise of the positions biases parameters, in standard errors: {biased}. Their \
                  intervals hold less often than they say. A filter with a lower cutoff (--filter) \
-                 has less of it, or --method iv none.",
-                listed.join(", ")
+                 has less of it, or --method iv none."
+            )
+        })
+    }
+
+    /// What is to be said if parameters change with half the cutoff by more than chance.
+    fn changed(&self) -> Option<String> {
+        let times = |one: &IdentifiedParameter| {
+            let by = one.std? / one.half_cutoff?.own_std;
+            Some((one.name.clone(), by))
+        };
+        let all = self.parameters.iter().filter(|one| one.is_changed());
+        let wider = listed(all.filter_map(times).collect(), |(name, by)| format!("{name} {by:.1}"));
+        wider.map(|wider| {
+            format!(
+                "Parameters change with half the cutoff of the filter by more than chance. That is \
+                 in their errors, which are wider than chance alone makes them, so many times: \
+                 {wider}. A loop closed over the encoder of the log makes such a change, since its \
+                 motion answers the noise (--method iv is for that), and so may what the model \
+                 lacks. --filter with a lower cutoff has less of it."
             )
         })
     }
@@ -156,6 +170,7 @@ impl Identification {
         misread
             .chain(unexplained)
             .chain(self.bias())
+            .chain(self.changed())
             .chain(self.smeared())
             .chain(reversals)
             .collect()
@@ -166,6 +181,15 @@ impl Identification {
         let hidden = self.parameters.iter().filter(|one| one.status == Status::NotExcited);
         hidden.map(|one| one.name.as_str()).collect()
     }
+}
+
+/// The largest of some numbers with names, and how many others there are; none without any.
+fn listed(mut all: Vec<(String, f64)>, text: impl Fn(&(String, f64)) -> String) -> Option<String> {
+    all.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let named: Vec<String> = all.iter().take(LISTED).map(text).collect();
+    let more = all.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!(" and {more} others") } else { String::new() };
+    (!all.is_empty()).then(|| format!("{}{more}", named.join(", ")))
 }
 
 /// Estimates, judges, and finds the nearest bodies that exist.

@@ -4,7 +4,7 @@ use super::logs::{self, Conditions};
 use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
 use denavit::effect::{self, Effect};
-use denavit::identify::estimate::{Method, Options};
+use denavit::identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit::identify::{
     Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
 };
@@ -47,7 +47,8 @@ impl Estimation<'_> {
     }
 
     /// What is found with the highest filter, of those that nobody asked for, below which noise of
-    /// the positions biases nothing.
+    /// the positions biases nothing; where parameters change with half the cutoff, with the one
+    /// that makes their errors smallest.
     pub(super) fn unbiased(
         &self,
         mut read: logs::Read,
@@ -57,13 +58,16 @@ impl Estimation<'_> {
         let mut found = self.found(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
         while let Some(lower) = conditions.lower(&read.train)
-            && found.0.bias().is_some()
+            && let parameters = &found.0.parameters
+            && let is_biased = parameters.iter().any(IdentifiedParameter::is_biased_without_change)
+            && (is_biased || parameters.iter().any(IdentifiedParameter::may_change))
             && !allows_for_noise
         {
             drop(read); // logs are large: not all of them twice
             read = self.read(&lower)?;
             let next = self.found(&read, options)?;
-            if next.0.filter_error.is_some() {
+            let is_better = is_biased || has_smaller_errors(&next.0.parameters, parameters);
+            if next.0.filter_error.is_some() || !is_better {
                 // worse than the noise that it takes away
                 drop(read);
                 read = self.read(&conditions)?;
@@ -73,6 +77,15 @@ impl Estimation<'_> {
         }
         Ok((read, found))
     }
+}
+
+/// Whether standard errors are smaller than others, in the geometric mean.
+fn has_smaller_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedParameter]) -> bool {
+    let ratio = |(one, other): (&IdentifiedParameter, &IdentifiedParameter)| match other.std {
+        Some(other) if other > 0.0 => one.std.map_or(f64::INFINITY, |std| (std / other).ln()),
+        _ => 0.0,
+    };
+    parameters.iter().zip(others).map(ratio).sum::<f64>() < 0.0
 }
 
 /// The identified model with all of its effects: what is simulated.

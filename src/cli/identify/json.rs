@@ -44,6 +44,8 @@ pub(super) struct ParameterJson<'a> {
     interval: Option<[f64; 2]>,
     /// In standard errors.
     noise_bias: Option<f64>,
+    /// Change with half the cutoff of the filter, and its deviation by chance.
+    half_cutoff: Option<[f64; 2]>,
     unit: &'a str,
     identifiable: bool,
     status: &'static str,
@@ -60,6 +62,7 @@ impl<'a> ParameterJson<'a> {
             std: one.std,
             interval: one.interval.map(|half| [one.value - half, one.value + half]),
             noise_bias: one.noise_bias,
+            half_cutoff: one.half_cutoff.map(|one| [one.change, one.deviation]),
             unit: &one.unit,
             identifiable: one.status != Status::NotExcited,
             status: one.status.word(),

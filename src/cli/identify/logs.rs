@@ -34,10 +34,14 @@ pub(super) struct Conditions {
     halvings: u32,
 }
 
-/// Halvings of the cutoff, at most, and periods of it that a log, or a lap, must have.
+/// Halvings of the cutoff, at most, and periods of it that a log, or a lap, must have more of.
 const MOST_HALVINGS: u32 = 6;
 const FEWEST_PERIODS: f64 = 40.0;
 const FEWEST_OF_A_LAP: f64 = 20.0;
+
+/// The filter if nothing is said: its order, and its cutoff over the rate of sampling.
+const ORDER: usize = 4;
+const TENTH: f64 = 0.1;
 
 /// Samples that are left, if nothing is said: standard errors are found from parts of a log, of
 /// which few say little.
@@ -82,22 +86,35 @@ fn averaging(text: &str) -> Result<Averaging, String> {
 impl Conditions {
     /// A zero-phase filter of fourth order, all else as it is if nothing is said.
     pub(super) fn filtered(cutoff_hz: f64) -> Self {
-        let filter = Some(FilterChoice::Some(Filter { order: 4, cutoff_hz }));
+        let filter = Some(FilterChoice::Some(Filter { order: ORDER, cutoff_hz }));
         Self { filter, ..Self::default() }
     }
 
-    fn filter(&self, step_s: f64) -> Option<Filter> {
-        let tenth = Filter { order: 4, cutoff_hz: 0.1 / step_s / f64::from(1 << self.halvings) };
+    /// The filter of a log of so many samples at this distance \[s\].
+    fn filter(&self, step_s: f64, samples: usize) -> Option<Filter> {
+        let lower = f64::from(1 << self.halvings_of(samples));
         match self.filter {
             Some(FilterChoice::None) => None,
             Some(FilterChoice::Some(filter)) => Some(filter),
-            None => Some(tenth),
+            None => Some(Filter { order: ORDER, cutoff_hz: TENTH / step_s / lower }),
         }
+    }
+
+    /// How often the cutoff is halved for a log of so many samples: what it is too short for is
+    /// left out. How long laps are is known when they have been found.
+    fn halvings_of(&self, samples: usize) -> u32 {
+        let is_long = |halvings: u32| {
+            let cutoff = TENTH / f64::from(1 << halvings);
+            // the edges are cut
+            samples as f64 * cutoff - 2.0 * ORDER as f64 > FEWEST_PERIODS
+        };
+        let allowed = |halvings: &u32| self.average.is_some() || is_long(*halvings);
+        (1..=self.halvings).rev().find(allowed).unwrap_or(0)
     }
 
     /// What is done with a log of so many samples at this distance \[s\].
     pub(super) fn of(&self, step_s: f64, samples: usize) -> Conditioning {
-        let filter = self.filter(step_s);
+        let filter = self.filter(step_s, samples);
         // The decimator passes up to 0.4 of what is left of the rate.
         let allowed = filter.map_or(1.0, |filter| 0.4 / (filter.cutoff_hz * step_s));
         // of laps one is left
@@ -119,22 +136,20 @@ impl Conditions {
 
 impl Conditions {
     /// The same with half the cutoff, for logs whose noise of positions biases parameters; none if
-    /// a filter was asked for, or a log is too short for it.
+    /// a filter was asked for, or all logs, or one lap, are too short for it.
     pub(super) fn lower(&self, logs: &[Conditioned]) -> Option<Self> {
         if self.filter.is_some() || self.halvings == MOST_HALVINGS {
             return None;
         }
         let lower = Self { halvings: self.halvings + 1, ..*self };
+        let samples = |log: &Conditioned| log.q.first().map_or(0, Vec::len);
+        let is_lower = |log: &Conditioned| lower.halvings_of(samples(log)) > self.halvings;
+        // a lap has no edges that are cut
         let is_long = |log: &Conditioned| {
-            let cutoff_hz = lower.filter(log.step_s).map_or(0.0, |filter| filter.cutoff_hz);
-            // a lap has no edges that are cut
-            let (samples, fewest) = match &log.laps {
-                Some(laps) => (laps.samples, FEWEST_OF_A_LAP),
-                None => (log.range.len(), FEWEST_PERIODS),
-            };
-            samples as f64 * log.step_s * cutoff_hz > fewest
+            let cutoff = TENTH / f64::from(1 << lower.halvings);
+            log.laps.is_none_or(|laps| laps.samples as f64 * cutoff > FEWEST_OF_A_LAP)
         };
-        logs.iter().all(is_long).then_some(lower)
+        (logs.iter().any(is_lower) && logs.iter().all(is_long)).then_some(lower)
     }
 }
 
@@ -287,7 +302,8 @@ impl Reader<'_> {
             resolution: self.arguments.resolution,
             ..self.conditions.of(log.step_s, log.samples())
         };
-        if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, self.conditions.halvings) {
+        let halvings = self.conditions.halvings_of(log.samples());
+        if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, halvings) {
             self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
         }
         if let (Some(motions), Some(longest_s)) = (&mut self.motions, longest_s) {

@@ -28,6 +28,7 @@ impl Section {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Butterworth {
     sections: Vec<Section>,
+    order: usize,
     /// The cutoff of one pass, in cycles per sample.
     cutoff: f64,
     /// Samples after which a transient has died down.
@@ -72,7 +73,12 @@ impl Butterworth {
         let sections = pairs.chain(single).collect();
         let settling = (order as f64 / relative).ceil().min(1e7) as usize;
         let smear = (0.5 / relative).ceil().min(1e7) as usize;
-        Some(Self { sections, cutoff: relative, settling, smear })
+        Some(Self { sections, order, cutoff: relative, settling, smear })
+    }
+
+    /// The filter of the same order with half the cutoff.
+    pub(crate) fn halved(&self) -> Option<Self> {
+        Self::new(self.order, 0.5 * self.cutoff, 1.0)
     }
 
     /// Samples at each end that depend on what was not measured.

@@ -1,6 +1,6 @@
 //! Pieces of a log: enough of a long one to see what is alike all along it.
 
-use super::{Conditioned, Decimator};
+use super::{Conditioned, Decimator, STENCIL};
 
 /// Pieces of a log that is too long to be looked at as a whole.
 const PIECES: usize = 12;
@@ -47,5 +47,25 @@ impl Conditioned {
             resting: self.resting.clone(),
             ..Self::default()
         }
+    }
+
+    /// A piece without more of its edges than a filter of half the cutoff leaves, as it is and
+    /// after that filter; none if that leaves nothing.
+    pub(crate) fn halved(&self, piece: Piece) -> Option<[Self; 2]> {
+        let lower = self.filter.as_ref()?.halved()?;
+        let mut own = self.piece(piece);
+        let edge = lower.settling() + if own.rates.is_some() { 0 } else { STENCIL };
+        own.range = edge..own.q[0].len().checked_sub(edge).filter(|end| *end > edge)?;
+        if own.samples() == 0 {
+            return None;
+        }
+        let mut halved = own.clone();
+        let rates = halved.rates.iter_mut().flatten().flatten();
+        let torques = halved.torque.iter_mut().flatten();
+        for column in halved.q.iter_mut().chain(rates).chain(torques) {
+            lower.zero_phase(column);
+        }
+        halved.filter = Some(lower);
+        Some([own, halved])
     }
 }

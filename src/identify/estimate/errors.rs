@@ -61,30 +61,21 @@ impl Problem<'_> {
 
     /// F F^T S F F^T with S the long-run covariance of the scores.
     fn correlated(&self) -> DMatrix<f64> {
-        let factor = &self.solution.factor;
-        let count = self.condensed.parts.len();
-        // F^T g of each part, whose squares are those of the excited directions alone.
-        let scores: Vec<DVector<f64>> =
-            (0..count).map(|part| self.left_out(part, factor.tr_mul(&self.score(part)))).collect();
-        let size = factor.ncols();
-        let mut sum = DMatrix::zeros(size, size);
-        for (part, score) in scores.iter().enumerate() {
-            sum += score * score.transpose();
-            let is_same_log = |next: &usize| {
-                self.condensed.log_of_part[*next] == self.condensed.log_of_part[part]
-            };
-            if let Some(next) = Some(part + 1).filter(|&next| next < count).filter(is_same_log) {
-                let cross = score * scores[next].transpose();
-                sum += (&cross + cross.transpose()) * 0.5;
-            }
-        }
         // Half of one lag may leave a variance below 0 where there are few parts.
         let floor = self.solution.covariance() * 1e-4;
-        let mut covariance = factor * sum * factor.transpose();
+        let mut covariance = long_run(&self.influences(), &self.condensed.log_of_part);
         for place in 0..covariance.nrows() {
             covariance[(place, place)] = covariance[(place, place)].max(floor[(place, place)]);
         }
         covariance
+    }
+
+    /// What each part does to phi: F F^T g, with the score g as it is without the part.
+    pub(super) fn influences(&self) -> Vec<DVector<f64>> {
+        let factor = &self.solution.factor;
+        // F^T g has the squares of the excited directions alone.
+        let of = |part| factor * self.left_out(part, factor.tr_mul(&self.score(part)));
+        (0..self.condensed.parts.len()).map(of).collect()
     }
 
     /// A score in the excited directions as it is for the estimate without its part: the change of
@@ -150,6 +141,20 @@ impl Problem<'_> {
         }
         covariance / (draws - 1) as f64
     }
+}
+
+/// The covariance of a sum over parts, of which neighbours of the same log are correlated.
+pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[usize]) -> DMatrix<f64> {
+    let size = parts.first().map_or(0, DVector::len);
+    let mut sum = DMatrix::zeros(size, size);
+    for (at, part) in parts.iter().enumerate() {
+        sum += part * part.transpose();
+        if let Some(next) = parts.get(at + 1).filter(|_| log_of_part[at + 1] == log_of_part[at]) {
+            let cross = part * next.transpose();
+            sum += (&cross + cross.transpose()) * 0.5;
+        }
+    }
+    sum
 }
 
 /// The factor of a standard error that makes a 95 % interval, by Student's distribution (Cornish

@@ -2,6 +2,7 @@
 
 use super::condensed::{Condensed, Rows};
 use super::errors::{Errors, FEWEST_PARTS, Problem};
+use super::half_cutoff::Change;
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
 use super::likelihood;
@@ -127,6 +128,8 @@ pub struct Estimate {
     pub degrees_of_freedom: f64,
     /// What noise of the positions adds to phi in the mean; 0 of instrumental variables.
     pub noise_bias: DVector<f64>,
+    /// What changes with half the cutoff of the filter; none where that cannot be told.
+    pub change: Option<Change>,
     /// Standard deviation of each joint's residuals [N m, N]; 0 where no torque was measured.
     pub noise: Vec<f64>,
     /// The rows, as they were weighted last.
@@ -198,7 +201,11 @@ pub fn estimate(
         let squares: f64 = first.squares(&triangles).iter().sum();
         covariance *= squares / degrees_of_freedom;
     }
-    Ok(Estimate { covariance, degrees_of_freedom, ..first })
+    let mut change = fit.change(model, rows, &first);
+    if let Some(change) = &mut change {
+        change.widen(model, &mut covariance);
+    }
+    Ok(Estimate { covariance, degrees_of_freedom, change, ..first })
 }
 
 /// Makes variances at least as large as others, correlations as they are.
@@ -263,7 +270,12 @@ impl Fit<'_> {
         }
     }
 
-    fn solved(&self, condensed: &Condensed, triangles: &[Triangle], weights: &[f64]) -> Solution {
+    pub(super) fn solved(
+        &self,
+        condensed: &Condensed,
+        triangles: &[Triangle],
+        weights: &[f64],
+    ) -> Solution {
         let prior = &self.options.prior;
         let r = stacked(triangles, &condensed.pattern, weights, prior, condensed.rank);
         solve(&r, self.start)
@@ -290,6 +302,7 @@ impl Fit<'_> {
             covariance,
             degrees_of_freedom: 0.0,
             noise_bias: DVector::zeros(condensed.rank),
+            change: None,
             noise,
             condensed,
             weights,

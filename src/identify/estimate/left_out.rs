@@ -2,7 +2,7 @@
 //! sign of its rate says, and the filter smears that over its own time.
 
 use super::Options;
-use crate::identify::condition::{Conditioned, Piece};
+use crate::identify::condition::{Butterworth, Conditioned, Piece};
 use crate::plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 
@@ -102,6 +102,27 @@ impl LeftOut {
             let first = piece.first * logs[number].decimation;
             let part = |all: &Vec<bool>| all[first..].to_vec();
             self.0[number].iter().map(|one| one.as_ref().map(part)).collect()
+        };
+        Self(pieces.iter().map(of).collect())
+    }
+
+    /// The same of pieces whose edges and filters smear over twice the time: each with its log,
+    /// where its first sample stands there, and how many it has.
+    pub(super) fn of_halved(
+        &self,
+        logs: &[Conditioned],
+        pieces: &[(usize, std::ops::Range<usize>)],
+    ) -> Self {
+        let of = |(number, range): &(usize, std::ops::Range<usize>)| {
+            let smear = logs[*number].filter.as_ref().map_or(0, Butterworth::smear);
+            let part = |all: &Vec<bool>| {
+                let mut wider = all.clone();
+                for at in (1..all.len()).filter(|&at| all[at] != all[at - 1]) {
+                    wider[at.saturating_sub(smear)..(at + smear).min(all.len())].fill(true);
+                }
+                wider[range.clone()].to_vec()
+            };
+            self.0[*number].iter().map(|one| one.as_ref().map(part)).collect()
         };
         Self(pieces.iter().map(of).collect())
     }

@@ -13,6 +13,12 @@ const DEAD_SHARE: f64 = 1e-6;
 /// of 95 % that is off by so much holds in 92 %.
 const BIASING: f64 = 0.5;
 
+/// Deviations of a change that are hardly chance: a lower filter is tried.
+const LIKELY: f64 = 2.5;
+
+/// Those of one that is none, of any of dozens of parameters: it is said.
+const SURE: f64 = 3.5;
+
 /// Points of time at which convergence is shown.
 const CONVERGENCE_POINTS: usize = 24;
 
@@ -57,16 +63,55 @@ pub struct IdentifiedParameter {
     pub interval: Option<f64>,
     /// What noise of the positions adds to the estimate in the mean, in standard errors.
     pub noise_bias: Option<f64>,
+    /// How it changes with half the cutoff of the filter.
+    pub half_cutoff: Option<HalfCutoff>,
     /// The value of the model before.
     pub model_value: Option<f64>,
     /// What the data say about it.
     pub status: Status,
 }
 
+/// How a parameter changes with half the cutoff of the filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfCutoff {
+    /// By how much.
+    pub change: f64,
+    /// The standard deviation of that by chance.
+    pub deviation: f64,
+    /// The standard error of the parameter without what the change adds to it.
+    pub own_std: f64,
+}
+
+impl HalfCutoff {
+    /// Whether it changes by more than so many deviations by chance, and by more than an interval
+    /// without the change forgives.
+    fn is_beyond(&self, deviations: f64) -> bool {
+        self.change.abs() > (BIASING * self.own_std).max(deviations * self.deviation)
+    }
+}
+
 impl IdentifiedParameter {
     /// Whether noise of the positions biases it by more than its interval forgives.
     pub fn is_biased(&self) -> bool {
         self.noise_bias.is_some_and(|bias| bias.abs() > BIASING)
+    }
+
+    /// Whether it changes with half the cutoff of the filter by more than chance.
+    pub fn is_changed(&self) -> bool {
+        self.half_cutoff.is_some_and(|one| one.is_beyond(SURE))
+    }
+
+    /// Whether noise of the positions biases it by more than an interval forgives that does not
+    /// count how it changes with half the cutoff: a lower filter is needed.
+    pub fn is_biased_without_change(&self) -> bool {
+        let own = self.half_cutoff.map_or(self.std, |one| Some(one.own_std));
+        let bias = self.noise_bias.zip(self.std).zip(own);
+        bias.is_some_and(|((bias, std), own)| bias.abs() * std > BIASING * own)
+    }
+
+    /// Whether it seems to change with half the cutoff: a lower filter may be better.
+    pub fn may_change(&self) -> bool {
+        self.half_cutoff.is_some_and(|one| one.is_beyond(LIKELY))
     }
 }
 
@@ -99,6 +144,11 @@ pub fn parameters(model: &RegressionModel, found: &Estimate) -> Vec<IdentifiedPa
             std,
             interval,
             noise_bias: std.filter(|std| *std > 0.0).map(|std| biases[row] / std),
+            half_cutoff: found.change.as_ref().filter(|_| !is_dead).map(|one| HalfCutoff {
+                change: one.change[row],
+                deviation: one.deviation[row],
+                own_std: one.own_errors[row],
+            }),
             model_value: listed.value,
             status,
         }

@@ -1,7 +1,7 @@
 //! Coulomb friction of an arm that turns round again and again: its intervals must hold.
 
 use denavit::identify::condition::{Conditioned, Conditioning, Filter};
-use denavit::identify::estimate::{Options, SlowRows, estimate, parameters};
+use denavit::identify::estimate::{IdentifiedParameter, Options, SlowRows, estimate, parameters};
 use denavit::identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::identify::{Identification, Request, identify};
 use denavit::model::{self, Robot};
@@ -18,18 +18,19 @@ const FRICTION: [[f64; 2]; 2] = [[0.3, 1.2], [0.1, 0.5]];
 /// The step of the encoders.
 const STEP: f64 = TAU / 20000.0;
 
-/// The planar arm with drives that rub.
-fn arm() -> String {
+/// The planar arm with drives that rub, but for Coulomb friction if there is none.
+fn arm(rubs: bool) -> String {
     let shipped = shipped::find("planar_2r").expect("a shipped model");
     let mut arm: Value = serde_json::from_str(shipped.text).expect("JSON");
     for (joint, [viscous, coulomb]) in ["link1", "link2"].into_iter().zip(FRICTION) {
+        let coulomb = if rubs { coulomb } else { 0.0 };
         arm["drives"][joint] = json!({"viscous": viscous, "coulomb": coulomb});
     }
     arm.to_string()
 }
 
 fn robot() -> Robot {
-    model::read("arm", arm().as_bytes()).expect("a sound model")
+    model::read("arm", arm(true).as_bytes()).expect("a sound model")
 }
 
 fn regression() -> RegressionModel {
@@ -40,6 +41,12 @@ fn regression() -> RegressionModel {
 /// A sum of five sines of random phase in each joint, under PD control; encoders of 20000 steps,
 /// torques with noise of 0.05 N m.
 fn experiment(seed: u64) -> MeasuredLog {
+    let measurement = json!({"resolution": STEP, "logged": true, "torque_noise": 0.05});
+    simulated(seed, true, 0.7, measurement)
+}
+
+/// The same with other measurements, of waves of another frequency \[rad/s\].
+fn simulated(seed: u64, rubs: bool, frequency: f64, measurement: Value) -> MeasuredLog {
     let mut random = Random::new(seed);
     let mut reference = |size: f64| {
         let mut waves = [Vec::new(), Vec::new()];
@@ -49,7 +56,7 @@ fn experiment(seed: u64) -> MeasuredLog {
             waves[1].push(amplitude * phase.sin());
         }
         let [sines, cosines] = waves;
-        let waves = json!({"frequency_rad_s": 0.7, "sines": sines, "cosines": cosines});
+        let waves = json!({"frequency_rad_s": frequency, "sines": sines, "cosines": cosines});
         json!({"kp": 400, "kd": 40, "reference": {"fourier": waves}})
     };
     let joints = json!({"link1": reference(0.5), "link2": reference(0.7)});
@@ -57,12 +64,12 @@ fn experiment(seed: u64) -> MeasuredLog {
         "format": "denavit-scenario/1", "model": "arm", "duration_s": 20,
         "initial": {"on_reference": true}, "drives": "model", "seed": seed,
         "control": {"period_s": 0.001, "joints": joints},
-        "measurement": {"resolution": STEP, "logged": true, "torque_noise": 0.05},
+        "measurement": measurement,
         "integrator": {"relative": 1e-6, "absolute": 1e-7},
         "log_period_s": 0.001, "tolerances": {"energy_j": 0.01},
     });
     let load = |name: &str| match name {
-        "arm" => Ok(arm().into_bytes()),
+        "arm" => Ok(arm(rubs).into_bytes()),
         _ => Err("no such file".to_owned()),
     };
     let read = scenario::read("arm", text.to_string().as_bytes(), &load);
@@ -171,4 +178,68 @@ fn intervals_of_friction_hold_over_many_seeds() {
             assert!(slow != SlowRows::Biasing || worst(&all) >= 0.87, "{all:?}");
         }
     }
+}
+
+/// Encoders of 12 bits in a slow motion.
+const COARSE: f64 = TAU / 4096.0;
+
+/// Friction and what it changes with half the cutoff, of loops closed over the coarse encoders of
+/// their logs, or over exact positions, which are then logged as these encoders see them.
+fn slow(seed: u64, over_encoder: bool) -> Vec<IdentifiedParameter> {
+    let measurement = match over_encoder {
+        true => json!({
+            "resolution": COARSE, "differentiates": true, "logged": true, "torque_noise": 0.02,
+        }),
+        false => json!({}),
+    };
+    let mut log = simulated(seed, false, 0.5, measurement);
+    if !over_encoder {
+        let mut random = Random::new(seed);
+        for joint in &mut log.joints {
+            joint.q.iter_mut().for_each(|q| *q = (*q / COARSE).round() * COARSE);
+            let torque = joint.tau.iter_mut().flatten();
+            torque.for_each(|torque| *torque += 0.02 * random.normal());
+            joint.step = Some(COARSE);
+        }
+    }
+    let filter = Some(Filter { order: 4, cutoff_hz: 6.25 });
+    let how = Conditioning { filter, decimation: 16, ..Conditioning::default() };
+    let names = ["link1", "link2"].map(str::to_owned);
+    let logs = [Conditioned::new(log, &names, &how).expect("long enough")];
+    let model = regression();
+    let start = vec![0.0; model.rank()];
+    let found = estimate(&model, &logs, &[], &Options::default(), &start).expect("an estimate");
+    let all = parameters(&model, &found).into_iter();
+    all.filter(|one| one.name.starts_with('f')).collect()
+}
+
+/// A loop answers the steps of its encoder, so that noise and motion of the log are no longer
+/// independent: friction is biased by several of its errors. What half the cutoff of the filter
+/// changes shows that.
+#[test]
+fn errors_count_that_a_loop_answers_its_encoder() {
+    let truth = |one: &IdentifiedParameter| match one.name.as_str() {
+        "fv_link1" => FRICTION[0][0],
+        "fv_link2" => FRICTION[1][0],
+        _ => 0.0,
+    };
+    let count = |over_encoder: bool| {
+        let [mut held, mut held_without, mut changed] = [0; 3];
+        for one in (1..=12).flat_map(|seed| slow(seed, over_encoder)) {
+            changed += i32::from(one.is_changed());
+            if one.name.ends_with('1') {
+                let off = (one.value - truth(&one)).abs();
+                let [interval, std] = [one.interval, one.std].map(|one| one.expect("excited"));
+                let own_std = one.half_cutoff.expect("long enough").own_std;
+                held += i32::from(off <= interval);
+                held_without += i32::from(off <= interval * own_std / std);
+            }
+        }
+        [held, held_without, changed]
+    };
+    // of 24 each
+    let [held, held_without, _] = count(true);
+    assert!(held >= 19 && held_without <= 12, "{held} {held_without}");
+    let [held, _, changed] = count(false);
+    assert!(held >= 20 && changed == 0, "{held} {changed}");
 }

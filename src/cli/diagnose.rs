@@ -259,7 +259,7 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
     let numbers: Vec<usize> = kept.map(|law| law.number).collect();
     let (given_laws, given) = given_candidates(laws, Uncertainty::default());
-    let candidates = with_given(given_laws, candidates(&effects, &robot, &model.joints));
+    let candidates = with_given(given_laws, candidates(&effects, &robot, &model));
     let moved = Moved {
         source: &source,
         effects: &effects,

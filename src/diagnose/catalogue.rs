@@ -4,16 +4,17 @@ use super::candidate::Candidate;
 use super::joint_law::{JointLaw, ReadingLaw, RobotLaw};
 use super::law::Law;
 use crate::plants::effect::{EffectLaw, RobotEffect};
-use crate::plants::regression::RegressionJoint;
+use crate::plants::regression::{RegressionJoint, RegressionModel};
 use denavit_codegen::effect::{Channel, Effect, EffectSite, Law as EffectKindLaw, with_term};
 use denavit_codegen::model::{EffectPlace, JointKind, Robot};
 
 /// Every effect in every place of a robot where it can act.
-pub fn candidates(effects: &[Effect], robot: &Robot, joints: &[RegressionJoint]) -> Vec<Candidate> {
+pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) -> Vec<Candidate> {
+    let joints = &model.joints;
     let mut all = Vec::new();
     for effect in effects {
         if matches!(effect.law, EffectKindLaw::Moves(_) | EffectKindLaw::Term(_)) {
-            all.extend(on_robot(effect, robot, joints));
+            all.extend(on_robot(effect, robot, model));
             continue;
         }
         for (joint, described) in joints.iter().enumerate().filter(|(_, joint)| !joint.is_base) {
@@ -35,7 +36,9 @@ pub fn candidates(effects: &[Effect], robot: &Robot, joints: &[RegressionJoint])
 }
 
 /// An effect that changes the model: on each moving link, or on the whole.
-fn on_robot(effect: &Effect, robot: &Robot, joints: &[RegressionJoint]) -> Vec<Candidate> {
+fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Candidate> {
+    let joints = &model.joints;
+    let numbers: Vec<String> = model.parameters.iter().map(|one| one.name.clone()).collect();
     let places: Vec<(EffectPlace, String, Option<usize>)> = match effect.at {
         EffectSite::Model => vec![(EffectPlace::Model, "model".to_owned(), None)],
         EffectSite::Joint | EffectSite::Link => {
@@ -54,7 +57,7 @@ fn on_robot(effect: &Effect, robot: &Robot, joints: &[RegressionJoint]) -> Vec<C
         return Vec::new();
     }
     let of = |(at, name, joint): (EffectPlace, String, Option<usize>)| {
-        let law = RobotEffect::new(robot, effect, at).ok()?;
+        let law = RobotEffect::new(robot, effect, at, &numbers).ok()?;
         Some(Candidate {
             effect: effect.name.clone(),
             title: effect.title.clone(),

@@ -42,6 +42,8 @@ pub struct Data<'a> {
 pub struct ModelTorques {
     /// phi of the model's parameters.
     pub phi: Phi,
+    /// The numbers of the model file.
+    pub numbers: Vec<f64>,
     /// Rigid bodies alone.
     pub load: PerJoint,
     /// Their rates.
@@ -145,12 +147,13 @@ impl<'a> Data<'a> {
     /// The torques that the model gives the motion of each log with z.
     pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
         let (phi, load_phi) = (self.nominal.phi(z), self.nominal.load_phi(z));
+        let numbers = self.nominal.numbers(z);
         let one = |signals: &Signals| {
             let load = torques(self.nominal, signals, &load_phi);
             let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
             let load_rate = load.iter().map(rate).collect();
             let total = torques(self.nominal, signals, &phi);
-            ModelTorques { phi: phi.clone(), load, load_rate, total }
+            ModelTorques { phi: phi.clone(), numbers: numbers.clone(), load, load_rate, total }
         };
         self.signals.iter().map(one).collect()
     }
@@ -219,6 +222,7 @@ impl ModelTorques {
         let thin = |all: &PerJoint| all.iter().map(|one| coarse.thinned(fine, one)).collect();
         Self {
             phi: self.phi.clone(),
+            numbers: self.numbers.clone(),
             load: thin(&self.load),
             load_rate: thin(&self.load_rate),
             total: thin(&self.total),
@@ -227,7 +231,7 @@ impl ModelTorques {
 
     /// The motion of a log with these torques.
     pub fn motion<'m>(&'m self, nominal: &'m Nominal<'m>, signals: &'m Signals) -> Motion<'m> {
-        let Self { phi, load, load_rate, total } = self;
-        Motion { model: (nominal, phi), signals, load, load_rate, total }
+        let Self { phi, numbers, load, load_rate, total } = self;
+        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total }
     }
 }

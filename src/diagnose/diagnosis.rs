@@ -7,6 +7,7 @@ use super::data::Data;
 use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
+use super::errors::deviations;
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
 use super::fault::DiagnosisError;
@@ -152,6 +153,7 @@ pub fn diagnose(
     DiagnosisError::check(&request)?;
     let nominal = Nominal::new(request.model, request.uncertainty);
     let filters = request.filters.map_or_else(|| quiet_filters(&nominal, &request.train), Ok)?;
+    let smoother = smoother(&nominal, &request.train, filters);
     let read = |logs: Vec<MeasuredLog>| conditioned(&nominal, logs, filters);
     let (train, held_out) = (read(request.train)?, read(request.held_out)?);
     let floors = [&train, &held_out].map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
@@ -176,22 +178,23 @@ pub fn diagnose(
     let left = |state: &State| {
         where_left(&train, &state.residual, &state.torques[0], train_floor, filter_s)
     };
-    let states = [&outcome.before, &outcome.after];
-    let mut effects = found_effects((&setting, &outcome.screen), &request.options, states);
+    let states @ [before, after] = [&outcome.before, &outcome.after];
+    let deviations = deviations(&setting, after, smoother.as_ref());
+    let mut effects =
+        found_effects((&setting, &outcome.screen), &request.options, states, &deviations);
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }
     if let Some((robot, options)) = request.experiment {
-        separate(&setting, (robot, &options), (&outcome.after, filters), &mut effects);
+        separate(&setting, (robot, &options), (after, filters), &mut effects);
     }
-    let [before, after] = states;
     let trust = after.trust();
     let mut diagnosis = Diagnosis {
         verdict: Verdict::CannotTell,
         reasons: Vec::new(),
         before: left(before),
         after: left(after),
-        given: given_effects(&setting, after),
+        given: given_effects(&setting, after, &deviations),
         effects,
         train: Gaps::new((&train, train_floor), [&before.residual, &after.residual], &trust[0]),
         held_out: Gaps::new(
@@ -207,7 +210,7 @@ pub fn diagnose(
         driven: [before, after].map(|state| driven_names(&setting, state)),
         steps: outcome.steps,
     };
-    diagnosis.judge(&setting, outcome.stop, &outcome.after);
+    diagnosis.judge(&setting, outcome.stop, after);
     Ok(diagnosis)
 }
 
@@ -222,6 +225,20 @@ fn conditioned<'n>(
         Signals::new(log, filters).map_err(|error| DiagnosisError::Condition { file, error })
     });
     Ok(Data::new(nominal, signals.collect::<Result<Vec<Signals>, _>>()?))
+}
+
+/// How much lower the filters are that values must not depend on.
+const SMOOTHER: f64 = 0.5;
+
+/// Logs through lower filters; none if they are too short for them.
+fn smoother<'n>(
+    nominal: &'n Nominal<'n>,
+    logs: &[MeasuredLog],
+    filters: Filters,
+) -> Option<Data<'n>> {
+    let Filters { motion_hz, torque_hz } = filters;
+    let lower = Filters { motion_hz: SMOOTHER * motion_hz, torque_hz: SMOOTHER * torque_hz };
+    conditioned(nominal, logs.to_vec(), lower).ok()
 }
 
 /// The widest filters with which the steps of the encoders make less of a torque than its noise.
@@ -326,11 +343,11 @@ impl Diagnosis {
             if !is_noise {
                 reasons.push("nothing in the catalogue explains what is left".to_owned());
                 Verdict::Unexplained
-            } else if unseen.is_empty() {
-                Verdict::NothingMissing
             } else {
                 reasons.extend(unseen.iter().map(|one| one.sentence(&names)));
-                Verdict::CannotTell
+                // Numbers that are driven beyond what the model says stand for something else.
+                let is_model_right = unseen.is_empty() && self.driven[1].is_empty();
+                if is_model_right { Verdict::NothingMissing } else { Verdict::CannotTell }
             }
         } else if self.effects.iter().all(|one| !one.is_named) {
             let nearest: Vec<String> =

@@ -66,6 +66,7 @@ pub(super) fn found_effects(
     (setting, screen): (&Setting<'_>, &Screen),
     options: &SearchOptions,
     [before, after]: [&State; 2],
+    deviations: &[f64],
 ) -> Vec<FoundEffect> {
     let [_, trust] = after.trust();
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
@@ -83,7 +84,7 @@ pub(super) fn found_effects(
         let whole = gap(before) - floor;
         found.push(FoundEffect {
             candidate: taken.candidate,
-            parameters: values(setting, after, place),
+            parameters: values(setting, (after, deviations), place),
             share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
             is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
             alternatives: family((setting, screen), options, after, place),
@@ -114,24 +115,32 @@ pub(super) fn tell_aliases(
 }
 
 /// The parameters of the effect in one place of a state, with their errors.
-fn values(setting: &Setting<'_>, state: &State, place: usize) -> Vec<EffectValue> {
+fn values(
+    setting: &Setting<'_>,
+    (state, deviations): (&State, &[f64]),
+    place: usize,
+) -> Vec<EffectValue> {
     let before: usize = state.taken[..place].iter().map(|taken| taken.values.len()).sum();
     let taken = &state.taken[place];
     let parameters = setting.candidates[taken.candidate].law.parameters();
     let value = |(k, (value, parameter)): (usize, (&f64, &LawParameter))| EffectValue {
         name: parameter.name.clone(),
         value: *value,
-        std: state.covariance[(before + k, before + k)].max(0.0).sqrt(),
+        std: deviations[before + k],
         unit: parameter.unit.clone(),
     };
     taken.values.iter().zip(parameters).enumerate().map(value).collect()
 }
 
 /// What these logs say of the effects that the model has.
-pub(super) fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEffect> {
+pub(super) fn given_effects(
+    setting: &Setting<'_>,
+    state: &State,
+    deviations: &[f64],
+) -> Vec<GivenEffect> {
     let of = |(place, taken): (usize, &Taken)| GivenEffect {
         candidate: taken.candidate,
-        parameters: values(setting, state, place),
+        parameters: values(setting, (state, deviations), place),
     };
     setting.given.iter().enumerate().map(of).collect()
 }

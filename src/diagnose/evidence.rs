@@ -7,21 +7,29 @@ use super::data::Data;
 const BLOCK_S: f64 = 0.5;
 const LEAST_BLOCKS: usize = 16;
 
-/// Sums of squares of what is left, weighted, over blocks of time: all joints of a block together.
-pub fn block_costs(data: &Data<'_>, residual: &[f64], deviation: &[f64]) -> Vec<f64> {
-    let mut costs = Vec::new();
+/// The block of time of each row, and the number of blocks: all joints of a block together.
+pub(super) fn blocks(data: &Data<'_>) -> (Vec<usize>, usize) {
+    let (mut of_row, mut first) = (vec![0; data.rows()], 0);
     for (log, signals) in data.signals.iter().enumerate() {
         let rows = signals.rows();
         let by_time = (rows as f64 * signals.row_step_s() / BLOCK_S) as usize;
         let count = by_time.max(LEAST_BLOCKS).min(rows.max(1));
-        let mut of_log = vec![0.0; count];
         for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
             for row in 0..stretch.rows {
-                let at = stretch.first + row;
-                of_log[row * count / stretch.rows] += (residual[at] / deviation[at]).powi(2);
+                of_row[stretch.first + row] = first + row * count / stretch.rows;
             }
         }
-        costs.extend(of_log);
+        first += count;
+    }
+    (of_row, first)
+}
+
+/// Sums of squares of what is left, weighted, over blocks of time.
+pub fn block_costs(data: &Data<'_>, residual: &[f64], deviation: &[f64]) -> Vec<f64> {
+    let (of_row, count) = blocks(data);
+    let mut costs = vec![0.0; count];
+    for ((block, residual), deviation) in of_row.iter().zip(residual).zip(deviation) {
+        costs[*block] += (residual / deviation).powi(2);
     }
     costs
 }

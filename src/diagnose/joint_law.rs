@@ -3,7 +3,7 @@
 use super::law::{Law, Motion, Response};
 use super::rows::PerJoint;
 use super::signals::Signals;
-use crate::plants::effect::{EffectLaw, JointSamples, LawParameter, RobotEffect};
+use crate::plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 use denavit_codegen::effect::Channel;
 
 /// An effect that adds to the torque of one joint, or changes the log of that torque.
@@ -69,8 +69,8 @@ impl Law for RobotLaw {
         let signals = motion.signals;
         let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
             .map(|all| all.iter().map(Vec::as_slice).collect::<Vec<&[f64]>>());
-        let torque = self.effect.torque(&q, &qd, &qdd, values);
-        let gradient = self.effect.gradient(&q, &qd, &qdd, values);
+        let AddedTorques { torque, gradient } =
+            self.effect.torques([&q, &qd, &qdd], values, motion.numbers);
         Response { joints: (0..torque.len()).collect(), torque, gradient }
     }
 }

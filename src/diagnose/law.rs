@@ -12,6 +12,8 @@ use crate::plants::effect::LawParameter;
 pub struct Motion<'a> {
     /// The nominal model, and phi of its present parameters.
     pub model: (&'a Nominal<'a>, &'a Phi),
+    /// The present values of the numbers of the model file, in the order of the regression's.
+    pub numbers: &'a [f64],
     /// Positions, rates and accelerations at the full rate.
     pub signals: &'a Signals,
     /// Torques of rigid bodies, without friction [N m, N].

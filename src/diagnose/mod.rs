@@ -17,6 +17,7 @@ mod data;
 mod diagnosis;
 mod effects_found;
 mod elastic;
+mod errors;
 mod evidence;
 mod excitation;
 mod experiment;

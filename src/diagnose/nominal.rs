@@ -43,6 +43,8 @@ pub struct Nominal<'a> {
     pub model: &'a RegressionModel,
     /// The numbers that may be off, one for each entry of z.
     pub uncertain: Vec<Uncertain>,
+    /// For each of them its place among the parameters of the regression.
+    places: Vec<usize>,
     /// theta0 of the model's values.
     theta: Vec<f64>,
     /// What a unit of each entry of z adds to theta0.
@@ -70,7 +72,7 @@ impl<'a> Nominal<'a> {
     pub fn new(model: &'a RegressionModel, uncertainty: Uncertainty) -> Self {
         let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
         let theta = model.standard_values(&values);
-        let (mut uncertain, mut directions) = (Vec::new(), Vec::new());
+        let (mut uncertain, mut places, mut directions) = (Vec::new(), Vec::new(), Vec::new());
         for (place, parameter) in model.parameters.iter().enumerate() {
             let Some(std) = deviation(model, parameter, uncertainty) else { continue };
             // theta0 is a polynomial of the numbers: products of mass and distances.
@@ -81,6 +83,7 @@ impl<'a> Nominal<'a> {
             };
             let (above, below) = (at(1.0), at(-1.0));
             directions.push(above.iter().zip(&below).map(|(a, b)| a - b).collect());
+            places.push(place);
             uncertain.push(Uncertain {
                 name: parameter.name.clone(),
                 value: parameter.value,
@@ -89,7 +92,7 @@ impl<'a> Nominal<'a> {
                 is_positive: parameter.is_positive,
             });
         }
-        Self { model, uncertain, theta, directions }
+        Self { model, uncertain, places, theta, directions }
     }
 
     /// Number of entries of z.
@@ -111,6 +114,15 @@ impl<'a> Nominal<'a> {
             }
         }
         theta
+    }
+
+    /// The numbers of the model file with z, in the order of the regression's parameters.
+    pub fn numbers(&self, z: &[f64]) -> Vec<f64> {
+        let mut numbers = self.model.parameters.iter().map(|one| one.value).collect::<Vec<f64>>();
+        for ((one, place), factor) in self.uncertain.iter().zip(&self.places).zip(z) {
+            numbers[*place] += factor * one.std;
+        }
+        numbers
     }
 
     /// phi of z.

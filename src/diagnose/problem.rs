@@ -80,8 +80,6 @@ pub struct Found {
     pub values: Vec<Vec<f64>>,
     /// Sum of squares of what is left, weighted, with that of z.
     pub cost: f64,
-    /// Covariance of all values in order, if residuals were independent.
-    pub covariance: DMatrix<f64>,
     /// The nominal model's own parameters, in their deviations.
     pub z: Vec<f64>,
     /// What is left of each row [N m, N].
@@ -205,6 +203,34 @@ impl<'a> Problem<'a> {
         Problem { signals, ..self.clone() }
     }
 
+    /// The weighted columns of the laws' parameters less what z explains of them.
+    pub fn beyond_z(&self, responses: &[RowResponse]) -> DMatrix<f64> {
+        let of_response = |response: &RowResponse| {
+            let parameters = response.gradient.first().map_or(0, Vec::len);
+            let mut columns = DMatrix::zeros(self.weights.len(), parameters);
+            for (stretch, gradient) in response.stretches.iter().zip(&response.gradient) {
+                for (parameter, gradient) in gradient.iter().enumerate() {
+                    for (k, entry) in gradient.iter().enumerate() {
+                        let row = stretch.first + k;
+                        columns[(row, parameter)] += self.weights[row] * entry;
+                    }
+                }
+            }
+            columns
+        };
+        let all: Vec<DMatrix<f64>> = responses.iter().map(of_response).collect();
+        let width = all.iter().map(DMatrix::ncols).sum();
+        let mut columns = DMatrix::zeros(self.weights.len(), width);
+        let mut begin = 0;
+        for own in all {
+            columns.columns_mut(begin, own.ncols()).copy_from(&own);
+            begin += own.ncols();
+        }
+        let mut inside = self.factors.q.tr_mul(&columns);
+        self.held.free(&mut inside);
+        columns - &self.factors.q * inside
+    }
+
     /// The part of rows that z cannot explain, weighted.
     pub fn outside(&self, rows: &[f64]) -> DVector<f64> {
         let weighted = rows.iter().zip(&self.weights).map(|(row, weight)| row * weight);
@@ -263,7 +289,6 @@ impl<'a> Problem<'a> {
         Found {
             values: laws.iter().map(|fitted| fitted.values.clone()).collect(),
             cost: view.cost,
-            covariance: view.covariance(),
             z,
             residual,
         }
@@ -344,7 +369,7 @@ impl View {
     }
 
     /// With what the model says of parameters, as if it had been measured.
-    fn believing(mut self, laws: &[Fitted<'_>]) -> Self {
+    pub(super) fn believing(mut self, laws: &[Fitted<'_>]) -> Self {
         let mut begin = 0;
         for fitted in laws {
             let beliefs = fitted.law.beliefs().iter().zip(&fitted.values).enumerate();
@@ -383,18 +408,6 @@ impl View {
     pub fn gain(&self) -> f64 {
         let step = self.step(1e-9, &vec![false; self.gradient.len()]);
         self.gradient.dot(&step)
-    }
-
-    fn covariance(&self) -> DMatrix<f64> {
-        let count = self.gradient.len();
-        let scale: Vec<f64> =
-            (0..count).map(|k| self.normal[(k, k)].max(1e-300).sqrt().recip()).collect();
-        let scaled = DMatrix::from_fn(count, count, |a, b| {
-            self.normal[(a, b)] * scale[a] * scale[b] + if a == b { 1e-12 } else { 0.0 }
-        });
-        let inverse = scaled.try_inverse();
-        let inverse = inverse.unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY));
-        DMatrix::from_fn(count, count, |a, b| inverse[(a, b)] * scale[a] * scale[b])
     }
 }
 

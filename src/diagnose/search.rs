@@ -136,7 +136,8 @@ pub fn search(
         state = next;
         steps.push(step);
     };
-    Outcome { before, after: state, screen, steps, stop }
+    let after = if state.taken.is_empty() { state } else { setting.settled(state) };
+    Outcome { before, after, screen, steps, stop }
 }
 
 /// All candidates that are not `taken`, by what they would explain; as decoys, if they are turned.

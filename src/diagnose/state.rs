@@ -62,8 +62,6 @@ pub struct State {
     pub torques: [Vec<ModelTorques>; 2],
     /// Those of coarse views of the first.
     pub coarse: Vec<ModelTorques>,
-    /// Covariance of the effects' parameters.
-    pub covariance: nalgebra::DMatrix<f64>,
 }
 
 /// A tried set of effects.
@@ -129,6 +127,11 @@ const ROUNDS_OF_SPREAD: usize = 5;
 /// is not known.
 const MOST_TURNING: f64 = 2.0;
 
+/// Rounds in which effects are computed from the torques of the last one, and the step of z from
+/// which on that changes nothing.
+const MOST_ROUNDS: usize = 6;
+const SETTLED: f64 = 0.05;
+
 /// Rounds in which entries of z are held.
 const MOST_HELD: usize = 8;
 
@@ -177,16 +180,9 @@ impl<'a> Setting<'a> {
             [(self.train, &torques[0]), (self.held_out, &torques[1])].map(|(data, torques)| {
                 of_rows(data, &spreads, &turning(data, torques, &self.fitted(&taken)))
             });
-        let coarse = self
-            .coarse
-            .iter()
-            .flatten()
-            .enumerate()
-            .map(|(log, coarse)| torques[0][log].thinned(&self.train.signals[log], coarse));
         State {
-            coarse: coarse.collect(),
+            coarse: self.coarse_torques(&torques[0]),
             residual: found.residual,
-            covariance: found.covariance,
             taken,
             z,
             held,
@@ -195,6 +191,33 @@ impl<'a> Setting<'a> {
             held_out_residual,
             torques,
         }
+    }
+
+    /// The state with its weights, fitted on until laws of the model's own torques have those of
+    /// its numbers as they are estimated.
+    pub(super) fn settled(&self, mut state: State) -> State {
+        let problem = Problem::new(self.train, &state.deviation[0], &[]);
+        for _ in 0..MOST_ROUNDS {
+            let found = within(&problem, &mut self.fitted(&state.taken), &state.torques[0]);
+            let steps = found.z.iter().zip(&state.z).map(|(a, b)| (a - b).abs());
+            let moved = steps.fold(0.0, f64::max);
+            state.taken.iter_mut().zip(found.values).for_each(|(t, v)| t.values = v);
+            state.held = found.z.iter().map(|z| (z.abs() >= MOST_Z).then_some(*z)).collect();
+            (state.z, state.residual) = (found.z, found.residual);
+            state.torques = [self.train, self.held_out].map(|data| data.model_torques(&state.z));
+            if moved < SETTLED {
+                break;
+            }
+        }
+        state.held_out_residual = self.left(&state.taken, &state.z, &state.torques[1]);
+        state.coarse = self.coarse_torques(&state.torques[0]);
+        state
+    }
+
+    /// What torques of the logs to fit are in their coarse views.
+    fn coarse_torques(&self, torques: &[ModelTorques]) -> Vec<ModelTorques> {
+        let coarse = self.coarse.iter().flatten().enumerate();
+        coarse.map(|(log, own)| torques[log].thinned(&self.train.signals[log], own)).collect()
     }
 
     /// Fits a set of effects as they would stand in a state, whose weights and torques it keeps.

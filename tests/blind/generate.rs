@@ -317,7 +317,11 @@ impl Generated {
         let same = entry.same.iter().filter(|name| hidden.is_called(name, &self.case.truth));
         let mut parameters = Map::new();
         if hidden.variant == 0 && !entry.parameter.is_empty() {
-            parameters.insert(entry.parameter.to_owned(), json!(hidden.size));
+            let (name, value) = match entry.parameter.strip_prefix('-') {
+                Some(name) => (name, -hidden.size),
+                None => (entry.parameter, hidden.size),
+            };
+            parameters.insert(name.to_owned(), json!(value));
         }
         json!({
             "name": entry.name,

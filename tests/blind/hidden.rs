@@ -76,8 +76,9 @@ pub(crate) struct Entry {
     /// alone ([`Hidden::is_called`]).
     pub(crate) same: &'static [&'static str],
     pub(crate) site: Site,
-    /// Name of the parameter that is the size, if law 0 has it in the catalogue's form. An answer
-    /// with one parameter need not know it.
+    /// Name of the parameter that is the size, if law 0 has it in the catalogue's form; with a
+    /// minus where the catalogue counts the other way, two with a comma where the size is the
+    /// amplitude of a cosine and a sine. An answer with one parameter need not know it.
     pub(crate) parameter: &'static str,
     /// How many laws of this physics are implemented.
     pub(crate) variants: usize,
@@ -165,7 +166,7 @@ pub(crate) const TABLE: [Entry; 45] = [
         "shear_thinning",
         &["smoothed_coulomb", "arctangent_coulomb", "coulomb"],
         Site::Joint,
-        "c",
+        "",
         2,
     ),
     entry(Law::RotorInertia, "rotor_inertia", &["link_parameters", "rotors"], Site::Joint, "Ia", 1),
@@ -175,14 +176,14 @@ pub(crate) const TABLE: [Entry; 45] = [
     entry(Law::ReturnSpring, "one_sided_spring", &["hard_stop"], Site::Joint, "k", 2),
     entry(Law::TorqueGain, "torque_gain", &[], Site::Joint, "g", 1),
     entry(Law::TorqueOffset, "torque_offset", &["asymmetric_coulomb"], Site::Joint, "c", 1),
-    entry(Law::JointZero, "joint_zero", &["base_tilt", "link_parameters"], Site::Joint, "dq0", 1),
+    entry(Law::JointZero, "joint_zero", &["base_tilt", "link_parameters"], Site::Joint, "-dq", 1),
     entry(Law::Cogging, "cogging", &["transmission_error"], Site::Joint, "", 2),
     entry(
         Law::TransmissionError,
         "transmission_error",
         &["encoder_eccentricity", "cogging"],
         Site::Joint,
-        "a",
+        "a,b",
         2,
     ),
     entry(Law::Damper, "damper", &[], Site::Joint, "d", 1),

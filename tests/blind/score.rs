@@ -64,6 +64,19 @@ fn level(strength: f64) -> &'static str {
 }
 
 impl Named {
+    /// The value that corresponds to a hidden size, with its deviation.
+    fn stated(&self, parameter: &str) -> Option<[f64; 2]> {
+        if let Some((a, b)) = parameter.split_once(',') {
+            let [[a, of_a], [b, of_b]] = [self.parameters.get(a)?, self.parameters.get(b)?];
+            let amplitude = a.hypot(*b);
+            return Some([amplitude, (a * of_a).hypot(b * of_b) / amplitude]);
+        }
+        let opposite = parameter.strip_prefix('-');
+        let only = self.parameters.values().next().filter(|_| self.parameters.len() == 1);
+        let [value, std] = *self.parameters.get(opposite.unwrap_or(parameter)).or(only)?;
+        Some([if opposite.is_some() { -value } else { value }, std])
+    }
+
     /// Whether this names the physics of a hidden effect, at its joint: alone, or, with `family`,
     /// as one of few.
     fn is(&self, hidden: &Hidden, robot: &Robot, family: bool) -> bool {
@@ -142,14 +155,9 @@ fn intervals(case: &Case, named: &[&Named]) -> [usize; 2] {
         let entry = hidden.law.entry();
         let answer =
             named.iter().find(|one| one.name == entry.name && one.is(hidden, &case.truth, true));
-        let stated = |one: &&Named| {
-            let only = one.parameters.values().next().filter(|_| one.parameters.len() == 1);
-            one.parameters.get(entry.parameter).or(only).copied()
-        };
         let asked = !entry.parameter.is_empty();
-        let Some([value, std]) = answer.filter(|_| asked).and_then(stated) else {
-            continue;
-        };
+        let stated = answer.filter(|_| asked).and_then(|one| one.stated(entry.parameter));
+        let Some([value, std]) = stated else { continue };
         within[1] += 1;
         within[0] += usize::from((value - hidden.size).abs() <= 1.96 * std);
     }

@@ -65,7 +65,11 @@ pub fn bake_geometry(robot: &Robot) -> Result<Robot, BakeError> {
     bake_where(robot, is_known)
 }
 
-fn bake_where(robot: &Robot, is_baked: impl Fn(&Parameter) -> bool) -> Result<Robot, BakeError> {
+/// The robot with the default values of some parameters in place of their symbols.
+pub fn bake_where(
+    robot: &Robot,
+    is_baked: impl Fn(&Parameter) -> bool,
+) -> Result<Robot, BakeError> {
     let mut values: FxHashMap<ExprId, ExprId> = FxHashMap::default();
     let mut missing = Vec::new();
     for parameter in robot.parameters.values().filter(|parameter| is_baked(parameter)) {

@@ -25,7 +25,7 @@ pub(crate) mod spelling;
 mod tree;
 mod unit;
 
-pub use bake::{BakeError, bake, bake_geometry, bake_zeros};
+pub use bake::{BakeError, bake, bake_geometry, bake_where, bake_zeros};
 pub use fault::{Cause, Explained, Fault, FileError, MAX_FAULTS, ModelError};
 pub use inertia::Unphysical;
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};

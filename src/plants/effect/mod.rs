@@ -15,7 +15,7 @@ mod robot;
 mod states;
 
 pub use added::{AddedError, AddedLaw, ApartEffects, apart};
-pub use robot::{RobotEffect, RobotEffectError};
+pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
 
 use denavit_codegen::effect::{Channel, Effect, EffectKind, EffectParameter, Law};
 use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};

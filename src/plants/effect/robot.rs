@@ -3,11 +3,11 @@
 use super::program::LawProgram;
 use super::{EffectError, LawParameter, gradient};
 use denavit_codegen::derive::{Flavour, derive};
-use denavit_codegen::effect::{Effect, Law, attach, with_term};
+use denavit_codegen::effect::{Effect, Law, Property, attach, with_term};
 use denavit_codegen::expr::{ExprId, substitute};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{
-    AddedEffect, BakeError, Cause, EffectPlace, JointKind, Robot, Terms, bake,
+    AddedEffect, BakeError, Cause, EffectPlace, JointKind, Robot, Terms, bake_where,
 };
 use rustc_hash::FxHashMap;
 use std::fmt;
@@ -54,19 +54,38 @@ pub struct RobotEffect {
     program: LawProgram,
 }
 
+/// Whether what a law adds depends on numbers of the model: what turns or leaves out what is there
+/// does, what adds a body does not.
+fn is_of_numbers(law: &Law) -> bool {
+    let turns = |property: &Property| matches!(property, Property::Zero | Property::Gravity(_));
+    match law {
+        Law::Term(_) => true,
+        Law::Moves(moves) => moves.iter().any(|(property, _)| turns(property)),
+        Law::Torque(_) | Law::Measured(_) => false,
+    }
+}
+
 impl RobotEffect {
-    /// The effect on a robot with the values of its model. A term is taken as left out of the
+    /// The effect on a robot with the values of its model, but for parameters of the names in
+    /// `numbers`, whose values are asked for each time. A term is taken as left out of the
     /// model, whether the model has it or not. Friction, rotors and effects that the robot has
     /// already are no part of the difference.
-    pub fn new(robot: &Robot, effect: &Effect, at: EffectPlace) -> Result<Self, RobotEffectError> {
-        let mut rigid = bake(robot).map_err(RobotEffectError::Bake)?;
+    pub fn new(
+        robot: &Robot,
+        effect: &Effect,
+        at: EffectPlace,
+        numbers: &[String],
+    ) -> Result<Self, RobotEffectError> {
+        let numbers = if is_of_numbers(&effect.law) { numbers } else { &[] };
+        let mut rigid = bake_where(robot, |parameter| !numbers.contains(&parameter.name))
+            .map_err(RobotEffectError::Bake)?;
         rigid.laws.clear();
         rigid.terms = Terms { friction: false, rotor: false, ..rigid.terms };
         match effect.law {
             Law::Term(term) => {
                 let with = Robot { terms: with_term(rigid.terms, term, true), ..rigid.clone() };
                 rigid.terms = with_term(rigid.terms, term, false);
-                Self::of_term(effect, &with, &rigid)
+                Self::of_term(effect, [&with, &rigid], numbers)
             }
             Law::Moves(_) => {
                 let added = AddedEffect {
@@ -77,7 +96,7 @@ impl RobotEffect {
                 };
                 rigid.effects = vec![added];
                 attach(&mut rigid, effect, 0).map_err(RobotEffectError::Place)?;
-                Self::of_moved(effect, &rigid, at)
+                Self::of_moved(effect, (&rigid, at), numbers)
             }
             Law::Torque(_) | Law::Measured(_) => {
                 Err(RobotEffectError::OneJoint(effect.name.clone()))
@@ -85,7 +104,11 @@ impl RobotEffect {
         }
     }
 
-    fn of_term(effect: &Effect, with: &Robot, without: &Robot) -> Result<Self, RobotEffectError> {
+    fn of_term(
+        effect: &Effect,
+        [with, without]: [&Robot; 2],
+        numbers: &[String],
+    ) -> Result<Self, RobotEffectError> {
         // both from one graph: what they share is computed once
         let first = derived(with)?;
         let second = derived(&Robot { dag: first.dag.clone(), ..without.clone() })?;
@@ -93,17 +116,21 @@ impl RobotEffect {
         let entries: Vec<ExprId> =
             first.entries.iter().zip(&second.entries).map(|(&a, &b)| dag.sub(a, b)).collect();
         let joints = entries.len();
-        let program =
-            LawProgram::new(&dag, &[], first.inputs, entries).map_err(RobotEffectError::Lower)?;
+        let program = LawProgram::new(&dag, numbers, first.inputs, entries)
+            .map_err(RobotEffectError::Lower)?;
         Ok(Self { name: effect.name.clone(), parameters: Vec::new(), joints, program })
     }
 
-    fn of_moved(effect: &Effect, moved: &Robot, at: EffectPlace) -> Result<Self, RobotEffectError> {
+    fn of_moved(
+        effect: &Effect,
+        (moved, at): (&Robot, EffectPlace),
+        numbers: &[String],
+    ) -> Result<Self, RobotEffectError> {
         let Derived { mut dag, entries, inputs } = derived(moved)?;
         // the effect's own parameters were added last
         let count = effect.parameters.len();
         let own = moved.parameters.values().skip(moved.parameters.len() - count);
-        let (symbols, names): (Vec<ExprId>, Vec<String>) =
+        let (symbols, mut names): (Vec<ExprId>, Vec<String>) =
             own.map(|parameter| (parameter.symbol, parameter.name.clone())).unzip();
         let mut nominal: FxHashMap<ExprId, ExprId> = FxHashMap::default();
         for (parameter, &symbol) in effect.parameters.iter().zip(&symbols) {
@@ -120,6 +147,7 @@ impl RobotEffect {
         for parameter in 0..count {
             all.extend(slopes.iter().map(|row| row[parameter]));
         }
+        names.extend_from_slice(numbers);
         let program =
             LawProgram::new(&dag, &names, inputs, all).map_err(RobotEffectError::Lower)?;
         let joint = match at {
@@ -130,38 +158,31 @@ impl RobotEffect {
         Ok(Self { name: effect.name.clone(), parameters, joints, program })
     }
 
-    /// What the effect adds to the torque of each joint [N m, N]: one column for each. `q`, `qd`
-    /// and `qdd` have one column of samples for each joint.
-    pub fn torque(
+    /// What the effect adds to the torques, and the derivative by each parameter. `q`, `qd` and
+    /// `qdd` have one column of samples for each joint; `numbers` are the values of the numbers of
+    /// the model that were named.
+    pub fn torques(
         &self,
-        q: &[&[f64]],
-        qd: &[&[f64]],
-        qdd: &[&[f64]],
+        [q, qd, qdd]: [&[&[f64]]; 3],
         values: &[f64],
-    ) -> Vec<Vec<f64>> {
-        let mut outputs = self.run(q, qd, qdd, values);
-        outputs.truncate(self.joints);
-        outputs
-    }
-
-    /// The derivative of [`torque`](Self::torque) by each parameter: for each parameter one column
-    /// for each joint.
-    pub fn gradient(
-        &self,
-        q: &[&[f64]],
-        qd: &[&[f64]],
-        qdd: &[&[f64]],
-        values: &[f64],
-    ) -> Vec<Vec<Vec<f64>>> {
-        let outputs = self.run(q, qd, qdd, values).split_off(self.joints);
-        outputs.chunks_exact(self.joints).map(<[Vec<f64>]>::to_vec).collect()
-    }
-
-    fn run(&self, q: &[&[f64]], qd: &[&[f64]], qdd: &[&[f64]], values: &[f64]) -> Vec<Vec<f64>> {
+        numbers: &[f64],
+    ) -> AddedTorques {
         let inputs: Vec<&[f64]> = [q, qd, qdd].concat();
         let samples = q.first().map_or(0, |column| column.len());
-        self.program.run(&inputs, values, samples)
+        let mut torque = self.program.run(&inputs, &[values, numbers].concat(), samples);
+        let slopes = torque.split_off(self.joints);
+        let gradient = slopes.chunks_exact(self.joints).map(<[Vec<f64>]>::to_vec).collect();
+        AddedTorques { torque, gradient }
     }
+}
+
+/// What an effect adds to the torques of all joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AddedTorques {
+    /// For each joint one column of samples [N m, N].
+    pub torque: Vec<Vec<f64>>,
+    /// For each parameter and joint the derivative.
+    pub gradient: Vec<Vec<Vec<f64>>>,
 }
 
 /// Inverse dynamics of a robot.

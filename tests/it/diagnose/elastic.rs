@@ -101,7 +101,7 @@ fn found(hidden: impl Fn(f64) -> f64 + Copy) -> Result<(Verdict, Vec<String>), D
     let robot = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);
     let robot = robot.expect("the logs have the motor");
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
-    let candidates = denavit::diagnose::candidates(effect::catalogue(), &robot, &model.joints);
+    let candidates = denavit::diagnose::candidates(effect::catalogue(), &robot, &model);
     let request = Request {
         model: &model,
         train,

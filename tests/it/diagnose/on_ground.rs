@@ -76,7 +76,7 @@ fn a_spring_in_the_knee_of_a_robot_that_steps_is_named() {
         log
     };
     let (train, held_out) = (vec![log((0.1, 3))], vec![log((0.07, 4))]);
-    let mut candidates = candidates(effect::catalogue(), &robot, &model.joints);
+    let mut candidates = candidates(effect::catalogue(), &robot, &model);
     let tried =
         ["one_sided_spring", "one_sided_spring_below", "spring", "viscous", "payload_point"];
     candidates.retain(|one| tried.contains(&one.effect.as_str()));

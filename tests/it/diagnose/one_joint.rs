@@ -50,7 +50,7 @@ pub(super) fn diagnosed(
 ) -> (Diagnosis, Vec<Candidate>) {
     let robot = denavit::model::read("by hand", source.as_bytes()).expect("a model");
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
-    let all = candidates(effect::catalogue(), &robot, &model.joints);
+    let all = candidates(effect::catalogue(), &robot, &model);
     let aliases = ExactAliases::new(&robot, effect::catalogue());
     let logs = [vec![train.clone()], vec![held_out.clone()]];
     let moved = Moved { source, effects: effect::catalogue(), numbers: &[], logs };

@@ -79,10 +79,10 @@ fn assert_near(found: f64, expected: f64, what: &str) {
 fn neglected_coriolis_torques_are_those_of_the_christoffel_matrix() {
     let robot = robot(&text("puma560"));
     let effect = find("coriolis").expect("shipped");
-    let found = RobotEffect::new(&robot, effect, EffectPlace::Model).expect("an effect");
+    let found = RobotEffect::new(&robot, effect, EffectPlace::Model, &[]).expect("an effect");
     let motion = motion(6, 5);
     let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
-    let torque = found.torque(&q, &qd, &qdd, &[]);
+    let torque = found.torques([&q, &qd, &qdd], &[], &[]).torque;
     let derivation = derived(&robot, &[FunctionName::CoriolisMatrix]);
     for sample in 0..5 {
         let more = BTreeMap::new();
@@ -95,24 +95,34 @@ fn neglected_coriolis_torques_are_those_of_the_christoffel_matrix() {
 }
 
 #[test]
-fn a_tilted_base_is_gravity_of_another_direction() {
+fn a_tilted_base_is_gravity_of_another_direction_for_the_masses_of_the_moment() {
     let robot = robot(&text("puma560"));
     let effect = find("base_tilt").expect("shipped");
-    let found = RobotEffect::new(&robot, effect, EffectPlace::Model).expect("an effect");
+    let (third, _) = robot.joints().nth(2).expect("a joint");
+    let mass = robot.links[third].body.as_ref().expect("a body").mass;
+    let named = robot.parameters.values().find(|one| one.symbol == mass).expect("a parameter");
+    let numbers = [named.name.clone()];
+    let found = RobotEffect::new(&robot, effect, EffectPlace::Model, &numbers).expect("an effect");
     let (a, b) = (0.3_f64, -0.2_f64);
     // gravity (0, 0, -g), turned about x by a and then about y by b
     let g = 9.81;
     let turned = [-g * a.cos() * b.sin(), g * a.sin(), -g * a.cos() * b.cos()];
+    let heavy = 7.1;
     let mut file: serde_json::Value = serde_json::from_str(&text("puma560")).expect("JSON");
     assert_eq!(file["gravity"], serde_json::json!([0, 0, "-g"]));
+    let link = file["links"].as_array_mut().expect("links").iter_mut();
+    let name = &robot.links[third].name;
+    let mut links = link.filter(|link| link["name"] == name.as_str());
+    links.next().expect("the link")["body"]["mass"] = serde_json::json!(heavy);
+    let upright = self::robot(&file.to_string());
     file["gravity"] = serde_json::json!(turned.map(|entry| format!("{entry}")));
     let tilted = self::robot(&file.to_string());
     let motion = motion(6, 4);
     let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
-    let torque = found.torque(&q, &qd, &qdd, &[a, b]);
+    let torque = found.torques([&q, &qd, &qdd], &[a, b], &[heavy]).torque;
     for sample in 0..4 {
         let with = rigid_torques(&tilted, &motion, sample);
-        let without = rigid_torques(&robot, &motion, sample);
+        let without = rigid_torques(&upright, &motion, sample);
         for joint in 0..6 {
             assert_near(torque[joint][sample], with[joint] - without[joint], "tilt");
         }
@@ -138,10 +148,10 @@ fn a_payload_is_a_body_fixed_in_its_link() {
     values.extend((0..3).map(|i| central[i] + mass * (square - c[i] * c[i])));
     values.extend([(0, 1), (0, 2), (1, 2)].map(|(i, j): (usize, usize)| -mass * c[i] * c[j]));
     let effect = find("payload").expect("shipped");
-    let found = RobotEffect::new(&robot, effect, EffectPlace::Link(tip)).expect("an effect");
+    let found = RobotEffect::new(&robot, effect, EffectPlace::Link(tip), &[]).expect("an effect");
     let motion = motion(6, 4);
     let [q, qd, qdd] = [0, 1, 2].map(|row| slices(&motion[row]));
-    let torque = found.torque(&q, &qd, &qdd, &values);
+    let torque = found.torques([&q, &qd, &qdd], &values, &[]).torque;
     for sample in 0..4 {
         let with = rigid_torques(&loaded, &motion, sample);
         let without = rigid_torques(&robot, &motion, sample);
@@ -165,17 +175,17 @@ fn gradients_of_whole_robots_are_those_of_differences_and_nominal_is_nothing() {
         ("base_tilt", EffectPlace::Model),
     ] {
         let effect = find(name).expect("shipped");
-        let found = RobotEffect::new(&robot, effect, at).expect("an effect");
+        let found = RobotEffect::new(&robot, effect, at, &[]).expect("an effect");
         let nominal: Vec<f64> = found.parameters.iter().map(|p| p.nominal.unwrap_or(0.4)).collect();
-        let nothing = found.torque(&q, &qd, &qdd, &nominal);
+        let nothing = found.torques([&q, &qd, &qdd], &nominal, &[]).torque;
         assert!(nothing.iter().flatten().all(|torque| torque.abs() < 1e-10), "{name}");
         let values: Vec<f64> = (0..nominal.len()).map(|i| 0.2 + 0.05 * i as f64).collect();
-        let gradient = found.gradient(&q, &qd, &qdd, &values);
+        let gradient = found.torques([&q, &qd, &qdd], &values, &[]).gradient;
         for parameter in 0..values.len() {
             let side = |step: f64| {
                 let mut moved = values.clone();
                 moved[parameter] += step;
-                found.torque(&q, &qd, &qdd, &moved)
+                found.torques([&q, &qd, &qdd], &moved, &[]).torque
             };
             let (above, below) = (side(1e-5), side(-1e-5));
             for joint in 0..6 {

@@ -201,7 +201,7 @@ fn as_torque(effect: &Effect) -> Option<Effect> {
     let Law::Measured(measured) = effect.law else { return Some(effect) };
     let zero = effect.dag.zero();
     let is_timed = measured.delay_s != zero || measured.lag_s != zero;
-    if is_timed || measured.channel != Channel::Torque {
+    if is_timed || measured.is_inverse || measured.channel != Channel::Torque {
         return None;
     }
     let tau = effect.symbol("tau")?;

@@ -1,7 +1,7 @@
 //! The catalogue in all places of a robot.
 
 use super::candidate::Candidate;
-use super::joint_law::{JointLaw, ReadingLaw, RobotLaw};
+use super::joint_law::{DemandLaw, JointLaw, ReadingLaw, RobotLaw};
 use super::law::Law;
 use crate::plants::effect::{EffectLaw, RobotEffect};
 use crate::plants::regression::{RegressionJoint, RegressionModel};
@@ -72,6 +72,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
 /// A law of one joint, as it acts on the torques of a log.
 pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<dyn Law> {
     match law.channel() {
+        Some(Channel::Torque) if law.is_inverse() => Box::new(DemandLaw { law, joint }),
         None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
         Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw { law, joint }),
     }

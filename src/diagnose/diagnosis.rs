@@ -10,6 +10,7 @@ use super::effects_found::{
 use super::errors::deviations;
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
+use super::family::settled;
 use super::fault::DiagnosisError;
 use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
@@ -178,10 +179,10 @@ pub fn diagnose(
     let left = |state: &State| {
         where_left(&train, &state.residual, &state.torques[0], train_floor, filter_s)
     };
-    let states @ [before, after] = [&outcome.before, &outcome.after];
+    let (after, families) = settled((&setting, &outcome.screen), &request.options, outcome.after);
+    let [before, after] = [&outcome.before, &after];
     let deviations = deviations(&setting, after, smoother.as_ref());
-    let mut effects =
-        found_effects((&setting, &outcome.screen), &request.options, states, &deviations);
+    let mut effects = found_effects(&setting, [before, after], (&deviations, families));
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }

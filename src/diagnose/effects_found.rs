@@ -4,10 +4,9 @@
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
 use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
-use super::family::{Alternative, family};
+use super::family::Alternative;
 use super::gap::Gap;
 use super::given::is_driven;
-use super::search::{Screen, SearchOptions};
 use super::signals::Filters;
 use super::state::{Setting, State, Taken};
 use crate::plants::effect::LawParameter;
@@ -63,10 +62,9 @@ const MISFIT: f64 = 2.5;
 
 /// The effects of a state, each with its share, its errors and what would do as well.
 pub(super) fn found_effects(
-    (setting, screen): (&Setting<'_>, &Screen),
-    options: &SearchOptions,
+    setting: &Setting<'_>,
     [before, after]: [&State; 2],
-    deviations: &[f64],
+    (deviations, families): (&[f64], Vec<Vec<Alternative>>),
 ) -> Vec<FoundEffect> {
     let [_, trust] = after.trust();
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
@@ -78,7 +76,8 @@ pub(super) fn found_effects(
         to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
     };
     let mut found = Vec::new();
-    for (place, taken) in after.taken.iter().enumerate().skip(setting.given.len()) {
+    let places = after.taken.iter().enumerate().skip(setting.given.len());
+    for ((place, taken), alternatives) in places.zip(families) {
         let mut others = after.taken.clone();
         others.remove(place);
         let whole = gap(before) - floor;
@@ -87,7 +86,7 @@ pub(super) fn found_effects(
             parameters: values(setting, (after, deviations), place),
             share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
             is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
-            alternatives: family((setting, screen), options, after, place),
+            alternatives,
             exact: Vec::new(),
             experiment: None,
         });

@@ -4,7 +4,7 @@ use super::evidence::paired;
 use super::gap::Gap;
 use super::problem::Problem;
 use super::search::{ALIKE, Screen, SearchOptions, is_worse, refine, score};
-use super::state::{Setting, State, Taken};
+use super::state::{Setting, State, Taken, Trial};
 
 /// An effect that would do as well in the place of one that was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Alternative {
     pub values: Vec<f64>,
     /// The gap that it leaves on held-out logs.
     pub held_out_gap: f64,
+    /// Whether it has fewer parameters.
+    pub is_simpler: bool,
     /// Standard errors by which it is worse, over all logs.
     pub worse_by: f64,
     /// The cosine of the angle between what the two do to the torques that the model's own
@@ -42,27 +44,62 @@ pub fn family(
         taken.push(own.clone());
         setting.trial(&problem, &rest, &taken)
     };
+    let idle = setting.trial(&problem, &rest, &rest.taken);
     let [_, trust] = state.trust();
     let gap = |residual: &[f64]| Gap::new(setting.held_out, residual, &trust).all;
     let most = (1.0 + ALIKE).powi(2) * chosen.held_out_cost();
+    let is_alike =
+        |trial: &Trial| trial.held_out_cost() <= most && !is_worse(setting, &rest, trial, &chosen);
+    // Where the model's own uncertainty would do, so would any effect that is off.
+    let is_off = |trial: &Trial| is_alike(&idle) && !is_worse(setting, &rest, &idle, trial);
     let mut found = Vec::new();
     for trial in refine(setting, 2 * options.refined, &rest, (&problem, &scored)) {
         let Some(other) = trial.taken.last().cloned() else { continue };
         let Taken { candidate, values } = other.clone();
-        if candidate == own.candidate || values.len() > own.values.len() {
+        if candidate == own.candidate || trial.parameters() > chosen.parameters() {
             continue;
         }
         let worse_by = paired(&trial.blocks.concat(), &chosen.blocks.concat());
-        if trial.held_out_cost() <= most && !is_worse(setting, &rest, &trial, &chosen) {
+        if is_alike(&trial) && !is_off(&trial) {
             let held_out_gap = gap(&trial.held_out_residual);
             let cosine = cosine(setting, &problem, &rest, [&own, &other]);
             let is_exact = false;
-            let one = Alternative { candidate, values, held_out_gap, worse_by, cosine, is_exact };
-            found.push(one);
+            found.push(Alternative {
+                candidate,
+                values,
+                is_simpler: trial.parameters() < chosen.parameters(),
+                held_out_gap,
+                worse_by,
+                cosine,
+                is_exact,
+            });
         }
     }
     found.sort_by(|a, b| a.held_out_gap.total_cmp(&b.held_out_gap));
     found
+}
+
+/// The effects of a state with the names that would do as well: of these the simplest is the
+/// effect's, since with what was found it is known better what is left.
+pub(super) fn settled(
+    (setting, screen): (&Setting<'_>, &Screen),
+    options: &SearchOptions,
+    mut state: State,
+) -> (State, Vec<Vec<Alternative>>) {
+    let mut families = Vec::new();
+    for place in setting.given.len()..state.taken.len() {
+        let of = |state: &State| family((setting, screen), options, state, place);
+        let mut own = of(&state);
+        if let Some(simpler) = own.iter().find(|other| other.is_simpler) {
+            let mut taken = state.taken.clone();
+            let Alternative { candidate, values, .. } = simpler.clone();
+            taken[place] = Taken { candidate, values };
+            state = setting.state(&taken);
+            own = of(&state);
+        }
+        families.push(own);
+    }
+    (state, families)
 }
 
 /// The cosine of what two effects do, in the rows, outside of what z can do.

@@ -54,6 +54,36 @@ impl Law for JointLaw {
     }
 }
 
+/// An effect that makes a drive give another torque than is logged: what was demanded of it.
+///
+/// It changes what was measured and not what is computed, so that the law has no torque where
+/// nothing was measured. A clip of what was measured has what the model lacks in it only as far as
+/// that is beyond the clip, and what is left is then that of the model at the clip.
+pub(super) struct DemandLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+}
+
+impl Law for DemandLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let measured = motion.signals.measured_within(self.joint);
+        let measured = measured.unwrap_or_else(|| vec![0.0; motion.signals.samples()]);
+        let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
+        let gradient = self.law.gradient(&samples, values);
+        Response {
+            joints: vec![self.joint],
+            torque: vec![self.law.torque(&samples, values)],
+            gradient: gradient.into_iter().map(|column| vec![column]).collect(),
+        }
+    }
+}
+
 /// An effect that moves what the model says, or a term that it lacks: it acts on all joints.
 pub(super) struct RobotLaw {
     /// What it adds.

@@ -6,8 +6,8 @@ use super::rows::{PerJoint, torques};
 use super::signals::Signals;
 use crate::plants::effect::LawParameter;
 
-/// What a law may depend on: the motion of a log and the torques that the model gives it, never
-/// those that were measured.
+/// What a law may depend on: the motion of a log and the torques that the model gives it; those
+/// that were measured only where a law cuts them.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
     /// The nominal model, and phi of its present parameters.

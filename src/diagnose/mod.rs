@@ -26,6 +26,7 @@ mod fault;
 mod floor;
 mod gap;
 mod given;
+mod held;
 mod joint_law;
 mod law;
 mod nominal;

@@ -5,6 +5,7 @@
 //! projection, Golub and Pereyra 1973).
 
 use super::data::{Data, ModelTorques, RowResponse};
+use super::held::{Held, hold};
 use super::law::Law;
 use super::signals::Signals;
 use nalgebra::{DMatrix, DVector};
@@ -41,38 +42,6 @@ struct Factors {
     r: DMatrix<f64>,
 }
 
-/// Entries of z that have values: in the coordinates u of Q, where z = R^-1 u, they are W' u = w.
-#[derive(Clone)]
-struct Held {
-    /// For each entry of z its value, if it is held.
-    values: Vec<Option<f64>>,
-    /// W, orthonormal.
-    across: DMatrix<f64>,
-    /// The shortest u with these values, W w.
-    offset: DVector<f64>,
-}
-
-impl Held {
-    fn new(r: &DMatrix<f64>, values: &[Option<f64>]) -> Self {
-        let width = r.ncols();
-        let (places, given): (Vec<usize>, Vec<f64>) =
-            values.iter().enumerate().filter_map(|(k, value)| Some((k, (*value)?))).unzip();
-        let mut rows = DMatrix::zeros(width, places.len());
-        places.iter().enumerate().for_each(|(column, &place)| rows[(place, column)] = 1.0);
-        let rows = r.tr_solve_upper_triangular(&rows).unwrap_or(rows);
-        let (across, triangle) = rows.qr().unpack();
-        let given = DVector::from_vec(given);
-        let along = triangle.tr_solve_upper_triangular(&given).unwrap_or(given);
-        let offset = &across * along;
-        Self { values: values.to_vec(), across, offset }
-    }
-
-    /// The part of coordinates that is free.
-    fn free(&self, coordinates: &mut DMatrix<f64>) {
-        *coordinates -= &self.across * self.across.tr_mul(coordinates);
-    }
-}
-
 /// What was found of effects.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -84,7 +53,13 @@ pub struct Found {
     pub z: Vec<f64>,
     /// What is left of each row [N m, N].
     pub residual: Vec<f64>,
+    /// Directions in which the laws' parameters change what is left: a body's ten numbers move few
+    /// torques of a planar robot.
+    pub rank: usize,
 }
+
+/// The least eigenvalue of scaled normal equations of a direction that is one.
+const INDEPENDENT: f64 = 1e-7;
 
 /// Most iterations of a search.
 const ITERATIONS: usize = 12;
@@ -172,6 +147,27 @@ impl<'a> Problem<'a> {
 
     /// What laws with these responses leave, and the normal equations of their parameters.
     pub fn look(&self, responses: &[RowResponse]) -> View {
+        self.products(responses).view(&self.held)
+    }
+
+    /// The least cost of laws with these responses, to first order, with z within a bound: entries
+    /// that would be beyond are held there.
+    pub fn least_cost(&self, responses: &[RowResponse], bound: f64) -> f64 {
+        let products = self.products(responses);
+        let mut held = vec![None; self.data.columns.len()];
+        let mut problem = self.holding(&held);
+        loop {
+            let view = products.view(&problem.held);
+            let step = view.best_step();
+            let z = problem.z(&(&view.explained - &view.inside * &step));
+            if !hold(&mut held, &z, bound) {
+                return view.cost - view.gradient.dot(&step);
+            }
+            problem = self.holding(&held);
+        }
+    }
+
+    fn products(&self, responses: &[RowResponse]) -> Products {
         let mut rho = self.residual.clone();
         let mut columns: Vec<Vec<(usize, Vec<f64>)>> = Vec::new();
         for response in responses {
@@ -192,7 +188,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        View::new(&self.factors.q, &self.held, rho, &columns)
+        Products::new(&self.factors.q, &rho, &columns)
     }
 
     /// The same problem with laws evaluated on coarse views.
@@ -240,11 +236,6 @@ impl<'a> Problem<'a> {
         weighted - inside
     }
 
-    /// What is left without any further law.
-    pub fn own_cost(&self) -> f64 {
-        self.look(&[]).cost
-    }
-
     /// Searches the values of laws from those given: Levenberg and Marquardt's steps within bounds.
     pub fn fit(&self, laws: &[Fitted<'_>], torques: &[ModelTorques]) -> Found {
         let mut laws = laws.to_vec();
@@ -289,6 +280,7 @@ impl<'a> Problem<'a> {
         Found {
             values: laws.iter().map(|fitted| fitted.values.clone()).collect(),
             cost: view.cost,
+            rank: view.rank(),
             z,
             residual,
         }
@@ -318,17 +310,25 @@ pub struct View {
     /// Squared length of each column before z is eliminated.
     pub lengths: Vec<f64>,
     explained: DVector<f64>,
+    /// What of the laws' columns z can do.
+    inside: DMatrix<f64>,
 }
 
-impl View {
-    fn new(
-        q: &DMatrix<f64>,
-        held: &Held,
-        rho: DVector<f64>,
-        columns: &[Vec<(usize, Vec<f64>)>],
-    ) -> Self {
-        let all = q.tr_mul(&rho);
-        let explained = &all - &held.across * held.across.tr_mul(&all);
+/// Products of the rows and of the laws' columns with Q, whatever is held.
+struct Products {
+    /// |rho|^2.
+    square: f64,
+    /// Q' rho.
+    all: DVector<f64>,
+    /// Q' times the columns.
+    inside: DMatrix<f64>,
+    gradient: DVector<f64>,
+    normal: DMatrix<f64>,
+    lengths: Vec<f64>,
+}
+
+impl Products {
+    fn new(q: &DMatrix<f64>, rho: &DVector<f64>, columns: &[Vec<(usize, Vec<f64>)>]) -> Self {
         let count = columns.len();
         let mut inside = DMatrix::zeros(q.ncols(), count);
         let mut gradient = DVector::zeros(count);
@@ -341,10 +341,7 @@ impl View {
                 gradient[place] += entries.dot(&rho.rows(*first, entries.len()));
             }
         }
-        gradient -= inside.tr_mul(&held.offset);
-        held.free(&mut inside);
-        gradient -= inside.tr_mul(&explained);
-        let mut normal = -inside.tr_mul(&inside);
+        let mut normal = DMatrix::zeros(count, count);
         let mut lengths = vec![0.0; count];
         for a in 0..count {
             for b in a..count {
@@ -359,15 +356,27 @@ impl View {
                 if a == b {
                     lengths[a] = sum;
                 }
-                normal[(a, b)] += sum;
-                normal[(b, a)] = normal[(a, b)];
+                normal[(a, b)] = sum;
+                normal[(b, a)] = sum;
             }
         }
-        let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&all);
-        let cost = rho.norm_squared() - explained.norm_squared() + offset;
-        Self { cost, gradient, normal, lengths, explained }
+        Self { square: rho.norm_squared(), all: q.tr_mul(rho), inside, gradient, normal, lengths }
     }
 
+    fn view(&self, held: &Held) -> View {
+        let mut inside = self.inside.clone();
+        let explained = &self.all - &held.across * held.across.tr_mul(&self.all);
+        let mut gradient = &self.gradient - inside.tr_mul(&held.offset);
+        held.free(&mut inside);
+        gradient -= inside.tr_mul(&explained);
+        let normal = &self.normal - inside.tr_mul(&inside);
+        let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&self.all);
+        let cost = self.square - explained.norm_squared() + offset;
+        View { cost, gradient, normal, lengths: self.lengths.clone(), explained, inside }
+    }
+}
+
+impl View {
     /// With what the model says of parameters, as if it had been measured.
     pub(super) fn believing(mut self, laws: &[Fitted<'_>]) -> Self {
         let mut begin = 0;
@@ -406,8 +415,22 @@ impl View {
 
     /// How much the cost would fall with the best linear step.
     pub fn gain(&self) -> f64 {
-        let step = self.step(1e-9, &vec![false; self.gradient.len()]);
-        self.gradient.dot(&step)
+        self.gradient.dot(&self.best_step())
+    }
+
+    fn best_step(&self) -> DVector<f64> {
+        self.step(1e-9, &vec![false; self.gradient.len()])
+    }
+
+    fn rank(&self) -> usize {
+        let scale = |k: usize| self.normal[(k, k)].max(1e-12 * self.lengths[k]).max(1e-300).sqrt();
+        let count = self.gradient.len();
+        if count == 0 {
+            return 0;
+        }
+        let scaled =
+            DMatrix::from_fn(count, count, |a, b| self.normal[(a, b)] / (scale(a) * scale(b)));
+        scaled.symmetric_eigenvalues().iter().filter(|&&value| value > INDEPENDENT).count()
     }
 }
 

@@ -5,9 +5,9 @@ use super::evidence::{by_ranks, paired};
 use super::gap::Gap;
 use super::problem::Problem;
 use super::search::{
-    DISTINCT, ROWS_PER_SAMPLE, Scored, Screen, SearchOptions, Step, best, fitted, refine, score,
+    ROWS_PER_SAMPLE, Scored, Screen, SearchOptions, Step, best, fitted, refine, score,
 };
-use super::state::{Setting, State, Taken, Trial};
+use super::state::{MOST_Z, Setting, State, Taken, Trial};
 
 /// A share of what can be explained that is found at two standard errors.
 const LARGE: f64 = 0.2;
@@ -15,15 +15,24 @@ const LARGE: f64 = 0.2;
 /// A joint with less than so many times the squares of noise has nothing to explain.
 pub(super) const QUIET: f64 = 1.3;
 
+/// Standard errors by which a model may move worse along held-out logs with an effect.
+const WORSE_IN_MOTION: f64 = 1.0;
+
+/// The share of what is left above noise there that an effect must close.
+const OF_QUIET: f64 = 0.5;
+
 /// The shares that are closed of what could be explained in the beginning, and now, at the joints
 /// that this is about: those with a tenth of what one of them has.
 pub(super) fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
-    let closed: Vec<f64> = now.iter().zip(then).map(|(now, then)| now[0] - then[0]).collect();
+    let unit = |joint: usize| now[joint][1].max(f64::MIN_POSITIVE);
+    let closed: Vec<f64> =
+        (0..now.len()).map(|joint| (now[joint][0] - then[joint][0]) / unit(joint)).collect();
     let most = closed.iter().copied().fold(0.0, f64::max);
     let own = || (0..closed.len()).filter(|&joint| closed[joint] > 0.1 * most);
     let sum: f64 = own().map(|joint| closed[joint]).sum();
     [from, now].map(|all| {
-        let excess: f64 = own().map(|joint| (all[joint][0] - all[joint][1]).max(0.0)).sum();
+        let excess: f64 =
+            own().map(|joint| ((all[joint][0] - all[joint][1]) / unit(joint)).max(0.0)).sum();
         if excess > 0.0 { sum / excess } else { 0.0 }
     })
 }
@@ -102,7 +111,7 @@ impl Round<'_, '_> {
     fn pairs(&self, problem: &Problem<'_>, scored: &[Scored]) -> Vec<Vec<Taken>> {
         let Self { setting, screen, state, .. } = self;
         let given = problem.responses(&setting.fitted(&state.taken), &state.torques[0]);
-        let problem = Problem::new(setting.train, &state.deviation[0], &given).holding(&state.held);
+        let problem = Problem::new(setting.train, &state.deviation[0], &given);
         let now = setting.held_out_squares(state, &self.idle.held_out_residual);
         let response = |one: &Scored| {
             let mut starts = screen.of(one.candidate).iter();
@@ -117,14 +126,28 @@ impl Round<'_, '_> {
                 own.filter_map(|one| Some((one, response(one)?))).take(PAIRED).collect();
             for (place, (a, of_a)) in own.iter().enumerate() {
                 for (b, of_b) in &own[place + 1..] {
-                    let view = problem.look(&[of_a.clone(), of_b.clone()]);
-                    pairs.push((view.gain() - view.cost, [a, b]));
+                    let cost = problem.least_cost(&[of_a.clone(), of_b.clone()], MOST_Z);
+                    pairs.push((cost, [a, b]));
                 }
             }
         }
-        pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let taken = |one: &Scored| Taken { candidate: one.candidate, values: one.values.clone() };
         pairs.iter().take(MOST_PAIRS).map(|(_, pair)| pair.map(taken).to_vec()).collect()
+    }
+
+    /// Torques that are right for the wrong reason move the robot otherwise. What was computed with
+    /// the model's numbers needs those that go with the effect, which are estimated again, if they
+    /// make a robot.
+    fn in_motion(&self, best: &Trial) -> Option<f64> {
+        let Self { setting, state, .. } = self;
+        let than = (&state.taken[..], &state.z[..]);
+        let next = setting.state(&best.taken);
+        let (again, is_estimated) = setting.in_motion(than, (&next.taken, &next.z))?;
+        match is_estimated {
+            true => Some(again),
+            false => Some(setting.in_motion(than, (&best.taken, &best.found.z))?.0),
+        }
     }
 
     /// Whether a trial is more than chance, against all `trials`.
@@ -141,31 +164,29 @@ impl Round<'_, '_> {
             [self.before, &idle.held_out_residual, &best.held_out_residual].map(of);
         let [share, of_rest] = closed(&from, &now, &then);
         let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
-        let most = (0..now.len())
-            .max_by(|&a, &b| (now[a][0] - then[a][0]).total_cmp(&(now[b][0] - then[b][0])));
+        let closed_at = |joint: usize| (now[joint][0] - then[joint][0]) / now[joint][1];
+        let most = (0..now.len()).max_by(|&a, &b| closed_at(a).total_cmp(&closed_at(b)));
         let mut runners_up: Vec<(usize, f64)> = trials
             .iter()
             .filter(|trial| Self::added(trial) != added)
             .map(|trial| (Self::added(trial), held_out_gap(&trial.held_out_residual)))
             .collect();
         runners_up.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let is_quiet = most.is_some_and(is_noise);
         // Blocks in which another missing effect weighs scatter much: a large share needs less.
-        let asked = if share > LARGE { 2.0 } else { options.significance };
+        let asked = if share > LARGE && !is_quiet { 2.0 } else { options.significance };
         let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-        let parameters = (best.parameters() - idle.parameters()) as f64;
-        let is_more = gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln())
-            && significance > asked
-            && !most.is_some_and(is_noise);
-        let is_enough = is_more && of_rest >= options.least_share;
-        // Torques that are right for the wrong reason move the robot otherwise.
-        let own = is_enough
-            .then(|| setting.in_motion((&state.taken, &state.z), (&best.taken, &best.found.z)));
-        let in_motion = own.flatten();
+        let parameters = best.parameters().saturating_sub(idle.parameters()) as f64;
+        let is_more =
+            gain > decoy.max(ROWS_PER_SAMPLE * parameters * samples.ln()) && significance > asked;
+        let least_share = if is_quiet { OF_QUIET } else { options.least_share };
+        let is_enough = is_more && of_rest >= least_share;
+        let in_motion = is_enough.then(|| self.in_motion(best)).flatten();
         let before = &best.taken[state.taken.len()..best.taken.len() - 1];
         Step {
             added,
             with: before.first().map(|one| one.candidate),
-            is_taken: is_enough && in_motion.is_none_or(|better| better > -DISTINCT),
+            is_taken: is_enough && in_motion.is_none_or(|better| better > -WORSE_IN_MOTION),
             gain,
             decoy,
             significance,

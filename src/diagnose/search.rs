@@ -5,7 +5,7 @@ use super::data::{Data, RowResponse};
 use super::evidence::paired;
 use super::problem::{Fitted, Problem};
 use super::round::{closed, forward};
-use super::state::{Setting, State, Taken, Trial};
+use super::state::{MOST_Z, Setting, State, Taken, Trial};
 
 /// What a search is allowed, and asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,16 +151,17 @@ pub fn score(
         let plain = Problem::new(setting.train, &state.deviation[0], &[]);
         plain.responses(&setting.fitted(taken), &state.torques[0])
     };
-    let problem = Problem::new(setting.train, &state.deviation[0], &given).holding(&state.held);
-    let own_cost = problem.own_cost();
+    let problem = Problem::new(setting.train, &state.deviation[0], &given);
+    let own_cost = problem.least_cost(&[], MOST_Z);
     let best_of = |(candidate, starts): (usize, &Vec<(Vec<f64>, RowResponse)>)| {
         if taken.iter().any(|taken| taken.candidate == candidate) {
             return None;
         }
         let of_start = |(values, response): &(Vec<f64>, RowResponse)| {
             let turned = turn.map(|turn| response.turned(turn));
-            let view = problem.look(std::slice::from_ref(turned.as_ref().unwrap_or(response)));
-            Scored { candidate, gain: own_cost - view.cost + view.gain(), values: values.clone() }
+            let response = std::slice::from_ref(turned.as_ref().unwrap_or(response));
+            let gain = own_cost - problem.least_cost(response, MOST_Z);
+            Scored { candidate, gain, values: values.clone() }
         };
         let all = starts.iter().map(of_start).filter(|one| one.gain.is_finite());
         all.max_by(|a, b| a.gain.total_cmp(&b.gain))
@@ -196,10 +197,18 @@ impl Screen {
                 (values, problem.responses(&fitted, torques).remove(0))
             };
             let range = candidate.joint.map(|joint| range(setting.train, joint));
-            starts(law.parameters(), range).into_iter().map(of_start).collect()
+            let largest = candidate.joint.and_then(|joint| largest(setting.train, joint));
+            starts(law.parameters(), range, largest).into_iter().map(of_start).collect()
         };
         Self { responses: setting.candidates.iter().map(of).collect() }
     }
+}
+
+/// The largest measured torque of a joint.
+fn largest(data: &Data<'_>, joint: usize) -> Option<f64> {
+    let own = data.stretches.iter().filter(|stretch| stretch.joint == joint);
+    let all = own.flat_map(|stretch| &data.torque[stretch.first..stretch.first + stretch.rows]);
+    all.map(|torque| torque.abs()).max_by(f64::total_cmp)
 }
 
 /// The least and the largest position of a joint.
@@ -359,7 +368,7 @@ fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> Stat
             let less = setting.trial(&problem, &state, &others);
             // Rows are weighted by what is left of them: squares count as those of unit noise.
             let worth = (less.cost() - now.cost()) / ROWS_PER_SAMPLE;
-            let parameters = (now.parameters() - less.parameters()) as f64;
+            let parameters = now.parameters().saturating_sub(less.parameters()) as f64;
             let [share, of_rest] = closed(&from, &squares(&less.held_out_residual), &then);
             let is_small = share < IDLE && of_rest < IDLE_OF_REST;
             let is_idle = worth <= parameters * samples.ln() || is_small;

@@ -226,7 +226,11 @@ impl Signals {
                 .collect(),
             position_noise: Vec::new(),
             torque: Vec::new(),
-            measured: Vec::new(),
+            measured: self
+                .measured
+                .iter()
+                .map(|m| m.as_ref().map(|m| m.iter().step_by(thin).copied().collect()))
+                .collect(),
             rows,
             filter,
         };
@@ -284,6 +288,13 @@ impl Signals {
     pub fn filtered(&self, mut signal: Vec<f64>) -> Vec<f64> {
         self.filter.zero_phase(&mut signal);
         signal
+    }
+
+    /// The torque of a joint as it was measured, at the samples of the motion.
+    pub(super) fn measured_within(&self, joint: usize) -> Option<Vec<f64>> {
+        let measured = self.measured.get(joint)?.as_ref()?;
+        let cell = |torque: &f64| std::iter::repeat_n(*torque, self.rows.within);
+        Some(measured.iter().flat_map(cell).collect())
     }
 
     /// The mean of a signal of the motion in each cell.

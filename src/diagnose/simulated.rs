@@ -27,8 +27,10 @@ pub struct MotionGap {
     pub per_joint: Vec<Option<f64>>,
     /// For each window the squares of it, all joints together.
     pub windows: Vec<f64>,
-    /// Whether laws have states, which begin each window as if the robot had rested.
+    /// Whether laws have states: those that the measured motion led to begin each window.
     pub has_states: bool,
+    /// Whether the numbers are those that were estimated: they may make no body together.
+    pub is_estimated: bool,
 }
 
 /// The gaps of the models before and after.
@@ -94,12 +96,13 @@ const LONGEST_S: f64 = 60.0;
 const MOST_WINDOWS: usize = 40;
 
 impl Moved<'_> {
-    /// The robot with effects at their values, and with the nominal model's numbers moved by z.
+    /// The robot with effects at their values, and with the nominal model's numbers moved by z;
+    /// whether they are.
     fn robot(
         &self,
         (nominal, z): (&Nominal<'_>, &[f64]),
         (candidates, taken): (&[Candidate], &[Taken]),
-    ) -> Result<Robot, NotMoved> {
+    ) -> Result<(Robot, bool), NotMoved> {
         let (given, found) = taken.split_at(self.numbers.len().min(taken.len()));
         let values = |one: &Taken| -> Vec<(String, f64)> {
             let parameters = candidates[one.candidate].law.parameters().iter();
@@ -128,7 +131,9 @@ impl Moved<'_> {
         let moved = moved_numbers(nominal, z, &with).ok_or_else(|| NotMoved::NoPlace(name()))?;
         let read = |text: &str| read_model("the model", text.as_bytes(), self.effects);
         // Numbers that make no body together stay as they were.
-        read(&moved).or_else(|_| read(&with)).map_err(|error| NotMoved::Unsound(Box::new(error)))
+        let moved = read(&moved).map(|robot| (robot, true));
+        let found = moved.or_else(|_| read(&with).map(|robot| (robot, false)));
+        found.map_err(|error| NotMoved::Unsound(Box::new(error)))
     }
 
     fn place<'c>(&self, own: &'c Candidate) -> NewPlace<'c> {
@@ -147,7 +152,7 @@ impl Moved<'_> {
         nominal: (&Nominal<'_>, &[f64]),
         taken: (&[Candidate], &[Taken]),
     ) -> Result<MotionGap, NotMoved> {
-        let robot = self.robot(nominal, taken)?;
+        let (robot, is_estimated) = self.robot(nominal, taken)?;
         let has_states = robot.law_states().next().is_some();
         let model = nominal.0.model;
         let logs = &self.logs[set];
@@ -179,7 +184,7 @@ impl Moved<'_> {
             }
         }
         let gap = joined.map(|forward| MotionGap::new(&forward, &names, &lengths));
-        Ok(MotionGap { has_states, ..gap.unwrap_or_default() })
+        Ok(MotionGap { has_states, is_estimated, ..gap.unwrap_or_default() })
     }
 }
 
@@ -216,6 +221,7 @@ impl MotionGap {
             per_joint: names.iter().map(of).collect(),
             windows,
             has_states: false,
+            is_estimated: true,
         }
     }
 }

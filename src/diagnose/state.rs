@@ -5,6 +5,7 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::evidence::{block_costs, paired};
 use super::floor::{NoiseFloor, rms};
+use super::held::hold;
 use super::problem::{Fitted, Found, Problem};
 use super::signals::Signals;
 use super::simulated::{MotionGap, Moved, NotMoved};
@@ -100,9 +101,9 @@ impl Trial {
         self.blocks.iter().flatten().sum()
     }
 
-    /// Number of parameters of all effects.
+    /// Number of parameters of all effects, of those that change anything independently.
     pub fn parameters(&self) -> usize {
-        self.taken.iter().map(|taken| taken.values.len()).sum()
+        self.found.rank
     }
 
     /// Weighted squares of what is left of held-out logs.
@@ -118,7 +119,7 @@ impl Trial {
 }
 
 /// Entries of z beyond which the model's own parameters are not moved.
-const MOST_Z: f64 = 3.0;
+pub(super) const MOST_Z: f64 = 3.0;
 
 /// Rounds in which a joint's deviation is found from rows that are weighted by it.
 const ROUNDS_OF_SPREAD: usize = 5;
@@ -168,7 +169,7 @@ impl<'a> Setting<'a> {
                 spreads = self.spreads(&residual, &floor, &unsure);
                 z.clone_from(&best.z);
                 found = Some(best);
-                if !hold(&mut held, &z) {
+                if !hold(&mut held, &z, MOST_Z) {
                     break;
                 }
             }
@@ -276,17 +277,18 @@ impl<'a> Setting<'a> {
     }
 
     /// Standard errors by which effects in place of others lessen the gap of the model in motion
-    /// along held-out logs, from its windows; none where that cannot be told: laws with states
-    /// begin each window as if at rest.
+    /// along held-out logs, from its windows; whether with the numbers as they were
+    /// estimated. None where that cannot be told, and of laws with states, with which windows take
+    /// long.
     pub(super) fn in_motion(
         &self,
         than: (&[Taken], &[f64]),
         now: (&[Taken], &[f64]),
-    ) -> Option<f64> {
+    ) -> Option<(f64, bool)> {
         self.moved?;
         let gap = |one| self.motion_gap(1, one).ok().filter(|gap| !gap.has_states);
         let (before, after) = (gap(than)?, gap(now)?);
-        Some(paired(&before.windows, &after.windows))
+        Some((paired(&before.windows, &after.windows), after.is_estimated))
     }
 
     /// Weighted squares of what is `left` of held-out logs, for each joint, and those of noise
@@ -356,23 +358,13 @@ pub(super) fn within(
     let mut held = vec![None; problem.data.columns.len()];
     let mut found = problem.fit(laws, torques);
     for _ in 0..MOST_HELD {
-        if !hold(&mut held, &found.z) {
+        if !hold(&mut held, &found.z, MOST_Z) {
             break;
         }
         laws.iter_mut().zip(&found.values).for_each(|(law, values)| law.values.clone_from(values));
         found = problem.holding(&held).fit(laws, torques);
     }
     found
-}
-
-/// Holds what is beyond the bound at it; whether anything was.
-fn hold(held: &mut [Option<f64>], z: &[f64]) -> bool {
-    let mut is_more = false;
-    for (held, z) in held.iter_mut().zip(z).filter(|(_, z)| z.abs() > MOST_Z) {
-        *held = Some(MOST_Z.copysign(*z));
-        is_more = true;
-    }
-    is_more
 }
 
 /// How far a joint is off.

@@ -76,7 +76,7 @@ pub fn take_out(log: &mut Conditioned, model: &RegressionModel, laws: &[AddedLaw
 }
 
 /// Undoes laws of logged torques in a log that is to be simulated again: the model that is
-/// simulated has the others. Readings are undone.
+/// simulated has the others, whose states are found along the log. Readings are undone.
 pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &[AddedLaw]) {
     let n = log.q.len();
     let samples = log.q.first().map_or(0, Vec::len);
@@ -87,6 +87,10 @@ pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &
     let loads = loads(model, &motion);
     let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
     undo_torques(&mut log.torque, laws, &moved, &(0..samples));
+    let states =
+        |law: &AddedLaw| moved.with(law, &[], 0, |samples| law.law.states(samples, &law.values));
+    let added = laws.iter().filter(|law| law.law.channel().is_none());
+    log.law_states = added.flat_map(states).collect();
 }
 
 fn undo_torques(

@@ -146,7 +146,8 @@ fn measured_formulas(
     if measured.delay_s != dag.zero() {
         return vec![format!("{logged}(t) = {letter}(t - {})", text(measured.delay_s))];
     }
-    vec![format!("{logged} = {}", text(measured.value))]
+    let given = if measured.is_inverse { format!(r"{letter}_{{\mathrm{{true}}}}") } else { logged };
+    vec![format!("{given} = {}", text(measured.value))]
 }
 
 fn property_text(property: Property) -> String {

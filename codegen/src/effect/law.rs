@@ -23,7 +23,7 @@ const TERMS: Word<ModelTerm> = Word {
 /// The law as it is written.
 pub(super) enum LawFile<'a> {
     Torque(Scalar<'a>),
-    Measured { channel: Channel, parts: [Option<Scalar<'a>>; 5] },
+    Measured { channel: Channel, parts: [Option<Scalar<'a>>; 6] },
     Moves(Vec<(Property, Scalar<'a>)>),
     Term(ModelTerm),
 }
@@ -65,7 +65,7 @@ impl<'a> LawFile<'a> {
 }
 
 fn read_measured<'a>(json: &Json<'a>, report: &mut Report) -> Option<LawFile<'a>> {
-    const KEYS: &[&str] = &["channel", "value", "gain", "offset", "delay_s", "lag_s"];
+    const KEYS: &[&str] = &["channel", "value", "true", "gain", "offset", "delay_s", "lag_s"];
     let fields = Fields::of(json, KEYS, report)?;
     let channel = fields.required_word("channel", &CHANNELS, report);
     let parts = std::array::from_fn(|part| fields.scalar(KEYS[part + 1], report));
@@ -179,7 +179,7 @@ impl LawReader {
     fn measured(
         &mut self,
         channel: Channel,
-        parts: &[Option<Scalar<'_>>; 5],
+        parts: &[Option<Scalar<'_>>; 6],
         report: &mut Report,
     ) -> Measured {
         // only here: a law that adds to the torque cannot answer to the sum
@@ -189,13 +189,13 @@ impl LawReader {
             Channel::Position => self.position,
             Channel::Rate => self.position.times(Dimension::RATE).unwrap_or(self.position),
         };
-        let [value, gain, offset, delay, lag] = parts;
+        let [value, truth, gain, offset, delay, lag] = parts;
         let true_value = match channel {
             Channel::Torque => "tau",
             Channel::Position => "q",
             Channel::Rate => "qd",
         };
-        let mut logged = match value {
+        let mut logged = match value.as_ref().or(truth.as_ref()) {
             Some(value) => self.quantity(Some(value.clone()), "what is logged", dimension, report),
             None => self.symbol(true_value),
         };
@@ -208,7 +208,7 @@ impl LawReader {
         let second = Dimension::NONE.per(Dimension::RATE).unwrap_or(Dimension::NONE);
         let delay_s = self.quantity(delay.clone(), "a delay", second, report);
         let lag_s = self.quantity(lag.clone(), "a lag", second, report);
-        Measured { channel, value, delay_s, lag_s }
+        Measured { channel, is_inverse: truth.is_some(), value, delay_s, lag_s }
     }
 
     fn symbol(&mut self, name: &str) -> ExprId {

@@ -146,6 +146,9 @@ impl Channel {
 pub struct Measured {
     /// Which quantity.
     pub channel: Channel,
+    /// Whether `value` is what is true where the channel's symbol is what is logged: a drive that
+    /// gives less than the torque that was demanded of it.
+    pub is_inverse: bool,
     /// What would be logged without delay and lag: the channel's symbol if nothing changes it.
     pub value: ExprId,
     /// Delay \[s\]; negative if the channel runs ahead of the others.

@@ -47,6 +47,9 @@ pub struct MotionLog {
     pub reference: Vec<Option<Vec<f64>>>,
     /// Angles of motors before springs, as they were logged \[rad\].
     pub motor: Vec<Option<Vec<f64>>>,
+    /// States of laws of the model at every sample, one column for each; none if they begin as if
+    /// joints had rested.
+    pub law_states: Vec<Vec<f64>>,
     /// The samples that the filter leaves.
     pub range: Range<usize>,
     /// Below this rate Coulomb friction is a steep line where the log is simulated [rad/s, m/s].
@@ -92,6 +95,7 @@ impl MotionLog {
             torque: conditioned.torque,
             reference: log.joints.iter().map(|joint| joint.reference.clone()).collect(),
             motor: log.joints.iter().map(|joint| joint.motor.clone()).collect(),
+            law_states: Vec::new(),
             range,
             stiction_rate: STICTION_RATE,
             filter: conditioned.filter,
@@ -115,6 +119,7 @@ impl MotionLog {
             t_s: self.time_s(sample),
             q: self.q.iter().map(|q| q[sample]).collect(),
             qd: self.qd.iter().map(|qd| qd[at]).collect(),
+            laws: self.law_states.iter().map(|state| state[sample]).collect(),
             ..State::default()
         };
         for (index, joint) in model.joints.iter().enumerate().filter(|_| has_motors) {

@@ -12,6 +12,8 @@ use denavit_codegen::expr::{Dag, ExprId};
 #[derive(Clone, Debug)]
 pub(super) struct ChannelLaw {
     pub(super) channel: Channel,
+    /// Whether the law gives the truth for what is logged.
+    pub(super) is_inverse: bool,
     /// Delay, lag, then their derivatives by the parameters.
     timing: LawProgram,
     /// The columns of `slope`.
@@ -37,11 +39,31 @@ impl ChannelLaw {
         let columns = columns(dag, &slope);
         let inputs = inputs(dag, &columns, &[]);
         let slope = LawProgram::new(dag, &names(effect), inputs, slope)?;
-        Ok(Self { channel: measured.channel, timing, columns, slope })
+        let Measured { channel, is_inverse, .. } = *measured;
+        Ok(Self { channel, is_inverse, timing, columns, slope })
     }
 }
 
-/// Rounds of the fixed point in [`EffectLaw::corrected`]: laws are small, each round gains digits.
+impl ChannelLaw {
+    fn channel_of<'s>(&self, samples: &JointSamples<'s>) -> &'s [f64] {
+        match self.channel {
+            Channel::Torque => samples.tau,
+            Channel::Position => samples.q,
+            Channel::Rate => samples.qd,
+        }
+    }
+
+    /// Samples with another channel.
+    fn with<'s>(&self, samples: &JointSamples<'s>, channel: &'s [f64]) -> JointSamples<'s> {
+        match self.channel {
+            Channel::Torque => JointSamples { tau: channel, ..*samples },
+            Channel::Position => JointSamples { q: channel, ..*samples },
+            Channel::Rate => JointSamples { qd: channel, ..*samples },
+        }
+    }
+}
+
+/// Rounds of the fixed point in [`EffectLaw::solved`]: laws are small, each round gains digits.
 const ROUNDS: usize = 60;
 
 impl EffectLaw {
@@ -49,7 +71,10 @@ impl EffectLaw {
     /// no channel of the log. Delay and lag need the times of the samples.
     pub fn logged(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         let Some(law) = &self.channel else { return samples.tau.to_vec() };
-        let value = self.value(samples, values).swap_remove(0);
+        let value = match law.is_inverse {
+            true => self.solved(law, samples, values, law.channel_of(samples)),
+            false => self.value(samples, values).swap_remove(0),
+        };
         let [delay, lag] = self.timing(law, values);
         lagged(samples.t, &shifted(samples.t, &value, delay), lag)
     }
@@ -58,11 +83,7 @@ impl EffectLaw {
     pub fn corrected(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         let Some(law) = &self.channel else { return samples.tau.to_vec() };
         let [delay, lag] = self.timing(law, values);
-        let logged = match law.channel {
-            Channel::Torque => samples.tau,
-            Channel::Position => samples.q,
-            Channel::Rate => samples.qd,
-        };
+        let logged = law.channel_of(samples);
         // before the lag: y + lag dy/dt; before the delay: ahead
         let mut wanted = logged.to_vec();
         if lag != 0.0 {
@@ -70,14 +91,23 @@ impl EffectLaw {
             wanted.iter_mut().zip(rate).for_each(|(y, rate)| *y += lag * rate);
         }
         let wanted = shifted(samples.t, &wanted, -delay);
-        let mut truth = wanted.clone();
+        if law.is_inverse {
+            return self.value(&law.with(samples, &wanted), values).swap_remove(0);
+        }
+        self.solved(law, samples, values, &wanted)
+    }
+
+    /// What the channel must be for the law to give what is wanted.
+    fn solved(
+        &self,
+        law: &ChannelLaw,
+        samples: &JointSamples<'_>,
+        values: &[f64],
+        wanted: &[f64],
+    ) -> Vec<f64> {
+        let mut truth = wanted.to_vec();
         for _ in 0..ROUNDS {
-            let mut trial = *samples;
-            match law.channel {
-                Channel::Torque => trial.tau = &truth,
-                Channel::Position => trial.q = &truth,
-                Channel::Rate => trial.qd = &truth,
-            }
+            let trial = law.with(samples, &truth);
             let found = self.value(&trial, values).swap_remove(0);
             let columns: Vec<&[f64]> = law.columns.iter().map(|&at| trial.column(at)).collect();
             let slope = law.slope.run(&columns, values, truth.len()).swap_remove(0);

@@ -209,11 +209,21 @@ impl EffectLaw {
         self.channel.as_ref().map(|law| law.channel)
     }
 
+    /// Whether the law gives the truth for what is logged: torques of samples are then those that
+    /// are logged.
+    pub fn is_inverse(&self) -> bool {
+        self.channel.as_ref().is_some_and(|law| law.is_inverse)
+    }
+
     /// What the effect adds to the torque that is logged of its joint [N m, N], sample by sample:
     /// 0 for an effect on another channel.
     pub fn torque(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         match self.channel() {
             None => self.value(samples, values).swap_remove(0),
+            Some(Channel::Torque) if self.is_inverse() => {
+                let truth = self.corrected(samples, values);
+                samples.tau.iter().zip(truth).map(|(logged, truth)| logged - truth).collect()
+            }
             Some(Channel::Torque) => {
                 let logged = self.logged(samples, values);
                 logged.iter().zip(samples.tau).map(|(logged, tau)| logged - tau).collect()
@@ -226,9 +236,21 @@ impl EffectLaw {
     pub fn gradient(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         match self.channel() {
             None => self.value(samples, values).split_off(1),
+            Some(Channel::Torque) if self.is_inverse() => {
+                let mut columns = self.value(samples, values).split_off(1);
+                columns.iter_mut().flatten().for_each(|entry| *entry = -*entry);
+                columns
+            }
             Some(Channel::Torque) => self.logged_gradient(samples, values),
             Some(_) => vec![vec![0.0; samples.len()]; self.parameters.len()],
         }
+    }
+
+    /// The states that the samples lead to: one column for each.
+    pub fn states(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<Vec<f64>> {
+        let columns: Vec<&[f64]> = self.columns.iter().map(|&at| samples.column(at)).collect();
+        let states = self.states.as_ref();
+        states.map_or_else(Vec::new, |law| law.integrate(samples.t, &columns, values).0)
     }
 
     /// Value and derivatives by parameters, along the states that the samples lead to.

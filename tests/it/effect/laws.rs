@@ -128,7 +128,8 @@ fn a_law_is_linear_in_the_parameters_that_say_so() {
 #[test]
 fn what_is_logged_is_corrected_to_the_truth() {
     let motion = motion(2000, 0.001);
-    for law in laws().into_iter().filter(|law| law.channel().is_some()) {
+    let of_logs = |law: &EffectLaw| law.channel().is_some() && !law.is_inverse();
+    for law in laws().into_iter().filter(of_logs) {
         let values: Vec<f64> = law.parameters.iter().map(typical).collect();
         let samples = motion.samples();
         let logged = law.logged(&samples, &values);
@@ -149,4 +150,24 @@ fn what_is_logged_is_corrected_to_the_truth() {
             .fold(0.0_f64, f64::max);
         assert!(worst < 5e-3, "{}: {worst}", law.name);
     }
+}
+
+#[test]
+fn a_drive_at_its_limit_gives_less_than_is_logged() {
+    let motion = motion(2000, 0.001);
+    let samples = motion.samples();
+    let law =
+        laws().into_iter().find(|law| law.name == "torque_saturation").expect("it is shipped");
+    assert!(law.is_inverse());
+    let largest = samples.tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+    let limit = 0.6 * largest;
+    let given = law.corrected(&samples, &[1.0 / limit]);
+    let added = law.torque(&samples, &[1.0 / limit]);
+    for ((&demanded, given), added) in samples.tau.iter().zip(&given).zip(added) {
+        assert!((given - demanded.clamp(-limit, limit)).abs() < 1e-12);
+        assert!((added - (demanded - given)).abs() < 1e-12);
+    }
+    let within: Vec<f64> = samples.tau.iter().map(|tau| 0.5 * tau).collect();
+    let logged = law.logged(&JointSamples { tau: &within, ..samples }, &[1.0 / limit]);
+    assert!(logged.iter().zip(&within).all(|(a, b)| (a - b).abs() < 1e-12));
 }

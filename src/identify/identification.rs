@@ -72,6 +72,10 @@ pub struct LeftOutRows {
     pub left: f64,
 }
 
+/// The share of noise in what the motion shows of a direction of the parameters, from which on
+/// nothing is believed.
+const MOST: f64 = 0.5;
+
 /// Parameters that are named, at most.
 const LISTED: usize = 6;
 
@@ -80,8 +84,23 @@ const LISTED: usize = 6;
 const SMEARED: [f64; 2] = [0.01, 0.3];
 
 impl Identification {
+    /// Whether noise makes most of what the motion shows of some parameters: what is found says
+    /// neither how far they are off nor whether columns are what they are taken for.
+    pub fn is_noise(&self) -> bool {
+        self.estimate.noise_share > MOST
+    }
+
     /// What is to be said if noise of the positions biases the parameters.
-    pub fn bias(&self) -> Option<String> {
+    fn bias(&self) -> Option<String> {
+        if self.is_noise() {
+            return Some(format!(
+                "Noise of the positions makes up to {:.0} % of what the motion shows of the \
+                 parameters. How far they are off cannot be told, nor whether columns are other \
+                 ones than they are taken for. A filter with a lower cutoff (--filter) has less \
+                 of it; so has a longer or faster motion.",
+                100.0 * self.estimate.noise_share
+            ));
+        }
         let own = |one: &IdentifiedParameter| Some((one.name.clone(), one.noise_bias?));
         let all = self.parameters.iter().filter(|one| one.is_biased());
         let biased =
@@ -97,6 +116,9 @@ impl Identification {
 
     /// What is to be said if parameters change with half the cutoff by more than chance.
     fn changed(&self) -> Option<String> {
+        if self.is_noise() {
+            return None; // it has been said, and errors count too little of it
+        }
         let times = |one: &IdentifiedParameter| {
             let by = one.std? / one.half_cutoff?.own_std;
             Some((one.name.clone(), by))
@@ -235,6 +257,9 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     };
     let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
     misread.extend(others);
+    if found.noise_share > MOST {
+        misread.clear();
+    }
     let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));
     Ok(Identification {
         unexplained: unexplained_joints(model, all_left.0, (all_left.1, &counted)),

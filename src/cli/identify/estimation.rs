@@ -59,7 +59,8 @@ impl Estimation<'_> {
         let allows_for_noise = options.method == Method::Instrumental;
         while let Some(lower) = conditions.lower(&read.train)
             && let parameters = &found.0.parameters
-            && let is_biased = parameters.iter().any(IdentifiedParameter::is_biased_without_change)
+            && let is_biased = (found.0.is_noise()
+                || parameters.iter().any(IdentifiedParameter::is_biased_without_change))
             && (is_biased || parameters.iter().any(IdentifiedParameter::may_change))
             && !allows_for_noise
         {

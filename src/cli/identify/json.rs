@@ -21,6 +21,8 @@ struct IdentifyJson<'a> {
     excited: usize,
     samples: usize,
     degrees_of_freedom: f64,
+    /// The largest share of noise of the positions in what the motion shows of the parameters.
+    noise_share: f64,
     /// Samples that do not count, since a joint turns round or is slow there.
     left_out: Vec<LeftOutJson<'a>>,
     /// theta0 of the nearest bodies that exist, and how far they are.
@@ -249,6 +251,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         excited: solution.excited(),
         samples: found.train.samples,
         degrees_of_freedom: found.estimate.degrees_of_freedom,
+        noise_share: found.estimate.noise_share,
         left_out: found
             .left_out
             .iter()

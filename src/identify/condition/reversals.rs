@@ -7,6 +7,11 @@ use std::ops::Range;
 /// Samples that are left within which a decimated one has nearly all of its weight.
 const WEIGHED: f64 = 2.5;
 
+/// Deviations of a rate's noise below which its sign is not known, and steps of its encoder in a
+/// period of the filter's cutoff.
+const NOISE: f64 = 3.0;
+const STEPS: f64 = 2.0;
+
 impl Conditioned {
     fn rate_at(&self, joint: usize, k: usize) -> f64 {
         match &self.rates {
@@ -78,6 +83,34 @@ impl Conditioned {
         let smear = self.filter.as_ref()?.smear();
         let slowest = times * self.usual_acceleration(joint) * self.step_s * smear as f64;
         Some(self.slow(joint, slowest, smear))
+    }
+
+    /// For each sample of [`Conditioned::range`] whether the sign of a joint's rate is not known
+    /// there, if that is so anywhere: the joint is no faster than noise of its position makes it,
+    /// or than two steps of its encoder in a period of the filter's cutoff, for such a period at
+    /// least; and a period before and after, where the filter smears that over. Where it turns
+    /// round faster than that, the filter smears the sign over alike.
+    pub(crate) fn unsure_signs(&self, joint: usize) -> Option<Vec<bool>> {
+        let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
+        let (period, noise) = (2 * filter.smear(), self.position_noise[joint]);
+        let of_steps = self.encoders[joint]
+            .map_or(0.0, |one| STEPS * one.step * filter.cutoff() / self.step_s);
+        let slowest = of_steps.max(NOISE * self.filter_gains()[1][1].sqrt() * noise);
+        let mut is_unsure = vec![false; self.range.len()];
+        let mut spell = 0;
+        for at in 0..=is_unsure.len() {
+            let place = self.range.start + at;
+            if at < is_unsure.len() && self.rate_at(joint, place).abs() < slowest {
+                spell += 1;
+                continue;
+            }
+            if spell >= period {
+                let last = (at + period).min(is_unsure.len());
+                is_unsure[(at - spell).saturating_sub(period)..last].fill(true);
+            }
+            spell = 0;
+        }
+        is_unsure.contains(&true).then_some(is_unsure)
     }
 
     /// For each of so many samples that are left, from `first` on, whether it has its weight from

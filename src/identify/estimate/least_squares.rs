@@ -6,7 +6,7 @@ use super::half_cutoff::Change;
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
 use super::likelihood;
-use super::noise_bias::noise_bias;
+use super::noise_bias::{NoiseBias, noise_bias};
 use super::robust::{Loss, influences, scales};
 use super::rows::Block;
 use super::solve::{PriorRow, Solution, solve, stacked};
@@ -128,6 +128,8 @@ pub struct Estimate {
     pub degrees_of_freedom: f64,
     /// What noise of the positions adds to phi in the mean; 0 of instrumental variables.
     pub noise_bias: DVector<f64>,
+    /// The largest share of noise of the positions in what the columns say of a direction of phi.
+    pub noise_share: f64,
     /// What changes with half the cutoff of the filter; none where that cannot be told.
     pub change: Option<Change>,
     /// Standard deviation of each joint's residuals [N m, N]; 0 where no torque was measured.
@@ -165,7 +167,8 @@ pub fn estimate(
             return Ok(first);
         }
     }
-    first.noise_bias = fit.noise_bias(model, rows, &first);
+    NoiseBias { bias: first.noise_bias, share: first.noise_share } =
+        fit.noise_bias(model, rows, &first);
     let problem = fit.problem(&first);
     let (mut covariance, mut degrees_of_freedom) = match options.method {
         Method::Robust(loss) => {
@@ -302,6 +305,7 @@ impl Fit<'_> {
             covariance,
             degrees_of_freedom: 0.0,
             noise_bias: DVector::zeros(condensed.rank),
+            noise_share: 0.0,
             change: None,
             noise,
             condensed,
@@ -384,12 +388,7 @@ impl Fit<'_> {
     }
 
     /// The bias of an estimate, with the weights of its rows.
-    fn noise_bias(
-        &self,
-        model: &RegressionModel,
-        rows: Rows<'_>,
-        found: &Estimate,
-    ) -> DVector<f64> {
+    fn noise_bias(&self, model: &RegressionModel, rows: Rows<'_>, found: &Estimate) -> NoiseBias {
         let of = (&found.solution, &found.weights[..]);
         match self.options.method {
             Method::Robust(loss) => {

@@ -78,11 +78,25 @@ impl LeftOut {
         Self(logs.iter().map(|log| vec![None; log.joints()]).collect())
     }
 
-    /// What the options ask for before anything is known of friction.
-    pub(super) fn asked(logs: &[Conditioned], options: &Options) -> Self {
+    /// What the options ask for before anything is known of friction; by default where the sign of
+    /// a rate is not known, if enough is left.
+    pub(super) fn asked(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {
             let slowest: Vec<f64> = match options.slow {
-                SlowRows::Biasing | SlowRows::Kept => return vec![None; log.joints()],
+                SlowRows::Biasing => {
+                    let has_sign = |joint: &usize| {
+                        let mut frictions = model.coulomb().iter();
+                        model.law == CoulombLaw::Sign && frictions.any(|(of, _)| of == joint)
+                    };
+                    let unsure = |joint: usize| {
+                        let all = log.unsure_signs(joint).filter(|_| has_sign(&joint))?;
+                        let kept = log.counts(&all, 0, log.samples());
+                        let kept = kept.into_iter().filter(|counts| *counts).count() as f64;
+                        (kept >= LEAST * log.samples() as f64).then_some(all)
+                    };
+                    return (0..log.joints()).map(unsure).collect();
+                }
+                SlowRows::Kept => return vec![None; log.joints()],
                 SlowRows::Below(rate) => vec![rate; log.joints()],
                 SlowRows::Noise => {
                     let of_rate = NOISE * log.noise_gains()[1][1].sqrt();
@@ -129,7 +143,11 @@ impl LeftOut {
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.
     pub(super) fn widen(&mut self, logs: &[Conditioned], joint: usize, times: f64) -> bool {
-        let near = near(logs, joint, times);
+        let mut near = near(logs, joint, times);
+        for (near, before) in near.iter_mut().zip(&self.0) {
+            let before = before[joint].iter().flatten();
+            near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
+        }
         let counted = |(log, near): (&Conditioned, &Vec<bool>)| {
             log.counts(near, 0, log.samples()).into_iter().filter(|counts| *counts).count()
         };

@@ -27,14 +27,22 @@ const SEED: u64 = 1;
 /// The factors of a block's rows of a joint, beside the joint's weight: log, block, joint.
 pub(super) type RowFactors<'a> = &'a dyn Fn(usize, &Block, usize) -> Vec<f64>;
 
-/// The bias of phi, of joints with weights, and of rows that have factors too, if any have. `given`
-/// is phi of the model's values.
+/// What noise of the positions makes.
+pub(super) struct NoiseBias {
+    /// The bias of phi.
+    pub(super) bias: DVector<f64>,
+    /// The largest share of noise in what W says of a direction of phi, from 0 to 1.
+    pub(super) share: f64,
+}
+
+/// What noise makes of phi, of joints with weights, and of rows that have factors too, if any have.
+/// `given` is phi of the model's values.
 pub(super) fn noise_bias(
     (model, given): (&RegressionModel, &[f64]),
     (logs, left_out): Rows<'_>,
     (solution, weights): (&Solution, &[f64]),
     factors: Option<RowFactors<'_>>,
-) -> DVector<f64> {
+) -> NoiseBias {
     let mut noise = Noise::new(model);
     let mut random = Random::new(SEED);
     for (number, log) in logs.iter().enumerate() {
@@ -70,7 +78,7 @@ pub(super) fn noise_bias(
             }
         }
     }
-    noise.bias(solution, given)
+    NoiseBias { bias: noise.bias(solution, given), share: noise.share(solution) }
 }
 
 /// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
@@ -105,6 +113,14 @@ impl Noise {
                 }
             }
         }
+    }
+
+    /// The largest eigenvalue of F^T N F.
+    fn share(&self, solution: &Solution) -> f64 {
+        let factor = &solution.factor;
+        let own = factor.tr_mul(&self.0.columns(0, factor.nrows())) * factor;
+        let symmetric = (&own + own.transpose()) * 0.5;
+        symmetric.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max).min(1.0)
     }
 
     /// phi^ - phi of phi^ = phi - C (N phi + known): where noise makes most of W, phi^ is a small

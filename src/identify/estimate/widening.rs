@@ -35,7 +35,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         logs: &[Conditioned],
     ) -> Result<(Estimate, LeftOut), EstimateError> {
-        let mut fitted = self.fitted(model, logs, LeftOut::asked(logs, self.options))?;
+        let mut fitted = self.fitted(model, logs, LeftOut::asked(model, logs, self.options))?;
         let mut tried = vec![false; model.joints.len()];
         if self.options.slow != SlowRows::Biasing {
             return Ok((fitted.found, fitted.left_out));

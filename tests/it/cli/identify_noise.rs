@@ -3,7 +3,7 @@
 
 use super::Directory;
 use super::identify_told::{
-    GOOD, Made, deviations, motions, round_positions, said, spread, write_arm, write_log,
+    GOOD, Made, Motion, deviations, motions, round_positions, said, spread, write_arm, write_log,
 };
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -51,6 +51,58 @@ fn each_log_has_the_filter_that_it_is_long_enough_for() {
     // 1.5 s have 75 periods of 50 Hz, and less than 40 of 25 Hz
     assert_eq!(cutoff_hz("short.csv"), 50.0, "{text}");
     assert!(cutoff_hz("slow.csv") < 20.0, "{text}");
+}
+
+/// A joint that creeps in one direction, slower than the steps of its encoder say: the sign of its
+/// rate there is that of noise, and alone would determine its friction, to be 0.
+#[test]
+fn a_joint_that_creeps_has_no_sign() {
+    let directory = Directory::new("noise-creep");
+    write_arm(&directory, None);
+    let made = Made { step_s: 0.001, samples: 20_000, ..GOOD };
+    let mut worst = [0.0_f64; 2];
+    for phase in [2.6, 4.15, 5.9] {
+        let forth = vec![[50.0, 0.001, 0.0], [0.0995, 0.5, phase]];
+        let [_, other] = motions(3, 0.8);
+        let mut rows = made.rows(&[Motion { about: 0.0, waves: forth }, other]);
+        round_positions(&mut rows, TAU / 16_384.0);
+        write_log(&directory, "creep.csv", &rows);
+        for (worst, skip) in worst.iter_mut().zip(["biasing", "off"]) {
+            let words = ["--train", "creep.csv", "--skip-slow", skip, "--json"];
+            let (_, text) = said(&directory, &words);
+            let all = deviations(&text);
+            *worst = all.iter().fold(*worst, |most, [one, _]| most.max(one.abs()));
+        }
+    }
+    let [by_default, with_all] = worst;
+    assert!(by_default < 4.0 && with_all > 10.0, "{by_default} {with_all}");
+}
+
+/// Noise that makes most of the columns says nothing of units and joints, but is said itself.
+#[test]
+fn noise_is_no_other_reading() {
+    let directory = Directory::new("noise-whole");
+    write_arm(&directory, None);
+    write_slow(&directory, 1, 0.5);
+    for filter in ["none", "400"] {
+        let (code, text) = said(&directory, &["--train", "slow.csv", "--filter", filter]);
+        assert_eq!(code, Some(1), "{filter}: {text}");
+        let line = text.replace('\n', " ");
+        assert!(line.contains("How far they are off cannot be told"), "{filter}: {text}");
+        assert!(!line.contains("seems to be"), "{filter}: {text}");
+    }
+    // a second of a slow motion hardly shows inertia, whatever the filter
+    let made = Made { step_s: 0.001, samples: 1000, seed: 2, ..GOOD };
+    let mut rows = made.rows(&motions(2, 0.3));
+    round_positions(&mut rows, TAU / 16_384.0);
+    write_log(&directory, "short.csv", &rows);
+    let (code, text) = said(&directory, &["--train", "short.csv"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.replace('\n', " ").contains("How far they are off cannot be told"), "{text}");
+    // what is shown well is no noise
+    let (code, text) = said(&directory, &["--train", "slow.csv"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!text.contains("cannot be told"), "{text}");
 }
 
 /// Where noise makes nearly all of the columns of inertia their parameters vanish: the estimate

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 
 /// A sum of sines about a position: amplitude, angular frequency, phase.
 pub(super) struct Motion {
-    about: f64,
-    waves: Vec<[f64; 3]>,
+    pub(super) about: f64,
+    pub(super) waves: Vec<[f64; 3]>,
 }
 
 impl Motion {
@@ -309,7 +309,7 @@ fn noise_without_steps_and_motions_too_fast_are_told() {
     let noisy = Made { position_noise: [1e-3; 2], ..GOOD };
     write_log(&directory, "noisy.csv", &noisy.rows(&motions(1, 0.628)));
     let (_, text) = said(&directory, &["--train", "noisy.csv", "--filter", "20"]);
-    assert!(text.contains("Noise of the positions biases"), "{text}");
+    assert!(text.contains("Noise of the positions makes"), "{text}");
     let (_, text) = said(&directory, &["--train", "noisy.csv"]);
     assert!(text.contains("noise of positions would bias parameters"), "{text}");
     let slow = Made { step_s: 0.05, samples: 1000, ..GOOD };

@@ -36,6 +36,10 @@ const PERIODS: f64 = 2.0;
 /// A share of a direction that counts for nothing.
 const NOTHING: f64 = 1e-6;
 
+/// The share of a constant's column, as root of mean square, that no other columns make, at least:
+/// what is less hangs on how a filter smears the sign of a rate.
+const OWN: f64 = 0.01;
+
 /// The constant errors that an estimate sees, each with its size in standard errors.
 pub(super) fn constant_errors(
     model: &RegressionModel,
@@ -71,7 +75,7 @@ pub(super) fn constant_errors(
         at.map_or(0.0, |at| sizes[at].value)
     };
     let size: Vec<f64> = (0..lines.len()).map(size).collect();
-    let (_, solution) = extended.solved(&chosen);
+    let (_, solution, _) = extended.solved(&chosen);
     let phi = &solution.phi.as_slice()[..model.rank()];
     if !columns.is_noise((&pieces, &left_out), (phi, &size)) {
         return Vec::new();
@@ -276,24 +280,26 @@ impl Extended {
         }
     }
 
-    /// phi with the constants that are chosen behind it.
-    fn solved(&self, chosen: &[usize]) -> (Condensed, Solution) {
+    /// phi with the constants that are chosen behind it, and the lengths of all columns.
+    fn solved(&self, chosen: &[usize]) -> (Condensed, Solution, Vec<f64>) {
         let condensed = self.with(chosen);
         let (rank, triangles) = (condensed.rank, condensed.whole());
         let r = stacked(&triangles, &condensed.pattern, &self.weights, &[], rank);
-        (condensed, solve(&r, &vec![0.0; rank]))
+        let lengths = r.column_iter().map(|column| column.norm()).collect();
+        (condensed, solve(&r, &vec![0.0; rank]), lengths)
     }
 
     /// The constants that are chosen; none if the others make up for one of them.
     fn sizes(&self, chosen: &[usize], errors: Errors) -> Option<Vec<Size>> {
-        let (condensed, solution) = self.solved(chosen);
+        let (condensed, solution, lengths) = self.solved(chosen);
         let (condensed, solution, weights) = (&condensed, &solution, &self.weights[..]);
         let problem = Problem { condensed, weights, prior: &[], solution };
         let (covariance, _) = problem.covariance(errors);
         let of = |at: usize| {
             let [dead, alive] = [&solution.dead, &solution.factor].map(|one| one.row(at).norm());
             let std = covariance[(at, at)].max(0.0).sqrt();
-            let is_seen = alive > 0.0 && dead <= NOTHING * alive;
+            let is_seen =
+                alive > 0.0 && dead <= NOTHING * alive && alive * lengths[at] * OWN <= 1.0;
             is_seen.then_some(Size { value: solution.phi[at], std })
         };
         (self.rank..condensed.rank).map(of).collect()

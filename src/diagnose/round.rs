@@ -203,3 +203,19 @@ fn unit(seed: u64, round: usize) -> f64 {
     let mut random = crate::simulate::Random::new(seed);
     (0..=round).map(|_| random.uniform()).last().unwrap_or(0.5)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A joint that misses much is weighed little: its squares are few, and those that another
+    /// joint loses by chance are as many.
+    #[test]
+    fn what_is_closed_counts_in_units_of_noise() {
+        let now = [[1000.0, 850.0], [32.0, 2.0]];
+        let then = [[970.0, 850.0], [5.0, 2.0]];
+        let from = [[1000.0, 850.0], [62.0, 2.0]];
+        let [share, of_rest] = closed(&from, &now, &then);
+        assert!((share - 27.0 / 60.0).abs() < 1e-12 && (of_rest - 0.9).abs() < 1e-12);
+    }
+}

@@ -295,7 +295,9 @@ pub(super) fn best<'t>(
     let alike = trials
         .iter()
         .filter(|trial| trial.held_out_cost() <= most && !is_worse(setting, state, trial, least));
-    alike.min_by(|a, b| a.parameters().cmp(&b.parameters()).then(by_cost(a, b)))
+    // A tilt of the base that is an offset of one joint is one direction in two numbers.
+    let size = |trial: &Trial| (trial.parameters(), trial.numbers());
+    alike.min_by(|a, b| size(a).cmp(&size(b)).then(by_cost(a, b)))
 }
 
 /// Whether a trial is worse than another for sure, and by more than a parameter costs (Schwarz

@@ -106,6 +106,11 @@ impl Trial {
         self.found.rank
     }
 
+    /// Number of parameters as they are written.
+    pub fn numbers(&self) -> usize {
+        self.taken.iter().map(|taken| taken.values.len()).sum()
+    }
+
     /// Weighted squares of what is left of held-out logs.
     pub fn held_out_cost(&self) -> f64 {
         self.blocks[1].iter().sum()

@@ -7,5 +7,6 @@ mod laws;
 mod motion;
 mod on_ground;
 mod one_joint;
+mod saturation;
 mod search;
 mod separate;

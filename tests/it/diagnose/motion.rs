@@ -8,7 +8,7 @@ const OFFSET: f64 = 0.8;
 /// Amplitudes [m] of waves of so many periods in five seconds.
 const WAVES: [(f64, f64); 3] = [(0.2, 1.0), (0.1, 2.0), (0.05, 4.0)];
 
-const SLED: &str = r#"{
+pub(super) const SLED: &str = r#"{
   "format": "denavit-model/1", "name": "sled", "convention": "standard", "gravity": [0, -9.81, 0],
   "links": [{
     "name": "sled", "joint": {"type": "prismatic", "theta": 0, "d": 0, "a": 0, "alpha": 0},

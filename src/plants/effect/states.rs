@@ -18,19 +18,28 @@ use nalgebra::DMatrix;
 pub(super) struct StateLaw {
     states: usize,
     parameters: usize,
-    /// Whether no state's rate depends on another state.
-    is_separate: bool,
+    kind: Kind,
     /// f, df/dx, df/dp, then for each x and each p the derivative of df/dx.
     rates: LawProgram,
     /// Initial values and their derivatives by the parameters.
     initial: LawProgram,
 }
 
+/// What is known of df/dx before any motion is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// No state's rate depends on another state.
+    Separate,
+    /// It depends on parameters alone: one propagator serves all steps of a length.
+    Steady,
+    /// Neither.
+    Changing,
+}
+
 /// One step of a matrix of rates: the rates with their derivatives, at one sample.
 struct Rates<'a> {
     states: usize,
     parameters: usize,
-    is_separate: bool,
     entries: &'a [f64],
 }
 
@@ -71,6 +80,13 @@ impl StateLaw {
         let count = states.len();
         let mut others = slopes.iter().enumerate().filter(|(at, _)| at / count != at % count);
         let is_separate = others.all(|(_, slope)| *slope == zero);
+        let known: Vec<ExprId> = inputs.iter().chain(&states).copied().collect();
+        let changes = gradient(dag, &slopes, &known).concat();
+        let kind = match is_separate {
+            true => Kind::Separate,
+            false if changes.iter().all(|change| *change == zero) => Kind::Steady,
+            false => Kind::Changing,
+        };
         let mut entries = rates.clone();
         entries.extend(&slopes);
         entries.extend(gradient(dag, &rates, &parameters).concat());
@@ -79,7 +95,7 @@ impl StateLaw {
         let mut initial: Vec<ExprId> = effect.states.iter().map(|state| state.initial).collect();
         initial.extend(gradient(dag, &initial.clone(), &parameters).concat());
         let initial = LawProgram::new(dag, &names(effect), inputs, initial)?;
-        Ok(Self { states: count, parameters: parameters.len(), is_separate, rates, initial })
+        Ok(Self { states: count, parameters: parameters.len(), kind, rates, initial })
     }
 
     /// The states at each sample, one column for each, and their derivatives: one column for each
@@ -97,6 +113,7 @@ impl StateLaw {
         let mut inputs = vec![0.0; columns.len() + s];
         let mut entries = vec![0.0; s + s * (s + p) + s * s * (s + p)];
         let mut rates = self.rates.evaluator(values);
+        let mut kept: Option<Propagator> = None;
         for k in 0..t.len() {
             if k == 0 {
                 for (input, column) in inputs.iter_mut().zip(columns) {
@@ -110,9 +127,22 @@ impl StateLaw {
                 }
                 inputs[columns.len()..].copy_from_slice(&state[..s]);
                 rates.evaluate(&[&inputs], &mut entries).expect("the shapes are those of the law");
-                let is_separate = self.is_separate;
-                let rates = Rates { states: s, parameters: p, is_separate, entries: &entries };
-                step(&rates, t[k] - t[k - 1], &mut state);
+                let rates = Rates { states: s, parameters: p, entries: &entries };
+                let h = t[k] - t[k - 1];
+                let steps = match self.kind {
+                    Kind::Separate => separate_step(&rates, h, &state),
+                    Kind::Steady => {
+                        let propagator = match kept.take().filter(|kept| kept.is_of(h)) {
+                            Some(kept) => kept,
+                            None => Propagator::new(&rates, h),
+                        };
+                        let steps = propagator.step(&rates, &state);
+                        kept = Some(propagator);
+                        steps
+                    }
+                    Kind::Changing => changing_step(&rates, h, &state),
+                };
+                state.iter_mut().zip(&steps).for_each(|(x, step)| *x += step);
             }
             path.iter_mut().zip(&state).for_each(|(path, x)| path.push(*x));
             sensitivities.iter_mut().zip(&state[s..]).for_each(|(path, x)| path.push(*x));
@@ -121,52 +151,116 @@ impl StateLaw {
     }
 }
 
-/// One step of the states and, behind them, their sensitivities.
-fn step(rates: &Rates<'_>, h: f64, state: &mut [f64]) {
-    let (s, p) = (rates.states, rates.parameters);
-    let moved =
-        |parameter: usize| -> Vec<f64> { (0..s).map(|i| state[s + i * p + parameter]).collect() };
-    let sensitivities: Vec<Vec<f64>> = (0..p).map(moved).collect();
-    // along one parameter: how f and df/dx move
-    let along = |parameter: usize, i: usize| -> f64 {
-        let through: f64 = (0..s).map(|j| rates.by_state(i, j) * sensitivities[parameter][j]).sum();
-        rates.by_parameter(i, parameter) + through
-    };
-    let slope_along = |parameter: usize, i: usize, j: usize| -> f64 {
+impl Rates<'_> {
+    /// How f_i moves with a parameter, by itself and through the states.
+    fn along(&self, state: &[f64], parameter: usize, i: usize) -> f64 {
+        let (s, p) = (self.states, self.parameters);
+        let through: f64 = (0..s).map(|j| self.by_state(i, j) * state[s + j * p + parameter]).sum();
+        self.by_parameter(i, parameter) + through
+    }
+
+    /// How df_i/dx_j moves with a parameter.
+    fn slope_along(&self, state: &[f64], parameter: usize, [i, j]: [usize; 2]) -> f64 {
+        let (s, p) = (self.states, self.parameters);
         let through: f64 =
-            (0..s).map(|m| rates.second(i, j, m) * sensitivities[parameter][m]).sum();
-        rates.second(i, j, s + parameter) + through
-    };
+            (0..s).map(|m| self.second(i, j, m) * state[s + m * p + parameter]).sum();
+        self.second(i, j, s + parameter) + through
+    }
+}
+
+/// One step of the states and, behind them, their sensitivities, where states are separate.
+fn separate_step(rates: &Rates<'_>, h: f64, state: &[f64]) -> Vec<f64> {
+    let (s, p) = (rates.states, rates.parameters);
     let mut steps = vec![0.0; s * (1 + p)];
-    if rates.is_separate {
-        for i in 0..s {
-            let (phi, slope) = phi_1(h * rates.by_state(i, i));
-            steps[i] = h * phi * rates.rate(i);
-            for parameter in 0..p {
-                let turned = h * slope * slope_along(parameter, i, i) * rates.rate(i);
-                steps[s + i * p + parameter] = h * (phi * along(parameter, i) + turned);
-            }
-        }
-    } else {
-        // the exponential of [[h J, h f], [0, 0]] has h phi_1(h J) f in its last column
-        let generator = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
-            (true, true) => h * rates.by_state(i, j),
-            (true, false) => h * rates.rate(i),
-            _ => 0.0,
-        });
-        let exponential = generator.exp();
-        (0..s).for_each(|i| steps[i] = exponential[(i, s)]);
+    for i in 0..s {
+        let (phi, slope) = phi_1(h * rates.by_state(i, i));
+        steps[i] = h * phi * rates.rate(i);
         for parameter in 0..p {
-            let change = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
-                (true, true) => h * slope_along(parameter, i, j),
-                (true, false) => h * along(parameter, i),
-                _ => 0.0,
-            });
-            let moved = derivative_of_exponential(&generator, &change);
-            (0..s).for_each(|i| steps[s + i * p + parameter] = moved[(i, s)]);
+            let turned = h * slope * rates.slope_along(state, parameter, [i, i]) * rates.rate(i);
+            steps[s + i * p + parameter] = h * (phi * rates.along(state, parameter, i) + turned);
         }
     }
-    state.iter_mut().zip(&steps).for_each(|(x, step)| *x += step);
+    steps
+}
+
+/// The same whatever the rates depend on.
+fn changing_step(rates: &Rates<'_>, h: f64, state: &[f64]) -> Vec<f64> {
+    let (s, p) = (rates.states, rates.parameters);
+    let mut steps = vec![0.0; s * (1 + p)];
+    // the exponential of [[h J, h f], [0, 0]] has h phi_1(h J) f in its last column
+    let generator = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
+        (true, true) => h * rates.by_state(i, j),
+        (true, false) => h * rates.rate(i),
+        _ => 0.0,
+    });
+    let exponential = generator.exp();
+    (0..s).for_each(|i| steps[i] = exponential[(i, s)]);
+    for parameter in 0..p {
+        let change = DMatrix::from_fn(s + 1, s + 1, |i, j| match (i < s, j < s) {
+            (true, true) => h * rates.slope_along(state, parameter, [i, j]),
+            (true, false) => h * rates.along(state, parameter, i),
+            _ => 0.0,
+        });
+        let moved = derivative_of_exponential(&generator, &change);
+        (0..s).for_each(|i| steps[s + i * p + parameter] = moved[(i, s)]);
+    }
+    steps
+}
+
+/// What a step does to rates whose df/dx depends on parameters alone.
+struct Propagator {
+    h: f64,
+    /// h phi_1(h J), row by row.
+    phi: Vec<f64>,
+    /// Its derivative by each parameter.
+    by: Vec<Vec<f64>>,
+}
+
+/// Steps are alike whose lengths differ by the rounding of the times.
+const ROUNDING: f64 = 1e-9;
+
+impl Propagator {
+    fn new(rates: &Rates<'_>, h: f64) -> Self {
+        let s = rates.states;
+        // the exponential of [[h J, h], [0, 0]] has h phi_1(h J) in its corner
+        let generator = DMatrix::from_fn(2 * s, 2 * s, |i, j| match (i < s, j < s) {
+            (true, true) => h * rates.by_state(i, j),
+            (true, false) if i + s == j => h,
+            _ => 0.0,
+        });
+        let corner = |matrix: &DMatrix<f64>| -> Vec<f64> {
+            (0..s * s).map(|at| matrix[(at / s, s + at % s)]).collect()
+        };
+        let by = |parameter: usize| {
+            let change = DMatrix::from_fn(2 * s, 2 * s, |i, j| match i < s && j < s {
+                true => h * rates.second(i, j, s + parameter),
+                false => 0.0,
+            });
+            corner(&derivative_of_exponential(&generator, &change))
+        };
+        let by = (0..rates.parameters).map(by).collect();
+        Self { h, phi: corner(&generator.exp()), by }
+    }
+
+    fn is_of(&self, h: f64) -> bool {
+        (self.h - h).abs() <= ROUNDING * self.h
+    }
+
+    fn step(&self, rates: &Rates<'_>, state: &[f64]) -> Vec<f64> {
+        let (s, p) = (rates.states, rates.parameters);
+        let mut steps = vec![0.0; s * (1 + p)];
+        for i in 0..s {
+            let row = |matrix: &[f64], column: &dyn Fn(usize) -> f64| -> f64 {
+                (0..s).map(|j| matrix[i * s + j] * column(j)).sum()
+            };
+            steps[i] = row(&self.phi, &|j| rates.rate(j));
+            for (parameter, by) in self.by.iter().enumerate() {
+                let moved = row(&self.phi, &|j| rates.along(state, parameter, j));
+                steps[s + i * p + parameter] = moved + row(by, &|j| rates.rate(j));
+            }
+        }
+        steps
+    }
 }
 
 /// The derivative of exp(A) in the direction E: the corner of the exponential of [[A, E], [0, A]].

@@ -316,12 +316,12 @@ impl Answered {
         model.law = arguments.friction;
         progress.show("reading logs");
         let (own, source) = (&own[..], &source);
-        let estimation = Estimation { arguments, robot: &robot, laws, model: &model, own, source };
+        let estimation =
+            Estimation { arguments, robot: &robot, laws, model: &model, own, source, progress };
         let mut read = estimation.read(&arguments.conditions)?;
         let controller = arguments.controller.as_deref();
         let controller = controller.map(|path| Controlled::read(path, &whole)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone())?;
-        progress.show("estimating");
         if options.method == Method::Instrumental && read.instruments.is_empty() {
             let controller = controller.as_ref().ok_or(IdentifyFailure::NoInstruments)?;
             let first = Options { method: Method::Weighted, ..options.clone() };

@@ -3,6 +3,7 @@
 use super::logs::{self, Conditions};
 use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
+use crate::cli::progress::Progress;
 use denavit::effect::{self, Effect};
 use denavit::identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit::identify::{
@@ -20,6 +21,7 @@ pub(super) struct Estimation<'a> {
     pub(super) model: &'a RegressionModel,
     pub(super) own: &'a [Effect],
     pub(super) source: &'a str,
+    pub(super) progress: &'a Progress,
 }
 
 /// What is found, and the model with it.
@@ -55,6 +57,7 @@ impl Estimation<'_> {
         options: &Options,
     ) -> Result<(logs::Read, Found), Failure> {
         let mut conditions = self.arguments.conditions;
+        self.progress.show("estimating");
         let mut found = self.found(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
         while let Some(lower) = conditions.lower(&read.train)
@@ -64,8 +67,11 @@ impl Estimation<'_> {
             && (is_biased || parameters.iter().any(IdentifiedParameter::may_change))
             && !allows_for_noise
         {
+            let times = lower.halvings();
+            self.progress.show(&format!("reading logs, filter halved {times} times"));
             drop(read); // logs are large: not all of them twice
             read = self.read(&lower)?;
+            self.progress.show(&format!("estimating, filter halved {times} times"));
             let next = self.found(&read, options)?;
             let is_better = is_biased || has_smaller_errors(&next.0.parameters, parameters);
             if next.0.filter_error.is_some() || !is_better {

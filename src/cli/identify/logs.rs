@@ -135,6 +135,11 @@ impl Conditions {
 }
 
 impl Conditions {
+    /// How often the cutoff is halved, of logs that are long enough.
+    pub(super) fn halvings(&self) -> u32 {
+        self.halvings
+    }
+
     /// The same with half the cutoff, for logs whose noise of positions biases parameters; none if
     /// a filter was asked for, or all logs, or one lap, are too short for it.
     pub(super) fn lower(&self, logs: &[Conditioned]) -> Option<Self> {

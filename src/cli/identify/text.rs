@@ -127,9 +127,19 @@ fn write_residuals(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure
     let all = found.validate.as_ref().map_or(String::new(), |all| percent(all.relative));
     table.push(vec!["all".to_owned(), percent(found.train.relative), all]);
     write!(out, "{}", table.without_empty_columns())?;
-    if let Some(before) = found.before {
-        writeln!(out, "\nbefore, with the model's values: {} of the torque left", percent(before))?;
-    }
+    let before = match found.before {
+        Some(before) => format!("{} of the torque left", percent(before)),
+        None => {
+            let without = found.parameters.iter().filter(|one| one.model_value.is_none());
+            let names: Vec<&str> = without.map(|one| one.name.as_str()).collect();
+            format!("not known, since the model has no value of {}", names.join(", "))
+        }
+    };
+    writeln!(
+        out,
+        "\n{}",
+        paragraph("", "", &format!("before, with the model's values: {before}"))
+    )?;
     Ok(())
 }
 

@@ -90,8 +90,16 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
         None => {}
     }
     if let Some(step) = signals.step {
-        let column = format!("q_{}", joint.name);
-        found.remarks.push(LogRemark::Steps { column, step });
+        let own = (format!("q_{}", joint.name), step);
+        // one remark for all joints
+        let steps = found.remarks.iter_mut().find_map(|remark| match remark {
+            LogRemark::Steps { columns } => Some(columns),
+            _ => None,
+        });
+        match steps {
+            Some(columns) => columns.push(own),
+            None => found.remarks.push(LogRemark::Steps { columns: vec![own] }),
+        }
     }
 }
 

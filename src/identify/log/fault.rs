@@ -111,8 +111,8 @@ pub enum LogRemark {
     Resting { joint: String },
     /// The torque stands at its extreme value.
     Saturated { column: String, share: f64, value: f64 },
-    /// The position has steps, as of an encoder.
-    Steps { column: String, step: f64 },
+    /// Positions have steps of these sizes, as of encoders.
+    Steps { columns: Vec<(String, f64)> },
     /// The torque that was commanded is taken for the measured one.
     CommandedTorque { joint: String },
     /// Torques of motors were multiplied by the gear ratios.
@@ -366,8 +366,23 @@ impl fmt::Display for LogRemark {
                 "`{column}` stands at {value:.6} in {:.1} % of the samples: saturated?",
                 100.0 * share
             ),
-            Self::Steps { column, step } => {
-                write!(f, "`{column}` has steps of {step:.3e}, as of an encoder")
+            Self::Steps { columns } => {
+                const NAMED: usize = 4;
+                let names: Vec<String> =
+                    columns.iter().take(NAMED).map(|(column, _)| format!("`{column}`")).collect();
+                write!(f, "{}", names.join(", "))?;
+                if columns.len() > NAMED {
+                    write!(f, " and {} other positions", columns.len() - NAMED)?;
+                }
+                let steps = columns.iter().map(|(_, step)| *step);
+                let least = steps.clone().fold(f64::INFINITY, f64::min);
+                let largest = steps.fold(0.0, f64::max);
+                let verb = if columns.len() > 1 { "have" } else { "has" };
+                write!(f, " {verb} steps of {least:.3e}")?;
+                if largest > 1.01 * least {
+                    write!(f, " to {largest:.3e}")?;
+                }
+                write!(f, ", as of an encoder")
             }
             Self::CommandedTorque { joint } => {
                 write!(f, "`{joint}`: the commanded torque stands for the measured one")

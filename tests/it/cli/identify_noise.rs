@@ -48,9 +48,23 @@ fn each_log_has_the_filter_that_it_is_long_enough_for() {
         let words = format!("{log}: noise of positions would bias parameters: filtered below ");
         number_after(&text, &words)
     };
+    // one line for all joints of a log
+    assert!(text.contains("slow.csv: `q_link1`, `q_link2` have steps of 3.835e-4"), "{text}");
     // 1.5 s have 75 periods of 50 Hz, and less than 40 of 25 Hz
     assert_eq!(cutoff_hz("short.csv"), 50.0, "{text}");
     assert!(cutoff_hz("slow.csv") < 20.0, "{text}");
+}
+
+/// What the model has no value of is named where its own torques cannot be compared.
+#[test]
+fn why_nothing_is_known_from_before_is_said() {
+    let directory = Directory::new("noise-before");
+    write_arm(&directory, None);
+    write_slow(&directory, 1, 0.5);
+    let words = ["--train", "slow.csv", "--with", "friction,offset"];
+    let (_, text) = said(&directory, &words);
+    let line = text.replace('\n', " ");
+    assert!(line.contains("not known, since the model has no value of off_link1"), "{text}");
 }
 
 /// A joint that creeps in one direction, slower than the steps of its encoder say: the sign of its

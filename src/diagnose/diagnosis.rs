@@ -10,7 +10,7 @@ use super::effects_found::{
 use super::errors::deviations;
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
-use super::family::settled;
+use super::family::named;
 use super::fault::DiagnosisError;
 use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
@@ -179,7 +179,7 @@ pub fn diagnose(
     let left = |state: &State| {
         where_left(&train, &state.residual, &state.torques[0], train_floor, filter_s)
     };
-    let (after, families) = settled((&setting, &outcome.screen), &request.options, outcome.after);
+    let (after, families) = named((&setting, &outcome.screen), &request.options, outcome.after);
     let [before, after] = [&outcome.before, &after];
     let deviations = deviations(&setting, after, smoother.as_ref());
     let mut effects = found_effects(&setting, [before, after], (&deviations, families));

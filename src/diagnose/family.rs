@@ -3,7 +3,7 @@
 use super::evidence::paired;
 use super::gap::Gap;
 use super::problem::Problem;
-use super::search::{ALIKE, Screen, SearchOptions, is_worse, refine, score};
+use super::search::{ALIKE, Screen, SearchOptions, alike, is_worse, refine, score};
 use super::state::{Setting, State, Taken, Trial};
 
 /// An effect that would do as well in the place of one that was found.
@@ -47,7 +47,7 @@ pub fn family(
     let idle = setting.trial(&problem, &rest, &rest.taken);
     let [_, trust] = state.trust();
     let gap = |residual: &[f64]| Gap::new(setting.held_out, residual, &trust).all;
-    let most = (1.0 + ALIKE).powi(2) * chosen.held_out_cost();
+    let most = alike([&idle, &chosen]);
     let is_alike =
         |trial: &Trial| trial.held_out_cost() <= most && !is_worse(setting, &rest, trial, &chosen);
     // Where the model's own uncertainty would do, so would any effect that is off.
@@ -81,7 +81,7 @@ pub fn family(
 
 /// The effects of a state with the names that would do as well: of these the simplest is the
 /// effect's, since with what was found it is known better what is left.
-pub(super) fn settled(
+pub(super) fn named(
     (setting, screen): (&Setting<'_>, &Screen),
     options: &SearchOptions,
     mut state: State,
@@ -90,16 +90,30 @@ pub(super) fn settled(
     for place in setting.given.len()..state.taken.len() {
         let of = |state: &State| family((setting, screen), options, state, place);
         let mut own = of(&state);
-        if let Some(simpler) = own.iter().find(|other| other.is_simpler) {
-            let mut taken = state.taken.clone();
-            let Alternative { candidate, values, .. } = simpler.clone();
-            taken[place] = Taken { candidate, values };
-            state = setting.state(&taken);
+        let mut simpler = own.iter().filter(|other| other.is_simpler);
+        if let Some(simpler) = simpler.find_map(|other| in_place(setting, &state, place, other)) {
+            state = simpler;
             own = of(&state);
         }
         families.push(own);
     }
     (state, families)
+}
+
+/// The state with another name in a place, if that leaves what it was tried with: numbers of the
+/// model that were free for the trial have to stay within their bounds.
+fn in_place(
+    setting: &Setting<'_>,
+    state: &State,
+    place: usize,
+    other: &Alternative,
+) -> Option<State> {
+    let mut taken = state.taken.clone();
+    taken[place] = Taken { candidate: other.candidate, values: other.values.clone() };
+    let found = setting.state(&taken);
+    let [_, trust] = state.trust();
+    let left = Gap::new(setting.held_out, &found.held_out_residual, &trust).all;
+    (left <= (1.0 + ALIKE) * other.held_out_gap).then_some(found)
 }
 
 /// The cosine of what two effects do, in the rows, outside of what z can do.

@@ -64,8 +64,8 @@ pub struct Phi {
 /// What begins the names of parameters of a drive.
 const DRIVE: [&str; 3] = ["fv", "fc", "Ia"];
 
-/// What begins the names of parameters that no rigid body has, but for the rotor's inertia.
-const FRICTION: [&str; 3] = ["fv", "fc", "off"];
+/// What begins the names of parameters that no rigid body has.
+const OF_JOINT: [&str; 4] = ["fv", "fc", "off", "Ia"];
 
 impl<'a> Nominal<'a> {
     /// The nominal model with the deviations that it states, others by `uncertainty`.
@@ -148,11 +148,12 @@ impl<'a> Nominal<'a> {
         theta.iter().zip(&self.model.standard).map(of).collect()
     }
 
-    /// phi of z without friction and offsets: what moves and carries the bodies.
+    /// phi of z without friction, offsets and rotors: what moves and carries the bodies, and what a
+    /// transmission passes on.
     pub fn load_phi(&self, z: &[f64]) -> Phi {
         let mut theta = self.theta(z);
-        let friction = self.only(&theta, |prefix| FRICTION.contains(&prefix));
-        theta.iter_mut().zip(friction).for_each(|(value, friction)| *value -= friction);
+        let of_joints = self.only(&theta, |prefix| OF_JOINT.contains(&prefix));
+        theta.iter_mut().zip(of_joints).for_each(|(value, own)| *value -= own);
         self.phi_of(&theta)
     }
 
@@ -169,9 +170,8 @@ fn deviation(
     uncertainty: Uncertainty,
 ) -> Option<f64> {
     let is_of_joint = model.standard.iter().any(|standard| {
-        let of_joint = |prefix: &str| FRICTION.contains(&prefix) || prefix == "Ia";
         standard.name == parameter.name
-            && standard.owner.as_ref().is_some_and(|(_, prefix)| of_joint(prefix))
+            && standard.owner.as_ref().is_some_and(|(_, prefix)| OF_JOINT.contains(prefix))
     });
     let share = if is_of_joint { uncertainty.joint } else { uncertainty.body };
     let std = parameter.std.unwrap_or(share * parameter.value.abs());

@@ -137,17 +137,11 @@ impl Round<'_, '_> {
     }
 
     /// Torques that are right for the wrong reason move the robot otherwise. What was computed with
-    /// the model's numbers needs those that go with the effect, which are estimated again, if they
-    /// make a robot.
+    /// the model's numbers needs those that go with the effect, which are estimated again.
     fn in_motion(&self, best: &Trial) -> Option<f64> {
         let Self { setting, state, .. } = self;
-        let than = (&state.taken[..], &state.z[..]);
         let next = setting.state(&best.taken);
-        let (again, is_estimated) = setting.in_motion(than, (&next.taken, &next.z))?;
-        match is_estimated {
-            true => Some(again),
-            false => Some(setting.in_motion(than, (&best.taken, &best.found.z))?.0),
-        }
+        setting.in_motion((&state.taken, &state.z), (&next.taken, &next.z))
     }
 
     /// Whether a trial is more than chance, against all `trials`.

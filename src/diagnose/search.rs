@@ -288,16 +288,20 @@ pub(super) fn best<'t>(
 ) -> Option<&'t Trial> {
     let by_cost = |a: &&Trial, b: &&Trial| a.held_out_cost().total_cmp(&b.held_out_cost());
     let least = trials.iter().min_by(by_cost)?;
-    let [none, least_cost] = [idle, least].map(Trial::held_out_cost);
-    let most = (1.0 + ALIKE).powi(2) * least_cost;
-    // Joints that this is not about weigh in the whole, but not in what is explained.
-    let most = most.min(least_cost + LEAVES * (none - least_cost).max(0.0));
+    let most = alike([idle, least]);
     let alike = trials
         .iter()
         .filter(|trial| trial.held_out_cost() <= most && !is_worse(setting, state, trial, least));
     // A tilt of the base that is an offset of one joint is one direction in two numbers.
     let size = |trial: &Trial| (trial.parameters(), trial.numbers());
     alike.min_by(|a, b| size(a).cmp(&size(b)).then(by_cost(a, b)))
+}
+
+/// What a law may leave of held-out logs to be like another one, that is `least`.
+pub(super) fn alike([idle, least]: [&Trial; 2]) -> f64 {
+    let [none, least] = [idle, least].map(Trial::held_out_cost);
+    // Joints that this is not about weigh in the whole, but not in what is explained.
+    ((1.0 + ALIKE).powi(2) * least).min(least + LEAVES * (none - least).max(0.0))
 }
 
 /// Whether a trial is worse than another for sure, and by more than a parameter costs (Schwarz

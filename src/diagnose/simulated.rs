@@ -14,7 +14,7 @@ use crate::identify::{
 };
 use crate::plants::effect::apart;
 use crate::plants::{PlantError, plant_of};
-use denavit_codegen::effect::{Effect, EffectSite, read_model};
+use denavit_codegen::effect::{Effect, EffectSite, read_estimated_model, read_model};
 use denavit_codegen::model::{ModelError, Robot};
 use std::fmt;
 
@@ -129,10 +129,12 @@ impl Moved<'_> {
         let with = with_effects(self.source, &new, &changed);
         let with = with.ok_or_else(|| NotMoved::NoPlace(name()))?;
         let moved = moved_numbers(nominal, z, &with).ok_or_else(|| NotMoved::NoPlace(name()))?;
-        let read = |text: &str| read_model("the model", text.as_bytes(), self.effects);
+        let name = "the model";
+        let moved = read_estimated_model(name, moved.as_bytes(), self.effects);
+        let moved = moved.map(|robot| (robot, true));
         // Numbers that make no body together stay as they were.
-        let moved = read(&moved).map(|robot| (robot, true));
-        let found = moved.or_else(|_| read(&with).map(|robot| (robot, false)));
+        let as_it_was = || read_model(name, with.as_bytes(), self.effects);
+        let found = moved.or_else(|_| as_it_was().map(|robot| (robot, false)));
         found.map_err(|error| NotMoved::Unsound(Box::new(error)))
     }
 

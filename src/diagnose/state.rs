@@ -282,18 +282,23 @@ impl<'a> Setting<'a> {
     }
 
     /// Standard errors by which effects in place of others lessen the gap of the model in motion
-    /// along held-out logs, from its windows; whether with the numbers as they were
-    /// estimated. None where that cannot be told, and of laws with states, with which windows take
-    /// long.
+    /// along held-out logs, from its windows. None where that cannot be told, and of laws with
+    /// states, with which windows take long.
     pub(super) fn in_motion(
         &self,
         than: (&[Taken], &[f64]),
         now: (&[Taken], &[f64]),
-    ) -> Option<(f64, bool)> {
+    ) -> Option<f64> {
         self.moved?;
         let gap = |one| self.motion_gap(1, one).ok().filter(|gap| !gap.has_states);
-        let (before, after) = (gap(than)?, gap(now)?);
-        Some((paired(&before.windows, &after.windows), after.is_estimated))
+        let (mut before, mut after) = (gap(than)?, gap(now)?);
+        // Numbers of the file against estimated ones would say more than the effects do.
+        if before.is_estimated != after.is_estimated {
+            let as_they_were = vec![0.0; now.1.len()];
+            before = gap((than.0, &as_they_were))?;
+            after = gap((now.0, &as_they_were))?;
+        }
+        Some(paired(&before.windows, &after.windows))
     }
 
     /// Weighted squares of what is `left` of held-out logs, for each joint, and those of noise

@@ -102,8 +102,8 @@ const fn entry(
 /// delay and lag (equal to first order), Stribeck friction and stiction (the plant's drives stick
 /// with both, and the catalogue's stiction is Stribeck's curve with a bristle for its sign),
 /// friction of load and of a cable (equal where the wrap does not change). Aliases: offset and
-/// asymmetric Coulomb while a joint moves; the inertia of a rotor and of the first link; payload
-/// and last link; a zero error and a tilt or a displaced mass.
+/// asymmetric Coulomb while a joint moves; the inertia of a rotor and of the first link; a payload
+/// and the link that carries it; a zero error and a tilt or a displaced mass.
 pub(crate) const TABLE: [Entry; 45] = [
     entry(
         Law::Coulomb,
@@ -201,7 +201,7 @@ pub(crate) const TABLE: [Entry; 45] = [
     entry(Law::CouplingInertia, "coupled_inertia", &[], Site::Pair, "m", 1),
     entry(Law::BaseTilt, "base_tilt", &["joint_zero"], Site::Model, "", 1),
     entry(Law::TorqueDelay, "torque_delay", &["torque_lag", "position_delay"], Site::Joint, "T", 2),
-    entry(Law::ActuatorLag, "torque_lag", &["torque_delay"], Site::Joint, "T", 2),
+    entry(Law::ActuatorLag, "torque_lag", &["torque_delay", "position_delay"], Site::Joint, "T", 2),
     entry(Law::Saturation, "torque_saturation", &[], Site::Joint, "", 2),
     entry(Law::HardStop, "hard_stop", &["one_sided_spring"], Site::Joint, "k", 2),
     entry(Law::ThermalFriction, "cold_friction", &["cold_viscous"], Site::Joint, "c", 2),
@@ -265,8 +265,7 @@ impl Hidden {
             }
             (Law::JointZero, "base_tilt") => self.joint == 0 && robot.is_planar(),
             (Law::BaseTilt, "joint_zero") => robot.is_planar(),
-            (Law::JointZero, "link_parameters")
-            | (Law::LinkInertia, "payload" | "payload_point") => last,
+            (Law::JointZero, "link_parameters") => last,
             (Law::Viscous | Law::SublinearViscous, _) => self.variant > 0,
             _ => true,
         };

@@ -9,14 +9,31 @@ use crate::expr::{Dag, ExprId, Symbol, SymbolClass, import};
 use crate::model::json;
 use crate::model::{
     About, AddedEffect, AddedValue, Body, Cause, EffectPlace, Joint, JointKind, JointLaw, LawState,
-    Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read,
+    Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read, read_estimated,
 };
 use crate::number::Rational;
 
 /// Reads a model file with the effects that it names: those of `own`, then the shipped ones.
 /// `file` is the file's name, for messages alone.
 pub fn read_model(file: &str, source: &[u8], own: &[Effect]) -> Result<Robot, ModelError> {
-    let mut robot = read(file, source)?;
+    with_effects(read(file, source)?, file, source, own)
+}
+
+/// The same of a model whose numbers were [estimated](read_estimated).
+pub fn read_estimated_model(
+    file: &str,
+    source: &[u8],
+    own: &[Effect],
+) -> Result<Robot, ModelError> {
+    with_effects(read_estimated(file, source)?, file, source, own)
+}
+
+fn with_effects(
+    mut robot: Robot,
+    file: &str,
+    source: &[u8],
+    own: &[Effect],
+) -> Result<Robot, ModelError> {
     let mut report = Report::default();
     for place in 0..robot.effects.len() {
         let added = robot.effects[place].clone();

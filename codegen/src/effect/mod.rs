@@ -16,7 +16,7 @@ mod linear;
 mod read;
 mod spelling;
 
-pub use attach::{attach, place_name, read_model, with_term};
+pub use attach::{attach, place_name, read_estimated_model, read_model, with_term};
 pub use catalogue::{SHIPPED, catalogue, files, find};
 pub use read::read;
 pub use spelling::JointUnit;

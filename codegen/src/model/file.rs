@@ -5,6 +5,7 @@
 //! if no fault was noted.
 
 use super::fault::Cause;
+use super::inertia::Violation;
 use super::json::{Json, Value};
 use super::message::EFFECT_PLACE;
 use super::reader::{Fields, Word};
@@ -97,8 +98,7 @@ pub(super) enum TorqueFile<'a> {
 pub(super) struct BodyFile<'a> {
     pub(super) entries: [Option<Entry<'a>>; 10],
     pub(super) about: About,
-    /// Where a triangle violation is accepted.
-    pub(super) accepts_triangle_violation: Option<usize>,
+    pub(super) violation: Violation,
     pub(super) at: usize,
 }
 
@@ -391,7 +391,7 @@ fn read_body<'a>(json: &Json<'a>, report: &mut Report) -> Option<BodyFile<'a>> {
     Some(BodyFile {
         entries: [mass, x, y, z, xx, yy, zz, xy, xz, yz],
         about: about.unwrap_or(About::Com),
-        accepts_triangle_violation: accepted.map(|reason| reason.at),
+        violation: accepted.map_or(Violation::Refused, |reason| Violation::Accepted(reason.at)),
         at: json.start,
     })
 }

@@ -95,6 +95,17 @@ pub(super) fn about_com(
 
 const ENTRIES: [&str; 3] = ["Ixx", "Iyy", "Izz"];
 
+/// What a file says of moments that no body has, though energies stay positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Violation {
+    /// Nothing: they are a fault.
+    Refused,
+    /// That they are meant, and where.
+    Accepted(usize),
+    /// Its numbers were estimated: moments that no motion tells apart may be any.
+    Estimated,
+}
+
 /// Finds the plainest reason why no body has this mass (kg) and this tensor about its centre of
 /// mass (xx, yy, zz, xy, xz, yz (kg m^2)), if there is one. Neither mass nor inertia is in order.
 pub(super) fn find_fault(mass: &Rational, inertia: &[Rational; 6]) -> Option<Unphysical> {

@@ -39,6 +39,7 @@ pub use robot::{
 pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};
 
+use inertia::Violation;
 use json::{JsonCause, JsonError};
 
 /// The tag of a model file.
@@ -51,6 +52,25 @@ pub fn schema() -> &'static str {
 
 /// Reads a model file from its bytes. `file` is its name, for messages alone.
 pub fn read(file: &str, source: &[u8]) -> Result<Robot, ModelError> {
+    read_file(file, source, |_| ())
+}
+
+/// Reads a model whose numbers were estimated: as [`read`], but moments that violate the triangle
+/// inequality are no fault, as no motion may tell them apart; energies are positive.
+pub fn read_estimated(file: &str, source: &[u8]) -> Result<Robot, ModelError> {
+    read_file(file, source, |model| {
+        let links = model.links.iter_mut().filter_map(|link| link.body.as_mut());
+        for body in links.chain(&mut model.base.body) {
+            body.violation = Violation::Estimated;
+        }
+    })
+}
+
+fn read_file(
+    file: &str,
+    source: &[u8],
+    prepare: impl FnOnce(&mut file::ModelFile<'_>),
+) -> Result<Robot, ModelError> {
     let mut report = Report::default();
     let root = match json::parse(source) {
         Ok(root) => root,
@@ -60,8 +80,10 @@ pub fn read(file: &str, source: &[u8]) -> Result<Robot, ModelError> {
         }
     };
     reader::find_duplicate_keys(&root, &mut report);
-    let robot = file::ModelFile::read(&root, &mut report)
-        .map(|model| check::check(&model, hash::content_hash(&root), &mut report));
+    let robot = file::ModelFile::read(&root, &mut report).map(|mut model| {
+        prepare(&mut model);
+        check::check(&model, hash::content_hash(&root), &mut report)
+    });
     match robot {
         Some(robot) if report.is_empty() => Ok(robot),
         _ => Err(report.into_error(file, source, Some(&root))),

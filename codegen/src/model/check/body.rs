@@ -5,7 +5,7 @@ use super::parameter::EntryKind;
 use crate::expr::{ExprId, SymbolClass};
 use crate::model::fault::Cause;
 use crate::model::file::{BodyFile, ModelFile};
-use crate::model::inertia::{about_com, find_fault};
+use crate::model::inertia::{Violation, about_com, find_fault};
 use crate::model::parameter::{BodyEntry, Role};
 use crate::model::robot::{About, Base, Body, LinkId};
 use crate::number::{Rational, decimal_text};
@@ -93,7 +93,7 @@ impl Check<'_> {
         match find_fault(&mass, &tensor) {
             None => self.nothing_to_accept(file),
             Some(fault) => {
-                if !(fault.can_be_accepted() && file.accepts_triangle_violation.is_some()) {
+                if !fault.can_be_accepted() || file.violation == Violation::Refused {
                     self.push(file.at, Cause::Unphysical(fault));
                 }
             }
@@ -101,7 +101,7 @@ impl Check<'_> {
     }
 
     fn nothing_to_accept(&mut self, file: &BodyFile) {
-        if let Some(at) = file.accepts_triangle_violation {
+        if let Violation::Accepted(at) = file.violation {
             self.push(at, Cause::NothingToAccept);
         }
     }

@@ -145,34 +145,39 @@ impl<'a> ExactAliases<'a> {
             Law::Torque(_) | Law::Measured(_) => {
                 let law = as_torque(effect)?;
                 attach(&mut robot, &law, 0).ok()?;
-                self.of_law(&mut robot)?
+                self.of_laws(&mut robot)?
             }
         };
         let own = self.symbols(&robot, effect);
         Some(differentiated(effect, &own, dag, &entries))
     }
 
-    /// The torques of all joints by the one law that a robot has.
-    fn of_law(&self, robot: &mut Robot) -> Option<(Dag, Vec<ExprId>)> {
-        let law = robot.laws.pop().filter(|law| law.states.is_empty())?;
+    /// The torques of all joints by the laws of the one effect that a robot has.
+    fn of_laws(&self, robot: &mut Robot) -> Option<(Dag, Vec<ExprId>)> {
+        let laws = std::mem::take(&mut robot.laws);
+        let first = laws.first().filter(|law| law.states.is_empty())?;
         let row = |joint| robot.joints().position(|(link, _)| link == joint);
-        let (joint, count) = (row(law.joint)?, robot.degrees_of_freedom());
-        let loads: Option<Vec<(usize, ExprId)>> =
-            law.loads.iter().map(|&(link, symbol)| Some((row(link)?, symbol))).collect();
+        let loads: Option<Vec<(usize, ExprId)>> = laws
+            .iter()
+            .flat_map(|law| &law.loads)
+            .map(|&(link, symbol)| Some((row(link)?, symbol)))
+            .collect();
         let loads = loads?;
-        let whole = law.effect.clone();
         let terms = Terms { friction: false, rotor: false, ..robot.terms };
         let (dag, rigid) = torques(Robot { terms, ..robot.clone() })?;
         let (mut dag, all) = torques(Robot { dag, ..robot.clone() })?;
         let mut known: FxHashMap<ExprId, ExprId> =
             loads.iter().map(|&(row, symbol)| (symbol, rigid[row])).collect();
-        let tau = format!("tau_{whole}_{}", robot.links[law.joint].name);
+        let tau = format!("tau_{}_{}", first.effect, robot.links[first.joint].name);
         if let Some(id) = dag.find_symbol(&tau) {
-            known.insert(dag.symbol_expr(id), all[joint]);
+            known.insert(dag.symbol_expr(id), all[row(first.joint)?]);
         }
-        let torque = substitute(&mut dag, &[law.torque], &known)[0];
-        let zero = dag.zero();
-        let entries = (0..count).map(|row| if row == joint { torque } else { zero }).collect();
+        let mut entries = vec![dag.zero(); all.len()];
+        for law in &laws {
+            let torque = substitute(&mut dag, &[law.torque], &known)[0];
+            let entry = &mut entries[row(law.joint)?];
+            *entry = dag.add(*entry, torque);
+        }
         Some((dag, entries))
     }
 

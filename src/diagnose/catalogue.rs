@@ -22,7 +22,8 @@ pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) ->
                 EffectSite::Joint => all.extend(on_joint(effect, described, joint, None)),
                 EffectSite::JointPair => {
                     // What couples joints is in the wrist or belt between neighbours.
-                    let beside = [joint.checked_sub(1), Some(joint + 1)].into_iter().flatten();
+                    let before = joint.checked_sub(1).filter(|_| !effect.has_no_order());
+                    let beside = [before, Some(joint + 1)].into_iter().flatten();
                     let beside = beside.filter(|&other| other < joints.len());
                     all.extend(beside.filter_map(|other| {
                         on_joint(effect, described, joint, Some((other, &joints[other])))

@@ -6,7 +6,7 @@ use super::signals::Signals;
 use crate::plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 use denavit_codegen::effect::Channel;
 
-/// An effect that adds to the torque of one joint, or changes the log of that torque.
+/// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
 pub(super) struct JointLaw {
     /// The law.
     pub(super) law: EffectLaw,
@@ -34,6 +34,7 @@ fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> Joint
         samples.q_2 = &signals.q[other];
         [samples.qd_2, samples.qdd_2] = signals.of_drive(other).map(Vec::as_slice);
         samples.tau_load_2 = &motion.load[other];
+        samples.tau_load_rate_2 = &motion.load_rate[other];
     }
     samples
 }
@@ -44,13 +45,21 @@ impl Law for JointLaw {
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let samples = samples(&motion, self.joint, self.other);
-        let gradient = self.law.gradient(&samples, values);
-        Response {
-            joints: vec![self.joint],
-            torque: vec![self.law.torque(&samples, values)],
-            gradient: gradient.into_iter().map(|column| vec![column]).collect(),
+        let mut response = Response::default();
+        let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
+            let samples = samples(&motion, joint, other);
+            response.joints.push(joint);
+            response.torque.push(law.torque(&samples, values));
+            let gradient = law.gradient(&samples, values);
+            response.gradient.resize(gradient.len(), Vec::new());
+            let all = response.gradient.iter_mut().zip(gradient);
+            all.for_each(|(of_parameter, column)| of_parameter.push(column));
+        };
+        add(&self.law, self.joint, self.other);
+        if let (Some(law), Some(other)) = (self.law.on_second(), self.other) {
+            add(law, other, Some(self.joint));
         }
+        response
     }
 }
 

@@ -65,13 +65,18 @@ pub fn take_out(log: &mut Conditioned, model: &RegressionModel, laws: &[AddedLaw
     let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
     undo_torques(&mut log.torque, laws, &moved, &wide);
     for law in laws.iter().filter(|law| law.law.channel().is_none()) {
-        let Some(torque) = &mut log.torque[law.joint] else { continue };
-        let mut added =
-            moved.with(law, &[], wide.start, |samples| law.law.torque(samples, &law.values));
-        if let Some(filter) = &log.filter {
-            Butterworth::zero_phase(filter, &mut added);
+        let [joint, other] = law.joints();
+        let first = Some((&law.law, [joint, other]));
+        let second = law.law.on_second().map(|own| (own, [other, joint]));
+        for (own, joints) in first.into_iter().chain(second) {
+            let Some(torque) = &mut log.torque[joints[0]] else { continue };
+            let mut added =
+                moved.with(joints, &[], wide.start, |samples| own.torque(samples, &law.values));
+            if let Some(filter) = &log.filter {
+                Butterworth::zero_phase(filter, &mut added);
+            }
+            torque[wide.clone()].iter_mut().zip(added).for_each(|(torque, added)| *torque -= added);
         }
-        torque[wide.clone()].iter_mut().zip(added).for_each(|(torque, added)| *torque -= added);
     }
 }
 
@@ -87,8 +92,9 @@ pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &
     let loads = loads(model, &motion);
     let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
     undo_torques(&mut log.torque, laws, &moved, &(0..samples));
-    let states =
-        |law: &AddedLaw| moved.with(law, &[], 0, |samples| law.law.states(samples, &law.values));
+    let states = |law: &AddedLaw| {
+        moved.with(law.joints(), &[], 0, |samples| law.law.states(samples, &law.values))
+    };
     let added = laws.iter().filter(|law| law.law.channel().is_none());
     log.law_states = added.flat_map(states).collect();
 }
@@ -103,8 +109,9 @@ fn undo_torques(
     for law in laws.iter().rev().filter(|law| law.law.channel() == Some(Channel::Torque)) {
         let Some(torque) = &mut torques[law.joint] else { continue };
         let logged = torque[range.clone()].to_vec();
-        let truth = moved
-            .with(law, &logged, range.start, |samples| law.law.corrected(samples, &law.values));
+        let truth = moved.with(law.joints(), &logged, range.start, |samples| {
+            law.law.corrected(samples, &law.values)
+        });
         torque[range.clone()].copy_from_slice(&truth);
     }
 }
@@ -122,17 +129,17 @@ impl Moved<'_> {
     /// What a law is evaluated on; the first sample is the log's sample `first`.
     fn with<T>(
         &self,
-        law: &AddedLaw,
+        [joint, other]: [usize; 2],
         tau: &[f64],
         first: usize,
         apply: impl FnOnce(&JointSamples<'_>) -> T,
     ) -> T {
         let n = self.motion.len() / 3;
-        let (joint, other) = (law.joint, law.second.unwrap_or(law.joint));
         let samples = self.motion.first().map_or(0, Vec::len);
         let t: Vec<f64> =
             (0..samples).map(|k| self.start_s + self.step_s * (first + k) as f64).collect();
-        let load_rate = slope(&self.loads[joint], self.step_s);
+        let [load_rate, load_rate_2] =
+            [joint, other].map(|joint| slope(&self.loads[joint], self.step_s));
         apply(&JointSamples {
             t: &t,
             q: &self.motion[joint],
@@ -145,6 +152,7 @@ impl Moved<'_> {
             qd_2: &self.motion[n + other],
             qdd_2: &self.motion[2 * n + other],
             tau_load_2: &self.loads[other],
+            tau_load_rate_2: &load_rate_2,
         })
     }
 }

@@ -352,8 +352,11 @@ impl DiagnosisPage<'_> {
 
 /// A line of a law as a new term of the equation that it is part of.
 fn marked(effect: &Effect, at: &str, formula: String) -> String {
-    match (&effect.law, formula.strip_prefix(r"\tau = ")) {
-        (Law::Torque(_) | Law::Term(_), Some(law)) => {
+    let (first, second) = at.split_once(" with ").unwrap_or((at, at));
+    let of_joint = [(r"\tau = ", first), (r"\tau_2 = ", second)];
+    let mut torques = of_joint.iter().filter_map(|(is, at)| Some((formula.strip_prefix(is)?, *at)));
+    match (&effect.law, torques.next()) {
+        (Law::Torque(_) | Law::Term(_), Some((law, at))) => {
             // nothing of a name is a command
             let is_plain = |letter: &char| letter.is_alphanumeric() || " _".contains(*letter);
             let at: String = at.chars().filter(is_plain).collect();

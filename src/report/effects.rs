@@ -106,7 +106,10 @@ pub(super) fn formulas(effect: &Effect) -> Vec<String> {
     let notation = Notation::of_names(dag);
     let text = |expr: ExprId| write_expression(dag, expr, &notation);
     let mut formulas = match &effect.law {
-        Law::Torque(torque) => vec![format!(r"\tau = {}", text(*torque))],
+        Law::Torque(torque) => {
+            let second = effect.torque_2.map(|torque| format!(r"\tau_2 = {}", text(torque)));
+            std::iter::once(format!(r"\tau = {}", text(*torque))).chain(second).collect()
+        }
         Law::Measured(measured) => measured_formulas(dag, measured, &text),
         Law::Moves(moves) => moves
             .iter()

@@ -9,7 +9,8 @@ use crate::expr::{Dag, ExprId, Symbol, SymbolClass, import};
 use crate::model::json;
 use crate::model::{
     About, AddedEffect, AddedValue, Body, Cause, EffectPlace, Joint, JointKind, JointLaw, LawState,
-    Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read, read_estimated,
+    Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read,
+    read_estimated,
 };
 use crate::number::Rational;
 
@@ -80,7 +81,7 @@ pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Ve
     if let Some(taken) = names.into_iter().find(|name| robot.dag.find_symbol(name).is_some()) {
         return Err(vec![Cause::DuplicateName(taken, "another quantity")]);
     }
-    let mut attaching = Attaching { effect, links, suffix, place };
+    let attaching = Attaching { effect, links, suffix, place };
     attaching.change(robot).map_err(|cause| vec![cause])?;
     attaching.add_parameters(robot, &added);
     Ok(())
@@ -153,9 +154,17 @@ struct Attaching<'e> {
 }
 
 impl Attaching<'_> {
-    fn change(&mut self, robot: &mut Robot) -> Result<(), Cause> {
+    fn change(&self, robot: &mut Robot) -> Result<(), Cause> {
         match &self.effect.law {
-            Law::Torque(torque) => self.add_law(robot, *torque),
+            Law::Torque(torque) => {
+                self.add_law(robot, *torque)?;
+                let Some(second) = self.effect.on_second() else { return Ok(()) };
+                let Law::Torque(torque) = second.law else { return Ok(()) };
+                let links = self.links.iter().rev().copied().collect();
+                let suffix = self.suffix.clone();
+                let other = Attaching { effect: &second, links, suffix, place: self.place };
+                other.add_law(robot, torque)
+            }
             // what is logged is no matter of equations
             Law::Measured(_) => Ok(()),
             Law::Moves(moves) => self.move_properties(robot, moves),
@@ -212,11 +221,9 @@ impl Attaching<'_> {
         let effect = self.effect;
         let mut exprs = vec![torque];
         exprs.extend(effect.states.iter().flat_map(|state| [state.rate, state.initial]));
-        if effect
-            .dag
-            .find_symbol("tau_load_rate")
-            .is_some_and(|id| crate::expr::free_symbols(&effect.dag, &exprs).contains(&id))
-        {
+        let used = crate::expr::free_symbols(&effect.dag, &exprs);
+        let is_used = |name| effect.dag.find_symbol(name).is_some_and(|id| used.contains(&id));
+        if ["tau_load_rate", "tau_load_rate_2"].into_iter().any(is_used) {
             let what = "no function of a moment has the derivative of its torque";
             return Err(Cause::NothingToChange(effect.name.clone(), what));
         }

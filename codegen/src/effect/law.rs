@@ -133,6 +133,7 @@ impl LawReader {
             declare("qd_2", Rate, rate);
             declare("qdd_2", Acceleration, acceleration);
             declare("tau_load_2", Effort, Some(torque));
+            declare("tau_load_rate_2", Effort, torque_rate);
         }
         if at == EffectSite::Model {
             for name in ["g_x", "g_y", "g_z"] {
@@ -174,6 +175,24 @@ impl LawReader {
             ),
             LawFile::Term(term) => Law::Term(*term),
         })
+    }
+
+    /// What the second joint of a pair feels, if the file says so.
+    pub(super) fn on_second(
+        &mut self,
+        fields: &Fields<'_, '_>,
+        (kind, at): (EffectKind, EffectSite),
+        report: &mut Report,
+    ) -> Option<ExprId> {
+        let json = fields.get("torque_2")?;
+        // states are those of one law
+        if kind != EffectKind::Torque || at != EffectSite::JointPair {
+            let kind = if at == EffectSite::JointPair { kind.as_str() } else { "joint" };
+            report.push(json.start, Cause::WrongLaw(kind, "torque_2"));
+            return None;
+        }
+        let torque = Fields::scalar_of(json, report)?;
+        Some(self.quantity(Some(torque), "a torque", self.torque, report))
     }
 
     fn measured(

@@ -13,6 +13,7 @@ mod attach;
 mod catalogue;
 mod law;
 mod linear;
+mod reaction;
 mod read;
 mod spelling;
 
@@ -264,6 +265,9 @@ pub struct Effect {
     pub states: Vec<EffectState>,
     /// Its law.
     pub law: Law,
+    /// What the second joint of a pair needs besides [N m, N], in the symbols of the first one's
+    /// law; none where only the first joint feels the effect.
+    pub torque_2: Option<ExprId>,
     /// What it is taken for.
     pub confused_with: Vec<Confusion>,
     /// Holds the expressions; the symbols of the motion are those of [`VARIABLES`].
@@ -272,7 +276,7 @@ pub struct Effect {
 
 /// The symbols that laws may use beside their own: motion of the joint, of the other joint of a
 /// pair, torques.
-pub const VARIABLES: [&str; 14] = [
+pub const VARIABLES: [&str; 15] = [
     "t",
     "q",
     "qd",
@@ -284,10 +288,14 @@ pub const VARIABLES: [&str; 14] = [
     "qd_2",
     "qdd_2",
     "tau_load_2",
+    "tau_load_rate_2",
     "g_x",
     "g_y",
     "g_z",
 ];
+
+/// Those of [`VARIABLES`] that both joints of a pair have: the second one's end in `_2`.
+const MOTION: [&str; 5] = ["q", "qd", "qdd", "tau_load", "tau_load_rate"];
 
 impl Effect {
     /// The parameter of that name.

@@ -26,6 +26,7 @@ const KEYS: &[&str] = &[
     "parameters",
     "states",
     "torque",
+    "torque_2",
     "measured",
     "moves",
     "term",
@@ -91,13 +92,16 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
     let states = reading.states(&fields);
     let law = LawFile::read(&fields, kind, reading.report);
     let law = law.and_then(|law| reading.law.law(&law, reading.report));
+    let torque_2 = reading.law.on_second(&fields, (kind, at), reading.report);
     let confused_with = reading.confused_with(&fields);
     let texts = ["title", "description", "source"]
         .map(|key| fields.name(key, reading.report).text.into_owned());
     let mut dag = reading.law.scope.dag;
     let law = law?;
-    note_linear(&mut dag, &mut parameters, &states, &law);
-    if !vanishes(&mut dag, &parameters, &law) {
+    let mut exprs = law.expressions();
+    exprs.extend(torque_2);
+    note_linear(&mut dag, &mut parameters, &states, &exprs);
+    if !vanishes(&mut dag, &parameters, (&law, &exprs)) {
         report.push(fields.at(), Cause::NeverVanishes);
     }
     let [title, description, source] = texts;
@@ -112,6 +116,7 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
         parameters,
         states,
         law,
+        torque_2,
         confused_with,
         dag,
     })
@@ -121,26 +126,30 @@ fn note_linear(
     dag: &mut Dag,
     parameters: &mut [EffectParameter],
     states: &[EffectState],
-    law: &Law,
+    law: &[ExprId],
 ) {
     let symbols: Vec<ExprId> = parameters.iter().map(|parameter| parameter.symbol).collect();
     // a state answers to its parameters in a way that no expression says
     let hidden: Vec<ExprId> = states.iter().flat_map(|state| [state.rate, state.initial]).collect();
-    let is_linear = linear(dag, &law.expressions(), &symbols);
+    let is_linear = linear(dag, law, &symbols);
     for (parameter, is_linear) in parameters.iter_mut().zip(is_linear) {
         parameter.linear = is_linear && !depends(dag, &hidden, parameter.symbol);
     }
 }
 
 /// Whether nothing is left of the law where the parameters have their nominal values.
-fn vanishes(dag: &mut Dag, parameters: &[EffectParameter], law: &Law) -> bool {
+fn vanishes(
+    dag: &mut Dag,
+    parameters: &[EffectParameter],
+    (law, exprs): (&Law, &[ExprId]),
+) -> bool {
     let mut nominal: FxHashMap<ExprId, ExprId> = FxHashMap::default();
     for parameter in parameters {
         if let Some(value) = &parameter.nominal {
             nominal.insert(parameter.symbol, dag.constant(value.clone()));
         }
     }
-    let left = substitute(dag, &law.expressions(), &nominal);
+    let left = substitute(dag, exprs, &nominal);
     let nothing = match law {
         Law::Measured(measured) => {
             let symbol = dag.find_symbol(measured.channel.as_str());

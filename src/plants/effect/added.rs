@@ -28,6 +28,13 @@ pub struct AddedLaw {
     pub deviations: Vec<Option<f64>>,
 }
 
+impl AddedLaw {
+    /// The rows of its joint and of the second one of a pair; its own twice where there is none.
+    pub fn joints(&self) -> [usize; 2] {
+        [self.joint, self.second.unwrap_or(self.joint)]
+    }
+}
+
 /// A model with effects, apart.
 #[derive(Clone, Debug)]
 pub struct ApartEffects {

@@ -104,10 +104,12 @@ pub struct JointSamples<'a> {
     pub qdd_2: &'a [f64],
     /// Rigid-body torque of the other joint.
     pub tau_load_2: &'a [f64],
+    /// Its derivative with respect to time.
+    pub tau_load_rate_2: &'a [f64],
 }
 
 /// The names of the columns of [`JointSamples`], which are those of the symbols of laws.
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 12] = [
     "t",
     "q",
     "qd",
@@ -119,6 +121,7 @@ const COLUMNS: [&str; 11] = [
     "qd_2",
     "qdd_2",
     "tau_load_2",
+    "tau_load_rate_2",
 ];
 
 impl<'a> JointSamples<'a> {
@@ -135,6 +138,7 @@ impl<'a> JointSamples<'a> {
             self.qd_2,
             self.qdd_2,
             self.tau_load_2,
+            self.tau_load_rate_2,
         ][column]
     }
 
@@ -164,11 +168,27 @@ pub struct EffectLaw {
     program: LawProgram,
     states: Option<StateLaw>,
     channel: Option<channel::ChannelLaw>,
+    /// What the second joint of a pair feels.
+    on_second: Option<Box<EffectLaw>>,
 }
 
 impl EffectLaw {
     /// The law of `effect` on a joint of this kind.
     pub fn new(effect: &Effect, joint: JointKind) -> Result<Self, EffectError> {
+        let mut law = Self::of_first(effect, joint)?;
+        if let Some(second) = effect.on_second() {
+            law.on_second = Some(Box::new(Self::of_first(&second, joint)?));
+        }
+        Ok(law)
+    }
+
+    /// The law of the second joint of a pair, with the same parameters; its samples have that joint
+    /// first. None where the first one alone feels the effect.
+    pub fn on_second(&self) -> Option<&Self> {
+        self.on_second.as_deref()
+    }
+
+    fn of_first(effect: &Effect, joint: JointKind) -> Result<Self, EffectError> {
         let mut dag = effect.dag.clone();
         let (value, timing) = match &effect.law {
             Law::Torque(torque) => (*torque, None),
@@ -201,6 +221,7 @@ impl EffectLaw {
             program,
             states: state_law,
             channel,
+            on_second: None,
         })
     }
 

@@ -6,7 +6,8 @@ use denavit::plants::effect::{EffectLaw, JointSamples, LawParameter};
 
 /// A motion with reversals, as columns.
 pub(super) struct Motion {
-    pub(super) columns: [Vec<f64>; 11],
+    /// In the order of the fields of [`JointSamples`].
+    pub(super) columns: Vec<Vec<f64>>,
 }
 
 /// Samples of sums of sines; every quantity has the derivatives that its name says.
@@ -23,15 +24,29 @@ pub(super) fn motion(samples: usize, step_s: f64) -> Motion {
     let qd_2 = of(&|t| -1.5 * (3.0 * t).sin());
     let qdd_2 = of(&|t| -4.5 * (3.0 * t).cos());
     let tau_load_2 = of(&|t| 2.0 * (1.7 * t).cos());
-    let columns = [t, q, qd, qdd, tau_load, tau_load_rate, tau, q_2, qd_2, qdd_2, tau_load_2];
-    Motion { columns }
+    let tau_load_rate_2 = of(&|t| -3.4 * (1.7 * t).sin());
+    let [first, second] =
+        [[tau_load, tau_load_rate, tau, q_2], [qd_2, qdd_2, tau_load_2, tau_load_rate_2]];
+    Motion { columns: [t, q, qd, qdd].into_iter().chain(first).chain(second).collect() }
 }
 
 impl Motion {
     pub(super) fn samples(&self) -> JointSamples<'_> {
-        let [t, q, qd, qdd, tau_load, tau_load_rate, tau, q_2, qd_2, qdd_2, tau_load_2] =
-            &self.columns;
-        JointSamples { t, q, qd, qdd, tau_load, tau_load_rate, tau, q_2, qd_2, qdd_2, tau_load_2 }
+        let column = |place: usize| self.columns[place].as_slice();
+        JointSamples {
+            t: column(0),
+            q: column(1),
+            qd: column(2),
+            qdd: column(3),
+            tau_load: column(4),
+            tau_load_rate: column(5),
+            tau: column(6),
+            q_2: column(7),
+            qd_2: column(8),
+            qdd_2: column(9),
+            tau_load_2: column(10),
+            tau_load_rate_2: column(11),
+        }
     }
 }
 

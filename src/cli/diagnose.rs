@@ -15,8 +15,9 @@ use super::model_effects::{EffectUse, ModelApart};
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, FoundEffect, Moved, Request,
-    SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose, given_candidates,
+    BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, FoundEffect,
+    Moved, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose,
+    given_candidates, spring_candidates,
 };
 use denavit::effect::{Channel, Effect};
 use denavit::identify::Ground;
@@ -248,18 +249,20 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     let mut remarks = Vec::new();
     let [mut train, mut held_out] = logs(arguments, &robot, &model, &mut remarks)?;
     let before = before_springs(&robot, &model.joints, &mut [&mut train, &mut held_out]);
-    let (robot, model) = match before {
-        Some(robot) => {
+    let (robot, model, springs) = match before {
+        Some(BeforeSprings { robot, springs }) => {
             let model = regression(&robot)?;
-            (robot, model)
+            (robot, model, springs)
         }
-        None => (robot, model),
+        None => (robot, model, Vec::new()),
     };
     let effects = with_own(own);
     let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
     let numbers: Vec<usize> = kept.map(|law| law.number).collect();
     let (given_laws, given) = given_candidates(laws, Uncertainty::default());
-    let candidates = with_given(given_laws, candidates(&effects, &robot, &model));
+    let mut searched = candidates(&effects, &robot, &model);
+    searched.append(&mut spring_candidates(&effects, &springs, &model));
+    let candidates = with_given(given_laws, searched);
     let moved = Moved {
         source: &source,
         effects: &effects,
@@ -270,6 +273,7 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     let experiment = ExperimentOptions { seed: arguments.seed, ..ExperimentOptions::default() };
     let request = Request {
         model: &model,
+        springs: &springs,
         train,
         held_out,
         candidates: &candidates,

@@ -1,11 +1,14 @@
 //! The catalogue in all places of a robot.
 
 use super::candidate::Candidate;
-use super::joint_law::{DemandLaw, JointLaw, ReadingLaw, RobotLaw};
+use super::elastic::SeriesSpring;
+use super::joint_law::{DemandLaw, JointLaw, ReadingLaw, RobotLaw, SpringLaw};
 use super::law::Law;
 use crate::plants::effect::{EffectLaw, RobotEffect};
 use crate::plants::regression::{RegressionJoint, RegressionModel};
-use denavit_codegen::effect::{Channel, Effect, EffectSite, Law as EffectKindLaw, with_term};
+use denavit_codegen::effect::{
+    Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, with_term,
+};
 use denavit_codegen::model::{EffectPlace, JointKind, Robot};
 
 /// Every effect in every place of a robot where it can act.
@@ -29,11 +32,25 @@ pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) ->
                         on_joint(effect, described, joint, Some((other, &joints[other])))
                     }));
                 }
+                // springs are not the model's any more: they have candidates of their own
+                EffectSite::Spring => {}
                 EffectSite::Link | EffectSite::Contact | EffectSite::Model => {}
             }
         }
     }
     all
+}
+
+/// Every effect on a series spring in every spring whose balance is measured.
+pub fn spring_candidates(
+    effects: &[Effect],
+    springs: &[SeriesSpring],
+    model: &RegressionModel,
+) -> Vec<Candidate> {
+    let of_effect = |effect| springs.iter().map(move |spring| (effect, spring.joint));
+    let effects = effects.iter().filter(|effect| effect.at == EffectSite::Spring);
+    let all = effects.flat_map(of_effect);
+    all.filter_map(|(effect, joint)| on_joint(effect, &model.joints[joint], joint, None)).collect()
 }
 
 /// An effect that changes the model: on each moving link, or on the whole.
@@ -50,13 +67,15 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
             });
             moving.collect()
         }
-        EffectSite::JointPair | EffectSite::Contact => Vec::new(),
+        EffectSite::Spring | EffectSite::JointPair | EffectSite::Contact => Vec::new(),
     };
     // A term that the model has is not missing; a place without what is moved has no such effect.
     let has_term = |term| with_term(robot.terms, term, true) == robot.terms;
     if matches!(effect.law, EffectKindLaw::Term(term) if has_term(term)) {
         return Vec::new();
     }
+    let is_of_drives =
+        matches!(effect.law, EffectKindLaw::Term(ModelTerm::Rotor | ModelTerm::Friction));
     let of = |(at, name, joint): (EffectPlace, String, Option<usize>)| {
         let law = RobotEffect::new(robot, effect, at, &numbers).ok()?;
         Some(Candidate {
@@ -64,7 +83,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
             title: effect.title.clone(),
             at: name,
             joint,
-            law: Box::new(RobotLaw { effect: law }),
+            law: Box::new(RobotLaw { effect: law, is_of_drives }),
         })
     };
     places.into_iter().filter_map(of).collect()
@@ -73,6 +92,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
 /// A law of one joint, as it acts on the torques of a log.
 pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<dyn Law> {
     match law.channel() {
+        None if law.at == EffectSite::Spring => Box::new(SpringLaw { law, joint }),
         Some(Channel::Torque) if law.is_inverse() => Box::new(DemandLaw { law, joint }),
         None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
         Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw { law, joint }),

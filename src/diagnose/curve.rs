@@ -2,13 +2,14 @@
 
 use super::data::Data;
 
-/// A joint's torque in one log, through the filter: measured, and what is left of it.
+/// The torque of a joint, or what a spring passes on, in one log, through the filter: measured, and
+/// what is left of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// The log.
     pub file: String,
-    /// The joint.
-    pub joint: usize,
+    /// The joint, or its spring.
+    pub at: String,
     /// Times \[s\].
     pub t_s: Vec<f64>,
     /// What was measured [N m, N].
@@ -26,7 +27,7 @@ pub(super) fn curves(data: &Data<'_>, [before, after]: [&[f64]; 2]) -> Vec<Curve
         let rows = stretch.first..stretch.first + stretch.rows;
         Curve {
             file: signals.file.clone(),
-            joint: stretch.joint,
+            at: data.nominal.equation_name(stretch.equation),
             t_s: signals.at_rows(&signals.t),
             measured: data.torque[rows.clone()].to_vec(),
             before: before[rows.clone()].to_vec(),

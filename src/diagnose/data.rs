@@ -6,13 +6,15 @@ use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
 use super::turning::late_friction;
 
-/// A stretch of rows: those of one joint in one log.
+/// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
     /// The log.
     pub log: usize,
     /// The joint.
     pub joint: usize,
+    /// The equation: of the torque of that joint, or after all joints that of its spring.
+    pub equation: usize,
     /// The first of its rows.
     pub first: usize,
     /// Their number.
@@ -26,16 +28,22 @@ pub struct Data<'a> {
     pub nominal: &'a Nominal<'a>,
     /// The logs.
     pub signals: Vec<Signals>,
-    /// All rows: joint by joint, log by log.
+    /// All rows: joint by joint, then spring by spring, log by log.
     pub stretches: Vec<Stretch>,
-    /// Torque less what the model gives with z = 0, per row [N m, N].
+    /// Torque less what the model gives with z = 0, per row; of a spring what it passes on less
+    /// what its joint takes [N m, N].
     pub residual: Vec<f64>,
     /// For each entry of z its column: the numbers of the model, the time between torque and
-    /// motion, and for each joint friction that keeps its sign behind a reversal.
+    /// motion, for each joint friction that keeps its sign behind a reversal, and for each spring
+    /// its stiffness and the zero of its deflection.
     pub columns: Vec<Vec<f64>>,
-    /// The measured torque of every row, filtered [N m, N].
+    /// The torque of every row, filtered: measured, or by the deflection of a spring [N m, N].
     pub torque: Vec<f64>,
 }
+
+/// How far the zero of a spring's deflection may be off: where none is stated the logs say it
+/// [rad, m].
+const SPRING_ZERO: f64 = 1.0;
 
 /// Torques of the model at the samples of one log.
 #[derive(Clone, Debug)]
@@ -48,7 +56,7 @@ pub struct ModelTorques {
     pub load: PerJoint,
     /// Their rates.
     pub load_rate: PerJoint,
-    /// Everything.
+    /// Everything; then, for each spring, what its joint takes less what it passes on.
     pub total: PerJoint,
 }
 
@@ -62,7 +70,7 @@ impl<'a> Data<'a> {
             nominal,
             stretches: Vec::new(),
             residual: Vec::new(),
-            columns: vec![Vec::new(); nominal.len() + 1 + joints],
+            columns: vec![Vec::new(); nominal.place_of_spring(nominal.springs.len())],
             torque: Vec::new(),
             signals,
         };
@@ -82,12 +90,13 @@ impl<'a> Data<'a> {
             for (log, rows) in rows.iter().enumerate() {
                 let Some(target) = &rows.target[joint] else { continue };
                 let (first, count) = (data.residual.len(), target.len());
-                data.stretches.push(Stretch { log, joint, first, rows: count });
-                let computed = rows.torque(nominal, joint, &given);
+                let equation = joint;
+                data.stretches.push(Stretch { log, joint, equation, first, rows: count });
+                let computed = rows.torque(nominal, joint, &given.axes);
                 data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
                 data.torque.extend(data.signals[log].torque[joint].iter().flatten());
                 for (column, direction) in data.columns.iter_mut().zip(&directions) {
-                    column.extend(rows.torque(nominal, joint, direction));
+                    column.extend(rows.torque(nominal, joint, &direction.axes));
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
                 let late = data.signals[log].rows_of(&late[log][joint]);
@@ -98,7 +107,38 @@ impl<'a> Data<'a> {
             }
         }
         data.move_drives(&given, &directions);
+        data.add_springs(&rows, &given, &directions);
         data
+    }
+
+    /// The balance of springs: what they pass on is what their joints take, without friction and
+    /// rotors of the drives.
+    fn add_springs(&mut self, rows: &[LogRows], given: &Phi, directions: &[Phi]) {
+        let nominal = self.nominal;
+        for (place, spring) in nominal.springs.iter().enumerate() {
+            let (joint, equation) = (spring.joint, nominal.model.joints.len() + place);
+            for (log, rows) in rows.iter().enumerate() {
+                let Some([deflection, _]) = self.signals[log].deflection(joint) else { continue };
+                let deflection = self.signals[log].rows_of(&deflection);
+                let (first, count) = (self.residual.len(), deflection.len());
+                self.stretches.push(Stretch { log, joint, equation, first, rows: count });
+                let passed: Vec<f64> = deflection.iter().map(|d| spring.stiffness * d).collect();
+                let computed = rows.torque(nominal, joint, &given.loads);
+                let left = rows.unknown(joint, passed.clone());
+                self.residual.extend(left.iter().zip(computed).map(|(a, b)| a - b));
+                self.torque.extend(passed);
+                for (column, direction) in self.columns.iter_mut().zip(directions) {
+                    column.extend(rows.torque(nominal, joint, &direction.loads));
+                }
+                let whole = first + count;
+                let own = nominal.place_of_spring(place);
+                self.columns[own].resize(first, 0.0);
+                self.columns[own].extend(deflection.iter().map(|d| -spring.std * d));
+                self.columns[own + 1].resize(first, 0.0);
+                self.columns[own + 1].resize(whole, SPRING_ZERO * spring.stiffness);
+                self.columns.iter_mut().for_each(|column| column.resize(whole, 0.0));
+            }
+        }
     }
 
     /// Lets drives before springs move with their motors.
@@ -158,13 +198,13 @@ impl<'a> Data<'a> {
         self.signals.iter().map(one).collect()
     }
 
-    /// What a response to the motion of one log is in the rows: joint by joint, those that have
-    /// rows. `signals` are the log's, or a coarse view of them.
+    /// What a response to the motion of one log is in the rows: of the equations that have rows.
+    /// `signals` are the log's, or a coarse view of them.
     pub fn in_rows(&self, log: usize, signals: &Signals, response: &Response) -> RowResponse {
         let mut found = RowResponse::default();
-        for (place, &joint) in response.joints.iter().enumerate() {
-            let of_joint = |stretch: &&Stretch| stretch.log == log && stretch.joint == joint;
-            let Some(&stretch) = self.stretches.iter().find(of_joint) else { continue };
+        for (place, &equation) in response.equations.iter().enumerate() {
+            let is_own = |stretch: &&Stretch| stretch.log == log && stretch.equation == equation;
+            let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
             let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
             found.stretches.push(stretch);
             found.gradient.push(gradient.collect());

@@ -7,6 +7,7 @@ use super::data::Data;
 use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
+use super::elastic::SeriesSpring;
 use super::errors::deviations;
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
@@ -30,6 +31,8 @@ use denavit_codegen::model::Robot;
 pub struct Request<'a> {
     /// Base parameters of the nominal model and their columns.
     pub model: &'a RegressionModel,
+    /// Springs between motors and joints that the logs have both angles of.
+    pub springs: &'a [SeriesSpring],
     /// Logs to fit.
     pub train: Vec<MeasuredLog>,
     /// Logs to judge with.
@@ -112,6 +115,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// Why.
     pub reasons: Vec<String>,
+    /// The joints, then the springs whose balance is measured, by name.
+    pub places: Vec<String>,
     /// Where torques disagreed before.
     pub before: Vec<Where>,
     /// Where they still do.
@@ -152,7 +157,8 @@ pub fn diagnose(
     watch: &mut dyn FnMut(&[usize], f64),
 ) -> Result<Diagnosis, DiagnosisError> {
     DiagnosisError::check(&request)?;
-    let nominal = Nominal::new(request.model, request.uncertainty);
+    let nominal = Nominal::new(request.model, request.uncertainty)
+        .with_springs(request.springs, request.uncertainty);
     let filters = request.filters.map_or_else(|| quiet_filters(&nominal, &request.train), Ok)?;
     let smoother = smoother(&nominal, &request.train, filters);
     let read = |logs: Vec<MeasuredLog>| conditioned(&nominal, logs, filters);
@@ -193,6 +199,7 @@ pub fn diagnose(
     let mut diagnosis = Diagnosis {
         verdict: Verdict::CannotTell,
         reasons: Vec::new(),
+        places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
         before: left(before),
         after: left(after),
         given: given_effects(&setting, after, &deviations),
@@ -257,8 +264,8 @@ fn quiet_filters(nominal: &Nominal<'_>, logs: &[MeasuredLog]) -> Result<Filters,
             }
         };
         let floor = NoiseFloor::of_logs(nominal, &[signals]).remove(0);
-        let mut ratios: Vec<f64> =
-            floor.positions.iter().zip(&floor.white).map(|(p, w)| p / w.max(1e-300)).collect();
+        let joints = floor.positions.iter().zip(&floor.white).take(log.joints.len());
+        let mut ratios: Vec<f64> = joints.map(|(p, w)| p / w.max(1e-300)).collect();
         ratios.sort_by(f64::total_cmp);
         last = Ok(filters);
         if ratios.get(ratios.len() / 2).is_none_or(|ratio| *ratio < 1.0) {
@@ -291,12 +298,12 @@ fn motion_gaps(setting: &Setting<'_>, states: [&State; 2]) -> Result<MotionGaps,
     Ok(MotionGaps { train: of(0)?, held_out: of(1)? })
 }
 
-/// What joints still lack that are left with more than noise.
+/// What joints and springs still lack that are left with more than noise.
 fn structures(setting: &Setting<'_>, state: &State) -> Vec<Structure> {
     let squares = setting.held_out_squares(state, &state.held_out_residual);
-    let is_left = |joint: &usize| squares[*joint][0] > NOISE * NOISE * squares[*joint][1];
-    let joints = (0..squares.len()).filter(is_left);
-    joints.filter_map(|joint| describe(setting, state, joint)).collect()
+    let is_left = |at: &usize| squares[*at][0] > NOISE * NOISE * squares[*at][1];
+    let equations = (0..squares.len()).filter(is_left);
+    equations.filter_map(|equation| describe(setting, state, equation)).collect()
 }
 
 impl Diagnosis {
@@ -332,10 +339,10 @@ impl Diagnosis {
             .filter(|one| one.is_named && one.alternatives.len() > 2)
             .map(|one| setting.candidates[one.candidate].name())
             .collect();
-        self.verdict = if let Some((joint, ratio)) = unrepeatable {
+        self.verdict = if let Some((equation, ratio)) = unrepeatable {
             reasons.push(format!(
                 "not repeatable: laps of {} differ by {ratio:.1} times their noise",
-                joints[joint].name
+                setting.train.nominal.equation_name(equation)
             ));
             Verdict::CannotTell
         } else if self.effects.is_empty() {

@@ -72,8 +72,11 @@ pub(super) fn found_effects(
     let squares = |left: &[f64]| setting.held_out_squares(after, left);
     let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
     let fits = |joint: usize| {
-        let ([from, _], [to, noise]) = (from[joint], to[joint]);
-        to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
+        let spring = setting.train.nominal.spring_equation(joint);
+        [Some(joint), spring].into_iter().flatten().all(|at| {
+            let ([from, _], [to, noise]) = (from[at], to[at]);
+            to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
+        })
     };
     let mut found = Vec::new();
     let places = after.taken.iter().enumerate().skip(setting.given.len());
@@ -147,9 +150,16 @@ pub(super) fn given_effects(
 /// The names of what the logs would move beyond what the model says of it: its own numbers, and
 /// those of its effects.
 pub(super) fn driven_names(setting: &Setting<'_>, state: &State) -> Vec<String> {
-    let numbers = state.held.iter().zip(&setting.train.nominal.uncertain);
+    let nominal = setting.train.nominal;
+    let numbers = state.held.iter().zip(&nominal.uncertain);
     let mut names: Vec<String> =
         numbers.filter_map(|(held, one)| held.map(|_| one.name.clone())).collect();
+    for (place, spring) in nominal.springs.iter().enumerate() {
+        let first = nominal.place_of_spring(place);
+        let zero = format!("zero of {}", spring.name);
+        let both = [spring.name.clone(), zero].into_iter().zip(&state.held[first..]);
+        names.extend(both.filter_map(|(name, held)| held.map(|_| name)));
+    }
     for taken in &state.taken {
         let candidate = &setting.candidates[taken.candidate];
         let parameters = candidate.law.parameters().iter().zip(candidate.law.beliefs());

@@ -59,7 +59,7 @@ pub(super) fn visible(setting: &Setting<'_>, screen: &Screen, state: &State) -> 
     let problem = Problem::new(data, &state.deviation[0], &given).holding(&state.held);
     let asked = ROWS_PER_SAMPLE * (data.rows() as f64 / ROWS_PER_SAMPLE).ln();
     let rows = |joint: usize, of: &dyn Fn(usize, usize) -> Vec<f64>| -> Vec<f64> {
-        let own = data.stretches.iter().filter(|stretch| stretch.joint == joint);
+        let own = data.stretches.iter().filter(|stretch| stretch.equation == joint);
         own.flat_map(|stretch| of(stretch.first, stretch.rows)).collect()
     };
     let of_candidate = |(candidate, own): (usize, &Candidate)| {
@@ -73,7 +73,7 @@ pub(super) fn visible(setting: &Setting<'_>, screen: &Screen, state: &State) -> 
             return None;
         }
         let own = response.stretches.iter().zip(&response.gradient);
-        let own = own.filter(|(stretch, _)| stretch.joint == joint);
+        let own = own.filter(|(stretch, _)| stretch.equation == joint);
         let unit: Vec<f64> = own.flat_map(|(_, gradient)| gradient[0].clone()).collect();
         let view = problem.look(std::slice::from_ref(response));
         let seen = view.normal[(0, 0)];

@@ -8,8 +8,8 @@ use crate::identify::condition::{Butterworth, Laps};
 /// The floor of one log, after the filter of the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseFloor {
-    /// Deviation of each joint's torque [N m, N]; of white noise above the motion's frequencies,
-    /// unless laps show more.
+    /// Deviation of each joint's torque, then of each spring's [N m, N]; of white noise above the
+    /// motion's frequencies and of steps of encoders, unless laps show more.
     pub deviation: Vec<f64>,
     /// From white noise alone.
     pub white: Vec<f64>,
@@ -34,20 +34,32 @@ impl NoiseFloor {
         let of = |signals: &Signals| {
             let computed = torques(nominal, signals, &phi);
             let disturbed = torques(nominal, &signals.disturbed(), &phi);
-            Self::new(signals, &computed, &disturbed)
+            let passed = nominal.springs.iter().zip(&phi.springs).map(|(spring, stiffness)| {
+                let [deflection, _] = signals.deflection(spring.joint)?;
+                let rows = signals.rows_of(&deflection);
+                Some(rows.iter().map(|deflection| stiffness * deflection).collect())
+            });
+            let torque = signals.torque.iter().cloned().chain(passed).collect::<Vec<_>>();
+            Self::new(signals, &torque, [&computed, &disturbed])
         };
         logs.iter().map(of).collect()
     }
 
-    /// The floor of a log, given the torques that the model makes of its motion, and of the same
-    /// with another error of its encoders.
-    pub fn new(signals: &Signals, computed: &[Vec<f64>], disturbed: &[Vec<f64>]) -> Self {
+    /// The floor of a log, given the torque of its rows, what the model makes of its motion, and of
+    /// the same with another error of its encoders: for each joint, then for each spring.
+    pub fn new(
+        signals: &Signals,
+        torque: &[Option<Vec<f64>>],
+        [computed, disturbed]: [&[Vec<f64>]; 2],
+    ) -> Self {
         let gain = signals.noise_gain();
-        let white: Vec<f64> = signals
+        let mut white: Vec<f64> = signals
             .measured
             .iter()
             .map(|torque| torque.as_ref().map_or(0.0, |torque| gain * white_noise(torque)))
             .collect();
+        // No torque is measured of springs.
+        white.resize(computed.len(), 0.0);
         let both = computed.iter().zip(disturbed);
         let positions: Vec<f64> = both
             .map(|(a, b)| {
@@ -58,22 +70,26 @@ impl NoiseFloor {
         let end = q.first().map_or(0, Vec::len);
         let laps = Laps::find(&q, signals.log_step_s, (0, end)).ok();
         let of_laps = laps.map(|laps| {
-            let both = signals.measured.iter().zip(computed);
-            both.map(|(measured, computed)| {
-                let Some(measured) = measured else { return 0.0 };
+            let of = |(equation, computed): (usize, &Vec<f64>)| {
                 let computed = signals.cell_means(computed);
-                let left = measured.iter().zip(computed).map(|(a, b)| a - b).collect();
+                let left = match signals.measured.get(equation) {
+                    Some(None) => return 0.0,
+                    Some(Some(measured)) => {
+                        measured.iter().zip(computed).map(|(a, b)| a - b).collect()
+                    }
+                    None => computed,
+                };
                 lap_noise(&signals.filtered(left), laps)
-            })
-            .collect::<Vec<f64>>()
+            };
+            computed.iter().enumerate().map(of).collect::<Vec<f64>>()
         });
-        let deviation = (0..white.len()).map(|joint| {
-            let of_log = white[joint].hypot(positions[joint]);
+        let deviation = (0..white.len()).map(|equation| {
+            let of_log = white[equation].hypot(positions[equation]);
             // What differs much more from lap to lap than it shakes is not noise.
-            let laps = of_laps.as_ref().map(|laps| laps[joint]);
+            let laps = of_laps.as_ref().map(|laps| laps[equation]);
             let laps = laps.filter(|laps| *laps < UNREPEATABLE * of_log);
             let seen = laps.map_or(of_log, |laps| laps.max(of_log));
-            let rms = signals.torque[joint].as_ref().map_or(0.0, |torque| rms(torque));
+            let rms = torque[equation].as_ref().map_or(0.0, |torque| rms(torque));
             seen.max(LEAST * rms).max(f64::MIN_POSITIVE)
         });
         Self {
@@ -94,7 +110,7 @@ impl NoiseFloor {
 
 /// Deviation of white noise in a signal, from what it has above a quarter of its rate; steps and
 /// spikes do not count.
-fn white_noise(signal: &[f64]) -> f64 {
+pub(super) fn white_noise(signal: &[f64]) -> f64 {
     let Some(filter) = Butterworth::new(4, 0.25, 1.0) else { return 0.0 };
     let mut smooth = signal.to_vec();
     filter.zero_phase(&mut smooth);

@@ -3,7 +3,7 @@
 use super::data::{Data, Stretch};
 use super::floor::{NoiseFloor, rms};
 
-/// gap = sqrt(mean over joints of (rms of what is left / rms of the torque)^2).
+/// gap = sqrt(mean over joints and springs of (rms of what is left / rms of the torque)^2).
 ///
 /// A row counts for the share of its variance that does not come from friction that turns around:
 /// its trust, from 0 to 1.
@@ -11,7 +11,7 @@ use super::floor::{NoiseFloor, rms};
 pub struct Gap {
     /// Over all joints.
     pub all: f64,
-    /// For each joint; none where no torque was measured.
+    /// For each joint, then for each spring; none where nothing was measured.
     pub per_joint: Vec<Option<f64>>,
 }
 
@@ -23,12 +23,12 @@ impl Gap {
 
     /// The gap that noise alone leaves.
     pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor], trust: &[f64]) -> Self {
-        Self::of(data, trust, |_, stretch| floors[stretch.log].deviation[stretch.joint].powi(2))
+        Self::of(data, trust, |_, stretch| floors[stretch.log].deviation[stretch.equation].powi(2))
     }
 
     fn of(data: &Data<'_>, trust: &[f64], left: impl Fn(usize, &Stretch) -> f64) -> Self {
-        let of_joint = |joint: usize| {
-            let own = data.stretches.iter().filter(|stretch| stretch.joint == joint);
+        let of = |equation: usize| {
+            let own = data.stretches.iter().filter(|stretch| stretch.equation == equation);
             let rows = own.flat_map(|stretch| {
                 (stretch.first..stretch.first + stretch.rows).map(move |row| (row, stretch))
             });
@@ -39,8 +39,8 @@ impl Gap {
             }
             (under > 0.0).then(|| (over / under).sqrt())
         };
-        let joints = data.nominal.model.joints.len();
-        let per_joint: Vec<Option<f64>> = (0..joints).map(of_joint).collect();
+        let equations = 0..data.nominal.equations();
+        let per_joint: Vec<Option<f64>> = equations.map(of).collect();
         let known: Vec<f64> = per_joint.iter().flatten().copied().collect();
         Self { all: rms(&known), per_joint }
     }

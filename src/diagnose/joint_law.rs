@@ -4,7 +4,7 @@ use super::law::{Law, Motion, Response};
 use super::rows::PerJoint;
 use super::signals::Signals;
 use crate::plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
-use denavit_codegen::effect::Channel;
+use denavit_codegen::effect::{Channel, SpringSide};
 
 /// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
 pub(super) struct JointLaw {
@@ -16,7 +16,7 @@ pub(super) struct JointLaw {
     pub(super) other: Option<usize>,
 }
 
-/// The samples of a joint in a motion.
+/// The samples of a joint in a motion: of its drive, which may be before a spring.
 fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> JointSamples<'m> {
     let signals = motion.signals;
     let [qd, qdd] = signals.of_drive(joint);
@@ -47,19 +47,60 @@ impl Law for JointLaw {
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let mut response = Response::default();
         let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
-            let samples = samples(&motion, joint, other);
-            response.joints.push(joint);
-            response.torque.push(law.torque(&samples, values));
-            let gradient = law.gradient(&samples, values);
+            let mut samples = samples(&motion, joint, other);
+            let mut equations = vec![joint];
+            if let Some(spring) = motion.model.0.spring_equation(joint)
+                && law.channel().is_none()
+                && law.side == SpringSide::Link
+            {
+                let signals = motion.signals;
+                (samples.qd, samples.qdd) = (&signals.qd[joint], &signals.qdd[joint]);
+                // What the link feels the spring passes on.
+                equations.push(spring);
+            }
+            let (torque, gradient) = (law.torque(&samples, values), law.gradient(&samples, values));
             response.gradient.resize(gradient.len(), Vec::new());
-            let all = response.gradient.iter_mut().zip(gradient);
-            all.for_each(|(of_parameter, column)| of_parameter.push(column));
+            for equation in equations {
+                response.equations.push(equation);
+                response.torque.push(torque.clone());
+                let all = response.gradient.iter_mut().zip(&gradient);
+                all.for_each(|(of_parameter, column)| of_parameter.push(column.clone()));
+            }
         };
         add(&self.law, self.joint, self.other);
         if let (Some(law), Some(other)) = (self.law.on_second(), self.other) {
             add(law, other, Some(self.joint));
         }
         response
+    }
+}
+
+/// An effect beside a series spring: what it passes on the spring need not.
+pub(super) struct SpringLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// The joint of the spring.
+    pub(super) joint: usize,
+}
+
+impl Law for SpringLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let Motion { model: (nominal, _), signals, .. } = motion;
+        let both = nominal.spring_equation(self.joint).zip(signals.deflection(self.joint));
+        let Some((equation, [q, qd])) = both else {
+            return Response { gradient: vec![Vec::new(); values.len()], ..Response::default() };
+        };
+        let samples = JointSamples { t: &signals.t, q: &q, qd: &qd, ..JointSamples::default() };
+        let less = |column: Vec<f64>| vec![column.iter().map(|torque| -torque).collect()];
+        Response {
+            equations: vec![equation],
+            torque: less(self.law.torque(&samples, values)),
+            gradient: self.law.gradient(&samples, values).into_iter().map(less).collect(),
+        }
     }
 }
 
@@ -86,7 +127,7 @@ impl Law for DemandLaw {
         let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
         let gradient = self.law.gradient(&samples, values);
         Response {
-            joints: vec![self.joint],
+            equations: vec![self.joint],
             torque: vec![self.law.torque(&samples, values)],
             gradient: gradient.into_iter().map(|column| vec![column]).collect(),
         }
@@ -97,6 +138,8 @@ impl Law for DemandLaw {
 pub(super) struct RobotLaw {
     /// What it adds.
     pub(super) effect: RobotEffect,
+    /// Whether that is before springs: rotors and friction.
+    pub(super) is_of_drives: bool,
 }
 
 impl Law for RobotLaw {
@@ -108,9 +151,16 @@ impl Law for RobotLaw {
         let signals = motion.signals;
         let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
             .map(|all| all.iter().map(Vec::as_slice).collect::<Vec<&[f64]>>());
-        let AddedTorques { torque, gradient } =
+        let AddedTorques { mut torque, mut gradient } =
             self.effect.torques([&q, &qd, &qdd], values, motion.numbers);
-        Response { joints: (0..torque.len()).collect(), torque, gradient }
+        // What moves the bodies is passed on by the springs.
+        if !self.is_of_drives {
+            for spring in &motion.model.0.springs {
+                let all = gradient.iter_mut().chain([&mut torque]);
+                all.for_each(|joints| joints.push(joints[spring.joint].clone()));
+            }
+        }
+        Response { equations: (0..torque.len()).collect(), torque, gradient }
     }
 }
 
@@ -164,7 +214,7 @@ impl Law for ReadingLaw {
             self.torques(&motion, &moved).iter().zip(&torque).map(of_joint).collect()
         };
         Response {
-            joints: (0..torque.len()).collect(),
+            equations: (0..torque.len()).collect(),
             gradient: (0..values.len()).map(by).collect(),
             torque,
         }

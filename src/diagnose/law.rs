@@ -34,11 +34,11 @@ impl Motion<'_> {
 /// Torques that a law adds at the samples of a motion, and their derivatives by its parameters.
 #[derive(Clone, Debug, Default)]
 pub struct Response {
-    /// The joints that the law acts on.
-    pub joints: Vec<usize>,
+    /// The equations that the law acts on: those of joints, then those of springs.
+    pub equations: Vec<usize>,
     /// For each of them the torque [N m, N].
     pub torque: PerJoint,
-    /// For each parameter and each of the joints the derivative.
+    /// For each parameter and each of the equations the derivative.
     pub gradient: Vec<PerJoint>,
 }
 

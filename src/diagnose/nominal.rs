@@ -4,6 +4,7 @@
 //! theta0 each within its standard deviation; a unit of z moves one of them by one deviation, so
 //! that z has the prior N(0, 1) in all its entries.
 
+use super::elastic::SeriesSpring;
 use crate::plants::regression::{ModelParameter, RegressionModel, StandardParameter};
 
 /// How far numbers of a model may be off that say nothing of it, as a share of their value.
@@ -49,6 +50,21 @@ pub struct Nominal<'a> {
     theta: Vec<f64>,
     /// What a unit of each entry of z adds to theta0.
     directions: Vec<Vec<f64>>,
+    /// Springs whose balance is measured: an equation each, after those of the joints' torques.
+    pub springs: Vec<Spring>,
+}
+
+/// A spring between a motor and its joint, on the side of the joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// Its joint.
+    pub joint: usize,
+    /// The name of its stiffness.
+    pub name: String,
+    /// Its stiffness [N m/rad, N/m].
+    pub stiffness: f64,
+    /// The standard deviation of that.
+    pub std: f64,
 }
 
 /// What the torques are linear in.
@@ -59,10 +75,11 @@ pub struct Phi {
     /// The same of rotors and friction alone, which move with the motor where a spring is between
     /// it and the joint.
     pub drives: Vec<f64>,
+    /// The same of everything behind springs.
+    pub loads: Vec<f64>,
+    /// The stiffness of each spring.
+    pub springs: Vec<f64>,
 }
-
-/// What begins the names of parameters of a drive.
-const DRIVE: [&str; 3] = ["fv", "fc", "Ia"];
 
 /// What begins the names of parameters that no rigid body has.
 const OF_JOINT: [&str; 4] = ["fv", "fc", "off", "Ia"];
@@ -92,7 +109,50 @@ impl<'a> Nominal<'a> {
                 is_positive: parameter.is_positive,
             });
         }
-        Self { model, uncertain, places, theta, directions }
+        Self { model, uncertain, places, theta, directions, springs: Vec::new() }
+    }
+
+    /// With springs whose balance is measured; deviations that are not stated as for joints.
+    pub fn with_springs(mut self, springs: &[SeriesSpring], uncertainty: Uncertainty) -> Self {
+        let of = |SeriesSpring { joint, stiffness }: &SeriesSpring| Spring {
+            joint: *joint,
+            name: stiffness.name.clone(),
+            stiffness: stiffness.value,
+            std: stiffness.std.unwrap_or(uncertainty.joint * stiffness.value),
+        };
+        self.springs = springs.iter().map(of).collect();
+        self
+    }
+
+    /// Number of equations: one for the torque of each joint, one for each spring.
+    pub fn equations(&self) -> usize {
+        self.model.joints.len() + self.springs.len()
+    }
+
+    /// The joint of an equation.
+    pub fn joint_of(&self, equation: usize) -> usize {
+        let spring = equation.checked_sub(self.model.joints.len());
+        spring.map_or(equation, |spring| self.springs[spring].joint)
+    }
+
+    /// The equation of the spring of a joint.
+    pub fn spring_equation(&self, joint: usize) -> Option<usize> {
+        let place = self.springs.iter().position(|spring| spring.joint == joint)?;
+        Some(self.model.joints.len() + place)
+    }
+
+    /// What an equation is of, in words: a joint, or the spring of one.
+    pub fn equation_name(&self, equation: usize) -> String {
+        let joint = &self.model.joints[self.joint_of(equation)].name;
+        match equation < self.model.joints.len() {
+            true => joint.clone(),
+            false => format!("spring of {joint}"),
+        }
+    }
+
+    /// The place in z of the first entry of a spring: of its stiffness; its zero follows.
+    pub(super) fn place_of_spring(&self, spring: usize) -> usize {
+        self.len() + 1 + self.model.joints.len() + 2 * spring
     }
 
     /// Number of entries of z.
@@ -127,15 +187,22 @@ impl<'a> Nominal<'a> {
 
     /// phi of z.
     pub fn phi(&self, z: &[f64]) -> Phi {
-        self.phi_of(&self.theta(z))
+        let of = |(place, spring): (usize, &Spring)| {
+            let own = z.get(self.place_of_spring(place)).copied().unwrap_or(0.0);
+            spring.stiffness + own * spring.std
+        };
+        let springs = self.springs.iter().enumerate().map(of).collect();
+        Phi { springs, ..self.phi_of(&self.theta(z)) }
     }
 
     fn phi_of(&self, theta: &[f64]) -> Phi {
-        let is_drive = |prefix: &str| DRIVE.contains(&prefix);
-        let drives = self.only(theta, |owner| is_drive(owner));
+        let drives = self.only(theta, |prefix| OF_JOINT.contains(&prefix));
+        let loads: Vec<f64> = theta.iter().zip(&drives).map(|(all, own)| all - own).collect();
         Phi {
             axes: self.model.axes_of_standard(theta),
             drives: self.model.axes_of_standard(&drives),
+            loads: self.model.axes_of_standard(&loads),
+            springs: vec![0.0; self.springs.len()],
         }
     }
 
@@ -151,10 +218,10 @@ impl<'a> Nominal<'a> {
     /// phi of z without friction, offsets and rotors: what moves and carries the bodies, and what a
     /// transmission passes on.
     pub fn load_phi(&self, z: &[f64]) -> Phi {
-        let mut theta = self.theta(z);
-        let of_joints = self.only(&theta, |prefix| OF_JOINT.contains(&prefix));
-        theta.iter_mut().zip(of_joints).for_each(|(value, own)| *value -= own);
-        self.phi_of(&theta)
+        let Phi { loads, mut drives, mut springs, .. } = self.phi(z);
+        drives.fill(0.0);
+        springs.fill(0.0);
+        Phi { axes: loads.clone(), drives, loads, springs }
     }
 
     /// What a unit of each entry of z adds to phi.

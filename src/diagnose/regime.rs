@@ -73,7 +73,7 @@ impl Part {
 /// What one joint leaves unexplained.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Where {
-    /// The joint's name.
+    /// The joint's name, or that of its spring.
     pub joint: String,
     /// Its share of what all joints leave beyond the noise, in squares of relative torques.
     pub share: f64,
@@ -114,11 +114,10 @@ pub fn where_left(
     floors: &[NoiseFloor],
     filter_s: f64,
 ) -> Vec<Where> {
-    let joints = &data.nominal.model.joints;
     let mut found = Vec::new();
-    for (joint, described) in joints.iter().enumerate() {
-        let own: Vec<Stretch> =
-            data.stretches.iter().filter(|stretch| stretch.joint == joint).copied().collect();
+    for equation in 0..data.nominal.equations() {
+        let is_own = |stretch: &&Stretch| stretch.equation == equation;
+        let own: Vec<Stretch> = data.stretches.iter().filter(is_own).copied().collect();
         if own.is_empty() {
             continue;
         }
@@ -128,7 +127,7 @@ pub fn where_left(
         };
         let (left, torque) = (squares(residual), squares(&data.torque));
         let noise: f64 =
-            own.iter().map(|s| s.rows as f64 * floors[s.log].deviation[joint].powi(2)).sum();
+            own.iter().map(|s| s.rows as f64 * floors[s.log].deviation[equation].powi(2)).sum();
         let mut sums: Vec<(Regime, f64, usize)> = Vec::new();
         for stretch in &own {
             let flags = regimes(data, &torques[stretch.log], stretch, filter_s);
@@ -154,7 +153,7 @@ pub fn where_left(
             .collect();
         parts.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
         found.push(Where {
-            joint: described.name.clone(),
+            joint: data.nominal.equation_name(equation),
             share: (left - noise).max(0.0) / torque.max(f64::MIN_POSITIVE),
             over_noise: (left / noise.max(f64::MIN_POSITIVE)).sqrt(),
             parts,

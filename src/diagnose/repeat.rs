@@ -7,7 +7,7 @@ use super::signals::cubic;
 /// How much what is left of a stretch differs from lap to lap.
 struct Scatter {
     log: usize,
-    joint: usize,
+    equation: usize,
     /// Its deviation [N m, N].
     deviation: f64,
     /// Root mean square of all that is left [N m, N].
@@ -42,22 +42,23 @@ fn scatters<'d>(
             all += weight * left[k] * left[k];
         }
         let mean = |squares: f64| squares / sum.max(f64::MIN_POSITIVE);
-        let Stretch { log, joint, .. } = *stretch;
+        let Stretch { log, equation, .. } = *stretch;
         let (deviation, left) = (mean(0.5 * differing).sqrt(), mean(all).sqrt());
-        (sum > 0.0).then_some(Scatter { log, joint, deviation, left })
+        (sum > 0.0).then_some(Scatter { log, equation, deviation, left })
     };
     data.stretches.iter().filter_map(of_stretch)
 }
 
-/// How much more what is left differs from lap to lap than noise does, at the joint where that is
-/// most: its number and the ratio; none where no motion repeats.
+/// How much more what is left differs from lap to lap than noise does, at the joint or spring where
+/// that is most: its equation and the ratio; none where no motion repeats.
 pub(super) fn unrepeatable(
     data: &Data<'_>,
     floors: &[NoiseFloor],
     left: &[f64],
     trust: &[f64],
 ) -> Option<(usize, f64)> {
-    let over = |one: Scatter| (one.joint, one.deviation / floors[one.log].deviation[one.joint]);
+    let over =
+        |one: Scatter| (one.equation, one.deviation / floors[one.log].deviation[one.equation]);
     scatters(data, floors, left, trust).map(over).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
@@ -72,12 +73,12 @@ pub(super) fn raise_floors<const N: usize>(
     all: [(&Data<'_>, &[f64], &[f64]); N],
     floors: &mut [Vec<NoiseFloor>; N],
 ) {
-    let mut least: Vec<Option<f64>> = vec![None; all[0].0.nominal.model.joints.len()];
+    let mut least: Vec<Option<f64>> = vec![None; all[0].0.nominal.equations()];
     for ((data, left, trust), floors) in all.iter().zip(&*floors) {
         let own = scatters(data, floors, left, trust);
         for one in own.filter(|one| one.deviation < OF_LEFT * one.left) {
-            let known = least[one.joint].unwrap_or(f64::INFINITY);
-            least[one.joint] = Some(one.deviation.min(known));
+            let known = least[one.equation].unwrap_or(f64::INFINITY);
+            least[one.equation] = Some(one.deviation.min(known));
         }
     }
     for floor in floors.iter_mut().flatten() {

@@ -118,7 +118,10 @@ impl Round<'_, '_> {
             starts.find(|(values, _)| *values == one.values).map(|(_, response)| response.clone())
         };
         let mut pairs: Vec<(f64, [&Scored; 2])> = Vec::new();
-        for joint in (0..now.len()).filter(|&joint| now[joint][0] >= QUIET * now[joint][1]) {
+        let joints = setting.train.nominal.model.joints.len();
+        let has_more = |equation: usize| now[equation][0] >= QUIET * now[equation][1];
+        let of_spring = |joint| setting.train.nominal.spring_equation(joint).is_some_and(has_more);
+        for joint in (0..joints).filter(|&joint| has_more(joint) || of_spring(joint)) {
             let own = scored.iter().filter(|one| {
                 setting.candidates[one.candidate].joint == Some(joint) && one.gain > 0.0
             });

@@ -18,6 +18,8 @@ pub(super) struct LogRows {
     columns: Vec<Vec<Vec<f64>>>,
     /// For each joint the torque that was measured less what is known; none where none was.
     pub(super) target: Vec<Option<Vec<f64>>>,
+    /// For each joint what is known; none where that is nothing.
+    known: Vec<Option<Vec<f64>>>,
 }
 
 impl LogRows {
@@ -42,24 +44,31 @@ impl LogRows {
         for column in columns.iter_mut().flatten() {
             *column = signals.rows_of(column);
         }
-        let target = signals.torque.iter().zip(known).map(|(torque, known)| {
-            let mut target = torque.clone()?;
-            if let Some(known) = known {
-                let known = signals.rows_of(&known);
-                target.iter_mut().zip(known).for_each(|(torque, known)| *torque -= known);
-            }
-            Some(target)
-        });
-        Self { columns, target: target.collect() }
+        let known: Vec<Option<Vec<f64>>> =
+            known.into_iter().map(|known| Some(signals.rows_of(&known?))).collect();
+        let mut rows = Self { columns, target: Vec::new(), known };
+        let target = |(joint, torque): (usize, &Option<Vec<f64>>)| {
+            torque.clone().map(|torque| rows.unknown(joint, torque))
+        };
+        rows.target = signals.torque.iter().enumerate().map(target).collect();
+        rows
     }
 
-    /// The torque of a joint that phi adds, in the rows; drives move with their joints.
-    pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, phi: &Phi) -> Vec<f64> {
+    /// A torque of a joint less what is known of it.
+    pub(super) fn unknown(&self, joint: usize, mut torque: Vec<f64>) -> Vec<f64> {
+        let known = self.known[joint].iter().flatten();
+        torque.iter_mut().zip(known).for_each(|(torque, known)| *torque -= known);
+        torque
+    }
+
+    /// The torque of a joint that phi adds on the joint axes, in the rows; drives move with their
+    /// joints.
+    pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, axes: &[f64]) -> Vec<f64> {
         // A joint that carries nothing has no columns.
         let samples = self.target[joint].as_ref().map_or(0, Vec::len);
         let mut torque = vec![0.0; samples];
         for (column, &place) in self.columns[joint].iter().zip(&nominal.model.pattern()[joint]) {
-            let factor = phi.axes[place];
+            let factor = axes[place];
             if factor != 0.0 {
                 torque.iter_mut().zip(column).for_each(|(sum, entry)| *sum += factor * entry);
             }
@@ -68,13 +77,37 @@ impl LogRows {
     }
 }
 
-/// The torque of every joint by phi and by what is known, at the samples of the motion.
+/// The torque of every joint by phi and by what is known, at the samples of the motion; then, for
+/// each spring, what its joint takes less what it passes on.
 pub(super) fn torques(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
-    let mut torques = of_axes(nominal, signals, &phi.axes);
-    for (joint, more) in behind_springs(nominal, signals, phi) {
-        torques[joint].iter_mut().zip(more).for_each(|(torque, more)| *torque += more);
+    if signals.motor.iter().all(Option::is_none) {
+        return of_axes(nominal, (signals, &phi.axes), true);
+    }
+    let loads = of_axes(nominal, (signals, &phi.loads), true);
+    let mut torques = drives(nominal, signals, phi);
+    let all = torques.iter_mut().flatten().zip(loads.iter().flatten());
+    all.for_each(|(torque, load)| *torque += load);
+    for (spring, stiffness) in nominal.springs.iter().zip(&phi.springs) {
+        let mut missed = loads[spring.joint].clone();
+        if let Some([deflection, _]) = signals.deflection(spring.joint) {
+            let both = missed.iter_mut().zip(deflection);
+            both.for_each(|(missed, deflection)| *missed -= stiffness * deflection);
+        }
+        torques.push(missed);
     }
     torques
+}
+
+/// What rotors, friction and offsets take, those before springs with the motion of their motors.
+fn drives(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
+    let mut moved = signals.clone();
+    for (joint, motor) in signals.motor.iter().enumerate() {
+        if let Some([_, rates, accelerations]) = motor {
+            moved.qd[joint].clone_from(rates);
+            moved.qdd[joint].clone_from(accelerations);
+        }
+    }
+    of_axes(nominal, (&moved, &phi.drives), false)
 }
 
 /// What rotors and friction before springs take more than they would with the motion of their
@@ -89,21 +122,18 @@ pub(super) fn behind_springs(
     if sprung.is_empty() || phi.drives.iter().all(|value| *value == 0.0) {
         return Vec::new();
     }
-    let mut moved = signals.clone();
-    for &joint in &sprung {
-        if let Some([rates, accelerations]) = &signals.motor[joint] {
-            moved.qd[joint].clone_from(rates);
-            moved.qdd[joint].clone_from(accelerations);
-        }
-    }
-    let there = of_axes(nominal, &moved, &phi.drives);
-    let here = of_axes(nominal, signals, &phi.drives);
+    let there = drives(nominal, signals, phi);
+    let here = of_axes(nominal, (signals, &phi.drives), false);
     let more = |joint: usize| there[joint].iter().zip(&here[joint]).map(|(a, b)| a - b).collect();
     sprung.into_iter().map(|joint| (joint, more(joint))).collect()
 }
 
-/// The torque of every joint by phi on the joint axes and by what is known.
-fn of_axes(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
+/// The torque of every joint by phi on the joint axes, and by what is known if that is asked for.
+fn of_axes(
+    nominal: &Nominal<'_>,
+    (signals, phi): (&Signals, &[f64]),
+    with_known: bool,
+) -> PerJoint {
     let joints = nominal.model.joints.len();
     let of_joint: Vec<Vec<f64>> = nominal
         .model
@@ -117,6 +147,9 @@ fn of_axes(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64]) -> PerJoint {
         part.resize(rows.samples(), 0.0);
         for joint in 0..joints {
             rows.torque(joint, &of_joint[joint], &mut part);
+            if let Some(known) = rows.known(joint).filter(|_| !with_known) {
+                part.iter_mut().zip(known).for_each(|(torque, known)| *torque -= known);
+            }
             torques[joint].extend_from_slice(&part);
         }
     });

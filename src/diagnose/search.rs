@@ -206,7 +206,7 @@ impl Screen {
 
 /// The largest measured torque of a joint.
 fn largest(data: &Data<'_>, joint: usize) -> Option<f64> {
-    let own = data.stretches.iter().filter(|stretch| stretch.joint == joint);
+    let own = data.stretches.iter().filter(|stretch| stretch.equation == joint);
     let all = own.flat_map(|stretch| &data.torque[stretch.first..stretch.first + stretch.rows]);
     all.map(|torque| torque.abs()).max_by(f64::total_cmp)
 }

@@ -5,6 +5,7 @@
 //! torques of effects. A law with a step at a reversal then has the same edge on both sides of the
 //! equation, which is what tells a step from a slope.
 
+use super::floor::white_noise;
 use crate::identify::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use crate::identify::log::{JointSignals, MeasuredLog};
 use crate::simulate::Random;
@@ -50,13 +51,16 @@ pub struct Signals {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations [rad/s^2, m/s^2].
     pub qdd: Vec<Vec<f64>>,
-    /// Rate and acceleration of the motor of a joint behind a spring, on the joint's side.
-    pub motor: Vec<Option<[Vec<f64>; 2]>>,
+    /// Position, rate and acceleration of the motor of a joint behind a spring, on the joint's
+    /// side.
+    pub motor: Vec<Option<[Vec<f64>; 3]>>,
     /// Torques of the rows, through the filter [N m, N]; none where none was measured.
     pub torque: Vec<Option<Vec<f64>>>,
     /// What the steps of the encoders are of the positions after their filter, drawn at random
     /// [rad, m]: joint by joint, as long as the positions.
     pub position_noise: Vec<Vec<f64>>,
+    /// The same of the motors before springs; without entries where there is none.
+    pub motor_noise: Vec<Vec<f64>>,
     /// Torques as they were measured, at the samples of the log.
     pub measured: Vec<Option<Vec<f64>>>,
     /// Where the rows are among the samples of the motion.
@@ -108,7 +112,7 @@ impl Signals {
             .collect();
         let (q, qd, qdd) = (Vec::new(), Vec::new(), Vec::new());
         let (torque, measured) = (Vec::new(), Vec::new());
-        let (position_noise, motor) = (Vec::new(), Vec::new());
+        let (position_noise, motor_noise, motor) = (Vec::new(), Vec::new(), Vec::new());
         let mut signals = Self {
             file,
             torque_hz: filters.torque_hz,
@@ -120,19 +124,31 @@ impl Signals {
             qdd,
             motor,
             position_noise,
+            motor_noise,
             torque,
             measured,
             rows,
             filter,
         };
-        let mut random = Random::new(1);
+        let mut randoms = [Random::new(1), Random::new(2)];
         for joint in joints {
-            // An encoder's error is anywhere within its step.
-            let step = joint.step.unwrap_or(0.0);
-            let mut noise: Vec<f64> =
-                (0..samples).map(|_| step * (random.uniform() - 0.5)).collect();
-            wide.zero_phase(&mut noise);
-            signals.position_noise.push(noise);
+            // An encoder's error is anywhere within its step. A spring is stiff: where its angles
+            // do not tell their steps, their noise counts as such.
+            let of_spring = |angle: &Vec<f64>| 12.0_f64.sqrt() * white_noise(angle);
+            let both = joint.motor.as_ref().map(|motor| {
+                let steps = [(joint.step, &joint.q), (joint.motor_step, motor)];
+                steps.map(|(step, angle)| step.unwrap_or_else(|| of_spring(angle)))
+            });
+            let [step, motor_step] = both.unwrap_or([joint.step.unwrap_or(0.0), 0.0]);
+            let mut noise = |random: usize, samples: usize, step: f64| {
+                let uniform = |_| step * (randoms[random].uniform() - 0.5);
+                let mut noise: Vec<f64> = (0..samples).map(uniform).collect();
+                wide.zero_phase(&mut noise);
+                noise
+            };
+            signals.position_noise.push(noise(0, samples, step));
+            let of_motor = if joint.motor.is_some() { samples } else { 0 };
+            signals.motor_noise.push(noise(1, of_motor, motor_step));
             signals.push(joint, &wide, kept.clone());
         }
         Ok(signals)
@@ -151,7 +167,8 @@ impl Signals {
         self.qdd.push(accelerations(&q));
         self.motor.push(motor.map(|mut motor| {
             wide.zero_phase(&mut motor);
-            [rates(&motor), accelerations(&motor)]
+            let (rates, accelerations) = (rates(&motor), accelerations(&motor));
+            [fine(motor[kept.clone()].to_vec()), rates, accelerations]
         }));
         self.q.push(fine(q[kept.clone()].to_vec()));
         let measured = tau.map(|tau| tau[kept].to_vec());
@@ -165,14 +182,23 @@ impl Signals {
         let mut other = self.clone();
         let cells = self.samples() / self.rows.within;
         let h = self.log_step_s;
-        for (joint, noise) in self.position_noise.iter().enumerate() {
+        let added = |noise: &[f64]| {
             let edge = (noise.len() - cells) / 2;
-            let added = |of: &dyn Fn(usize) -> f64| {
+            let of = |of: &dyn Fn(usize) -> f64| {
                 between(&(edge..edge + cells).map(of).collect::<Vec<f64>>(), self.rows.within)
             };
-            add(&mut other.q[joint], &added(&|k| noise[k]));
-            add(&mut other.qd[joint], &added(&|k| rate(noise, k) / h));
-            add(&mut other.qdd[joint], &added(&|k| acceleration(noise, k) / (h * h)));
+            let rates = of(&|k| rate(noise, k) / h);
+            [of(&|k| noise[k]), rates, of(&|k| acceleration(noise, k) / (h * h))]
+        };
+        for (joint, noise) in self.position_noise.iter().enumerate() {
+            let [position, rates, accelerations] = added(noise);
+            add(&mut other.q[joint], &position);
+            add(&mut other.qd[joint], &rates);
+            add(&mut other.qdd[joint], &accelerations);
+            let motor = other.motor[joint].iter_mut().flatten();
+            let noise = Some(&self.motor_noise[joint]).filter(|noise| !noise.is_empty());
+            let noise = noise.into_iter().flat_map(|noise| added(noise));
+            motor.zip(noise).for_each(|(signal, noise)| add(signal, &noise));
         }
         other
     }
@@ -225,6 +251,7 @@ impl Signals {
                 .map(|m| m.as_ref().map(|m| m.each_ref().map(thinned)))
                 .collect(),
             position_noise: Vec::new(),
+            motor_noise: Vec::new(),
             torque: Vec::new(),
             measured: self
                 .measured
@@ -248,9 +275,16 @@ impl Signals {
     /// spring is between them.
     pub fn of_drive(&self, joint: usize) -> [&Vec<f64>; 2] {
         match &self.motor[joint] {
-            Some([rates, accelerations]) => [rates, accelerations],
+            Some([_, rates, accelerations]) => [rates, accelerations],
             None => [&self.qd[joint], &self.qdd[joint]],
         }
+    }
+
+    /// How far the motor of a joint behind a spring is ahead of it, and the rate of that.
+    pub fn deflection(&self, joint: usize) -> Option<[Vec<f64>; 2]> {
+        let [position, rates, _] = self.motor[joint].as_ref()?;
+        let less = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        Some([less((position, &self.q[joint])), less((rates, &self.qd[joint]))])
     }
 
     /// Number of joints.

@@ -153,8 +153,7 @@ impl<'a> Setting<'a> {
 
     /// The model with effects, whose values are searched from those given.
     pub fn state(&self, taken: &[Taken]) -> State {
-        let joints = self.train.nominal.model.joints.len();
-        let floor = self.floor_of_joints(joints);
+        let floor = self.floor_of_equations();
         let mut z = vec![0.0; self.train.columns.len()];
         let mut taken = taken.to_vec();
         let (mut spreads, mut found) = (Vec::new(), None);
@@ -301,42 +300,42 @@ impl<'a> Setting<'a> {
         Some(paired(&before.windows, &after.windows))
     }
 
-    /// Weighted squares of what is `left` of held-out logs, for each joint, and those of noise
-    /// alone.
+    /// Weighted squares of what is `left` of held-out logs, for each joint and then for each
+    /// spring, and those of noise alone.
     pub fn held_out_squares(&self, state: &State, left: &[f64]) -> Vec<[f64; 2]> {
-        let mut squares = vec![[0.0; 2]; self.train.nominal.model.joints.len()];
+        let mut squares = vec![[0.0; 2]; self.train.nominal.equations()];
         for stretch in &self.held_out.stretches {
-            let floor = self.held_out_floor[stretch.log].deviation[stretch.joint];
+            let floor = self.held_out_floor[stretch.log].deviation[stretch.equation];
             for row in stretch.first..stretch.first + stretch.rows {
                 let weight = state.deviation[1][row].powi(-2);
-                squares[stretch.joint][0] += weight * left[row].powi(2);
-                squares[stretch.joint][1] += weight * floor.powi(2);
+                squares[stretch.equation][0] += weight * left[row].powi(2);
+                squares[stretch.equation][1] += weight * floor.powi(2);
             }
         }
         squares
     }
 
-    /// The rows of each joint in held-out logs.
+    /// The rows of each joint, then of each spring, in held-out logs.
     pub fn held_out_rows(&self) -> Vec<f64> {
-        let mut rows = vec![0.0; self.train.nominal.model.joints.len()];
-        self.held_out.stretches.iter().for_each(|own| rows[own.joint] += own.rows as f64);
+        let mut rows = vec![0.0; self.train.nominal.equations()];
+        self.held_out.stretches.iter().for_each(|own| rows[own.equation] += own.rows as f64);
         rows
     }
 
-    fn floor_of_joints(&self, joints: usize) -> Vec<f64> {
-        let of_joint = |joint: usize| {
-            let all: Vec<f64> = self.train_floor.iter().map(|log| log.deviation[joint]).collect();
-            rms(&all)
+    fn floor_of_equations(&self) -> Vec<f64> {
+        let of = |equation: usize| {
+            let all = self.train_floor.iter().map(|log| log.deviation[equation]);
+            rms(&all.collect::<Vec<f64>>())
         };
-        (0..joints).map(of_joint).collect()
+        (0..self.train.nominal.equations()).map(of).collect()
     }
 
-    /// How far each joint is off where it does not turn around, at least the floor, and the share
-    /// of what is not known where it does. A joint that misses something counts less, and does not
-    /// bend the model elsewhere.
+    /// How far each joint or spring is off where it does not turn around, at least the floor, and
+    /// the share of what is not known where it does. A joint that misses something counts less, and
+    /// does not bend the model elsewhere.
     fn spreads(&self, residual: &[f64], floor: &[f64], unsure: &[f64]) -> Vec<Spread> {
-        let of_joint = |(joint, floor): (usize, &f64)| {
-            let own = self.train.stretches.iter().filter(|stretch| stretch.joint == joint);
+        let of = |(equation, floor): (usize, &f64)| {
+            let own = self.train.stretches.iter().filter(|stretch| stretch.equation == equation);
             let rows: Vec<usize> =
                 own.flat_map(|stretch| stretch.first..stretch.first + stretch.rows).collect();
             let all: Vec<f64> = rows.iter().map(|&row| residual[row]).collect();
@@ -355,7 +354,7 @@ impl<'a> Setting<'a> {
             }
             spread
         };
-        floor.iter().enumerate().map(of_joint).collect()
+        floor.iter().enumerate().map(of).collect()
     }
 }
 
@@ -390,7 +389,7 @@ struct Spread {
 fn of_rows(data: &Data<'_>, spreads: &[Spread], unsure: &[f64]) -> [Vec<f64>; 2] {
     let (mut turning, mut deviation) = (unsure.to_vec(), unsure.to_vec());
     for stretch in &data.stretches {
-        let Spread { level, turning: share } = spreads[stretch.joint];
+        let Spread { level, turning: share } = spreads[stretch.equation];
         for row in stretch.first..stretch.first + stretch.rows {
             turning[row] *= share;
             deviation[row] = turning[row].hypot(level);

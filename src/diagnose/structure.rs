@@ -9,8 +9,8 @@ use nalgebra::{DMatrix, DVector};
 /// What one joint leaves, described.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
-    /// The joint.
-    pub joint: usize,
+    /// The joint, or the spring of one.
+    pub at: String,
     /// The terms with their coefficients [N m, N per unit of the term], the largest share first.
     pub terms: Vec<(String, f64)>,
     /// The share of the weighted squares of held-out logs that they explain.
@@ -31,12 +31,12 @@ const MOST_TERMS: usize = 4;
 /// The least share of squares of held-out logs that a term must explain.
 const LEAST_SHARE: f64 = 0.05;
 
-/// Describes what is left of a joint; none if no term explains a twentieth of it.
-pub(super) fn describe(setting: &Setting<'_>, state: &State, joint: usize) -> Option<Structure> {
+/// Describes what is left of a joint or spring; none if no term explains a twentieth of it.
+pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) -> Option<Structure> {
     let sets = [(setting.train, 0), (setting.held_out, 1)];
     let [train, held_out] = sets.map(|(data, set)| {
         let left = if set == 0 { &state.residual } else { &state.held_out_residual };
-        Rows::new(data, &state.torques[set], (joint, left, &state.deviation[set]))
+        Rows::new(data, &state.torques[set], (equation, left, &state.deviation[set]))
     });
     let whole = held_out.left.norm_squared();
     let (mut places, mut found, mut least) = (Vec::new(), DVector::zeros(0), whole);
@@ -58,7 +58,8 @@ pub(super) fn describe(setting: &Setting<'_>, state: &State, joint: usize) -> Op
     let terms = places.iter().zip(found.iter());
     let terms: Vec<(String, f64)> =
         terms.map(|(&place, &factor)| (train.names[place].clone(), factor)).collect();
-    (!terms.is_empty()).then(|| Structure { joint, terms, share: 1.0 - least / whole })
+    let at = setting.train.nominal.equation_name(equation);
+    (!terms.is_empty()).then(|| Structure { at, terms, share: 1.0 - least / whole })
 }
 
 /// What a joint leaves and the library, weighted.
@@ -72,11 +73,11 @@ impl Rows {
     fn new(
         data: &Data<'_>,
         torques: &[ModelTorques],
-        (joint, left, deviation): (usize, &[f64], &[f64]),
+        (equation, left, deviation): (usize, &[f64], &[f64]),
     ) -> Self {
         let mut rows = Self { names: Vec::new(), columns: Vec::new(), left: DVector::zeros(0) };
         let (mut columns, mut all_left): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
-        for stretch in data.stretches.iter().filter(|stretch| stretch.joint == joint) {
+        for stretch in data.stretches.iter().filter(|stretch| stretch.equation == equation) {
             let range = stretch.first..stretch.first + stretch.rows;
             let weights: Vec<f64> = deviation[range.clone()].iter().map(|one| 1.0 / one).collect();
             let weighted = |values: &[f64]| -> Vec<f64> {
@@ -86,6 +87,7 @@ impl Rows {
             let signals = &data.signals[stretch.log];
             let names = data.nominal.model.joints.iter().map(|one| one.name.as_str());
             let names: Vec<&str> = names.collect();
+            let joint = stretch.joint;
             let library = library(signals, &torques[stretch.log].load[joint], joint, &names);
             columns.resize(library.len(), Vec::new());
             rows.names = library.iter().map(|(name, _)| name.clone()).collect();

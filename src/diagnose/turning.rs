@@ -31,14 +31,15 @@ pub(super) fn turning(data: &Data<'_>, torques: &[ModelTorques], laws: &[Fitted<
             let mut sum = total.clone();
             for fitted in laws {
                 let response = fitted.law.response(motion, &fitted.values);
-                for (&joint, torque) in response.joints.iter().zip(&response.torque) {
-                    sum[joint].iter_mut().zip(torque).for_each(|(sum, torque)| *sum += torque);
+                for (&equation, torque) in response.equations.iter().zip(&response.torque) {
+                    sum[equation].iter_mut().zip(torque).for_each(|(sum, torque)| *sum += torque);
                 }
             }
             sum
         });
         for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
-            let sizes: Vec<f64> = bends[stretch.joint].iter().map(|b| BETWEEN * b.abs()).collect();
+            let sizes: Vec<f64> =
+                bends[stretch.equation].iter().map(|b| BETWEEN * b.abs()).collect();
             let apart = signals.rows_of(&sizes);
             let rows = &mut unsure[stretch.first..stretch.first + stretch.rows];
             for (k, row) in rows.iter_mut().enumerate() {
@@ -56,6 +57,7 @@ pub(super) fn turning(data: &Data<'_>, torques: &[ModelTorques], laws: &[Fitted<
 /// behind it: for each joint at the samples of the motion [N m, N].
 pub(super) fn late_friction(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let mut bends = bends(signals, |moved| torques_of(nominal, moved, phi));
+    bends.truncate(signals.joints());
     for (joint, bends) in bends.iter_mut().enumerate() {
         let [_, accelerations] = signals.of_drive(joint);
         for (bend, acceleration) in bends.iter_mut().zip(accelerations) {
@@ -73,7 +75,7 @@ fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint 
         let mut moved = signals.clone();
         for joint in 0..signals.joints() {
             let by = sign * corner_s * rms(signals.of_drive(joint)[1]);
-            let motor = moved.motor[joint].iter_mut().map(|[rates, _]| rates);
+            let motor = moved.motor[joint].iter_mut().map(|[_, rates, _]| rates);
             for rates in motor.chain([&mut moved.qd[joint]]) {
                 rates.iter_mut().for_each(|rate| *rate += by);
             }
@@ -81,9 +83,9 @@ fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint 
         torques(&moved)
     };
     let [slower, as_is, faster] = [-1.0, 0.0, 1.0].map(moved);
-    let of_joint = |joint: usize| {
-        let [a, b, c] = [&slower, &as_is, &faster].map(|all| &all[joint]);
+    let of = |equation: usize| {
+        let [a, b, c] = [&slower, &as_is, &faster].map(|all| &all[equation]);
         (0..b.len()).map(|k| a[k] - 2.0 * b[k] + c[k]).collect()
     };
-    (0..as_is.len()).map(of_joint).collect()
+    (0..as_is.len()).map(of).collect()
 }

@@ -25,7 +25,7 @@ use nalgebra::DMatrix;
 use rustc_hash::FxHashMap;
 use std::sync::OnceLock;
 
-pub use super::regression_model::{MotionError, RegressionError, RegressionJoint};
+pub use super::regression_model::{MotionError, RegressionError, RegressionJoint, SpringStiffness};
 pub use super::regression_rows::{CoulombLaw, RegressionEvaluator, RegressionRows};
 
 /// A base parameter as it is reported: a kept column's, or one on a joint axis.

@@ -36,6 +36,19 @@ pub struct RegressionJoint {
     pub is_driven: bool,
     /// Whether a spring is between motor and joint, so that the motor's torque is not the joint's.
     pub is_elastic: bool,
+    /// The stiffness of that spring on the side of the joint, where the model gives it a value.
+    pub spring: Option<SpringStiffness>,
+}
+
+/// The stiffness of a series spring on the side of its joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpringStiffness {
+    /// The name of the model's parameter, or of the link.
+    pub name: String,
+    /// Torque by how far the motor is ahead on the joint's side [N m/rad, N/m].
+    pub value: f64,
+    /// Its standard deviation, where the model states it.
+    pub std: Option<f64>,
 }
 
 /// Why a robot has no regression model.
@@ -173,6 +186,16 @@ pub(super) fn described_joints(robot: &Robot, side: TorqueSide) -> Vec<Regressio
             let parameter = robot.parameters.values().find(|p| p.symbol == entry);
             value(parameter.and_then(|p| p.default).unwrap_or(entry))
         };
+        let spring = link.drive.and_then(|drive| drive.series_elastic).and_then(|elastic| {
+            let lever = of_symbol(elastic.load_radius)?.powi(2);
+            let own = robot.parameters.values().find(|p| p.symbol == elastic.stiffness);
+            let std = own.and_then(|own| own.std).and_then(value);
+            Some(SpringStiffness {
+                name: own.map_or(&link.name, |own| &own.name).clone(),
+                value: lever * of_symbol(elastic.stiffness)?,
+                std: std.map(|std| lever * std),
+            })
+        });
         let gear = link.drive.and_then(|drive| drive.gear_ratio).and_then(of_symbol);
         let pulleys = link.drive.and_then(|drive| drive.series_elastic).and_then(|elastic| {
             Some(of_symbol(elastic.load_radius)? / of_symbol(elastic.motor_radius)?)
@@ -189,6 +212,7 @@ pub(super) fn described_joints(robot: &Robot, side: TorqueSide) -> Vec<Regressio
             torque_side: side,
             is_driven: link.drive.is_some(),
             is_elastic: link.drive.is_some_and(|drive| drive.series_elastic.is_some()),
+            spring,
         }
     };
     robot.joints().map(|(link, _)| one(&robot.links[link])).collect()

@@ -125,9 +125,9 @@ impl DiagnosisPage<'_> {
             gaps.map(|gap| value(gap).map_or_else(|| Cell::text(""), share)).collect()
         };
         let mut rows: Vec<Row> = Vec::new();
-        for (joint, name) in self.joints.iter().enumerate() {
-            let numbers = of(&|gap| gap.per_joint.get(joint).copied().flatten());
-            let cells = [vec![Cell::text(*name)], numbers].concat();
+        for (place, name) in self.found.places.iter().enumerate() {
+            let numbers = of(&|gap| gap.per_joint.get(place).copied().flatten());
+            let cells = [vec![Cell::text(name)], numbers].concat();
             rows.push(Row { cells, is_marked: false });
         }
         let cells = [vec![Cell::text("all")], of(&|gap| Some(gap.all))].concat();
@@ -135,7 +135,7 @@ impl DiagnosisPage<'_> {
         let caption =
             "What is left of the torques, over the torques (root of mean square), before \
                        and after the effects, and what noise alone leaves. All: root of mean \
-                       square over the joints."
+                       square over the joints and springs."
                 .to_owned();
         let mut parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
         parts.extend(self.in_motion());
@@ -184,10 +184,9 @@ impl DiagnosisPage<'_> {
     fn torques(&self) -> Section {
         let squares = |curve: &Curve| curve.before.iter().map(|left| left * left).sum::<f64>();
         let of_joint = |one: &Where| -> Option<(&str, &Curve)> {
-            let joint = self.joints.iter().position(|name| *name == one.joint)?;
-            let own = self.found.curves.iter().filter(|curve| curve.joint == joint);
+            let own = self.found.curves.iter().filter(|curve| curve.at == one.joint);
             let most = own.max_by(|a, b| squares(a).total_cmp(&squares(b)))?;
-            Some((self.joints[joint], most))
+            Some((most.at.as_str(), most))
         };
         let shown: Vec<(&str, &Curve)> = self.worst().filter_map(of_joint).collect();
         let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
@@ -262,7 +261,7 @@ impl DiagnosisPage<'_> {
     /// What joints still lack, as formulas without a name.
     fn unnamed(&self) -> Option<Section> {
         let of = |one: &crate::diagnose::Structure| {
-            let joint = self.joints.get(one.joint).copied().unwrap_or_default();
+            let joint = &one.at;
             let (share, formula) = (percent(one.share), one.formula());
             let text = format!(
                 "{joint} still lacks something without a name; {formula} explains {share} of \

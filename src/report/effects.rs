@@ -2,7 +2,7 @@
 
 use super::paragraph::paragraph;
 use denavit_codegen::effect::{
-    Effect, EffectKind, EffectParameter, EffectSite, Law, Measured, Property,
+    Effect, EffectKind, EffectParameter, EffectSite, Law, Measured, Property, SpringSide,
 };
 use denavit_codegen::emit::latex::{Notation, write_expression};
 use denavit_codegen::expr::{Dag, ExprId, derivative, substitute};
@@ -43,13 +43,18 @@ fn chapter(kind: EffectKind) -> (&'static str, &'static str) {
 fn section(page: &mut String, effect: &Effect) {
     let place = match effect.at {
         EffectSite::Joint => "a joint",
+        EffectSite::Spring => "the series spring of a joint",
         EffectSite::JointPair => "a joint, with a second one",
         EffectSite::Link => "a link",
         EffectSite::Contact => "a contact",
         EffectSite::Model => "the whole model",
     };
     let _ = write!(page, "### `{}`: {}\n\n", effect.name, effect.title);
-    page.push_str(&paragraph("", "", &format!("{} Acts on {place}.", effect.description)));
+    let side = match effect.side {
+        SpringSide::Motor => "",
+        SpringSide::Link => ", behind a series spring on the side of the link",
+    };
+    page.push_str(&paragraph("", "", &format!("{} Acts on {place}{side}.", effect.description)));
     page.push_str("\n\n");
     for formula in formulas(effect) {
         let _ = write!(page, "$${formula}$$\n\n");

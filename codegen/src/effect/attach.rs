@@ -94,6 +94,15 @@ fn links(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Result<Vec<Link
     match (effect.at, added.at) {
         (EffectSite::Joint, EffectPlace::Link(link)) if moves(link) => Ok(vec![link]),
         (EffectSite::Joint, _) => wrong("a joint that moves"),
+        (EffectSite::Spring, EffectPlace::Link(link)) if moves(link) => {
+            let drive = robot.links[link].drive;
+            if drive.and_then(|drive| drive.series_elastic).is_none() {
+                let what = "the joint has no series spring";
+                return Err(Cause::NothingToChange(effect.name.clone(), what));
+            }
+            Ok(vec![link])
+        }
+        (EffectSite::Spring, _) => wrong("the series spring of a joint"),
         (EffectSite::JointPair, EffectPlace::Pair(link, second))
             if moves(link) && moves(second) && link != second =>
         {
@@ -156,6 +165,8 @@ struct Attaching<'e> {
 impl Attaching<'_> {
     fn change(&self, robot: &mut Robot) -> Result<(), Cause> {
         match &self.effect.law {
+            // torques of joints are those that springs pass on, whatever makes them
+            Law::Torque(_) if self.effect.at == EffectSite::Spring => Ok(()),
             Law::Torque(torque) => {
                 self.add_law(robot, *torque)?;
                 let Some(second) = self.effect.on_second() else { return Ok(()) };

@@ -30,6 +30,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "coupled_inertia",
     "coupled_viscous",
     "dahl",
+    "damper",
     "encoder_eccentricity",
     "gear_efficiency",
     "gravity",

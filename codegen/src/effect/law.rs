@@ -121,9 +121,11 @@ impl LawReader {
         };
         use SymbolClass::{Acceleration, Configuration, Effort, Geometry, Rate, Time};
         declare("t", Time, second);
-        if matches!(at, EffectSite::Joint | EffectSite::JointPair) {
+        if matches!(at, EffectSite::Joint | EffectSite::JointPair | EffectSite::Spring) {
             declare("q", Configuration, Some(position));
             declare("qd", Rate, rate);
+        }
+        if matches!(at, EffectSite::Joint | EffectSite::JointPair) {
             declare("qdd", Acceleration, acceleration);
             declare("tau_load", Effort, Some(torque));
             declare("tau_load_rate", Effort, torque_rate);

@@ -73,6 +73,9 @@ impl EffectKind {
 pub enum EffectSite {
     /// On one joint.
     Joint,
+    /// On the series spring between the motor of a joint and its link: the position of the law is
+    /// how far the motor is ahead, and its torque is passed on beside that of the spring.
+    Spring,
     /// On one joint, depending on another one.
     JointPair,
     /// On one link.
@@ -81,6 +84,16 @@ pub enum EffectSite {
     Contact,
     /// On the whole model.
     Model,
+}
+
+/// On which side of a series spring a law of a joint acts, where there is such a spring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SpringSide {
+    /// On that of the motor: friction of the drive, its gear, its torque.
+    #[default]
+    Motor,
+    /// On that of the link: stops, springs across the joint.
+    Link,
 }
 
 /// A parameter of an effect.
@@ -259,6 +272,8 @@ pub struct Effect {
     pub kind: EffectKind,
     /// Where it can act.
     pub at: EffectSite,
+    /// On which side of a series spring it acts, if it is a law of a joint.
+    pub side: SpringSide,
     /// Its parameters, in file order.
     pub parameters: Vec<EffectParameter>,
     /// Its states, in file order.

@@ -3,7 +3,10 @@
 use super::law::{LawFile, LawReader};
 use super::linear::{depends, linear};
 use super::spelling::JointUnit;
-use super::{Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law};
+use super::{
+    Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law,
+    SpringSide,
+};
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
 use crate::model::file::{Name, Scalar};
@@ -23,6 +26,7 @@ const KEYS: &[&str] = &[
     "source",
     "kind",
     "at",
+    "side",
     "parameters",
     "states",
     "torque",
@@ -41,14 +45,21 @@ const KINDS: Word<EffectKind> = Word {
 
 const SITES: Word<EffectSite> = Word {
     what: "place",
-    known: &["joint", "joint_pair", "link", "contact", "model"],
+    known: &["joint", "spring", "joint_pair", "link", "contact", "model"],
     values: &[
         EffectSite::Joint,
+        EffectSite::Spring,
         EffectSite::JointPair,
         EffectSite::Link,
         EffectSite::Contact,
         EffectSite::Model,
     ],
+};
+
+const SIDES: Word<SpringSide> = Word {
+    what: "side of a series spring",
+    known: &["motor", "link"],
+    values: &[SpringSide::Motor, SpringSide::Link],
 };
 
 /// Reads a file of an effect from its bytes. `file` is its name, for messages alone. Names of
@@ -83,6 +94,7 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
     }
     let kind = fields.required_word("kind", &KINDS, report);
     let at = fields.required_word("at", &SITES, report);
+    let side = fields.word("side", &SIDES, report).unwrap_or_default();
     let names = ["parameters", "states"].iter().filter_map(|key| fields.get(key));
     let names: BTreeSet<String> =
         names.flat_map(Json::entries).map(|(name, _)| name.clone().into_owned()).collect();
@@ -113,6 +125,7 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
         source,
         kind,
         at,
+        side,
         parameters,
         states,
         law,

@@ -200,7 +200,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         }
     });
     let structures = found.structures.iter().map(|one| StructureJson {
-        joint: &shown.model.joints[one.joint].name,
+        joint: &one.at,
         formula: one.formula(),
         share: one.share,
     });

@@ -24,7 +24,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     given(out, shown)?;
     found.effects.iter().try_for_each(|one| effect(out, shown, one))?;
     for one in &found.structures {
-        let name = &shown.model.joints[one.joint].name;
+        let name = &one.at;
         let share = percent(one.share);
         writeln!(out, "\n{name} still lacks, without a name: {} ({share} of it)", one.formula())?;
     }
@@ -148,9 +148,9 @@ fn gaps(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         let cells = gaps.map(|gap| value(gap).map_or_else(String::new, percent));
         std::iter::once(name.to_owned()).chain(cells).collect()
     };
-    for (joint, described) in shown.model.joints.iter().enumerate() {
-        let of_joint = |gap: &Gap| gap.per_joint.get(joint).copied().flatten();
-        table.push(row(&described.name, &of_joint));
+    for (place, name) in found.places.iter().enumerate() {
+        let of_place = |gap: &Gap| gap.per_joint.get(place).copied().flatten();
+        table.push(row(name, &of_place));
     }
     table.push(row("all", &|gap| Some(gap.all)));
     writeln!(out, "\ngap: what is left of the torques, over the torques\n{table}")?;

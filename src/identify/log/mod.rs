@@ -46,6 +46,8 @@ pub struct JointSignals {
     pub motor_torque: Option<Vec<f64>>,
     /// The step of the encoder, if the position has steps [rad, m].
     pub step: Option<f64>,
+    /// The step of the motor's encoder \[rad\].
+    pub motor_step: Option<f64>,
 }
 
 /// A log at equal distances of time.
@@ -88,6 +90,7 @@ impl MeasuredLog {
             motor: some(&own.motor),
             motor_torque: some(&own.motor_torque),
             step: own.step,
+            motor_step: own.motor_step,
         };
         let contacts = self.contacts.iter();
         Self {
@@ -337,7 +340,10 @@ impl Wanted {
                         3 => own.tau = Some(values),
                         4 => commanded[joint] = Some(values),
                         5 => own.reference = Some(values),
-                        _ => own.motor = Some(values),
+                        _ => {
+                            own.motor_step = check::encoder_step(&values);
+                            own.motor = Some(values);
+                        }
                     }
                 }
             }

@@ -17,7 +17,9 @@ mod states;
 pub use added::{AddedError, AddedLaw, ApartEffects, apart};
 pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
 
-use denavit_codegen::effect::{Channel, Effect, EffectKind, EffectParameter, Law};
+use denavit_codegen::effect::{
+    Channel, Effect, EffectKind, EffectParameter, EffectSite, Law, SpringSide,
+};
 use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};
 use denavit_codegen::model::JointKind;
 use denavit_codegen::number::to_f64;
@@ -160,6 +162,10 @@ pub struct EffectLaw {
     pub name: String,
     /// What the effect is to the equations.
     pub kind: EffectKind,
+    /// Where it acts.
+    pub at: EffectSite,
+    /// On which side of a series spring, if it is a law of a joint.
+    pub side: SpringSide,
     /// Its parameters, in the order of the values that the functions take.
     pub parameters: Vec<LawParameter>,
     /// The columns that the law uses.
@@ -216,6 +222,8 @@ impl EffectLaw {
         Ok(Self {
             name: effect.name.clone(),
             kind: effect.kind,
+            at: effect.at,
+            side: effect.side,
             parameters: effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect(),
             columns,
             program,

@@ -41,7 +41,7 @@ impl Law for Handwritten {
             torque.push(value);
             gradient.iter_mut().zip(slopes).for_each(|(column, slope)| column[0].push(slope));
         }
-        Response { joints: vec![joint], torque: vec![torque], gradient }
+        Response { equations: vec![joint], torque: vec![torque], gradient }
     }
 }
 

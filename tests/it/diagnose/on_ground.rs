@@ -82,6 +82,7 @@ fn a_spring_in_the_knee_of_a_robot_that_steps_is_named() {
     candidates.retain(|one| tried.contains(&one.effect.as_str()));
     let request = Request {
         model: &model,
+        springs: &[],
         train,
         held_out,
         candidates: &candidates,

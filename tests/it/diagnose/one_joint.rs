@@ -56,6 +56,7 @@ pub(super) fn diagnosed(
     let moved = Moved { source, effects: effect::catalogue(), numbers: &[], logs };
     let request = Request {
         model: &model,
+        springs: &[],
         train: vec![train],
         held_out: vec![held_out],
         candidates: &all,

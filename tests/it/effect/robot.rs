@@ -291,7 +291,8 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         {"effect": "spring", "at": {"link": "LINK"}},
         {"effect": "spring", "at": {"link": "LINK"}},
         {"effect": "coriolis", "at": "model"},
-        {"effect": "base_tilt", "at": {"link": "LINK"}}]"#;
+        {"effect": "base_tilt", "at": {"link": "LINK"}},
+        {"effect": "damper", "at": {"link": "LINK"}}]"#;
     let effects = effects.replace("LINK", &name);
     let text =
         text("planar_2r").replacen("\"links\"", &format!("\"effects\": {effects}, \"links\""), 1);
@@ -304,6 +305,7 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         ("/effects/5", "`spring` is added twice in this place"),
         ("/effects/6", "the model has the term already"),
         ("/effects/7", "`base_tilt` acts on the whole model, not here"),
+        ("/effects/8", "`damper` could change: the joint has no series spring"),
     ] {
         let found = said.lines().any(|line| line.contains(place) && line.contains(what));
         assert!(found, "{place}: {what}\nnot in\n{said}");

@@ -124,7 +124,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     prior: bool,
     /// The step of the encoders [rad, m], for --method ml where it cannot be seen in the log
-    #[arg(long, value_name = "STEP")]
+    #[arg(long, value_name = "STEP", value_parser = resolution)]
     resolution: Option<f64>,
     /// Take logs as they are, however wrong they look
     #[arg(long)]
@@ -149,6 +149,11 @@ pub(crate) struct Arguments {
 fn window(text: &str) -> Result<f64, String> {
     let length = text.parse::<f64>().ok().filter(|length| (1e-4..=100.0).contains(length));
     length.ok_or_else(|| "a time from 0.0001 to 100 s".to_owned())
+}
+
+fn resolution(text: &str) -> Result<f64, String> {
+    let step = text.parse::<f64>().ok().filter(|step| *step > 0.0 && *step <= 1.0);
+    step.ok_or_else(|| "a step above 0 and up to 1 rad or m".to_owned())
 }
 
 fn rate(text: &str) -> Option<f64> {
@@ -318,7 +323,7 @@ impl Answered {
         let (own, source) = (&own[..], &source);
         let estimation =
             Estimation { arguments, robot: &robot, laws, model: &model, own, source, progress };
-        let mut read = estimation.read(&arguments.conditions)?;
+        let mut read = estimation.read(&vec![0; arguments.train.len()])?;
         let controller = arguments.controller.as_deref();
         let controller = controller.map(|path| Controlled::read(path, &whole)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone())?;

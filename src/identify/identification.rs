@@ -3,11 +3,11 @@
 use super::condition::Conditioned;
 use super::estimate::{
     CLEAN, Consistent, Convergence, Estimate, EstimateError, Evidence, IdentifiedParameter,
-    MisreadColumns, Options, SlowRows, Status, Triangle, Validation, biased_frictions, consistent,
-    constants_off, convergence, estimate, filter_errors, long_enough, misread_apart,
-    misread_columns, noise_of_positions, nominal_values, parameters, solve, stacked,
-    unexplained_joints, validate,
+    MisreadColumns, Options, SlowRows, Status, Triangle, Unexplained, Validation, biased_frictions,
+    consistent, constants_off, convergence, estimate, filter_errors, long_enough, misread_apart,
+    misread_columns, parameters, solve, unexplained_joints, validate,
 };
+use super::noisy_logs::{MOST, NoisyLog, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
@@ -40,6 +40,11 @@ pub struct Identification {
     /// Columns that seem to be other ones than they are taken for, one after the other: each with
     /// those before it mended; those of the logs for validation at last.
     pub misread: Vec<MisreadColumns>,
+    /// Logs of several for the estimate of which noise of the positions makes most.
+    pub noisy_logs: Vec<NoisyLog>,
+    /// For each log for the estimate whether it needs a lower filter: noise of its positions makes
+    /// most of it, or biases parameters.
+    pub biasing_logs: Vec<bool>,
     /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
     /// it, and how much: a share of its root of mean square.
     pub filter_error: Option<(String, f64)>,
@@ -48,9 +53,11 @@ pub struct Identification {
     /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in so much
     /// of the logs that it is biased, each with the share of samples.
     pub reversals: Vec<(String, f64)>,
-    /// Joints that move and of whose torque nearly all is left, or much that is no noise, in the
-    /// logs for validation or, if there are none, those of the estimate, each with the share.
-    pub unexplained: Vec<(String, f64)>,
+    /// Joints of whose torque nearly all is left, or much that is no noise, in the logs for
+    /// validation or, if there are none, those of the estimate.
+    pub unexplained: Vec<Unexplained>,
+    /// Periods of the filter's cutoff that all logs for the estimate have.
+    pub periods: f64,
     /// The estimate came about so.
     pub convergence: Vec<Convergence>,
     /// The nearest bodies that exist.
@@ -72,9 +79,8 @@ pub struct LeftOutRows {
     pub left: f64,
 }
 
-/// The share of noise in what the motion shows of a direction of the parameters, from which on
-/// nothing is believed.
-const MOST: f64 = 0.5;
+/// Periods of the filter's cutoff below which logs are short.
+const SHORT: f64 = 80.0;
 
 /// Parameters that are named, at most.
 const LISTED: usize = 6;
@@ -93,8 +99,12 @@ impl Identification {
     /// What is to be said if noise of the positions biases the parameters.
     fn bias(&self) -> Option<String> {
         if self.is_noise() {
+            let short = match self.periods < SHORT {
+                true => "The logs are too short for it: ",
+                false => "",
+            };
             return Some(format!(
-                "Noise of the positions makes up to {:.0} % of what the motion shows of the \
+                "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
                  parameters. How far they are off cannot be told, nor whether columns are other \
                  ones than they are taken for. A filter with a lower cutoff (--filter) has less \
                  of it; so has a longer or faster motion.",
@@ -180,18 +190,15 @@ impl Identification {
                 100.0 * share
             )
         });
-        let unexplained = self.unexplained.iter().map(|(joint, share)| {
-            format!(
-                "The torque of {joint} is not explained: {:.0} % of it is left, although the joint \
-                 moves. Its column may be another quantity, in another unit, or noise, or the zero \
-                 of a position may be off, or the model's geometry; what was found is not to be \
-                 believed.",
-                100.0 * share
-            )
-        });
+        // where noise makes most, that is why
+        let unexplained = self.unexplained.iter().filter(|_| !self.is_noise());
+        let unexplained = unexplained.map(Unexplained::to_string);
+        let noisy_logs = self.noisy_logs.iter().filter(|_| !self.is_noise());
+        let noisy_logs = noisy_logs.map(NoisyLog::to_string);
         misread
             .chain(unexplained)
             .chain(self.bias())
+            .chain(noisy_logs)
             .chain(self.changed())
             .chain(self.smeared())
             .chain(reversals)
@@ -228,44 +235,26 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
     let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
     let left = validate(model, phi, train);
-    let torques = torques(model, &left);
-    let deviations = &options.position_noise;
     let listed = parameters(model, &found);
-    let noise_of_own = nominal_values(model)
-        .map(|own| noise_of_positions(model, train, (&own, deviations), &torques));
     let held_out_left = judged(phi);
-    let share = |(noise, torque): (&f64, &f64)| if *torque > 0.0 { noise / torque } else { 0.0 };
-    let counted: Vec<f64> = found.noise.iter().zip(&torques).map(share).collect();
-    let evidence = Evidence { values: None, listed: &listed, noise: noise_of_own.as_deref() };
-    let mut misread = misread_columns(model, train, evidence);
-    let measured = counted.iter().filter(|share| **share > 0.0).count().max(1) as f64;
-    let squares: f64 = counted.iter().map(|share| share * share).sum();
-    if (squares / measured).sqrt() < CLEAN {
-        misread.retain(|one| !one.is_guess());
-    }
-    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, train, &found)) {
-        misread = held_out_misread(model, log, (&phi, deviations));
-    }
-    // noise of the positions makes constants, too
-    if misread.is_empty() && !listed.iter().any(IdentifiedParameter::is_biased) {
-        misread = constants_off(model, train, &found);
-    }
-    let others = held_out_misread(model, held_out, (phi, deviations));
-    let is_told = |one: &MisreadColumns| {
-        let is_same = |told: &MisreadColumns| told.misreading.is_like(one.misreading);
-        misread.iter().any(|told| told.file.is_none() && is_same(told))
+    let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
+    let torques = torques(model, &left).into_iter();
+    let counted: Vec<f64> = found.noise_of_joints().into_iter().zip(torques).map(share).collect();
+    let misread = misread(request, (&found, &listed, &counted));
+    // of a log that is noise, much is left
+    let judges: Vec<&Conditioned> = match held_out.is_empty() {
+        true => shown_logs(train.len(), &found).into_iter().map(|log| &train[log]).collect(),
+        false => held_out.iter().collect(),
     };
-    let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
-    misread.extend(others);
-    if found.noise_share > MOST {
-        misread.clear();
-    }
-    let all_left = held_out_left.as_ref().map_or((train, &left), |one| (held_out, one));
+    let unexplained = validate(model, phi, &judges);
     Ok(Identification {
-        unexplained: unexplained_joints(model, all_left.0, (all_left.1, &counted)),
+        unexplained: unexplained_joints(model, &judges, (&unexplained, &counted)),
         misread,
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, (&found, &counted)),
+        noisy_logs: noisy_logs(model, train, &found),
+        periods: train.iter().map(Conditioned::periods).sum(),
+        biasing_logs: biasing_logs(model, &listed, &found),
         parameters: listed,
         filter_error: filter_error(model, train, (phi, &left)),
         train: left,
@@ -289,32 +278,64 @@ fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
     model.joints.iter().map(of_joint).collect()
 }
 
+/// Columns that seem to be other ones than they are taken for. Logs of which noise makes most show
+/// nothing of that.
+fn misread(
+    request: Request<'_>,
+    (found, listed, counted): (&Estimate, &[IdentifiedParameter], &[f64]),
+) -> Vec<MisreadColumns> {
+    let Request { model, train, validate: held_out, .. } = request;
+    if found.noise_share > MOST {
+        return Vec::new();
+    }
+    let phi = found.solution.phi.as_slice();
+    let shown = shown_logs(train.len(), found);
+    let logs: Vec<&Conditioned> = shown.iter().map(|&log| &train[log]).collect();
+    let mut misread = misread_columns(model, &logs, Evidence { values: None, listed });
+    let measured = counted.iter().filter(|share| **share > 0.0).count().max(1) as f64;
+    let squares: f64 = counted.iter().map(|share| share * share).sum();
+    if (squares / measured).sqrt() < CLEAN {
+        misread.retain(|one| !one.is_guess());
+    }
+    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, &shown, found)) {
+        misread = held_out_misread(model, &train[log..=log], &phi);
+    }
+    // noise of the positions makes constants, too
+    if misread.is_empty() && !listed.iter().any(IdentifiedParameter::is_biased) {
+        misread = constants_off(model, train, found);
+    }
+    let others = held_out_misread(model, held_out, phi);
+    let is_told = |one: &MisreadColumns| {
+        let is_same = |told: &MisreadColumns| told.misreading.is_like(one.misreading);
+        misread.iter().any(|told| told.file.is_none() && is_same(told))
+    };
+    let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
+    misread.extend(others);
+    misread
+}
+
 /// Of several logs the one without which the others agree best, and phi of the others.
-fn odd_log<'a>(
-    model: &RegressionModel,
-    logs: &'a [Conditioned],
-    found: &Estimate,
-) -> Option<(&'a [Conditioned], Vec<f64>)> {
+fn odd_log(model: &RegressionModel, logs: &[usize], found: &Estimate) -> Option<(usize, Vec<f64>)> {
     let condensed = &found.condensed;
     if logs.len() < 2 || condensed.rank != model.rank() {
         return None;
     }
+    // weighted by log, a log that is odd would count for little
+    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
+    let by_joint: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
+    let weights = vec![by_joint; condensed.independent.len()];
     let without = |log: usize| {
         let others = (0..condensed.parts.len()).filter(|&part| condensed.log_of_part[part] != log);
         let triangles = condensed.merged(others);
-        let rank = condensed.rank;
-        let r = stacked(&triangles, &condensed.pattern, &found.weights, &[], rank);
-        let phi = solve(&r, found.solution.phi.as_slice()).phi.as_slice().to_vec();
-        let of_joint = |(joint, triangle): (usize, &Triangle)| {
-            let left = triangle.squares(&condensed.of_joint(joint, &phi));
-            [found.weights[joint].powi(2) * left, triangle.rows() as f64]
-        };
-        let all: Vec<[f64; 2]> = triangles.iter().enumerate().map(of_joint).collect();
-        let sum = |at: usize| all.iter().map(|one| one[at]).sum::<f64>();
-        (sum(0) / sum(1).max(1.0), log, phi)
+        let r = condensed.system(&triangles, &weights, &[]);
+        let solution = solve(&r, found.solution.phi.as_slice());
+        // of rows that are weighted, the last of R is what is left
+        let rows: usize = triangles.iter().flatten().map(Triangle::rows).sum();
+        let left = r[(condensed.rank, condensed.rank)].powi(2);
+        (left / rows.max(1) as f64, log, solution.phi.as_slice().to_vec())
     };
-    let least = (0..logs.len()).map(without).min_by(|a, b| a.0.total_cmp(&b.0));
-    least.map(|(_, log, phi)| (&logs[log..=log], phi))
+    let least = logs.iter().copied().map(without).min_by(|a, b| a.0.total_cmp(&b.0));
+    least.map(|(_, log, phi)| (log, phi))
 }
 
 /// Columns that seem to be other ones in each of the logs for validation: by what was found in the
@@ -322,16 +343,11 @@ fn odd_log<'a>(
 fn held_out_misread(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (phi, deviations): (&[f64], &[f64]),
+    phi: &[f64],
 ) -> Vec<MisreadColumns> {
     let of_log = |log: &Conditioned| {
-        let log = std::slice::from_ref(log);
-        let left = validate(model, phi, log);
-        let torques = torques(model, &left);
-        let noise = noise_of_positions(model, log, (phi, deviations), &torques);
-        let evidence = Evidence { values: Some(phi), listed: &[], noise: Some(&noise) };
-        let mut misread = misread_apart(model, log, evidence);
-        if left.relative < CLEAN {
+        let mut misread = misread_apart(model, &[log], Evidence { values: Some(phi), listed: &[] });
+        if validate(model, phi, std::slice::from_ref(log)).relative < CLEAN {
             misread.retain(|one| !one.is_guess());
         }
         misread

@@ -24,6 +24,7 @@ mod known_effects;
 pub mod log;
 mod model_text;
 mod model_values;
+mod noisy_logs;
 pub mod statics;
 mod statics_file;
 pub mod two_stage;
@@ -36,5 +37,6 @@ pub use model_text::{
     EffectValues, NewEffect, NewPlace, NewValue, updated as updated_text, with_effects,
 };
 pub use model_values::{model_values, with_effect};
+pub use noisy_logs::{Added, NoisyLog};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdateError, UpdatedModel, updated_model};

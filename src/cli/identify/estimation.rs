@@ -1,6 +1,6 @@
 //! Estimates of one run, with the filter that noise of the positions asks for.
 
-use super::logs::{self, Conditions};
+use super::logs::{self, Halvings};
 use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
@@ -28,8 +28,8 @@ pub(super) struct Estimation<'a> {
 pub(super) type Found = (Identification, Result<UpdatedModel, UpdateError>);
 
 impl Estimation<'_> {
-    pub(super) fn read(&self, conditions: &Conditions) -> Result<logs::Read, Failure> {
-        logs::read((self.arguments, conditions), (self.robot, self.laws), self.model)
+    pub(super) fn read(&self, halvings: &[u32]) -> Result<logs::Read, Failure> {
+        logs::read((self.arguments, halvings), (self.robot, self.laws), self.model)
     }
 
     pub(super) fn found(&self, read: &logs::Read, options: &Options) -> Result<Found, Failure> {
@@ -56,33 +56,48 @@ impl Estimation<'_> {
         mut read: logs::Read,
         options: &Options,
     ) -> Result<(logs::Read, Found), Failure> {
-        let mut conditions = self.arguments.conditions;
+        let mut halvings = vec![0; read.train.len()];
         self.progress.show("estimating");
         let mut found = self.found(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
-        while let Some(lower) = conditions.lower(&read.train)
-            && let parameters = &found.0.parameters
-            && let is_biased = (found.0.is_noise()
-                || parameters.iter().any(IdentifiedParameter::is_biased_without_change))
-            && (is_biased || parameters.iter().any(IdentifiedParameter::may_change))
-            && !allows_for_noise
+        while !allows_for_noise
+            && let Some((lower, is_biased)) = self.lower(&read, &halvings, &found.0)
         {
-            let times = lower.halvings();
+            let times = lower.iter().max().unwrap_or(&0);
             self.progress.show(&format!("reading logs, filter halved {times} times"));
             drop(read); // logs are large: not all of them twice
             read = self.read(&lower)?;
             self.progress.show(&format!("estimating, filter halved {times} times"));
             let next = self.found(&read, options)?;
+            let parameters = &found.0.parameters;
             let is_better = is_biased || has_smaller_errors(&next.0.parameters, parameters);
             if next.0.filter_error.is_some() || !is_better {
                 // worse than the noise that it takes away
                 drop(read);
-                read = self.read(&conditions)?;
+                read = self.read(&halvings)?;
                 break;
             }
-            (found, conditions) = (next, lower);
+            (found, halvings) = (next, lower);
         }
         Ok((read, found))
+    }
+
+    /// The next lower filters of logs, if noise of the positions asks for them, and whether that
+    /// is since it biases parameters: then of the logs that do.
+    fn lower(
+        &self,
+        read: &logs::Read,
+        halvings: &[u32],
+        found: &Identification,
+    ) -> Option<(Halvings, bool)> {
+        let conditions = &self.arguments.conditions;
+        let lower = |asking: &[bool]| conditions.lower(&read.train, (halvings, asking));
+        let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, true));
+        of_biasing.or_else(|| {
+            let may_change = found.parameters.iter().any(IdentifiedParameter::may_change);
+            let lower = lower(&vec![may_change; halvings.len()])?;
+            Some((lower, false))
+        })
     }
 }
 

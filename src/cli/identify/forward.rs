@@ -58,7 +58,7 @@ impl Controlled {
             let believed = Some(believed.as_mut());
             let simulated = simulated_log(plant.as_mut(), believed, &self.controller, log);
             let simulated = simulated.map_err(failed)?;
-            let how = arguments.conditions.of(log.step_s, simulated.samples());
+            let how = arguments.conditions.of(log.step_s, simulated.samples(), 0);
             let failed = |error| IdentifyFailure::Condition(log.file.clone(), error);
             Ok(Conditioned::new(simulated, &names, &how).map_err(failed)?)
         };

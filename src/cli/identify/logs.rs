@@ -29,14 +29,16 @@ pub(super) struct Conditions {
     /// Where rates and accelerations come from
     #[arg(long, value_enum, default_value_t)]
     rates: Rates,
-    /// How often the cutoff was halved, if none was given
-    #[arg(skip)]
-    halvings: u32,
 }
 
-/// Halvings of the cutoff, at most, and periods of it that a log, or a lap, must have more of.
+/// How often the cutoff of each log for the estimate is halved, if none was given.
+pub(super) type Halvings = Vec<u32>;
+
+/// Halvings of the cutoff, at most, and periods of it that all logs, each of them, or a lap, must
+/// have more of.
 const MOST_HALVINGS: u32 = 6;
 const FEWEST_PERIODS: f64 = 40.0;
+const FEWEST_OF_A_LOG: f64 = 10.0;
 const FEWEST_OF_A_LAP: f64 = 20.0;
 
 /// The filter if nothing is said: its order, and its cutoff over the rate of sampling.
@@ -90,31 +92,26 @@ impl Conditions {
         Self { filter, ..Self::default() }
     }
 
-    /// The filter of a log of so many samples at this distance \[s\].
-    fn filter(&self, step_s: f64, samples: usize) -> Option<Filter> {
-        let lower = f64::from(1 << self.halvings_of(samples));
+    /// The filter of a log at this distance of samples \[s\].
+    fn filter(&self, step_s: f64, halvings: u32) -> Option<Filter> {
         match self.filter {
             Some(FilterChoice::None) => None,
             Some(FilterChoice::Some(filter)) => Some(filter),
-            None => Some(Filter { order: ORDER, cutoff_hz: TENTH / step_s / lower }),
+            None => Some(Filter { order: ORDER, cutoff_hz: cutoff(halvings) / step_s }),
         }
     }
 
-    /// How often the cutoff is halved for a log of so many samples: what it is too short for is
-    /// left out. How long laps are is known when they have been found.
-    fn halvings_of(&self, samples: usize) -> u32 {
-        let is_long = |halvings: u32| {
-            let cutoff = TENTH / f64::from(1 << halvings);
-            // the edges are cut
-            samples as f64 * cutoff - 2.0 * ORDER as f64 > FEWEST_PERIODS
-        };
-        let allowed = |halvings: &u32| self.average.is_some() || is_long(*halvings);
-        (1..=self.halvings).rev().find(allowed).unwrap_or(0)
+    /// How often the cutoff is halved for a log beside those for the estimate.
+    fn halvings_beside(&self, halvings: &[u32], samples: usize) -> u32 {
+        let most = halvings.iter().copied().max().unwrap_or(0);
+        let is_long = |halvings: &u32| periods(samples, *halvings) > FEWEST_PERIODS;
+        let allowed = |halvings: &u32| self.average.is_some() || is_long(halvings);
+        (1..=most).rev().find(allowed).unwrap_or(0)
     }
 
     /// What is done with a log of so many samples at this distance \[s\].
-    pub(super) fn of(&self, step_s: f64, samples: usize) -> Conditioning {
-        let filter = self.filter(step_s, samples);
+    pub(super) fn of(&self, step_s: f64, samples: usize, halvings: u32) -> Conditioning {
+        let filter = self.filter(step_s, halvings);
         // The decimator passes up to 0.4 of what is left of the rate.
         let allowed = filter.map_or(1.0, |filter| 0.4 / (filter.cutoff_hz * step_s));
         // of laps one is left
@@ -134,27 +131,45 @@ impl Conditions {
     }
 }
 
-impl Conditions {
-    /// How often the cutoff is halved, of logs that are long enough.
-    pub(super) fn halvings(&self) -> u32 {
-        self.halvings
-    }
+/// The cutoff in cycles per sample.
+fn cutoff(halvings: u32) -> f64 {
+    TENTH / f64::from(1 << halvings)
+}
 
-    /// The same with half the cutoff, for logs whose noise of positions biases parameters; none if
-    /// a filter was asked for, or all logs, or one lap, are too short for it.
-    pub(super) fn lower(&self, logs: &[Conditioned]) -> Option<Self> {
-        if self.filter.is_some() || self.halvings == MOST_HALVINGS {
-            return None;
-        }
-        let lower = Self { halvings: self.halvings + 1, ..*self };
+/// Periods of the cutoff in so many samples, whose edges are cut.
+fn periods(samples: usize, halvings: u32) -> f64 {
+    samples as f64 * cutoff(halvings) - 2.0 * ORDER as f64
+}
+
+impl Conditions {
+    /// The same with half the cutoff of the logs that ask for it and are long enough; none if a
+    /// filter was asked for, or logs, or one lap, are too short for it. How long laps are is known
+    /// when they have been found.
+    pub(super) fn lower(
+        &self,
+        logs: &[Conditioned],
+        (halvings, asking): (&[u32], &[bool]),
+    ) -> Option<Halvings> {
         let samples = |log: &Conditioned| log.q.first().map_or(0, Vec::len);
-        let is_lower = |log: &Conditioned| lower.halvings_of(samples(log)) > self.halvings;
-        // a lap has no edges that are cut
-        let is_long = |log: &Conditioned| {
-            let cutoff = TENTH / f64::from(1 << lower.halvings);
-            log.laps.is_none_or(|laps| laps.samples as f64 * cutoff > FEWEST_OF_A_LAP)
+        let is_long = |log: &Conditioned, halvings: u32| match (self.average, log.laps) {
+            (None, _) => periods(samples(log), halvings) > FEWEST_OF_A_LOG,
+            // a lap has no edges that are cut
+            (_, Some(laps)) => laps.samples as f64 * cutoff(halvings) > FEWEST_OF_A_LAP,
+            (_, None) => true,
         };
-        (logs.iter().any(is_lower) && logs.iter().all(is_long)).then_some(lower)
+        let all = logs.iter().zip(halvings).zip(asking);
+        let lower: Halvings = all
+            .map(|((log, &now), asks)| {
+                match *asks && now < MOST_HALVINGS && is_long(log, now + 1) {
+                    true => now + 1,
+                    false => now,
+                }
+            })
+            .collect();
+        let all = logs.iter().zip(&lower);
+        let of_all: f64 = all.map(|(log, &halvings)| periods(samples(log), halvings)).sum();
+        let are_long = self.average.is_some() || of_all > FEWEST_PERIODS;
+        (self.filter.is_none() && are_long && lower != halvings).then_some(lower)
     }
 }
 
@@ -174,7 +189,7 @@ pub(super) struct Read {
 }
 
 pub(super) fn read(
-    (arguments, conditions): (&Arguments, &Conditions),
+    (arguments, halvings): (&Arguments, &[u32]),
     (robot, laws): (&Robot, &[AddedLaw]),
     model: &RegressionModel,
 ) -> Result<Read, Failure> {
@@ -184,7 +199,7 @@ pub(super) fn read(
     let contacts = robot.contacts.values().map(|contact| contact.name.clone()).collect();
     let mut reader = Reader {
         arguments,
-        conditions,
+        halvings,
         model,
         laws,
         mapping,
@@ -200,7 +215,8 @@ pub(super) fn read(
     let controlled = arguments.controller.is_some();
     let needs_instruments = arguments.method == MethodName::Iv && arguments.instruments.is_empty();
     let simulates_train = controlled && (arguments.validate.is_empty() || needs_instruments);
-    let train = reader.kept(&arguments.train, simulates_train.then_some(f64::INFINITY))?;
+    let longest_s = simulates_train.then_some(f64::INFINITY);
+    let train = reader.kept((&arguments.train, true), longest_s)?;
     let whole = reader.motions.take().unwrap_or_default();
     let mut numbered = train.iter().enumerate();
     let same = numbered.find_map(|(at, log)| {
@@ -211,7 +227,7 @@ pub(super) fn read(
         return Err(IdentifyFailure::SameLogs(same).into());
     }
     let simulates = is_fixed || controlled;
-    let validate = reader.kept(&arguments.validate, simulates.then_some(LONGEST_S))?;
+    let validate = reader.kept((&arguments.validate, false), simulates.then_some(LONGEST_S))?;
     let mut motions = reader.motions.take().unwrap_or_default();
     for log in &validate {
         if let Some(same) = train.iter().find(|other| other.overlaps(log)) {
@@ -222,7 +238,7 @@ pub(super) fn read(
     if arguments.validate.is_empty() {
         motions.clone_from(&whole);
     }
-    let instruments = reader.kept(&arguments.instruments, None)?;
+    let instruments = reader.kept((&arguments.instruments, false), None)?;
     let is_measured =
         |one: &&Conditioned| train.iter().any(|log| log.q == one.q && log.torque == one.torque);
     if let Some(one) = instruments.iter().find(is_measured) {
@@ -261,7 +277,8 @@ fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
 
 struct Reader<'a> {
     arguments: &'a Arguments,
-    conditions: &'a Conditions,
+    /// Of each log for the estimate.
+    halvings: &'a [u32],
     model: &'a RegressionModel,
     /// Effects that the model has beside its equations.
     laws: &'a [AddedLaw],
@@ -276,17 +293,24 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Reads logs, and keeps their motion for so long \[s\].
+    /// Reads logs, for the estimate or beside those, and keeps their motion for so long \[s\].
     fn kept(
         &mut self,
-        paths: &[PathBuf],
+        (paths, estimates): (&[PathBuf], bool),
         longest_s: Option<f64>,
     ) -> Result<Vec<Conditioned>, Failure> {
         self.motions = longest_s.map(|_| Vec::new());
-        paths.iter().map(|path| self.one(path, longest_s)).collect()
+        let own = |number: usize| Some(self.halvings.get(number).copied().unwrap_or(0));
+        let own: Vec<Option<u32>> =
+            (0..paths.len()).map(|number| own(number).filter(|_| estimates)).collect();
+        paths.iter().zip(own).map(|(path, own)| self.one((path, own), longest_s)).collect()
     }
 
-    fn one(&mut self, path: &Path, longest_s: Option<f64>) -> Result<Conditioned, Failure> {
+    fn one(
+        &mut self,
+        (path, halvings): (&Path, Option<u32>),
+        longest_s: Option<f64>,
+    ) -> Result<Conditioned, Failure> {
         let file = path.display().to_string();
         let of = LogOf {
             model: &self.model.model,
@@ -303,11 +327,13 @@ impl Reader<'_> {
         if let Some(ground) = &mut self.ground {
             ground.load(&mut log);
         }
+        let conditions = &self.arguments.conditions;
+        let beside = || conditions.halvings_beside(self.halvings, log.samples());
+        let halvings = halvings.unwrap_or_else(beside);
         let how = Conditioning {
             resolution: self.arguments.resolution,
-            ..self.conditions.of(log.step_s, log.samples())
+            ..conditions.of(log.step_s, log.samples(), halvings)
         };
-        let halvings = self.conditions.halvings_of(log.samples());
         if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, halvings) {
             self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
         }

@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         plant_of(&robot, &[]).map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
     let log = logs::measured(arguments, &robot, &model, path)?;
     let remarks = log.remarks.iter().map(|remark| format!("{}: {remark}", log.file)).collect();
-    let of_load = arguments.conditions.of(log.step_s, log.samples());
+    let of_load = arguments.conditions.of(log.step_s, log.samples(), 0);
     // springs are stiff: the first stage takes what the rate of sampling allows
     let tenth = Filter { order: 4, cutoff_hz: 0.1 / log.step_s };
     let of_springs = denavit::identify::condition::Conditioning {

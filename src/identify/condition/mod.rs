@@ -348,6 +348,18 @@ impl Conditioned {
         inner.div_ceil(self.decimation)
     }
 
+    /// Samples that are left and independent of each other: a filter leaves two in a period of its
+    /// cutoff.
+    pub(crate) fn independent(&self) -> f64 {
+        let share = self.filter.as_ref().map_or(1.0, |filter| (2.0 * filter.cutoff()).min(1.0));
+        (share * self.range.len() as f64).min(self.samples() as f64)
+    }
+
+    /// Periods of the filter's cutoff; pairs of samples without a filter.
+    pub(crate) fn periods(&self) -> f64 {
+        self.range.len() as f64 * self.filter.as_ref().map_or(0.5, Butterworth::cutoff)
+    }
+
     /// The time of a sample that is left \[s\].
     pub fn time_s(&self, sample: usize) -> f64 {
         let reach = Decimator::reach_of(self.decimation);

@@ -5,9 +5,11 @@
 
 use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
+use super::solve::{PriorRow, stacked};
 use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
+use nalgebra::DMatrix;
 use std::borrow::Cow;
 
 /// Parts that logs are cut into, altogether.
@@ -27,6 +29,8 @@ pub struct Condensed {
     pub log_of_part: Vec<usize>,
     /// For each part the time of its last sample since the beginning of its log \[s\].
     pub end_s: Vec<f64>,
+    /// For each log the share of its rows that are independent of each other.
+    pub independent: Vec<f64>,
     /// Number of base parameters.
     pub rank: usize,
 }
@@ -78,7 +82,9 @@ impl Condensed {
         let all: usize = logs.iter().map(Conditioned::samples).sum();
         let length = all.div_ceil(PARTS).max(MIN_PART);
         let (parts, log_of_part, end_s) = (Vec::new(), Vec::new(), Vec::new());
-        let mut condensed = Self { pattern, parts, log_of_part, end_s, rank };
+        let share = |log: &Conditioned| log.independent() / log.samples().max(1) as f64;
+        let independent = logs.iter().map(share).collect();
+        let mut condensed = Self { pattern, parts, log_of_part, end_s, independent, rank };
         for (index, log) in logs.iter().enumerate() {
             // A short rest goes with the part before it.
             let count = (log.samples() / length).max(1);
@@ -131,23 +137,40 @@ impl Condensed {
         }
     }
 
-    /// For each joint the triangle of the given parts.
-    pub fn merged(&self, parts: impl Iterator<Item = usize>) -> Vec<Triangle> {
-        let mut merged: Vec<Triangle> =
-            self.pattern.iter().map(|places| Triangle::new(places.len())).collect();
-        for part in parts {
-            for (sum, own) in merged.iter_mut().zip(&self.parts[part]) {
-                if own.rows() > 0 {
-                    sum.merge(own);
-                }
-            }
-        }
+    /// For each log the triangles of its joints, of the given parts.
+    pub fn merged(&self, parts: impl Iterator<Item = usize>) -> Vec<Vec<Triangle>> {
+        let none = || self.pattern.iter().map(|places| Triangle::new(places.len())).collect();
+        let mut merged: Vec<Vec<Triangle>> = self.independent.iter().map(|_| none()).collect();
+        parts.for_each(|part| self.merge(part, &mut merged));
         merged
     }
 
-    /// For each joint the triangle of all parts.
-    pub fn whole(&self) -> Vec<Triangle> {
+    /// Adds the rows of a part.
+    pub(super) fn merge(&self, part: usize, merged: &mut [Vec<Triangle>]) {
+        let of_log = &mut merged[self.log_of_part[part]];
+        for (sum, own) in of_log.iter_mut().zip(&self.parts[part]) {
+            if own.rows() > 0 {
+                sum.merge(own);
+            }
+        }
+    }
+
+    /// For each log the triangles of its joints, of all parts.
+    pub fn whole(&self) -> Vec<Vec<Triangle>> {
         self.merged(0..self.parts.len())
+    }
+
+    /// R of [W | y] of weighted triangles of logs, and of what is known beforehand.
+    pub(in crate::identify) fn system(
+        &self,
+        triangles: &[Vec<Triangle>],
+        weights: &[Vec<f64>],
+        prior: &[PriorRow],
+    ) -> DMatrix<f64> {
+        let both = triangles.iter().zip(weights);
+        let logs: Vec<(&[Triangle], &[f64])> =
+            both.map(|(triangles, weights)| (&triangles[..], &weights[..])).collect();
+        stacked(&logs, &self.pattern, prior, self.rank)
     }
 
     /// The entries of phi that a joint's columns belong to.

@@ -7,7 +7,6 @@
 
 use super::bounds::Bounds;
 use super::least_squares::Estimate;
-use super::solve::stacked;
 use crate::plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector, Matrix4};
 
@@ -64,7 +63,7 @@ impl Piece {
 pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> Consistent {
     let triangles = found.condensed.whole();
     let rank = found.condensed.rank;
-    let r = stacked(&triangles, &found.condensed.pattern, &found.weights, &[], rank);
+    let r = found.condensed.system(&triangles, &found.weights, &[]);
     let w = r.view((0, 0), (rank, rank)).into_owned();
     let b = members(model);
     let target = &w * &found.solution.phi;

@@ -1,7 +1,7 @@
 //! Standard errors that hold where residuals are alike from one sample to the next.
 
 use super::condensed::Condensed;
-use super::solve::{PriorRow, Solution, solve, stacked};
+use super::solve::{PriorRow, Solution, solve};
 use crate::simulate::Random;
 use nalgebra::{DMatrix, DVector};
 
@@ -26,7 +26,7 @@ pub enum Errors {
 /// An estimate's problem, as its errors need it.
 pub(super) struct Problem<'a> {
     pub(super) condensed: &'a Condensed,
-    pub(super) weights: &'a [f64],
+    pub(super) weights: &'a [Vec<f64>],
     pub(super) prior: &'a [PriorRow],
     pub(super) solution: &'a Solution,
 }
@@ -86,11 +86,12 @@ impl Problem<'_> {
         let factor = &self.solution.factor;
         let size = factor.ncols();
         let mut leverage = DMatrix::zeros(size, size);
+        let weights = &self.weights[self.condensed.log_of_part[part]];
         for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
             let pattern = &self.condensed.pattern[joint];
             let own = DMatrix::from_fn(pattern.len(), size, |at, c| factor[(pattern[at], c)]);
             let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-            let rows = self.weights[joint] * (r * own);
+            let rows = weights[joint] * (r * own);
             leverage += rows.tr_mul(&rows);
         }
         let eigen = leverage.symmetric_eigen();
@@ -106,8 +107,9 @@ impl Problem<'_> {
     fn score(&self, part: usize) -> DVector<f64> {
         let mut score = DVector::zeros(self.condensed.rank);
         let phi = self.solution.phi.as_slice();
+        let weights = &self.weights[self.condensed.log_of_part[part]];
         for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
-            let weight = self.weights[joint] * self.weights[joint];
+            let weight = weights[joint] * weights[joint];
             if triangle.rows() == 0 || weight == 0.0 {
                 continue;
             }
@@ -128,7 +130,7 @@ impl Problem<'_> {
                 let drawn: Vec<usize> =
                     (0..count).map(|_| (random.bits() % count as u64) as usize).collect();
                 let triangles = condensed.merged(drawn.into_iter());
-                let r = stacked(&triangles, &condensed.pattern, weights, prior, condensed.rank);
+                let r = condensed.system(&triangles, weights, prior);
                 solve(&r, solution.phi.as_slice()).phi
             })
             .collect();

@@ -72,9 +72,11 @@ impl Fit<'_> {
             return None;
         }
         let left_out = left_out.of_halved(logs, &places);
+        let weights: Vec<Vec<f64>> =
+            places.iter().map(|(number, _)| found.weights[*number].clone()).collect();
         let both = [own, halved].map(|logs| {
             let condensed = Condensed::counted(model, (&logs, &left_out));
-            let solution = self.solved(&condensed, &condensed.whole(), &found.weights);
+            let solution = self.solved(&condensed, &condensed.whole(), &weights);
             (condensed, solution)
         });
         let [(condensed, _), _] = &both;
@@ -84,8 +86,8 @@ impl Fit<'_> {
             return None;
         }
         let [before, after] = both.each_ref().map(|(condensed, solution)| {
-            let weights = &found.weights[..];
-            Problem { condensed, weights, prior: &self.options.prior, solution }.influences()
+            let (weights, prior) = (&weights[..], &self.options.prior[..]);
+            Problem { condensed, weights, prior, solution }.influences()
         });
         let apart: Vec<DVector<f64>> =
             before.into_iter().zip(after).map(|(one, other)| other - one).collect();

@@ -8,7 +8,7 @@
 use super::condensed::{Condensed, Rows};
 use super::least_squares::{Estimate, EstimateError};
 use super::rows::BlockMaker;
-use super::triangle::{Triangle, upper};
+use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
@@ -36,7 +36,7 @@ pub(super) fn instrumental(
         }
     }
     let condensed = paired(model, rows, instruments);
-    let system = System::new(&condensed, &condensed.whole(), &found.weights);
+    let system = System::new(&condensed, &condensed.whole(), &found.weights[..]);
     let solved = system.solve().ok_or(EstimateError::Instruments)?;
     found.solution.phi = solved;
     let (covariance, degrees_of_freedom) =
@@ -90,21 +90,8 @@ struct System {
 }
 
 impl System {
-    fn new(condensed: &Condensed, triangles: &[Triangle], weights: &[f64]) -> Self {
-        let size = condensed.rank;
-        let heights = triangles.iter().map(|triangle| triangle.width() + 1);
-        let mut stacked = DMatrix::zeros(heights.sum::<usize>().max(size + 1), size + 1);
-        let mut row = 0;
-        for (joint, triangle) in triangles.iter().enumerate() {
-            for own in 0..=triangle.width() {
-                for place in own..=triangle.width() {
-                    let target = condensed.pattern[joint].get(place).copied().unwrap_or(size);
-                    stacked[(row, target)] = weights[joint] * triangle.matrix()[(own, place)];
-                }
-                row += 1;
-            }
-        }
-        Self { rank: size / 2, r: upper(stacked) }
+    fn new(condensed: &Condensed, triangles: &[Vec<Triangle>], weights: &[Vec<f64>]) -> Self {
+        Self { rank: condensed.rank / 2, r: condensed.system(triangles, weights, &[]) }
     }
 
     /// Q^T W of the rows that Z spans.
@@ -130,7 +117,8 @@ impl System {
         let count = condensed.parts.len();
         let scores: Vec<DVector<f64>> = (0..count)
             .map(|part| {
-                let own = Self::new(condensed, &condensed.parts[part], &found.weights);
+                let (triangles, log) = (&condensed.parts[part..=part], condensed.log_of_part[part]);
+                let own = Self::new(condensed, triangles, &found.weights[log..=log]);
                 let fitted = |row: usize| {
                     (0..rank).map(|place| own.r[(row, rank + place)] * phi[place]).sum::<f64>()
                 };

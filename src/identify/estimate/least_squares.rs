@@ -6,22 +6,17 @@ use super::half_cutoff::Change;
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
 use super::likelihood;
-use super::noise_bias::{NoiseBias, noise_bias};
+use super::noise_bias::{NoiseBias, NoiseOfLog, noise_bias};
 use super::robust::{Loss, influences, scales};
 use super::rows::Block;
-use super::solve::{PriorRow, Solution, solve, stacked};
+use super::solve::{PriorRow, Solution, solve};
 use super::total;
 use super::triangle::Triangle;
+use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
-
-/// Times that weights are found anew.
-const MAX_REWEIGHTING: usize = 30;
-
-/// Change of phi, in standard errors, below which weights have settled.
-const SETTLED: f64 = 1e-3;
 
 /// Samples that are independent of each other which a parameter needs, at least: with fewer,
 /// residuals are far smaller than errors and standard errors say nothing.
@@ -36,7 +31,7 @@ const ENOUGH_PARTS: usize = 48;
 pub enum Method {
     /// Least squares, all torques alike.
     Ordinary,
-    /// Least squares, each joint weighted by its noise.
+    /// Least squares, each joint in each log weighted by its noise.
     #[default]
     Weighted,
     /// Weighted, and outliers lose weight.
@@ -71,6 +66,8 @@ pub struct Options {
 pub enum EstimateError {
     /// No torque was measured.
     NoTorque,
+    /// All rows are left out.
+    NothingLeft,
     /// Fewer rows than parameters: rows, parameters.
     TooFewRows(usize, usize),
     /// Logs too short for their filter: independent samples of all torques, parameters.
@@ -88,6 +85,11 @@ impl fmt::Display for EstimateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoTorque => write!(f, "no torque was measured"),
+            Self::NothingLeft => write!(
+                f,
+                "no joint is ever as fast as --skip-slow says: nothing is left of the logs\n  \
+                 hint: a lower rate, or --skip-slow biasing, which is the default"
+            ),
             Self::TooFewRows(rows, parameters) => {
                 write!(f, "{rows} rows are too few for {parameters} parameters")
             }
@@ -132,12 +134,15 @@ pub struct Estimate {
     pub noise_share: f64,
     /// What changes with half the cutoff of the filter; none where that cannot be told.
     pub change: Option<Change>,
-    /// Standard deviation of each joint's residuals [N m, N]; 0 where no torque was measured.
-    pub noise: Vec<f64>,
+    /// What noise of the positions of each log does by itself; nothing of instrumental variables.
+    pub noise_of_logs: Vec<NoiseOfLog>,
+    /// For each log the standard deviation of each joint's residuals [N m, N]; 0 where no torque
+    /// was measured.
+    pub noise: Vec<Vec<f64>>,
     /// The rows, as they were weighted last.
     pub condensed: Condensed,
-    /// What each joint's rows count.
-    pub weights: Vec<f64>,
+    /// For each log what each joint's rows count.
+    pub weights: Vec<Vec<f64>>,
     /// Times that weights were found.
     pub rounds: usize,
     /// Rows that do not count.
@@ -167,8 +172,8 @@ pub fn estimate(
             return Ok(first);
         }
     }
-    NoiseBias { bias: first.noise_bias, share: first.noise_share } =
-        fit.noise_bias(model, rows, &first);
+    let NoiseBias { bias, share, of_logs } = fit.noise_bias(model, rows, &first);
+    (first.noise_bias, first.noise_share, first.noise_of_logs) = (bias, share, of_logs);
     let problem = fit.problem(&first);
     let (mut covariance, mut degrees_of_freedom) = match options.method {
         Method::Robust(loss) => {
@@ -180,17 +185,14 @@ pub fn estimate(
     let parts = first.condensed.parts.len();
     if options.errors == Errors::Correlated && parts < ENOUGH_PARTS {
         // as the filter makes residuals correlated
-        let rows: usize = first.condensed.parts.iter().flatten().map(Triangle::rows).sum();
+        let rows = first.condensed.counted_rows();
         let used = first.solution.excited() as f64;
-        let free = (independent(logs).min(rows as f64) - used).max(1.0);
+        let free = (independent(logs).min(rows) - used).max(1.0);
         let of_noise = match options.method {
-            Method::Ordinary => {
-                let squares: f64 = first.squares(&first.condensed.whole()).iter().sum();
-                squares / (rows as f64 - used).max(1.0)
-            }
+            Method::Ordinary => first.sum_of_squares() / (rows - used).max(1.0),
             _ => 1.0,
         };
-        let wider = of_noise * (rows as f64 - used).max(1.0) / free;
+        let wider = of_noise * (rows - used).max(1.0) / free;
         if parts < FEWEST_PARTS {
             // too few parts to say more
             covariance *= wider;
@@ -200,9 +202,7 @@ pub fn estimate(
         }
     }
     if options.method == Method::Ordinary && options.errors == Errors::Classical {
-        let triangles = first.condensed.whole();
-        let squares: f64 = first.squares(&triangles).iter().sum();
-        covariance *= squares / degrees_of_freedom;
+        covariance *= first.sum_of_squares() / degrees_of_freedom;
     }
     let mut change = fit.change(model, rows, &first);
     if let Some(change) = &mut change {
@@ -221,15 +221,10 @@ fn at_least(covariance: &mut DMatrix<f64>, least: &DMatrix<f64>) {
     *covariance = &factors * &*covariance * &factors;
 }
 
-/// Samples of all torques that are independent of each other: a filter leaves two in a period of
-/// its cutoff.
+/// Samples of all torques that are independent of each other.
 fn independent(logs: &[Conditioned]) -> f64 {
-    let of = |log: &Conditioned| {
-        let share = log.filter.as_ref().map_or(1.0, |filter| (2.0 * filter.cutoff()).min(1.0));
-        let independent = (share * log.range.len() as f64).min(log.samples() as f64);
-        independent * log.torque.iter().flatten().count() as f64
-    };
-    logs.iter().map(of).sum()
+    let torques = |log: &Conditioned| log.torque.iter().flatten().count() as f64;
+    logs.iter().map(|log| log.independent() * torques(log)).sum()
 }
 
 /// Whether logs have enough samples for an estimate.
@@ -249,18 +244,22 @@ pub(super) struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// Least squares, weighted by joint if that is wanted, of the rows that count.
+    /// Least squares, weighted if that is wanted, of the rows that count.
     pub(super) fn plain(
         &self,
         model: &RegressionModel,
         rows: Rows<'_>,
     ) -> Result<Estimate, EstimateError> {
+        let (logs, _) = rows;
         let condensed = Condensed::counted(model, rows);
         let count: usize = condensed.parts.iter().flatten().map(Triangle::rows).sum();
         match count {
+            0 if logs.iter().any(|log| log.torque.iter().any(Option::is_some)) => {
+                Err(EstimateError::NothingLeft)
+            }
             0 => Err(EstimateError::NoTorque),
             rows if rows < condensed.rank => Err(EstimateError::TooFewRows(rows, condensed.rank)),
-            _ => Ok(self.by_joint(condensed, self.options.method != Method::Ordinary)),
+            _ => Ok(self.by_noise(condensed, self.options.method != Method::Ordinary)),
         }
     }
 
@@ -276,56 +275,29 @@ impl Fit<'_> {
     pub(super) fn solved(
         &self,
         condensed: &Condensed,
-        triangles: &[Triangle],
-        weights: &[f64],
+        triangles: &[Vec<Triangle>],
+        weights: &[Vec<f64>],
     ) -> Solution {
-        let prior = &self.options.prior;
-        let r = stacked(triangles, &condensed.pattern, weights, prior, condensed.rank);
-        solve(&r, self.start)
+        solve(&condensed.system(triangles, weights, &self.options.prior), self.start)
     }
 
-    /// Least squares, joints weighted by their noise if that is wanted: a few rounds, since the
-    /// noise is that of the residuals.
-    fn by_joint(&self, condensed: Condensed, is_weighted: bool) -> Estimate {
-        let triangles = condensed.whole();
-        let mut weights: Vec<f64> =
-            triangles.iter().map(|one| if one.rows() > 0 { 1.0 } else { 0.0 }).collect();
-        // Torques of one size to begin with, whatever their units.
-        if is_weighted {
-            for (weight, triangle) in weights.iter_mut().zip(&triangles) {
-                let (rows, squares) = (triangle.rows() as f64, triangle.target_squares());
-                *weight = if squares > 0.0 { (rows / squares).sqrt() } else { 0.0 };
-            }
-        }
-        let solution = self.solved(&condensed, &triangles, &weights);
-        let noise = vec![0.0; weights.len()];
-        let covariance = DMatrix::zeros(0, 0);
-        let mut found = Estimate {
+    /// Least squares, rows weighted by the noise of their joint in their log if that is wanted.
+    fn by_noise(&self, condensed: Condensed, is_weighted: bool) -> Estimate {
+        let Settled { solution, weights, noise, rounds } = self.settled(&condensed, is_weighted);
+        Estimate {
             solution,
-            covariance,
+            covariance: DMatrix::zeros(0, 0),
             degrees_of_freedom: 0.0,
             noise_bias: DVector::zeros(condensed.rank),
             noise_share: 0.0,
+            noise_of_logs: Vec::new(),
             change: None,
             noise,
             condensed,
             weights,
-            rounds: 1,
+            rounds,
             left_out: LeftOut::none(&[]),
-        };
-        found.noise = found.deviations(&triangles);
-        while is_weighted && found.rounds < MAX_REWEIGHTING {
-            found.weights = reciprocal(&found.noise, &triangles);
-            let next = self.solved(&found.condensed, &triangles, &found.weights);
-            let change = moved(&found.solution, &next);
-            found.solution = next;
-            found.noise = found.deviations(&triangles);
-            found.rounds += 1;
-            if change < SETTLED {
-                break;
-            }
         }
-        found
     }
 
     fn robust(
@@ -336,10 +308,11 @@ impl Fit<'_> {
         loss: Loss,
     ) -> Result<Estimate, EstimateError> {
         for _ in 0..MAX_REWEIGHTING {
-            found.noise = scales(model, logs, found.solution.phi.as_slice());
+            let scales = scales(model, logs, found.solution.phi.as_slice());
+            found.noise = found.condensed.steadied(&scales, (&found.solution, &found.weights));
             let factors = factors_of_loss(&found, loss);
             let condensed = Condensed::weighted(model, (logs, left_out), &factors);
-            let weights = reciprocal(&found.noise, &condensed.whole());
+            let weights = condensed.reciprocal(&found.noise, &condensed.whole());
             if self.reweighted(&mut found, condensed, weights) < SETTLED {
                 return Ok(found);
             }
@@ -356,9 +329,10 @@ impl Fit<'_> {
         for _ in 0..MAX_REWEIGHTING {
             let factors = self.factors_of_noise(model, logs, &found);
             let condensed = Condensed::weighted(model, (logs, left_out), &factors);
-            let of_joint = |one: &Triangle| if one.rows() > 0 { 1.0 } else { 0.0 };
-            let ones = condensed.whole().iter().map(of_joint).collect();
-            if self.reweighted(&mut found, condensed, ones) < SETTLED {
+            let triangles = condensed.whole();
+            let ones = vec![vec![1.0; condensed.pattern.len()]; logs.len()];
+            let weights = condensed.reciprocal(&ones, &triangles);
+            if self.reweighted(&mut found, condensed, weights) < SETTLED {
                 return Ok(found);
             }
         }
@@ -366,7 +340,7 @@ impl Fit<'_> {
     }
 
     /// Solves with other weights, and says how far phi moves, in its standard errors.
-    fn reweighted(&self, found: &mut Estimate, condensed: Condensed, weights: Vec<f64>) -> f64 {
+    fn reweighted(&self, found: &mut Estimate, condensed: Condensed, weights: ByLog) -> f64 {
         let next = self.solved(&condensed, &condensed.whole(), &weights);
         let change = moved(&found.solution, &next);
         (found.weights, found.condensed, found.solution) = (weights, condensed, next);
@@ -389,16 +363,16 @@ impl Fit<'_> {
 
     /// The bias of an estimate, with the weights of its rows.
     fn noise_bias(&self, model: &RegressionModel, rows: Rows<'_>, found: &Estimate) -> NoiseBias {
-        let of = (&found.solution, &found.weights[..]);
+        let of = (model, self.start);
         match self.options.method {
             Method::Robust(loss) => {
-                noise_bias((model, self.start), rows, of, Some(&factors_of_loss(found, loss)))
+                noise_bias(of, rows, found, Some(&factors_of_loss(found, loss)))
             }
             Method::Likelihood => {
                 let factors = self.factors_of_noise(model, rows.0, found);
-                noise_bias((model, self.start), rows, of, Some(&factors))
+                noise_bias(of, rows, found, Some(&factors))
             }
-            _ => noise_bias((model, self.start), rows, of, None),
+            _ => noise_bias(of, rows, found, None),
         }
     }
 }
@@ -409,60 +383,33 @@ fn factors_of_loss(
     loss: Loss,
 ) -> impl Fn(usize, &Block, usize) -> Vec<f64> + use<> {
     let own = |joint: usize| found.condensed.of_joint(joint, found.solution.phi.as_slice());
-    let phi: Vec<Vec<f64>> = (0..found.weights.len()).map(own).collect();
+    let phi: Vec<Vec<f64>> = (0..found.condensed.pattern.len()).map(own).collect();
     let scales = found.noise.clone();
-    move |_, block, joint| {
+    move |log, block, joint| {
         let residual = block.residual(joint, &phi[joint]).unwrap_or_default();
-        let scale = scales[joint].max(f64::MIN_POSITIVE);
+        let scale = scales[log][joint].max(f64::MIN_POSITIVE);
         residual.iter().map(|residual| loss.factor(residual / scale)).collect()
     }
 }
 
 impl Estimate {
-    /// |W phi - y|^2 of each joint.
-    fn squares(&self, triangles: &[Triangle]) -> Vec<f64> {
-        let phi = self.solution.phi.as_slice();
-        let of_joint = |(joint, triangle): (usize, &Triangle)| {
-            triangle.squares(&self.condensed.of_joint(joint, phi))
-        };
-        triangles.iter().enumerate().map(of_joint).collect()
+    /// |W phi - y|^2 of all rows.
+    fn sum_of_squares(&self) -> f64 {
+        let triangles = self.condensed.whole();
+        let squares = self.condensed.squares(&triangles, self.solution.phi.as_slice());
+        squares.iter().flatten().sum()
     }
 
-    /// The deviation of each joint's residuals; the parameters are shared by the joints.
-    fn deviations(&self, triangles: &[Triangle]) -> Vec<f64> {
-        let rows: usize = triangles.iter().map(Triangle::rows).sum();
-        let used = self.solution.excited() as f64 / rows as f64;
-        let squares = self.squares(triangles);
-        let deviation = |(triangle, squares): (&Triangle, f64)| match triangle.rows() {
-            0 => 0.0,
-            rows => (squares / (rows as f64 * (1.0 - used).max(1e-3))).sqrt(),
-        };
-        triangles.iter().zip(squares).map(deviation).collect()
-    }
-}
-
-/// 1 / noise; a joint without noise counts like one with a millionth of its torque.
-fn reciprocal(noise: &[f64], triangles: &[Triangle]) -> Vec<f64> {
-    let weight = |(noise, triangle): (&f64, &Triangle)| {
-        if triangle.rows() == 0 {
-            return 0.0;
+    /// The deviation of each joint's residuals in all logs; 0 where no torque was measured.
+    pub fn noise_of_joints(&self) -> Vec<f64> {
+        let (condensed, n) = (&self.condensed, self.condensed.pattern.len());
+        let mut sums = vec![[0.0; 2]; n];
+        for (part, &log) in condensed.parts.iter().zip(&condensed.log_of_part) {
+            for (joint, sum) in sums.iter_mut().enumerate() {
+                let rows = part[joint].rows() as f64;
+                *sum = [sum[0] + rows, sum[1] + rows * self.noise[log][joint].powi(2)];
+            }
         }
-        let size = (triangle.target_squares() / triangle.rows() as f64).sqrt();
-        let least = if size > 0.0 { 1e-12 * size } else { 1.0 };
-        1.0 / noise.max(least)
-    };
-    noise.iter().zip(triangles).map(weight).collect()
-}
-
-/// The largest change of an entry of phi, in its standard errors.
-fn moved(before: &Solution, after: &Solution) -> f64 {
-    let covariance = after.covariance();
-    let change = |place: usize| {
-        let deviation = covariance[(place, place)].sqrt();
-        let step = (after.phi[place] - before.phi[place]).abs();
-        // Without noise, deviations are rounding.
-        let rounding = 1e-9 * after.phi.amax();
-        if step <= rounding { 0.0 } else { step / deviation.max(f64::MIN_POSITIVE) }
-    };
-    (0..after.phi.len()).map(change).fold(0.0, f64::max)
+        sums.iter().map(|[rows, squares]| (squares / rows.max(1.0)).sqrt()).collect()
+    }
 }

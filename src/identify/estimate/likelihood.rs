@@ -6,6 +6,7 @@
 //! where the torque is near enough to linear over the noise (Swevers et al. 1997).
 
 use super::rows::Block;
+use super::weights::ByLog;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::{RegressionModel, RegressionRows};
 
@@ -25,27 +26,33 @@ pub(super) struct Variance {
 }
 
 impl Variance {
-    /// Of logs, with phi and the deviation of each measured position.
+    /// Of logs, with phi and the deviation of each measured position, if a log shows no more.
     pub(super) fn new(
         model: &RegressionModel,
         logs: &[Conditioned],
         (phi, deviations): (&[f64], &[f64]),
     ) -> Self {
-        let of_log =
-            |log: &Conditioned| of_log(model, (log, 1), (phi, deviations), &log.noise_gains());
+        let of_log = |log: &Conditioned| {
+            let known = deviations.iter().copied().chain(std::iter::repeat(0.0));
+            let both = log.position_noise.iter().copied().chain(std::iter::repeat(0.0)).zip(known);
+            let deviations: Vec<f64> =
+                both.take(log.joints()).map(|(own, known)| own.max(known)).collect();
+            of_log(model, (log, 1), (phi, &deviations), &log.noise_gains())
+        };
         Self { of_positions: logs.iter().map(of_log).collect() }
     }
 
-    /// The noise of the torques themselves, of residuals with given deviations.
-    pub(super) fn torque_noise(&self, residual: &[f64]) -> Vec<f64> {
-        let of_joint = |(joint, &deviation): (usize, &f64)| {
-            let rows = self.of_positions.iter().flat_map(|log| &log[joint]);
-            let (sum, count) = rows.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
-            let mean = sum / f64::from(count.max(1));
+    /// The noise of the torques themselves, of residuals with given deviations, by log and joint.
+    pub(super) fn torque_noise(&self, residual: &ByLog) -> ByLog {
+        let of_joint = |(rows, deviation): (&Vec<f64>, &f64)| {
+            let mean = rows.iter().sum::<f64>() / rows.len().max(1) as f64;
             let all = deviation * deviation;
             (all - mean).max(LEAST_TORQUE_SHARE * all).sqrt()
         };
-        residual.iter().enumerate().map(of_joint).collect()
+        let of_log = |(rows, residual): (&Vec<Vec<f64>>, &Vec<f64>)| {
+            rows.iter().zip(residual).map(of_joint).collect()
+        };
+        self.of_positions.iter().zip(residual).map(of_log).collect()
     }
 
     /// 1 over the deviation of each row.
@@ -53,37 +60,42 @@ impl Variance {
         &self,
         (log, joint): (usize, usize),
         block: &Block,
-        torque_noise: &[f64],
+        torque_noise: &ByLog,
     ) -> Vec<f64> {
         let rows = &self.of_positions[log][joint][block.first..block.first + block.samples];
-        let own = torque_noise[joint].powi(2);
+        let own = torque_noise[log][joint].powi(2);
         rows.iter().map(|variance| 1.0 / (own + variance).sqrt().max(f64::MIN_POSITIVE)).collect()
     }
 }
 
 /// How much of each joint's torque noise of the positions makes up by itself after the filter,
 /// root of mean square over root of mean square, looked at in some blocks of each log.
-pub(in crate::identify) fn noise_of_positions(
+pub(super) fn noise_of_positions(
     model: &RegressionModel,
-    logs: &[Conditioned],
-    (phi, deviations): (&[f64], &[f64]),
-    torque_rms: &[f64],
+    logs: &[&Conditioned],
+    phi: &[f64],
 ) -> Vec<f64> {
-    let mut sums = vec![0.0; model.joints.len()];
-    let mut count = 0;
+    let mut sums = vec![[0.0; 2]; model.joints.len()];
     for log in logs {
         let every = log.samples().div_ceil(BLOCK * LOOKED_AT).max(1);
-        let rows = of_log(model, (log, every), (phi, deviations), &log.filter_gains());
-        for (sum, row) in sums.iter_mut().zip(rows) {
-            *sum += row.iter().sum::<f64>();
+        let of = (phi, &log.position_noise[..]);
+        let rows = of_log(model, (log, every), of, &log.filter_gains());
+        let looked_at = |sample: &usize| (sample / BLOCK).is_multiple_of(every);
+        let count = (0..log.samples()).filter(looked_at).count().max(1) as f64;
+        let weight = log.samples() as f64;
+        for ((sums, row), torque) in sums.iter_mut().zip(rows).zip(&log.torque) {
+            let torque = &torque.as_deref().unwrap_or_default();
+            let torque = torque.get(log.range.clone()).unwrap_or_default();
+            let squares = torque.iter().map(|torque| torque * torque).sum::<f64>();
+            sums[0] += weight * row.iter().sum::<f64>() / count;
+            sums[1] += weight * squares / torque.len().max(1) as f64;
         }
-        count += (0..log.samples()).filter(|sample| (sample / BLOCK).is_multiple_of(every)).count();
     }
-    let share = |(sum, torque): (f64, &f64)| match *torque > 0.0 {
-        true => (sum / count.max(1) as f64).sqrt() / torque,
+    let share = |[noise, torque]: [f64; 2]| match torque > 0.0 {
+        true => (noise / torque).sqrt(),
         false => 0.0,
     };
-    sums.into_iter().zip(torque_rms).map(share).collect()
+    sums.into_iter().map(share).collect()
 }
 
 /// Of every so many blocks of a log one is looked at; the variances of others are 0.

@@ -8,9 +8,11 @@
 //! show.
 
 use super::condensed::Rows;
+use super::least_squares::Estimate;
+use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
-use super::solve::Solution;
-use crate::identify::condition::Piece;
+use super::solve::{Solution, solve};
+use crate::identify::condition::{Conditioned, Piece};
 use crate::plants::regression::RegressionModel;
 use crate::simulate::Random;
 use nalgebra::{DMatrix, DVector};
@@ -33,29 +35,86 @@ pub(super) struct NoiseBias {
     pub(super) bias: DVector<f64>,
     /// The largest share of noise in what W says of a direction of phi, from 0 to 1.
     pub(super) share: f64,
+    /// What each log does by itself.
+    pub(super) of_logs: Vec<NoiseOfLog>,
 }
 
-/// What noise makes of phi, of joints with weights, and of rows that have factors too, if any have.
-/// `given` is phi of the model's values.
+/// What noise of the positions of one log does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseOfLog {
+    /// Its part of the bias of phi.
+    pub bias: DVector<f64>,
+    /// The largest share of noise in what this log alone says of a direction of phi, from 0 to 1.
+    pub share: f64,
+    /// The largest bias of what this log alone says of an entry of phi, in standard errors of
+    /// residuals that are independent.
+    pub alone: f64,
+}
+
+/// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
+/// phi of the model's values.
 pub(super) fn noise_bias(
     (model, given): (&RegressionModel, &[f64]),
     (logs, left_out): Rows<'_>,
-    (solution, weights): (&Solution, &[f64]),
+    found: &Estimate,
     factors: Option<RowFactors<'_>>,
 ) -> NoiseBias {
-    let mut noise = Noise::new(model);
     let mut random = Random::new(SEED);
-    for (number, log) in logs.iter().enumerate() {
-        if log.position_noise.iter().all(|noise| *noise == 0.0) {
-            continue;
+    let longest = SAMPLES / logs.len();
+    let of_log = |(number, log): (usize, &Conditioned)| {
+        let of = (&found.weights[number][..], longest, factors);
+        Noise::of_log(model, ((number, log), left_out), of, &mut random)
+    };
+    let of_logs: Vec<Noise> = logs.iter().enumerate().map(of_log).collect();
+    let mut all = Noise::new(model);
+    of_logs.iter().for_each(|one| all.0 += &one.0);
+    let solution = &found.solution;
+    let (bias, phi) = all.bias(solution, given);
+    let triangles = found.condensed.whole();
+    let of_log = |(log, noise): (usize, &Noise)| {
+        let (own, weights) = (&triangles[log..=log], &found.weights[log..=log]);
+        let bias = noise.lost(solution, &phi);
+        if noise.0.amax() == 0.0 {
+            // a log whose rows are all left out shows nothing
+            let is_empty = triangles[log].iter().all(|one| one.rows() == 0);
+            return NoiseOfLog { bias, share: f64::from(u8::from(is_empty)), alone: 0.0 };
         }
-        let pieces = log.pieces(SAMPLES / logs.len());
+        let own = solve(&found.condensed.system(own, weights, &[]), given);
+        let alone = in_errors(&own, &noise.bias(&own, given).0);
+        let share = noise.share(&own);
+        NoiseOfLog { bias, share, alone: alone * found.condensed.independent[log].sqrt() }
+    };
+    let of_logs = of_logs.iter().enumerate().map(of_log).collect();
+    NoiseBias { bias, share: all.share(solution), of_logs }
+}
+
+/// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
+/// of the target.
+struct Noise(DMatrix<f64>);
+
+impl Noise {
+    fn new(model: &RegressionModel) -> Self {
+        Self(DMatrix::zeros(model.rank(), model.rank() + 1))
+    }
+
+    /// That of a log, of which so many samples are looked at before decimation.
+    fn of_log(
+        model: &RegressionModel,
+        ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+        (weights, longest, factors): (&[f64], usize, Option<RowFactors<'_>>),
+        random: &mut Random,
+    ) -> Self {
+        let mut noise = Self::new(model);
+        if log.position_noise.iter().all(|noise| *noise == 0.0) {
+            return noise;
+        }
+        let pieces = log.pieces(longest);
         let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
         let of_all = log.samples() as f64 / seen.max(1) as f64;
         let mut straight = BlockMaker::new(model, log);
         for piece in pieces {
             let Piece { first, samples } = piece;
-            let both = log.piece_with_noise(piece, &mut random);
+            let both = log.piece_with_noise(piece, random);
             let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
             for from in (0..samples).step_by(BLOCK) {
                 let count = BLOCK.min(samples - from);
@@ -68,26 +127,13 @@ pub(super) fn noise_bias(
                         squares.iter_mut().zip(factors).for_each(|(sq, by)| *sq *= by * by);
                     }
                     let counts = left_out.counts((number, log), joint, (first + from, count));
-                    for (square, _) in
-                        squares.iter_mut().zip(counts.unwrap_or_default()).filter(|(_, one)| !one)
-                    {
-                        *square = 0.0;
-                    }
+                    let all = squares.iter_mut().zip(counts.unwrap_or_default());
+                    all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
                     noise.add(model, joint, (block, noisy), &squares);
                 }
             }
         }
-    }
-    NoiseBias { bias: noise.bias(solution, given), share: noise.share(solution) }
-}
-
-/// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
-/// of the target.
-struct Noise(DMatrix<f64>);
-
-impl Noise {
-    fn new(model: &RegressionModel) -> Self {
-        Self(DMatrix::zeros(model.rank(), model.rank() + 1))
+        noise
     }
 
     /// Adds the rows of a joint without the noise and with it, added and subtracted, which count as
@@ -123,22 +169,34 @@ impl Noise {
         symmetric.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max).min(1.0)
     }
 
+    /// C (known - N phi).
+    fn lost(&self, solution: &Solution, phi: &DVector<f64>) -> DVector<f64> {
+        let rank = self.0.nrows();
+        let score = self.0.column(rank) - self.0.columns(0, rank) * phi;
+        &solution.factor * solution.factor.tr_mul(&score)
+    }
+
     /// phi^ - phi of phi^ = phi - C (N phi + known): where noise makes most of W, phi^ is a small
     /// part of phi. Where it makes nearly all of W the rest of it hangs on the last digits of N: of
-    /// that and of what the model's values would lose, the larger one.
-    fn bias(&self, solution: &Solution, given: &[f64]) -> DVector<f64> {
+    /// that and of what the model's values would lose, the larger one, with the phi it is of.
+    fn bias(&self, solution: &Solution, given: &[f64]) -> (DVector<f64>, DVector<f64>) {
         let rank = self.0.nrows();
-        let share = &solution.factor * solution.factor.tr_mul(&self.0);
-        let lost = |phi: &DVector<f64>| share.column(rank) - share.columns(0, rank) * phi;
-        let left = DMatrix::identity(rank, rank) - share.columns(0, rank);
-        let off = lost(&solution.phi);
+        let share = &solution.factor * solution.factor.tr_mul(&self.0.columns(0, rank));
+        let left = DMatrix::identity(rank, rank) - share;
+        let off = self.lost(solution, &solution.phi);
         let by_estimate = left.lu().solve(&off).unwrap_or(off);
-        let by_model = lost(&DVector::from_column_slice(given));
-        let in_errors = |bias: &DVector<f64>| {
-            let own = solution.factor.row_iter().map(|row| row.norm());
-            let ratios = bias.iter().zip(own).filter(|(_, error)| *error > 0.0);
-            ratios.map(|(bias, error)| bias.abs() / error).fold(0.0, f64::max)
-        };
-        if in_errors(&by_model) > in_errors(&by_estimate) { by_model } else { by_estimate }
+        let given = DVector::from_column_slice(given);
+        let by_model = self.lost(solution, &given);
+        match in_errors(solution, &by_model) > in_errors(solution, &by_estimate) {
+            true => (by_model, given),
+            false => (by_estimate.clone(), &solution.phi - by_estimate),
+        }
     }
+}
+
+/// The largest bias, in standard errors of residuals that are independent.
+fn in_errors(solution: &Solution, bias: &DVector<f64>) -> f64 {
+    let own = solution.factor.row_iter().map(|row| row.norm());
+    let ratios = bias.iter().zip(own).filter(|(_, error)| *error > 0.0);
+    ratios.map(|(bias, error)| bias.abs() / error).fold(0.0, f64::max)
 }

@@ -2,7 +2,7 @@
 
 use super::errors::interval_factor;
 use super::least_squares::Estimate;
-use super::solve::{solve, stacked};
+use super::solve::solve;
 use crate::plants::regression::RegressionModel;
 use nalgebra::DVector;
 
@@ -11,7 +11,7 @@ const DEAD_SHARE: f64 = 1e-6;
 
 /// The bias from noise of the positions, in standard errors, from which on it is said: an interval
 /// of 95 % that is off by so much holds in 92 %.
-const BIASING: f64 = 0.5;
+pub(in crate::identify) const BIASING: f64 = 0.5;
 
 /// Deviations of a change that are hardly chance: a lower filter is tried.
 const LIKELY: f64 = 2.5;
@@ -180,11 +180,7 @@ pub fn convergence(model: &RegressionModel, found: &Estimate) -> Vec<Convergence
     let mut points = Vec::new();
     let mut before_s = 0.0;
     for part in 0..count {
-        for (sum, own) in merged.iter_mut().zip(&condensed.parts[part]) {
-            if own.rows() > 0 {
-                sum.merge(own);
-            }
-        }
+        condensed.merge(part, &mut merged);
         let is_last_of_log =
             condensed.log_of_part.get(part + 1) != Some(&condensed.log_of_part[part]);
         let time_s = before_s + condensed.end_s[part];
@@ -194,7 +190,7 @@ pub fn convergence(model: &RegressionModel, found: &Estimate) -> Vec<Convergence
         if (part + 1) % stride != 0 && part + 1 != count {
             continue;
         }
-        let r = stacked(&merged, &condensed.pattern, &found.weights, &[], condensed.rank);
+        let r = condensed.system(&merged, &found.weights, &[]);
         let solution = solve(&r, &start);
         let values: DVector<f64> = model.to_listed() * &solution.phi;
         let (condition, scaled_condition) = (solution.condition, solution.scaled_condition);

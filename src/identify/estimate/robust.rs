@@ -3,7 +3,8 @@
 
 use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::rows::BlockMaker;
-use super::solve::{solve, stacked};
+use super::solve::solve;
+use super::weights::ByLog;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
 use nalgebra::DMatrix;
@@ -63,10 +64,10 @@ const LEAST_SLOPE: f64 = 0.1;
 pub(super) fn influences(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (phi, scales, loss): (&[f64], &[f64], Loss),
+    (phi, scales, loss): (&[f64], &[Vec<f64>], Loss),
 ) -> Vec<Influence> {
     let mut sums = vec![[0.0; 3]; model.joints.len()];
-    for log in logs {
+    for (log, scales) in logs.iter().zip(scales) {
         BlockMaker::new(model, log).for_each(|block| {
             for (joint, sums) in sums.iter_mut().enumerate() {
                 let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
@@ -103,9 +104,12 @@ impl Problem<'_> {
         let Self { condensed, weights, prior, solution } = self;
         let (rank, triangles) = (condensed.rank, condensed.whole());
         let of = |times: &dyn Fn(&Influence) -> f64| {
-            let both = weights.iter().zip(influences);
-            let weights: Vec<f64> = both.map(|(one, by)| one * times(by).sqrt()).collect();
-            stacked(&triangles, &condensed.pattern, &weights, prior, rank)
+            let of_log = |weights: &Vec<f64>| {
+                let both = weights.iter().zip(influences);
+                both.map(|(one, by)| one * times(by).sqrt()).collect()
+            };
+            let weights: ByLog = weights.iter().map(of_log).collect();
+            condensed.system(&triangles, &weights, prior)
         };
         let squared = |r: &DMatrix<f64>| {
             let w = r.columns(0, rank);
@@ -121,13 +125,13 @@ impl Problem<'_> {
     }
 }
 
-/// The deviation of each joint's residuals, by their median, which outliers do not move; `sizes`
-/// are the largest numbers that rounding leaves.
-pub(super) fn scales(model: &RegressionModel, logs: &[Conditioned], phi: &[f64]) -> Vec<f64> {
+/// For each log the deviation of each joint's residuals, by their median, which outliers do not
+/// move.
+pub(super) fn scales(model: &RegressionModel, logs: &[Conditioned], phi: &[f64]) -> ByLog {
     let samples: usize = logs.iter().map(Conditioned::samples).sum();
     let stride = samples.div_ceil(SCALE_SAMPLES).max(1);
-    let mut found: Vec<Vec<f64>> = vec![Vec::new(); model.joints.len()];
-    for log in logs {
+    let of_log = |log: &Conditioned| {
+        let mut found: Vec<Vec<f64>> = vec![Vec::new(); model.joints.len()];
         BlockMaker::new(model, log).for_each(|block| {
             for (joint, sizes) in found.iter_mut().enumerate() {
                 let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
@@ -136,13 +140,16 @@ pub(super) fn scales(model: &RegressionModel, logs: &[Conditioned], phi: &[f64])
                 sizes.extend(residual.iter().skip(offset).step_by(stride).map(|r| r.abs()));
             }
         });
-    }
-    let deviation = |mut sizes: Vec<f64>| {
-        if sizes.is_empty() {
-            return 0.0;
-        }
-        let middle = sizes.len() / 2;
-        1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+        found.into_iter().map(deviation).collect()
     };
-    found.into_iter().map(deviation).collect()
+    logs.iter().map(of_log).collect()
+}
+
+/// The deviation of residuals of these sizes, if they are normal.
+fn deviation(mut sizes: Vec<f64>) -> f64 {
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let middle = sizes.len() / 2;
+    1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -46,27 +46,27 @@ impl Solution {
     }
 }
 
-/// The square system of weighted triangles of all joints, and of what is known beforehand: R of
-/// [W | y].
+/// The square system of weighted triangles, for each log those of its joints and their weights, and
+/// of what is known beforehand: R of [W | y].
 pub fn stacked(
-    triangles: &[Triangle],
+    logs: &[(&[Triangle], &[f64])],
     pattern: &[Vec<usize>],
-    weights: &[f64],
     prior: &[PriorRow],
     rank: usize,
 ) -> DMatrix<f64> {
-    let used = |joint: &usize| triangles[*joint].rows() > 0 && weights[*joint] > 0.0;
-    let joints: Vec<usize> = (0..triangles.len()).filter(used).collect();
-    let height: usize = joints.iter().map(|&joint| triangles[joint].width() + 1).sum();
+    let all = logs.iter().flat_map(|(of_log, weights)| of_log.iter().zip(*weights).enumerate());
+    let used: Vec<(usize, (&Triangle, &f64))> =
+        all.filter(|(_, (one, weight))| one.rows() > 0 && **weight > 0.0).collect();
+    let height: usize = used.iter().map(|(_, (one, _))| one.width() + 1).sum();
     let height = (height + prior.len()).max(rank + 1);
     let mut stacked = DMatrix::zeros(height, rank + 1);
     let mut row = 0;
-    for joint in joints {
-        let r = triangles[joint].matrix();
+    for (joint, (triangle, weight)) in used {
+        let r = triangle.matrix();
         for own in 0..r.nrows() {
             for place in own..r.ncols() {
                 let target = pattern[joint].get(place).copied().unwrap_or(rank);
-                stacked[(row, target)] = weights[joint] * r[(own, place)];
+                stacked[(row, target)] = weight * r[(own, place)];
             }
             row += 1;
         }

@@ -1,14 +1,13 @@
 //! Total least squares: columns as noisy as what they are to give (Golub, Van Loan 1980).
 
 use super::least_squares::Estimate;
-use super::solve::stacked;
 
 /// Replaces phi by the total least-squares solution: of the columns of W and y scaled to length 1,
 /// the direction that they span least. It stays as it is if that direction has no y.
 pub(super) fn total(found: &mut Estimate) {
     let triangles = found.condensed.whole();
     let rank = found.condensed.rank;
-    let mut r = stacked(&triangles, &found.condensed.pattern, &found.weights, &[], rank);
+    let mut r = found.condensed.system(&triangles, &found.weights, &[]);
     let lengths: Vec<f64> = r.column_iter().map(|column| column.norm()).collect();
     let is_excited = lengths.iter().all(|&length| length > 0.0) && found.solution.dead.is_empty();
     if !is_excited {

@@ -3,6 +3,7 @@
 use super::rows::BlockMaker;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
+use std::borrow::Borrow;
 use std::collections::VecDeque;
 
 /// Distances at which residuals are compared with themselves, in samples.
@@ -67,9 +68,14 @@ impl Sums {
 }
 
 /// Compares the torques of logs with those of phi.
-pub fn validate(model: &RegressionModel, phi: &[f64], logs: &[Conditioned]) -> Validation {
+pub fn validate(
+    model: &RegressionModel,
+    phi: &[f64],
+    logs: &[impl Borrow<Conditioned>],
+) -> Validation {
     let mut sums = vec![Sums::default(); model.joints.len()];
-    let samples: usize = logs.iter().map(Conditioned::samples).sum();
+    let logs = logs.iter().map(Borrow::borrow);
+    let samples: usize = logs.clone().map(Conditioned::samples).sum();
     let stride = samples.div_ceil(DRAWN).max(1);
     for log in logs {
         sums.iter_mut().for_each(|sums| sums.recent.clear());

@@ -1,10 +1,11 @@
 //! Trajectories within the limits of a robot, for who wants something else of them than a small
 //! condition number.
 
-use super::fault::{ExciteError, ExciteFault};
+use super::fault::ExciteError;
 use super::model::Evaluators;
 use super::{
-    Check, ExciteOptions, ExcitedModel, SAFE, Search, Space, Stack, references, trajectory_file,
+    Check, ExciteOptions, ExcitedModel, SAFE, Search, Space, Stack, prepared, references,
+    trajectory_file,
 };
 use crate::trajectory::Reference;
 use denavit_codegen::model::Robot;
@@ -25,18 +26,7 @@ impl Feasible {
     /// # Errors
     /// As for [`excite`](super::excite): limits that are missing, options that contradict.
     pub fn new(robot: &Robot, options: &ExciteOptions) -> Result<Self, ExciteError> {
-        let mut faults = Vec::new();
-        let space = options.space(&mut faults);
-        let model = options.model(robot, &mut faults);
-        ExciteOptions::error(robot, faults)?;
-        let (Some(space), Some(model)) = (space, model) else {
-            unreachable!("what is missing has been reported")
-        };
-        let mut evaluators = model.evaluators();
-        let stack = Stack::new(&model, &mut evaluators);
-        if stack.names.is_empty() {
-            ExciteOptions::error(robot, vec![ExciteFault::NothingExcited])?;
-        }
+        let (model, space, stack, evaluators) = prepared(robot, options)?;
         Ok(Self { options: options.clone(), model, space, stack, evaluators })
     }
 

@@ -101,13 +101,11 @@ const RESERVE: f64 = 0.004;
 /// the samples of a check.
 const SAFE: f64 = 1.0 - 1e-4;
 
-/// Looks for a trajectory that excites the base parameters of `robot`; `tell` hears what each
-/// start does, from several threads.
-pub fn excite(
+/// A robot with its limits, the space of its trajectories and the columns that these excite.
+fn prepared(
     robot: &Robot,
     options: &ExciteOptions,
-    tell: &(dyn Fn(&Progress) + Sync),
-) -> Result<Excited, ExciteError> {
+) -> Result<(ExcitedModel, Space, Stack, Evaluators), ExciteError> {
     let mut faults = Vec::new();
     let space = options.space(&mut faults);
     let model = options.model(robot, &mut faults);
@@ -115,10 +113,28 @@ pub fn excite(
     let (Some(space), Some(model)) = (space, model) else {
         unreachable!("what is missing has been reported")
     };
-    let stack = Stack::new(&model, &mut model.evaluators());
+    let (stack, evaluators) = stacked(robot, &model)?;
+    Ok((model, space, stack, evaluators))
+}
+
+/// The columns that motions of a robot excite, if there are any.
+fn stacked(robot: &Robot, model: &ExcitedModel) -> Result<(Stack, Evaluators), ExciteError> {
+    let mut evaluators = model.evaluators();
+    let stack = Stack::new(model, &mut evaluators);
     if stack.names.is_empty() {
         ExciteOptions::error(robot, vec![ExciteFault::NothingExcited])?;
     }
+    Ok((stack, evaluators))
+}
+
+/// Looks for a trajectory that excites the base parameters of `robot`; `tell` hears what each
+/// start does, from several threads.
+pub fn excite(
+    robot: &Robot,
+    options: &ExciteOptions,
+    tell: &(dyn Fn(&Progress) + Sync),
+) -> Result<Excited, ExciteError> {
+    let (model, space, stack, _) = prepared(robot, options)?;
     let search = Search { options, model: &model, space: &space, stack: &stack };
     let starts = search.run(tell);
     let mut best = 0;
@@ -163,11 +179,7 @@ pub fn check_trajectory(
     }
     ExciteOptions::error(robot, faults)?;
     let Some(model) = model else { unreachable!("what is missing has been reported") };
-    let mut evaluators = model.evaluators();
-    let stack = Stack::new(&model, &mut evaluators);
-    if stack.names.is_empty() {
-        ExciteOptions::error(robot, vec![ExciteFault::NothingExcited])?;
-    }
+    let (stack, mut evaluators) = stacked(robot, &model)?;
     let reference = |joint: &JointLimits| match (trajectory.find(&joint.name), joint.held) {
         (Some(reference), None) => reference.clone(),
         (_, held) => Reference::Constant(held.unwrap_or(0.0)),

@@ -99,6 +99,8 @@ pub enum Suspicion {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // the fields are what the messages name
 pub enum LogRemark {
+    /// The last line has no end, so that it may be cut: it was left out.
+    CutLine { line: usize },
     /// Rows that said the same twice were dropped.
     DroppedRepeats { count: usize },
     /// Missing samples were filled in by cubic interpolation.
@@ -337,9 +339,32 @@ impl fmt::Display for Suspicion {
     }
 }
 
+/// Names the positions that have steps, and how large these are.
+fn write_steps(f: &mut fmt::Formatter<'_>, columns: &[(String, f64)]) -> fmt::Result {
+    const NAMED: usize = 4;
+    let names: Vec<String> =
+        columns.iter().take(NAMED).map(|(column, _)| format!("`{column}`")).collect();
+    write!(f, "{}", names.join(", "))?;
+    if columns.len() > NAMED {
+        write!(f, " and {} other positions", columns.len() - NAMED)?;
+    }
+    let steps = columns.iter().map(|(_, step)| *step);
+    let least = steps.clone().fold(f64::INFINITY, f64::min);
+    let largest = steps.fold(0.0, f64::max);
+    let verb = if columns.len() > 1 { "have" } else { "has" };
+    write!(f, " {verb} steps of {least:.3e}")?;
+    if largest > 1.01 * least {
+        write!(f, " to {largest:.3e}")?;
+    }
+    write!(f, ", as of an encoder")
+}
+
 impl fmt::Display for LogRemark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::CutLine { line } => {
+                write!(f, "line {line}, the last one, has no end and may be cut: left out")
+            }
             Self::DroppedRepeats { count } => write!(f, "{count} repeated rows dropped"),
             Self::FilledGaps { missing, samples, longest } => write!(
                 f,
@@ -366,24 +391,7 @@ impl fmt::Display for LogRemark {
                 "`{column}` stands at {value:.6} in {:.1} % of the samples: saturated?",
                 100.0 * share
             ),
-            Self::Steps { columns } => {
-                const NAMED: usize = 4;
-                let names: Vec<String> =
-                    columns.iter().take(NAMED).map(|(column, _)| format!("`{column}`")).collect();
-                write!(f, "{}", names.join(", "))?;
-                if columns.len() > NAMED {
-                    write!(f, " and {} other positions", columns.len() - NAMED)?;
-                }
-                let steps = columns.iter().map(|(_, step)| *step);
-                let least = steps.clone().fold(f64::INFINITY, f64::min);
-                let largest = steps.fold(0.0, f64::max);
-                let verb = if columns.len() > 1 { "have" } else { "has" };
-                write!(f, " {verb} steps of {least:.3e}")?;
-                if largest > 1.01 * least {
-                    write!(f, " to {largest:.3e}")?;
-                }
-                write!(f, ", as of an encoder")
-            }
+            Self::Steps { columns } => write_steps(f, columns),
             Self::CommandedTorque { joint } => {
                 write!(f, "`{joint}`: the commanded torque stands for the measured one")
             }

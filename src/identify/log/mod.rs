@@ -173,6 +173,7 @@ pub fn read_log(
     }
     let names: Vec<String> = wanted.columns.iter().map(|column| column.name.clone()).collect();
     let jumps = wanted.jumps(&table);
+    let cut = table.cut.map(|line| LogRemark::CutLine { line });
     let even = repair::even(table, &names).map_err(failed)?;
     let mut log = MeasuredLog {
         file: file.to_owned(),
@@ -181,7 +182,7 @@ pub fn read_log(
         step_s: even.step_s,
         joints: vec![JointSignals::default(); robot.joints.len()],
         contacts: Vec::new(),
-        remarks: even.remarks,
+        remarks: cut.into_iter().chain(even.remarks).collect(),
     };
     wanted.hand_out(&mut log, even.columns, robot);
     let mut found = check::check(&log, robot.joints);

@@ -26,6 +26,8 @@ pub(super) struct Table {
     pub(super) columns: Vec<Vec<f64>>,
     /// The line of the first row of each run of rows without other lines between, with its row.
     lines: Vec<(usize, usize)>,
+    /// The last line, if it has no end: it may be cut, and is none of the rows.
+    pub(super) cut: Option<usize>,
 }
 
 impl Table {
@@ -53,8 +55,8 @@ impl<R: BufRead> Lines<R> {
         Self { source, buffer: Vec::new(), number: 0 }
     }
 
-    /// The next line with its number; none at the end.
-    fn next(&mut self) -> Result<Option<(usize, &str)>, LogFault> {
+    /// The next line with its number, and whether it has an end; none at the end.
+    fn next(&mut self) -> Result<Option<(usize, &str, bool)>, LogFault> {
         self.buffer.clear();
         let mut source = (&mut self.source).take(LONGEST_LINE);
         let read = source.read_until(b'\n', &mut self.buffer).map_err(|error| {
@@ -68,20 +70,21 @@ impl<R: BufRead> Lines<R> {
             return Ok(None);
         }
         self.number += 1;
-        if read as u64 == LONGEST_LINE && self.buffer.last() != Some(&b'\n') {
+        let is_whole = self.buffer.last() == Some(&b'\n');
+        if read as u64 == LONGEST_LINE && !is_whole {
             return Err(LogFault::LongLine { line: self.number });
         }
         let line = std::str::from_utf8(&self.buffer)
             .map_err(|_| LogFault::NotUtf8 { line: self.number })?;
         let line = if self.number == 1 { line.trim_start_matches('\u{feff}') } else { line };
-        Ok(Some((self.number, line.trim())))
+        Ok(Some((self.number, line.trim(), is_whole)))
     }
 }
 
 /// Reads up to the names of the columns.
 pub(super) fn read_head<R: BufRead>(lines: &mut Lines<R>) -> Result<Head, Vec<LogFault>> {
     let mut head = Head { separator: ',', ..Head::default() };
-    while let Some((number, line)) = lines.next().map_err(|fault| vec![fault])? {
+    while let Some((number, line, _)) = lines.next().map_err(|fault| vec![fault])? {
         head.lines = number;
         if line.is_empty() {
             continue;
@@ -117,14 +120,18 @@ pub(super) fn read_rows<R: BufRead>(
     for (target, &place) in places.iter().enumerate() {
         targets[place].push(target);
     }
-    let mut table = Table { columns: vec![Vec::new(); places.len()], lines: Vec::new() };
+    let mut table = Table { columns: vec![Vec::new(); places.len()], lines: Vec::new(), cut: None };
     let mut faults = Vec::new();
     let mut before = 0;
-    while let Some((number, line)) = lines.next().map_err(|fault| vec![fault])? {
+    while let Some((number, line, is_whole)) = lines.next().map_err(|fault| vec![fault])? {
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
         let row = table.rows();
+        if !is_whole && row > 0 {
+            table.cut = Some(number);
+            break;
+        }
         if before + 1 != number || row == 0 {
             table.lines.push((row, number));
         }

@@ -341,8 +341,8 @@ impl Load<'_> {
         let listed = listed.collect();
         let torques = self.loads(&forces).torque;
         let size = |torque: &Option<Vec<f64>>| rms(torque.as_deref().unwrap_or_default());
-        let residuals = found.noise.iter().zip(&torques).map(|(noise, t)| [*noise, size(t)]);
-        let residuals = residuals.collect();
+        let noise = found.noise_of_joints().into_iter();
+        let residuals = noise.zip(&torques).map(|(noise, t)| [noise, size(t)]).collect();
         found.covariance = covariance;
         Ok(TwoStage { springs, listed, load: found, residuals })
     }

@@ -1,15 +1,14 @@
 //! A robot that stands on the ground: TUlip's step, with a spring in one knee that its model lacks.
 
+use crate::identify::gait::walked;
 use denavit::diagnose::{Filters, Request, SearchOptions, Uncertainty, candidates, diagnose};
 use denavit::effect;
 use denavit::identify::Ground;
 use denavit::identify::log::{ColumnMapping, LogFault, LogOf, MeasuredLog, read_log};
-use denavit::model::Robot;
 use denavit::plants::regression::RegressionModel;
 use denavit::regressor::functions::modelled;
 use denavit::shipped;
 use denavit::simulate::Random;
-use denavit::simulate::scenario::{self, RunScheme};
 
 const STIFFNESS: f64 = 60.0;
 const SLACK_BELOW_RAD: f64 = 0.9;
@@ -28,27 +27,8 @@ fn tulip(has_spring: bool) -> String {
 }
 
 /// A step of the robot with the spring as instruments see it.
-fn step(robot: &Robot, model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
-    let shipped = shipped::find_scenario("tulip_step").expect("shipped");
-    let load = |_: &str| Ok(tulip(true).into_bytes());
-    let mut text: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
-    text["gait"]["weight_shift_step"]["length_m"] = length_m.into();
-    let read = scenario::read(shipped.name, text.to_string().as_bytes(), &load);
-    let mut scenario = read.unwrap_or_else(|error| panic!("{error}"));
-    scenario.scheme = RunScheme::TimeStepping;
-    scenario.simulation.log_period_s = scenario.stepping.step_s;
-    let run = scenario.run().unwrap_or_else(|error| panic!("{error}"));
-    let contacts: Vec<String> =
-        robot.contacts.values().map(|contact| contact.name.clone()).collect();
-    let of = LogOf {
-        model: &model.model,
-        joints: &model.joints,
-        contacts: &contacts,
-        accepts_suspicious: true,
-    };
-    let csv = run.log.to_csv();
-    let log = read_log("step.csv", csv.as_bytes(), of, &ColumnMapping::default());
-    let mut log = log.unwrap_or_else(|faults| panic!("{faults}"));
+fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
+    let mut log = walked(model, length_m, &|_| Ok(tulip(true).into_bytes()));
     let mut random = Random::new(seed);
     let torques = log.joints.iter_mut().filter_map(|joint| joint.tau.as_mut());
     for tau in torques.flatten() {
@@ -71,7 +51,7 @@ fn a_spring_in_the_knee_of_a_robot_that_steps_is_named() {
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("a regression");
     let mut ground = Ground::under(&robot, &model).expect("a plant").expect("a floating base");
     let mut log = |of| {
-        let mut log = step(&robot, &model, of);
+        let mut log = step(&model, of);
         ground.load(&mut log);
         log
     };

@@ -342,3 +342,55 @@ fn the_estimate_converges_as_data_come_in() {
     assert!(error(&last.values) < error(&first.values));
     assert!(last.condition < first.condition && last.time_s > 19.0);
 }
+
+/// Two logs whose torques have noise of 0.02 and 1 N m: each method finds both, and weighs rows by
+/// them, so that errors are as good as those of the better log alone.
+#[test]
+fn each_log_is_weighted_by_its_own_noise() {
+    let robot = bare("planar_2r");
+    let model = RegressionModel::new(&robot, INERTIAL, &[]).expect("a model");
+    let log = |noise, seed| Experiment { samples: 2000, noise, seed, friction: false }.run(&robot);
+    let logs = [log(1.0, 4), log(0.02, 5)];
+    let of = |logs: &[Conditioned], method| {
+        let options = Options { method, errors: Errors::Classical, ..Options::default() };
+        let found = run(&model, logs, &options);
+        let errors: Vec<f64> =
+            parameters(&model, &found).iter().map(|one| one.std.expect("excited")).collect();
+        (found, errors)
+    };
+    for method in [Method::Weighted, Method::Robust(Loss::Huber), Method::Likelihood] {
+        let (_, alone) = of(&logs[1..], method);
+        let (found, both) = of(&logs, method);
+        for (noise, truth) in found.noise.iter().zip([1.0, 0.02]) {
+            for noise in noise {
+                assert!((noise / truth - 1.0).abs() < 0.1, "{method:?}: {noise} {truth}");
+            }
+        }
+        for (alone, both) in alone.into_iter().zip(both) {
+            assert!((0.9..1.05).contains(&(both / alone)), "{method:?}: {alone} {both}");
+        }
+        assert!(coverage(&model, &found).1 < 4.5, "{method:?}");
+    }
+}
+
+/// Logs of a few samples beside a long one: what they seem to have less of noise is the share of
+/// the parameters that they decide, and intervals hold.
+#[test]
+fn short_logs_do_not_seem_better_than_they_are() {
+    let robot = bare("planar_2r");
+    let model = RegressionModel::new(&robot, INERTIAL, &[]).expect("a model");
+    let (mut squares, mut count) = (0.0, 0);
+    for seed in 0..40 {
+        let log =
+            |samples, seed| Experiment { samples, noise: 0.05, seed, friction: false }.run(&robot);
+        let logs = [log(300, 900 + seed), log(6, 1000 + seed), log(6, 2000 + seed)];
+        let found =
+            run(&model, &logs, &Options { errors: Errors::Classical, ..Options::default() });
+        for (one, truth) in parameters(&model, &found).iter().zip(truth(&model)) {
+            squares += ((one.value - truth) / one.std.expect("excited")).powi(2);
+            count += 1;
+        }
+    }
+    let spread = (squares / f64::from(count)).sqrt();
+    assert!((0.85..1.15).contains(&spread), "{spread}");
+}

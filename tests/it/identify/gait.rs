@@ -14,17 +14,17 @@ use denavit::simulate::scenario::{self, RunScheme};
 /// Deviation of each component of a force that is measured \[N\].
 const FORCE_NOISE_N: f64 = 0.5;
 
-/// TUlip's step of thesis 2.3.5 as instruments see it: the pose of the torso, the joints, forces
-/// of the eight points of its feet.
-fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
+/// TUlip's step of thesis 2.3.5 of this length: the pose of the torso, the joints, forces of the
+/// eight points of its feet. `load` gives the files that the scenario refers to.
+pub(crate) fn walked(
+    model: &RegressionModel,
+    length_m: f64,
+    load: &scenario::Loader<'_>,
+) -> MeasuredLog {
     let shipped = shipped::find_scenario("tulip_step").expect("shipped");
-    let load = |name: &str| {
-        let found = shipped::find_referred(name).ok_or("no such file")?;
-        Ok(found.text.as_bytes().to_vec())
-    };
     let mut text: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
     text["gait"]["weight_shift_step"]["length_m"] = length_m.into();
-    let read = scenario::read(shipped.name, text.to_string().as_bytes(), &load);
+    let read = scenario::read(shipped.name, text.to_string().as_bytes(), load);
     let mut scenario = read.unwrap_or_else(|error| panic!("{error}"));
     scenario.scheme = RunScheme::TimeStepping;
     scenario.simulation.log_period_s = scenario.stepping.step_s;
@@ -39,7 +39,16 @@ fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
     };
     let csv = run.log.to_csv();
     let log = read_log("step.csv", csv.as_bytes(), of, &ColumnMapping::default());
-    let mut log = log.unwrap_or_else(|faults| panic!("{faults}"));
+    log.unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The same as instruments see it.
+fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
+    let load = |name: &str| {
+        let found = shipped::find_referred(name).ok_or("no such file")?;
+        Ok(found.text.as_bytes().to_vec())
+    };
+    let mut log = walked(model, length_m, &load);
     let mut random = Random::new(seed);
     for force in log.contacts.iter_mut().flat_map(|(_, axes)| axes) {
         force.iter_mut().for_each(|force| *force += FORCE_NOISE_N * random.normal());

@@ -170,7 +170,7 @@ fn undefined_cells_are_filled_in_or_refused() {
             cells[5] = "nan";
             lines[k] = cells.join(",");
         }
-        lines.join("\n")
+        lines.join("\n") + "\n"
     };
     let log = made.read_as(&holes(100), "{}").expect("few");
     assert!(matches!(log.remarks[..], [LogRemark::FilledCells { count: 14, .. }]));

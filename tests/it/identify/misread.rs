@@ -20,7 +20,7 @@ fn made(name: &str, seed: u64, friction: bool) -> (RegressionModel, Conditioned)
 }
 
 fn told(model: &RegressionModel, log: &Conditioned) -> Vec<(Misreading, bool)> {
-    let found = misread_columns(model, std::slice::from_ref(log), Evidence::default());
+    let found = misread_columns(model, &[log], Evidence::default());
     found.into_iter().map(|one| (one.misreading, one.is_sure)).collect()
 }
 
@@ -112,7 +112,7 @@ fn slides_and_single_logs_are_told() {
     let (model, log) = made("planar_2r", 4, true);
     let mut turned = misread(&made("planar_2r", 5, true).1, Misreading::Torque(1, -1.0));
     turned.file = "turned".to_owned();
-    let found = misread_columns(&model, &[log, turned], Evidence::default());
+    let found = misread_columns(&model, &[&log, &turned], Evidence::default());
     let told: Vec<_> = found.iter().map(|one| (one.misreading, one.file.as_deref())).collect();
     assert_eq!(told, [(Misreading::Torque(1, -1.0), Some("turned"))]);
 }

@@ -4,7 +4,7 @@ mod emps;
 mod estimate;
 mod forward;
 mod friction;
-mod gait;
+pub(crate) mod gait;
 mod leg;
 mod log;
 mod misread;

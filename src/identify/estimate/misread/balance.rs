@@ -29,7 +29,7 @@ const OF_JOINTS: [&str; 4] = ["fv", "fc", "Ia", "off"];
 
 /// The model's own values of phi; what it does not say of joints (friction, rotors, offsets) is
 /// taken for 0. None if it does not say all of its bodies.
-pub(in crate::identify) fn nominal_values(model: &RegressionModel) -> Option<Vec<f64>> {
+pub(super) fn nominal_values(model: &RegressionModel) -> Option<Vec<f64>> {
     let is_of_joint = |parameter: &RegressionParameter| {
         let owner = |at: usize| model.standard[at].owner.as_ref();
         let mut members = parameter.members.iter();
@@ -106,7 +106,7 @@ impl<'a> Balance<'a> {
     /// Of logs, with values of phi that need no estimate.
     pub(super) fn new(
         model: &'a RegressionModel,
-        logs: &'a [Conditioned],
+        logs: &[&'a Conditioned],
         own: Option<&[f64]>,
     ) -> Self {
         let n = model.joints.len();
@@ -114,7 +114,7 @@ impl<'a> Balance<'a> {
         let samples = (ALL_READINGS / readings).clamp(SAMPLES[0], SAMPLES[1]);
         let blocks = (samples / BLOCK / logs.len().max(1)).clamp(1, BLOCKS);
         let mut windows = Vec::new();
-        for log in logs {
+        for &log in logs {
             let samples = log.samples();
             let every = samples.div_ceil(BLOCK * blocks).max(1);
             for first in (0..samples).step_by(BLOCK * every) {
@@ -203,7 +203,7 @@ impl<'a> Balance<'a> {
         let rank = self.model.rank();
         let weight = |size: &f64| if *size > 0.0 { 1.0 / size.sqrt() } else { 0.0 };
         let weights: Vec<f64> = sizes.iter().map(weight).collect();
-        let r = stacked(triangles, self.model.pattern(), &weights, &[], rank);
+        let r = stacked(&[(triangles, &weights)], self.model.pattern(), &[], rank);
         solve(&r, &vec![0.0; rank]).phi.as_slice().to_vec()
     }
 
@@ -260,7 +260,8 @@ impl<'a> Balance<'a> {
             own.iter().copied().chain(rank..rank + lines.len()).collect()
         };
         let pattern: Vec<Vec<usize>> = pattern.iter().map(places).collect();
-        explained(&stacked(&triangles, &pattern, &weights, &[], rank + lines.len()), rank)
+        let r = stacked(&[(&triangles, &weights)], &pattern, &[], rank + lines.len());
+        explained(&r, rank)
     }
 }
 

@@ -11,8 +11,9 @@ use crate::identify::estimate::errors::{Errors, Problem};
 use crate::identify::estimate::least_squares::Estimate;
 use crate::identify::estimate::left_out::LeftOut;
 use crate::identify::estimate::rows::{Block, BlockMaker};
-use crate::identify::estimate::solve::{Solution, solve, stacked};
+use crate::identify::estimate::solve::{Solution, solve};
 use crate::identify::estimate::triangle::Triangle;
+use crate::identify::estimate::weights::ByLog;
 use crate::plants::regression::RegressionModel;
 use std::borrow::Cow;
 
@@ -46,9 +47,11 @@ pub(super) fn constant_errors(
     logs: &[Conditioned],
     found: &Estimate,
 ) -> Vec<(Misreading, f64)> {
-    let (pieces, left_out) = pieces(logs, &found.left_out);
+    let (pieces, left_out, log_of_piece) = pieces(logs, &found.left_out);
     let mut columns = Columns::new(model, &pieces, found.solution.phi.as_slice());
-    let extended = Extended::new(model, (&pieces, &left_out), (found, &mut columns));
+    let weights = found.condensed.reciprocal(&found.noise, &found.condensed.whole());
+    let weights = log_of_piece.iter().map(|&log| weights[log].clone()).collect();
+    let extended = Extended::new(model, (&pieces, &left_out), (weights, &mut columns));
     let lines = columns.lines.clone();
     let mut chosen: Vec<usize> = Vec::new();
     let mut sizes: Vec<Size> = Vec::new();
@@ -88,15 +91,16 @@ pub(super) fn constant_errors(
     chosen.iter().zip(&sizes).map(of).collect()
 }
 
-/// Pieces all along the logs, as logs, with the rows of them that do not count.
-fn pieces(logs: &[Conditioned], left_out: &LeftOut) -> (Vec<Conditioned>, LeftOut) {
+/// Pieces all along the logs, as logs, with the rows of them that do not count, and their logs.
+fn pieces(logs: &[Conditioned], left_out: &LeftOut) -> (Vec<Conditioned>, LeftOut, Vec<usize>) {
     let most = SAMPLES / logs.len();
     let of = |(number, log): (usize, &Conditioned)| -> Vec<(usize, Piece)> {
         log.pieces(most).into_iter().map(|piece| (number, piece)).collect()
     };
     let all: Vec<(usize, Piece)> = logs.iter().enumerate().flat_map(of).collect();
     let pieces = all.iter().map(|&(number, piece)| logs[number].piece(piece)).collect();
-    (pieces, left_out.of_pieces(logs, &all))
+    let log_of_piece = all.iter().map(|(number, _)| *number).collect();
+    (pieces, left_out.of_pieces(logs, &all), log_of_piece)
 }
 
 /// A constant that may be off.
@@ -224,7 +228,7 @@ impl<'a> Columns<'a> {
 /// Logs condensed with the columns of all constants.
 struct Extended {
     condensed: Condensed,
-    weights: Vec<f64>,
+    weights: ByLog,
     /// Columns of the regressor of each joint, and of phi.
     own: Vec<Vec<usize>>,
     rank: usize,
@@ -234,7 +238,7 @@ impl Extended {
     fn new(
         model: &RegressionModel,
         rows: (&[Conditioned], &LeftOut),
-        (found, columns): (&Estimate, &mut Columns<'_>),
+        (weights, columns): (ByLog, &mut Columns<'_>),
     ) -> Self {
         let (own, rank) = (model.pattern().to_vec(), model.rank());
         let count = columns.lines.len();
@@ -253,8 +257,6 @@ impl Extended {
                 all.push(target);
                 Some(all)
             });
-        let weight = |noise: &f64| if *noise > 0.0 { 1.0 / noise } else { 0.0 };
-        let weights = found.noise.iter().map(weight).collect();
         Self { condensed, weights, own, rank }
     }
 
@@ -276,6 +278,7 @@ impl Extended {
             parts: self.condensed.parts.iter().map(of_part).collect(),
             log_of_part: self.condensed.log_of_part.clone(),
             end_s: self.condensed.end_s.clone(),
+            independent: self.condensed.independent.clone(),
             rank,
         }
     }
@@ -284,7 +287,7 @@ impl Extended {
     fn solved(&self, chosen: &[usize]) -> (Condensed, Solution, Vec<f64>) {
         let condensed = self.with(chosen);
         let (rank, triangles) = (condensed.rank, condensed.whole());
-        let r = stacked(&triangles, &condensed.pattern, &self.weights, &[], rank);
+        let r = condensed.system(&triangles, &self.weights, &[]);
         let lengths = r.column_iter().map(|column| column.norm()).collect();
         (condensed, solve(&r, &vec![0.0; rank]), lengths)
     }

@@ -14,15 +14,15 @@ mod reading;
 mod search;
 mod verdict;
 
-pub(in crate::identify) use balance::nominal_values;
 pub use misreading::{ExchangedColumns, Misreading};
 pub(in crate::identify) use verdict::CLEAN;
 
 use super::least_squares::Estimate;
+use super::likelihood::noise_of_positions;
 use super::report::{IdentifiedParameter, Status};
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::{RegressionJoint, RegressionModel};
-use balance::Balance;
+use balance::{Balance, nominal_values};
 use reading::Reading;
 use search::Search;
 use std::fmt;
@@ -41,9 +41,6 @@ pub struct Evidence<'a> {
     pub values: Option<&'a [f64]>,
     /// What was estimated from these logs.
     pub listed: &'a [IdentifiedParameter],
-    /// The share of each joint's torque that noise of the positions makes by those values: where
-    /// that explains what these leave, nothing is tried that makes less of it, whatever is true.
-    pub noise: Option<&'a [f64]>,
 }
 
 /// Columns that seem to be other ones than they are taken for.
@@ -133,7 +130,7 @@ fn share(share: f64) -> String {
 /// The columns that seem to be other ones, one after the other: each with those before it mended.
 pub fn misread_columns(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    logs: &[&Conditioned],
     evidence: Evidence<'_>,
 ) -> Vec<MisreadColumns> {
     let mut found = misread_alike(model, logs, evidence);
@@ -195,11 +192,11 @@ pub(in crate::identify) fn constants_off(
 /// The same of each log by itself, with its name.
 pub(in crate::identify) fn misread_apart(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    logs: &[&Conditioned],
     evidence: Evidence<'_>,
 ) -> Vec<MisreadColumns> {
-    let of = |log: &Conditioned| {
-        let own = misread_alike(model, std::slice::from_ref(log), evidence);
+    let of = |log: &&Conditioned| {
+        let own = misread_alike(model, &[log], evidence);
         let file = log.file.clone();
         own.into_iter().map(move |one| MisreadColumns { file: Some(file.clone()), ..one })
     };
@@ -209,7 +206,7 @@ pub(in crate::identify) fn misread_apart(
 /// The same of logs that are all misread alike.
 fn misread_alike(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    logs: &[&Conditioned],
     evidence: Evidence<'_>,
 ) -> Vec<MisreadColumns> {
     let step_s = logs.iter().map(|log| log.step_s).fold(f64::INFINITY, f64::min);
@@ -218,7 +215,8 @@ fn misread_alike(
     let nominal = nominal_values(model).filter(|_| evidence.values.is_none());
     let values = evidence.values.or(nominal.as_deref());
     let balance = Balance::new(model, logs, values);
-    let mut search = Search { model, balance, noise: evidence.noise, latest };
+    let noise = values.map(|values| noise_of_positions(model, logs, values)).unwrap_or_default();
+    let mut search = Search { model, balance, noise, latest };
     let mut found: Vec<MisreadColumns> = Vec::new();
     let mut reading = Reading::straight(model.joints.len());
     while found.len() <= model.joints.len() + 1 {

@@ -28,8 +28,10 @@ const FOLLOWED: usize = 4;
 pub(super) struct Search<'a> {
     pub(super) model: &'a RegressionModel,
     pub(super) balance: Balance<'a>,
-    /// How much of each joint's torque noise of the positions makes by the model's own values.
-    pub(super) noise: Option<&'a [f64]>,
+    /// How much of each joint's torque noise of the positions makes by the values that are given:
+    /// where that explains what these leave, nothing is tried that makes less of it, whatever is
+    /// true.
+    pub(super) noise: Vec<f64>,
     /// Signals are at most so many samples late.
     pub(super) latest: isize,
 }
@@ -72,11 +74,11 @@ impl Search<'_> {
     }
 
     fn is_noise(&self, left: &Shares) -> bool {
-        let both = left.iter().zip(self.noise.unwrap_or_default());
+        let mut both = left.iter().zip(&self.noise);
         let is_noise = |(left, noise): (&Option<f64>, &f64)| {
             left.is_some_and(|left| left > EXPLAINED && *noise > NOISE * left)
         };
-        both.into_iter().any(is_noise)
+        both.any(is_noise)
     }
 
     fn joints(&self) -> &[RegressionJoint] {
@@ -115,7 +117,9 @@ impl Search<'_> {
             let other = reading.with(one, &self.model.joints);
             let Some(after) = self.balance.left(&other, true).fit else { continue };
             let both = own.as_ref().zip(own_after.as_ref()).map(|(before, after)| [before, after]);
-            let verdict = Verdict::new(one, both, [fit, &after.left]);
+            let mut verdict = Verdict::new(one, both, [fit, &after.left]);
+            // of noise an estimate may leave less by chance
+            verdict.by_fit &= !(is_noisy && self.is_noise(fit));
             let is_better = best.as_ref().is_none_or(|best| verdict.rank() < best.rank());
             if verdict.is_believed() && is_better {
                 best = Some(verdict);

@@ -7,7 +7,7 @@ use super::estimate::{
     consistent, constants_off, convergence, estimate, filter_errors, long_enough, misread_apart,
     misread_columns, parameters, solve, unexplained_joints, validate,
 };
-use super::noisy_logs::{MOST, NoisyLog, biasing_logs, noisy_logs, shown_logs};
+use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
@@ -42,9 +42,11 @@ pub struct Identification {
     pub misread: Vec<MisreadColumns>,
     /// Logs of several for the estimate of which noise of the positions makes most.
     pub noisy_logs: Vec<NoisyLog>,
-    /// For each log for the estimate whether it needs a lower filter: noise of its positions makes
-    /// most of it, or biases parameters.
+    /// For each log for the estimate whether its noise of positions biases parameters, so that it
+    /// needs a lower filter.
     pub biasing_logs: Vec<bool>,
+    /// For each of them whether it would need one if it were alone.
+    pub biased_alone: Vec<bool>,
     /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
     /// it, and how much: a share of its root of mean square.
     pub filter_error: Option<(String, f64)>,
@@ -255,6 +257,7 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         noisy_logs: noisy_logs(model, train, &found),
         periods: train.iter().map(Conditioned::periods).sum(),
         biasing_logs: biasing_logs(model, &listed, &found),
+        biased_alone: biased_alone(&found),
         parameters: listed,
         filter_error: filter_error(model, train, (phi, &left)),
         train: left,

@@ -94,8 +94,16 @@ fn added(model: &RegressionModel, log: usize, found: &Estimate) -> Added {
     Added::Certainty(larger.fold(0.0, f64::max))
 }
 
-/// For each log whether it needs a lower filter: noise makes most of it, or biases what it would
-/// say by itself, or it has its share of a bias.
+/// For each log beside others whether it would need a lower filter if it were alone: noise makes
+/// most of it, or biases what it says.
+pub(super) fn biased_alone(found: &Estimate) -> Vec<bool> {
+    let is_beside = found.noise_of_logs.len() > 1;
+    let is_biased = |one: &NoiseOfLog| is_beside && (one.share > MOST || one.alone > BIASING);
+    found.noise_of_logs.iter().map(is_biased).collect()
+}
+
+/// For each log whether it has its share of a bias, so that it needs a lower filter; all if noise
+/// makes most of all.
 pub(super) fn biasing_logs(
     model: &RegressionModel,
     listed: &[IdentifiedParameter],
@@ -104,13 +112,11 @@ pub(super) fn biasing_logs(
     let biased = |at: &usize| listed[*at].is_biased_without_change();
     let biased: Vec<usize> = (0..listed.len()).filter(biased).collect();
     let all = model.to_listed() * &found.noise_bias;
-    let logs = found.noise_of_logs.len();
     let noisy = found.noise_of_logs.iter().filter(|one| one.share > 0.0).count().max(1) as f64;
     let has_part = |one: &NoiseOfLog| {
         let own = model.to_listed() * &one.bias;
         let is_part = |&at: &usize| own[at] * all[at].signum() * noisy >= SHARE * all[at].abs();
-        let needs_its_own = one.share > MOST || (logs > 1 && one.alone > BIASING);
-        needs_its_own || (one.share > 0.0 && biased.iter().any(is_part))
+        found.noise_share > MOST || (one.share > 0.0 && biased.iter().any(is_part))
     };
     found.noise_of_logs.iter().map(has_part).collect()
 }

@@ -60,8 +60,7 @@ impl Estimation<'_> {
         self.progress.show("estimating");
         let mut found = self.found(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
-        while !allows_for_noise
-            && let Some((lower, is_biased)) = self.lower(&read, &halvings, &found.0)
+        while !allows_for_noise && let Some((lower, most)) = self.lower(&read, &halvings, &found.0)
         {
             let times = lower.iter().max().unwrap_or(&0);
             self.progress.show(&format!("reading logs, filter halved {times} times"));
@@ -70,7 +69,7 @@ impl Estimation<'_> {
             self.progress.show(&format!("estimating, filter halved {times} times"));
             let next = self.found(&read, options)?;
             let parameters = &found.0.parameters;
-            let is_better = is_biased || has_smaller_errors(&next.0.parameters, parameters);
+            let is_better = growth_of_errors(&next.0.parameters, parameters) < most;
             if next.0.filter_error.is_some() || !is_better {
                 // worse than the noise that it takes away
                 drop(read);
@@ -82,32 +81,36 @@ impl Estimation<'_> {
         Ok((read, found))
     }
 
-    /// The next lower filters of logs, if noise of the positions asks for them, and whether that
-    /// is since it biases parameters: then of the logs that do.
+    /// The next lower filters of logs, if noise of the positions asks for them, and how errors may
+    /// grow with them: of the logs that bias parameters, or those that would be biased if they were
+    /// alone, or of all where parameters may change with it.
     fn lower(
         &self,
         read: &logs::Read,
         halvings: &[u32],
         found: &Identification,
-    ) -> Option<(Halvings, bool)> {
+    ) -> Option<(Halvings, f64)> {
         let conditions = &self.arguments.conditions;
         let lower = |asking: &[bool]| conditions.lower(&read.train, (halvings, asking));
-        let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, true));
-        of_biasing.or_else(|| {
-            let may_change = found.parameters.iter().any(IdentifiedParameter::may_change);
-            let lower = lower(&vec![may_change; halvings.len()])?;
-            Some((lower, false))
-        })
+        let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, f64::INFINITY));
+        let of_alone = || lower(&found.biased_alone).map(|lower| (lower, NO_LARGER));
+        let may_change = found.parameters.iter().any(IdentifiedParameter::may_change);
+        let of_all = || lower(&vec![may_change; halvings.len()]).map(|lower| (lower, SMALLER));
+        of_biasing.or_else(of_alone).or_else(of_all)
     }
 }
 
-/// Whether standard errors are smaller than others, in the geometric mean.
-fn has_smaller_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedParameter]) -> bool {
+/// How errors may grow with a lower filter, as the logarithm of their geometric mean.
+const SMALLER: f64 = 0.0;
+const NO_LARGER: f64 = 0.02;
+
+/// By what standard errors are larger than others: the logarithm of the geometric mean.
+fn growth_of_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedParameter]) -> f64 {
     let ratio = |(one, other): (&IdentifiedParameter, &IdentifiedParameter)| match other.std {
         Some(other) if other > 0.0 => one.std.map_or(f64::INFINITY, |std| (std / other).ln()),
         _ => 0.0,
     };
-    parameters.iter().zip(others).map(ratio).sum::<f64>() < 0.0
+    parameters.iter().zip(others).map(ratio).sum::<f64>() / parameters.len().max(1) as f64
 }
 
 /// The identified model with all of its effects: what is simulated.

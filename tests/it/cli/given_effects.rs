@@ -110,7 +110,7 @@ fn identification_takes_effects_of_the_model_out_of_logs() {
     });
     let lines: Vec<String> =
         comments.iter().chain(&table[..1]).map(|line| (*line).to_owned()).chain(scaled).collect();
-    fs::write(path("gain.csv"), lines.join("\n")).unwrap();
+    fs::write(path("gain.csv"), lines.join("\n") + "\n").unwrap();
     with_effects(
         &directory,
         &json!([{"effect": "torque_gain", "at": {"link": "knee"}, "parameters": {"g": 0.1}}]),

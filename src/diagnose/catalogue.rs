@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::elastic::SeriesSpring;
-use super::joint_law::{DemandLaw, JointLaw, ReadingLaw, RobotLaw, SpringLaw};
+use super::joint_law::{DelayLaw, DemandLaw, JointLaw, ReadingLaw, RobotLaw, SpringLaw};
 use super::law::Law;
 use crate::plants::effect::{EffectLaw, RobotEffect};
 use crate::plants::regression::{RegressionJoint, RegressionModel};
@@ -94,6 +94,9 @@ pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<
     match law.channel() {
         None if law.at == EffectSite::Spring => Box::new(SpringLaw { law, joint }),
         Some(Channel::Torque) if law.is_inverse() => Box::new(DemandLaw { law, joint }),
+        Some(Channel::Torque) if law.is_delay() => {
+            Box::new(DelayLaw { law: JointLaw { law, joint, other } })
+        }
         None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
         Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw { law, joint }),
     }

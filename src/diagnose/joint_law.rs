@@ -134,6 +134,33 @@ impl Law for DemandLaw {
     }
 }
 
+/// A delay of the torque that is logged.
+///
+/// What was measured is moved back to its time, and not what is computed: all that the model is
+/// not sure of would have to be late as well.
+pub(super) struct DelayLaw {
+    /// The law.
+    pub(super) law: JointLaw,
+}
+
+impl Law for DelayLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        self.law.parameters()
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let joint = self.law.joint;
+        let delay = self.law.law.delay(values);
+        let undone = delay.and_then(|(delay_s, gradient)| {
+            let [added, rate] = motion.signals.undelayed_within(joint, delay_s)?;
+            let by = |slope: &f64| vec![rate.iter().map(|rate| -slope * rate).collect()];
+            let gradient = gradient.iter().map(by).collect();
+            Some(Response { equations: vec![joint], torque: vec![added], gradient })
+        });
+        undone.unwrap_or_else(|| self.law.response(motion, values))
+    }
+}
+
 /// An effect that moves what the model says, or a term that it lacks: it acts on all joints.
 pub(super) struct RobotLaw {
     /// What it adds.

@@ -6,6 +6,7 @@
 //! equation, which is what tells a step from a slope.
 
 use super::floor::white_noise;
+use super::law::derivative;
 use crate::identify::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use crate::identify::log::{JointSignals, MeasuredLog};
 use crate::simulate::Random;
@@ -326,9 +327,30 @@ impl Signals {
 
     /// The torque of a joint as it was measured, at the samples of the motion.
     pub(super) fn measured_within(&self, joint: usize) -> Option<Vec<f64>> {
+        Some(self.in_cells(self.measured.get(joint)?.as_ref()?))
+    }
+
+    /// What the measured torque of a joint has more than before a delay \[s\], and the rate of the
+    /// torque without it, at the samples of the motion; none where none was measured.
+    pub(super) fn undelayed_within(&self, joint: usize, delay_s: f64) -> Option<[Vec<f64>; 2]> {
         let measured = self.measured.get(joint)?.as_ref()?;
-        let cell = |torque: &f64| std::iter::repeat_n(*torque, self.rows.within);
-        Some(measured.iter().flat_map(cell).collect())
+        let (late, last) = (delay_s / self.log_step_s, measured.len() as f64 - 1.0);
+        let at = |k: f64| {
+            let place = (k + late).clamp(0.0, last);
+            let from = place.floor() as isize;
+            let ends = |offset: isize| measured[(from + offset).clamp(0, last as isize) as usize];
+            cubic([-1, 0, 1, 2].map(ends), place - from as f64)
+        };
+        let ahead: Vec<f64> = (0..measured.len()).map(|k| at(k as f64)).collect();
+        let added = measured.iter().zip(&ahead).map(|(late, ahead)| late - ahead).collect();
+        let rate = derivative(&ahead, self.log_step_s);
+        Some([added, rate].map(|signal: Vec<f64>| self.in_cells(&signal)))
+    }
+
+    /// A signal of the log's samples at those of the motion, each in its cell.
+    fn in_cells(&self, signal: &[f64]) -> Vec<f64> {
+        let cell = |value: &f64| std::iter::repeat_n(*value, self.rows.within);
+        signal.iter().flat_map(cell).collect()
     }
 
     /// The mean of a signal of the motion in each cell.
@@ -396,6 +418,25 @@ mod tests {
         for (k, value) in between(&signal, 3).iter().enumerate().skip(6).take(24) {
             let x = (k as f64 - 1.0) / 3.0;
             assert!((value - cubic(x)).abs() < 1e-12, "{k}: {value} {}", cubic(x));
+        }
+    }
+
+    #[test]
+    fn a_delay_that_is_undone_leaves_the_torque_before_it() {
+        let (step_s, delay_s, rate) = (0.002, 0.0173, TAU * 1.3);
+        let q: Vec<f64> = (0..6000).map(|k| (rate * step_s * f64::from(k)).sin()).collect();
+        let late = (0..6000).map(|k| (rate * (step_s * f64::from(k) - delay_s)).sin());
+        let joint = JointSignals { tau: Some(late.collect()), q, ..JointSignals::default() };
+        let (file, joints) = ("made".to_owned(), vec![joint]);
+        let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
+        let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
+        let [added, slope] = signals.undelayed_within(0, delay_s).expect("measured");
+        let [q, added, slope] = [&signals.q[0], &added, &slope].map(|all| signals.at_rows(all));
+        let t = signals.at_rows(&signals.t);
+        for (k, t) in t.iter().enumerate() {
+            let late = (rate * (t - delay_s)).sin();
+            assert!((late - added[k] - q[k]).abs() < 2e-5, "{t}: {} {}", late - added[k], q[k]);
+            assert!((slope[k] - rate * (rate * t).cos()).abs() < 2e-3 * rate, "{t}");
         }
     }
 

@@ -14,6 +14,8 @@ pub(super) struct ChannelLaw {
     pub(super) channel: Channel,
     /// Whether the law gives the truth for what is logged.
     pub(super) is_inverse: bool,
+    /// Whether it is nothing but a delay.
+    is_delay: bool,
     /// Delay, lag, then their derivatives by the parameters.
     timing: LawProgram,
     /// The columns of `slope`.
@@ -35,12 +37,13 @@ impl ChannelLaw {
         let timing = LawProgram::new(dag, &names(effect), Vec::new(), entries)?;
         let id = dag.find_symbol(measured.channel.as_str());
         let channel = dag.symbol_expr(id.expect("the channel is a symbol of its law"));
+        let is_delay = measured.value == channel && measured.lag_s == dag.zero();
         let slope = gradient(dag, &[measured.value], &[channel]).concat();
         let columns = columns(dag, &slope);
         let inputs = inputs(dag, &columns, &[]);
         let slope = LawProgram::new(dag, &names(effect), inputs, slope)?;
         let Measured { channel, is_inverse, .. } = *measured;
-        Ok(Self { channel, is_inverse, timing, columns, slope })
+        Ok(Self { channel, is_inverse, is_delay, timing, columns, slope })
     }
 }
 
@@ -156,6 +159,19 @@ impl EffectLaw {
                 moved
             })
             .collect()
+    }
+
+    /// The delay of a law that is nothing else \[s\], and its derivatives by the parameters.
+    pub fn delay(&self, values: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let law = self.channel.as_ref().filter(|law| law.is_delay)?;
+        let timing = law.timing.run(&[], values, 1);
+        let gradient = timing[2..2 + self.parameters.len()].iter().map(|entry| entry[0]);
+        Some((timing[0][0], gradient.collect()))
+    }
+
+    /// Whether the law is nothing but a delay of its channel.
+    pub fn is_delay(&self) -> bool {
+        self.channel.as_ref().is_some_and(|law| law.is_delay)
     }
 
     fn timing(&self, law: &ChannelLaw, values: &[f64]) -> [f64; 2] {

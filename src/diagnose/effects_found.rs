@@ -71,12 +71,13 @@ pub(super) fn found_effects(
     let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &trust).all;
     let squares = |left: &[f64]| setting.held_out_squares(after, left);
     let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
-    let fits = |joint: usize| {
-        let spring = setting.train.nominal.spring_equation(joint);
-        [Some(joint), spring].into_iter().flatten().all(|at| {
-            let ([from, _], [to, noise]) = (from[at], to[at]);
-            to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
-        })
+    // In units of the noise of each, where one has motor and link to be seen at.
+    let fits = |equations: &[usize]| {
+        let over = |of: &[[f64; 2]]| -> f64 {
+            equations.iter().map(|&at| of[at][0] / to[at][1].max(f64::MIN_POSITIVE)).sum()
+        };
+        let (from, to, noise) = (over(&from), over(&to), equations.len() as f64);
+        to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
     };
     let mut found = Vec::new();
     let places = after.taken.iter().enumerate().skip(setting.given.len());
@@ -88,13 +89,24 @@ pub(super) fn found_effects(
             candidate: taken.candidate,
             parameters: values(setting, (after, deviations), place),
             share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
-            is_named: setting.candidates[taken.candidate].joint.is_none_or(fits),
+            is_named: own_equations(setting, after, taken).is_none_or(|own| fits(&own)),
             alternatives,
             exact: Vec::new(),
             experiment: None,
         });
     }
     found
+}
+
+/// Where an effect of a joint acts of the joint and its spring; none for one of the whole model.
+fn own_equations(setting: &Setting<'_>, state: &State, taken: &Taken) -> Option<Vec<usize>> {
+    let joint = setting.candidates[taken.candidate].joint?;
+    let data = setting.train;
+    let fitted = setting.fitted(std::slice::from_ref(taken));
+    let motion = state.torques[0].first()?.motion(data.nominal, data.signals.first()?);
+    let acts_on = fitted[0].law.response(motion, &fitted[0].values).equations;
+    let own = [Some(joint), data.nominal.spring_equation(joint)];
+    Some(own.into_iter().flatten().filter(|equation| acts_on.contains(equation)).collect())
 }
 
 /// Says of what was found which of it no motion tells apart.

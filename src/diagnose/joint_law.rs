@@ -104,11 +104,16 @@ impl Law for SpringLaw {
     }
 }
 
+/// The share of the time in which a drive gives what was demanded, at least, and what may lack then.
+const LEAST_GIVEN: f64 = 0.25;
+const ALL_GIVEN: f64 = 0.02;
+
 /// An effect that makes a drive give another torque than is logged: what was demanded of it.
 ///
 /// It changes what was measured and not what is computed, so that the law has no torque where
 /// nothing was measured. A clip of what was measured has what the model lacks in it only as far as
-/// that is beyond the clip, and what is left is then that of the model at the clip.
+/// that is beyond the clip, and what is left is then that of the model at the clip. A law that
+/// leaves too little of what was measured leaves nothing to compare, which explains nothing.
 pub(super) struct DemandLaw {
     /// The law.
     pub(super) law: EffectLaw,
@@ -125,10 +130,17 @@ impl Law for DemandLaw {
         let measured = motion.signals.measured_within(self.joint);
         let measured = measured.unwrap_or_else(|| vec![0.0; motion.signals.samples()]);
         let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
-        let gradient = self.law.gradient(&samples, values);
+        let mut torque = self.law.torque(&samples, values);
+        let mut gradient = self.law.gradient(&samples, values);
+        let is_given = |(all, less): &(&f64, &f64)| less.abs() <= ALL_GIVEN * all.abs();
+        let given = measured.iter().zip(&torque).filter(is_given).count();
+        if (given as f64) < LEAST_GIVEN * measured.len() as f64 {
+            torque.fill(0.0);
+            gradient.iter_mut().for_each(|column| column.fill(0.0));
+        }
         Response {
             equations: vec![self.joint],
-            torque: vec![self.law.torque(&samples, values)],
+            torque: vec![torque],
             gradient: gradient.into_iter().map(|column| vec![column]).collect(),
         }
     }

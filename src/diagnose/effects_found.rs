@@ -84,7 +84,8 @@ pub(super) fn found_effects(
     for ((place, taken), alternatives) in places.zip(families) {
         let mut others = after.taken.clone();
         others.remove(place);
-        let whole = gap(before) - floor;
+        // Where all was below the floor already, of what the effects closed.
+        let whole = (gap(before) - floor).max(gap(before) - gap(after));
         found.push(FoundEffect {
             candidate: taken.candidate,
             parameters: values(setting, (after, deviations), place),

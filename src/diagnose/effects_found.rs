@@ -57,7 +57,7 @@ pub struct GivenEffect {
 
 /// A law that closes less than this share of what a joint leaves does not fit it, if more than so
 /// many times the deviation of noise stays.
-const FITS: f64 = 0.5;
+const FITS: f64 = 0.75;
 const MISFIT: f64 = 2.5;
 
 /// The effects of a state, each with its share, its errors and what would do as well.

@@ -104,7 +104,8 @@ impl Law for SpringLaw {
     }
 }
 
-/// The share of the time in which a drive gives what was demanded, at least, and what may lack then.
+/// The share of the time in which a drive gives what was demanded, at least, and what may lack
+/// then.
 const LEAST_GIVEN: f64 = 0.25;
 const ALL_GIVEN: f64 = 0.02;
 

@@ -135,12 +135,6 @@ impl Case {
 
     /// Simulates the case.
     pub(crate) fn generate(mut self) -> Generated {
-        // A loop may come apart on a motion that it cannot follow, whatever is hidden.
-        for log in 0..2 {
-            while self.run(&[], log).is_none() {
-                self.references[log].slower(1.2);
-            }
-        }
         let plain = self.run(&[], 0).expect("the plain robot follows its reference");
         self.fill_shapes(&plain);
         let mut strengths = Vec::new();
@@ -161,14 +155,14 @@ impl Case {
             });
             self.hidden[index] = hidden;
         }
-        let hidden = loop {
-            // together effects may do what none does alone
-            let hidden = self.hidden.clone();
-            if [0, 1].iter().all(|log| self.run(&hidden, *log).is_some()) {
-                break hidden;
-            }
+        // together effects may do what none does alone
+        let mut rounds = 0;
+        while [0, 1].iter().any(|log| self.run(&self.hidden, *log).is_none()) {
+            rounds += 1;
+            assert!(rounds < 30, "case {}: its plant cannot be integrated", self.number);
             self.hidden.iter_mut().for_each(|one| one.size *= 0.7);
-        };
+        }
+        let hidden = self.hidden.clone();
         let [train, validate] = [0, 1].map(|log| {
             let run = self.run(&hidden, log).expect("it ran before");
             self.measured(&run, &hidden, log)

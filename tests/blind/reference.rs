@@ -92,11 +92,6 @@ impl Reference {
         Self { lap_s, joints: robot.joints.iter().map(series).collect() }
     }
 
-    /// The same motion over a longer lap.
-    pub(crate) fn slower(&mut self, factor: f64) {
-        self.lap_s *= factor;
-    }
-
     /// Position and rate of a joint at time t \[s\].
     pub(crate) fn at(&self, joint: usize, t: f64) -> [f64; 2] {
         let frequency = std::f64::consts::TAU / self.lap_s;

@@ -68,6 +68,9 @@ fn read_measured<'a>(json: &Json<'a>, report: &mut Report) -> Option<LawFile<'a>
     const KEYS: &[&str] = &["channel", "value", "true", "gain", "offset", "delay_s", "lag_s"];
     let fields = Fields::of(json, KEYS, report)?;
     let channel = fields.required_word("channel", &CHANNELS, report);
+    if let (Some(json), Some(_)) = (fields.get("true"), fields.get("value")) {
+        report.push(json.start, Cause::LawKey("true", "stands in place of `value`, not beside it"));
+    }
     let parts = std::array::from_fn(|part| fields.scalar(KEYS[part + 1], report));
     Some(LawFile::Measured { channel, parts })
 }
@@ -189,8 +192,8 @@ impl LawReader {
         let json = fields.get("torque_2")?;
         // states are those of one law
         if kind != EffectKind::Torque || at != EffectSite::JointPair {
-            let kind = if at == EffectSite::JointPair { kind.as_str() } else { "joint" };
-            report.push(json.start, Cause::WrongLaw(kind, "torque_2"));
+            let why = "belongs to an effect of the kind `torque` at a `joint_pair`";
+            report.push(json.start, Cause::LawKey("torque_2", why));
             return None;
         }
         let torque = Fields::scalar_of(json, report)?;

@@ -246,6 +246,8 @@ pub enum Cause {
     NoLaw(&'static str, &'static str),
     /// An effect with a law that its kind does not have; holds the kind and the key.
     WrongLaw(&'static str, &'static str),
+    /// A key of a law that does not belong there; holds the key and why.
+    LawKey(&'static str, &'static str),
     /// A law that is not nothing where its parameters have their nominal values.
     NeverVanishes,
     /// An effect that cannot act there; holds its name and where it acts.

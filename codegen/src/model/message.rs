@@ -163,6 +163,7 @@ impl Cause {
             Self::WrongLaw(kind, key) => {
                 write!(f, "an effect of the kind `{kind}` has no `{key}`")
             }
+            Self::LawKey(key, why) => write!(f, "`{key}` {why}"),
             Self::NeverVanishes => {
                 write!(f, "with all `nominal` values the effect does not vanish")
             }

@@ -99,6 +99,26 @@ fn all_faults_of_a_file_are_told_at_once_with_their_place() {
 }
 
 #[test]
+fn keys_that_contradict_each_other_or_the_place_are_faults() {
+    let law = |at: &str, kind: &str, law: &str| {
+        format!(
+            r#"{{"format": "denavit-effect/1", "name": "own", "title": "t", "description": "d",
+            "source": "s", "kind": "{kind}", "at": "{at}",
+            "parameters": {{"a": {{"unit": "1", "description": "d", "nominal": 0,
+              "bounds": [0, null]}}}},
+            {law}}}"#
+        )
+    };
+    let both = r#""measured": {"channel": "tau", "value": "tau + a*tau", "true": "tau - a*tau"}"#;
+    let said = faults(&law("joint", "measurement", both));
+    assert!(said.contains("`true` stands in place of `value`"), "{said}");
+    let second = r#""torque": "a*tau_load", "torque_2": "a*tau_load""#;
+    let said = faults(&law("joint", "torque", second));
+    assert!(said.contains("`torque_2` belongs to"), "{said}");
+    assert!(read("own.json", law("joint_pair", "torque", second).as_bytes()).is_ok());
+}
+
+#[test]
 fn units_of_a_law_must_fit_joints_that_turn_and_joints_that_slide() {
     let law = |unit: &str, torque: &str| {
         format!(

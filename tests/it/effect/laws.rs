@@ -56,6 +56,40 @@ fn laws() -> Vec<EffectLaw> {
     of_joints.map(|effect| EffectLaw::new(effect, JointKind::Revolute).expect("a law")).collect()
 }
 
+/// What couples two joints passively: the power that both give is what is stored or lost.
+#[test]
+fn both_joints_feel_what_couples_them() {
+    let motion = motion(400, 0.01);
+    let samples = motion.samples();
+    let swapped = JointSamples {
+        q: samples.q_2,
+        qd: samples.qd_2,
+        qdd: samples.qdd_2,
+        q_2: samples.q,
+        qd_2: samples.qd,
+        qdd_2: samples.qdd,
+        ..samples
+    };
+    let value = 0.7;
+    let power = |name: &str| -> Vec<f64> {
+        let effect = catalogue().iter().find(|effect| effect.name == name).expect("shipped");
+        let law = EffectLaw::new(effect, JointKind::Revolute).expect("a law");
+        let first = law.torque(&samples, &[value]);
+        let second = law.on_second().expect("a pair").torque(&swapped, &[value]);
+        (0..400).map(|k| first[k] * samples.qd[k] + second[k] * samples.qd_2[k]).collect()
+    };
+    let [stored, viscous, dry] =
+        ["coupled_inertia", "coupled_viscous", "coupled_coulomb"].map(power);
+    for k in 0..400 {
+        let (v, w) = (samples.qd[k], samples.qd_2[k]);
+        // the kinetic energy of a coupling is m qd qd_2
+        let rate = value * (samples.qdd[k] * w + v * samples.qdd_2[k]);
+        assert!((stored[k] - rate).abs() < 1e-12, "{k}: {} {rate}", stored[k]);
+        assert!((viscous[k] - value * (v + w).powi(2)).abs() < 1e-12, "{k}");
+        assert!((dry[k] - value * (v + w).abs()).abs() < 1e-12, "{k}");
+    }
+}
+
 /// Nominal values, and the first start for what has none.
 fn nominal(parameter: &LawParameter) -> f64 {
     parameter.nominal.unwrap_or_else(|| parameter.start[0])

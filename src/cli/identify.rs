@@ -435,6 +435,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let judged = found.validate.as_ref().unwrap_or(&found.train);
     let is_doubted = found.is_noise() || !found.misread.is_empty();
     let is_doubted = is_doubted && !arguments.accept_suspicious;
-    let explains = judged.relative < 1.0 && found.unexplained.is_empty();
+    let explains = judged.relative < 1.0
+        && found.unexplained.is_empty()
+        && found.contradicting_logs.is_empty();
     Ok(if explains && !is_doubted { Answer::Done } else { Answer::Negative })
 }

@@ -2,10 +2,11 @@
 
 use super::condition::Conditioned;
 use super::estimate::{
-    CLEAN, Consistent, Convergence, Estimate, EstimateError, Evidence, IdentifiedParameter,
-    MisreadColumns, Options, SlowRows, Status, Triangle, Unexplained, Validation, biased_frictions,
-    consistent, constants_off, convergence, estimate, filter_errors, long_enough, misread_apart,
-    misread_columns, parameters, solve, unexplained_joints, validate,
+    CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
+    IdentifiedParameter, MisreadColumns, Options, SlowRows, Status, Triangle, Unexplained,
+    Validation, biased_frictions, consistent, constants_off, contradicting_logs, convergence,
+    estimate, filter_errors, long_enough, misread_apart, misread_columns, parameters, solve,
+    unexplained_joints, validate,
 };
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
@@ -40,6 +41,8 @@ pub struct Identification {
     /// Columns that seem to be other ones than they are taken for, one after the other: each with
     /// those before it mended; those of the logs for validation at last.
     pub misread: Vec<MisreadColumns>,
+    /// Logs for the estimate that contradict the others.
+    pub contradicting_logs: Vec<ContradictingLog>,
     /// Logs of several for the estimate of which noise of the positions makes most.
     pub noisy_logs: Vec<NoisyLog>,
     /// For each log for the estimate whether its noise of positions biases parameters, so that it
@@ -197,7 +200,9 @@ impl Identification {
         let unexplained = unexplained.map(Unexplained::to_string);
         let noisy_logs = self.noisy_logs.iter().filter(|_| !self.is_noise());
         let noisy_logs = noisy_logs.map(NoisyLog::to_string);
+        let contradicting = self.contradicting_logs.iter().filter(|_| !self.is_noise());
         misread
+            .chain(contradicting.map(ContradictingLog::to_string))
             .chain(unexplained)
             .chain(self.bias())
             .chain(noisy_logs)
@@ -244,8 +249,9 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let counted: Vec<f64> = found.noise_of_joints().into_iter().zip(torques).map(share).collect();
     let misread = misread(request, (&found, &listed, &counted));
     // of a log that is noise, much is left
+    let shown = shown_logs(train.len(), &found);
     let judges: Vec<&Conditioned> = match held_out.is_empty() {
-        true => shown_logs(train.len(), &found).into_iter().map(|log| &train[log]).collect(),
+        true => shown.iter().map(|&log| &train[log]).collect(),
         false => held_out.iter().collect(),
     };
     let unexplained = validate(model, phi, &judges);
@@ -254,6 +260,7 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
         misread,
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, (&found, &counted)),
+        contradicting_logs: contradicting_logs(model, train, (&found, &shown)),
         noisy_logs: noisy_logs(model, train, &found),
         periods: train.iter().map(Conditioned::periods).sum(),
         biasing_logs: biasing_logs(model, &listed, &found),

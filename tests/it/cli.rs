@@ -14,6 +14,7 @@ mod gears;
 mod given_effects;
 mod help;
 mod identify;
+mod identify_contradiction;
 mod identify_logs;
 mod identify_noise;
 mod identify_procedures;

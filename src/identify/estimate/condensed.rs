@@ -31,6 +31,8 @@ pub struct Condensed {
     pub end_s: Vec<f64>,
     /// For each log the share of its rows that are independent of each other.
     pub independent: Vec<f64>,
+    /// For each log how long a row of it stands for \[s\].
+    pub row_s: Vec<f64>,
     /// Number of base parameters.
     pub rank: usize,
 }
@@ -84,7 +86,8 @@ impl Condensed {
         let (parts, log_of_part, end_s) = (Vec::new(), Vec::new(), Vec::new());
         let share = |log: &Conditioned| log.independent() / log.samples().max(1) as f64;
         let independent = logs.iter().map(share).collect();
-        let mut condensed = Self { pattern, parts, log_of_part, end_s, independent, rank };
+        let row_s = logs.iter().map(|log| log.step_s * log.decimation as f64).collect();
+        let mut condensed = Self { pattern, parts, log_of_part, end_s, independent, row_s, rank };
         for (index, log) in logs.iter().enumerate() {
             // A short rest goes with the part before it.
             let count = (log.samples() / length).max(1);

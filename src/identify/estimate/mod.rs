@@ -6,12 +6,14 @@
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
 //! - [`misread_columns`]: columns of another unit, sign or zero, of other joints, or late
+//! - [`ContradictingLog`]: logs that no parameters explain together with the others
 //! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
 mod condensed;
 mod consistent;
+mod contradiction;
 mod errors;
 mod filter_error;
 mod half_cutoff;
@@ -34,6 +36,8 @@ mod widening;
 
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
+pub(in crate::identify) use contradiction::contradicting_logs;
+pub use contradiction::{ContradictingJoint, ContradictingLog, Likeness};
 pub use errors::{Errors, interval_factor};
 pub(in crate::identify) use filter_error::filter_errors;
 pub use half_cutoff::Change;

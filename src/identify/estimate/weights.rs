@@ -97,12 +97,14 @@ impl Fit<'_> {
 }
 
 impl Settled {
-    /// -2 log likelihood of the residuals, but for a constant.
+    /// -2 log likelihood of the residuals, but for a constant and a factor. A log that contradicts
+    /// others is left with what is like its motion, not like noise: it says no more for having the
+    /// higher filter. Logs therefore count by their time.
     fn unlikeliness(&self, condensed: &Condensed, triangles: &[Vec<Triangle>]) -> f64 {
         let squares = condensed.squares(triangles, self.solution.phi.as_slice());
         let mut sum = 0.0;
         for (log, triangles) in triangles.iter().enumerate() {
-            let share = condensed.independent[log];
+            let share = condensed.row_s[log];
             for (joint, triangle) in triangles.iter().enumerate().filter(|(_, one)| one.rows() > 0)
             {
                 let size = triangle.target_squares() / triangle.rows() as f64;

@@ -279,6 +279,7 @@ impl Extended {
             log_of_part: self.condensed.log_of_part.clone(),
             end_s: self.condensed.end_s.clone(),
             independent: self.condensed.independent.clone(),
+            row_s: self.condensed.row_s.clone(),
             rank,
         }
     }

@@ -3,10 +3,10 @@
 use super::condition::Conditioned;
 use super::estimate::{
     CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
-    IdentifiedParameter, MisreadColumns, Options, SlowRows, Status, Triangle, Unexplained,
-    Validation, biased_frictions, consistent, constants_off, contradicting_logs, convergence,
-    estimate, filter_errors, long_enough, misread_apart, misread_columns, parameters, solve,
-    unexplained_joints, validate,
+    IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Status, Triangle,
+    Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_logs,
+    convergence, estimate, filter_errors, long_enough, misread_apart, misread_columns, parameters,
+    solve, unexplained_joints, validate,
 };
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
@@ -250,13 +250,15 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     let misread = misread(request, (&found, &listed, &counted));
     // of a log that is noise, much is left
     let shown = shown_logs(train.len(), &found);
-    let judges: Vec<&Conditioned> = match held_out.is_empty() {
-        true => shown.iter().map(|&log| &train[log]).collect(),
-        false => held_out.iter().collect(),
+    let (judges, judging) = match held_out.is_empty() {
+        true => (train, shown.clone()),
+        false => (held_out, (0..held_out.len()).collect()),
     };
-    let unexplained = validate(model, phi, &judges);
+    let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
+    let left_together = validate(model, phi, &together);
+    let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
     Ok(Identification {
-        unexplained: unexplained_joints(model, &judges, (&unexplained, &counted)),
+        unexplained: unexplained_joints(model, (judges, &judging), judgement),
         misread,
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, (&found, &counted)),

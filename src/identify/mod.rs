@@ -5,6 +5,7 @@
 //! - [`condition`]: filtered, differentiated, decimated
 //! - [`add_contact_forces`]: what the ground does to each equation
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
+//! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`forward`]: the identified model in motion against a log
@@ -19,6 +20,7 @@ pub mod estimate;
 pub mod excite;
 pub mod forward;
 mod identification;
+mod idle;
 pub mod knowledge;
 mod known_effects;
 pub mod log;
@@ -32,6 +34,7 @@ mod updated_model;
 
 pub use contact_forces::{Ground, add_contact_forces};
 pub use identification::{Identification, LeftOutRows, Request, identify};
+pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
 pub use model_text::{
     EffectValues, NewEffect, NewPlace, NewValue, updated as updated_text, with_effects,

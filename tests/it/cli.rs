@@ -18,6 +18,7 @@ mod identify_contradiction;
 mod identify_logs;
 mod identify_noise;
 mod identify_procedures;
+mod identify_rest;
 mod identify_told;
 mod landings;
 mod readme;

@@ -7,7 +7,9 @@ use clap::{Args, ValueEnum};
 use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
 use denavit::identify::forward::{LONGEST_S, MotionLog};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
-use denavit::identify::{Ground, take_out, undo_logged_torques, undo_readings};
+use denavit::identify::{
+    Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
+};
 use denavit::model::Robot;
 use denavit::plants::effect::AddedLaw;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};
@@ -353,6 +355,9 @@ impl Reader<'_> {
             conditioned.map_err(|error| IdentifyFailure::Condition(file.clone(), error))?;
         take_out(&mut conditioned, self.model, self.laws);
         self.note(&file, &conditioned);
+        for joint in leave_out_idle_motors(self.model, &mut conditioned) {
+            self.remarks.push((file.clone(), LogRemark::Idle { joint: self.names[joint].clone() }));
+        }
         Ok(conditioned)
     }
 

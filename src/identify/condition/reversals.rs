@@ -12,6 +12,12 @@ const WEIGHED: f64 = 2.5;
 const NOISE: f64 = 3.0;
 const STEPS: f64 = 2.0;
 
+/// Periods of the filter's cutoff that a rest takes, at least.
+const RESTS: usize = 6;
+
+/// The share of its usual rate, root of mean square, below which a joint stands still.
+const STILL: f64 = 1e-4;
+
 impl Conditioned {
     fn rate_at(&self, joint: usize, k: usize) -> f64 {
         match &self.rates {
@@ -92,25 +98,54 @@ impl Conditioned {
     /// round faster than that, the filter smears the sign over alike.
     pub(crate) fn unsure_signs(&self, joint: usize) -> Option<Vec<bool>> {
         let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
-        let (period, noise) = (2 * filter.smear(), self.position_noise[joint]);
-        let of_steps = self.encoders[joint]
-            .map_or(0.0, |one| STEPS * one.step * filter.cutoff() / self.step_s);
-        let slowest = of_steps.max(NOISE * self.filter_gains()[1][1].sqrt() * noise);
-        let mut is_unsure = vec![false; self.range.len()];
-        let mut spell = 0;
-        for at in 0..=is_unsure.len() {
-            let place = self.range.start + at;
-            if at < is_unsure.len() && self.rate_at(joint, place).abs() < slowest {
-                spell += 1;
-                continue;
-            }
-            if spell >= period {
-                let last = (at + period).min(is_unsure.len());
-                is_unsure[(at - spell).saturating_sub(period)..last].fill(true);
-            }
-            spell = 0;
+        let (period, samples) = (2 * filter.smear(), self.range.len());
+        let mut is_unsure = vec![false; samples];
+        for Range { start, end } in self.slow_spells(joint, (filter, 0.0)) {
+            let last = (end + period).min(samples);
+            is_unsure[start.saturating_sub(period)..last].fill(true);
         }
         is_unsure.contains(&true).then_some(is_unsure)
+    }
+
+    /// For each sample of [`Conditioned::range`] whether a joint that moves in between rests there:
+    /// while the sign of its rate is not known, for some periods of the filter's cutoff, without
+    /// the first and the last, into which the filter smears what is beside.
+    pub(crate) fn rests(&self, joint: usize) -> Vec<bool> {
+        let mut rests = vec![false; self.range.len()];
+        if let Some(filter) = &self.filter {
+            let usual = self.range.clone().map(|at| self.rate_at(joint, at).powi(2)).sum::<f64>();
+            let usual = (usual / self.range.len().max(1) as f64).sqrt();
+            let period = 2 * filter.smear();
+            for Range { start, end } in self.slow_spells(joint, (filter, STILL * usual)) {
+                if end - start > RESTS * period {
+                    rests[start + period..end - period].fill(true);
+                }
+            }
+        }
+        rests
+    }
+
+    /// The samples of [`Conditioned::range`] in which a joint is no faster than noise of its
+    /// position makes it, than two steps of its encoder in a period of the filter's cutoff, or than
+    /// another rate, for such a period or longer.
+    fn slow_spells(&self, joint: usize, (filter, least): (&Butterworth, f64)) -> Vec<Range<usize>> {
+        let of_steps = self.encoders[joint]
+            .map_or(0.0, |one| STEPS * one.step * filter.cutoff() / self.step_s);
+        let of_noise = NOISE * self.filter_gains()[1][1].sqrt() * self.position_noise[joint];
+        let slowest = of_steps.max(of_noise).max(least);
+        let mut spells = Vec::new();
+        let mut from = 0;
+        for at in 0..=self.range.len() {
+            let place = self.range.start + at;
+            if at < self.range.len() && self.rate_at(joint, place).abs() < slowest {
+                continue;
+            }
+            if at - from >= 2 * filter.smear() {
+                spells.push(from..at);
+            }
+            from = at + 1;
+        }
+        spells
     }
 
     /// For each of so many samples that are left, from `first` on, whether it has its weight from

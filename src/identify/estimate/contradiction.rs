@@ -14,9 +14,9 @@ use crate::plants::regression::RegressionModel;
 use std::fmt;
 
 /// What own parameters explain must be this share of a joint's torque, as root of mean square, and
-/// of what they leave,
+/// so many times what they leave, which noise of the positions may have made them follow,
 const OF_TORQUE: f64 = 0.03;
-const OF_OWN: f64 = 0.5;
+const OF_OWN: f64 = 1.5;
 
 /// and this many times what chance explains with as many parameters, in variance.
 const OF_CHANCE: f64 = 25.0;

@@ -111,6 +111,8 @@ pub enum LogRemark {
     Resampled { jitter: f64 },
     /// A joint that does not move.
     Resting { joint: String },
+    /// A joint that does not move, and whose torque does not follow its load.
+    Idle { joint: String },
     /// The torque stands at its extreme value.
     Saturated { column: String, share: f64, value: f64 },
     /// Positions have steps of these sizes, as of encoders.
@@ -386,6 +388,11 @@ impl fmt::Display for LogRemark {
                      shows is not identified, and stiction may hide in its torque"
                 )
             }
+            Self::Idle { joint } => write!(
+                f,
+                "`{joint}` rests, and its torque does not follow the load that the motion of the \
+                 others makes: a brake holds it, or stiction. Its torque was left out"
+            ),
             Self::Saturated { column, share, value } => write!(
                 f,
                 "`{column}` stands at {value:.6} in {:.1} % of the samples: saturated?",

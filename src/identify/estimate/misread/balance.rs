@@ -29,7 +29,7 @@ const OF_JOINTS: [&str; 4] = ["fv", "fc", "Ia", "off"];
 
 /// The model's own values of phi; what it does not say of joints (friction, rotors, offsets) is
 /// taken for 0. None if it does not say all of its bodies.
-pub(super) fn nominal_values(model: &RegressionModel) -> Option<Vec<f64>> {
+pub(in crate::identify) fn nominal_values(model: &RegressionModel) -> Option<Vec<f64>> {
     let is_of_joint = |parameter: &RegressionParameter| {
         let owner = |at: usize| model.standard[at].owner.as_ref();
         let mut members = parameter.members.iter();
@@ -127,6 +127,11 @@ impl<'a> Balance<'a> {
         let own = own.map(|phi| of_joints(model, phi));
         let (evaluator, rows) = (model.evaluator(), RegressionRows::default());
         Self { model, evaluator, rows, windows, own }
+    }
+
+    /// Whether a joint moves in some of the logs.
+    pub(super) fn moves(&self, joint: usize) -> bool {
+        self.windows.iter().any(|window| window.log.resting.get(joint) != Some(&true))
     }
 
     /// Makes the rows of a window under a reading.

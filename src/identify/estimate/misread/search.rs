@@ -137,7 +137,9 @@ impl Search<'_> {
         let shows = |left: &Option<f64>| left.is_some_and(|left| left > PROMPT);
         if fit.iter().any(shows) && self.latest > 0 && !reading.is_shifted() {
             lines.push(Line::Late);
-            for &joint in real.iter().filter(|_| real.len() > 1) {
+            // nothing is late at rest
+            let moving = real.iter().filter(|&&joint| self.balance.moves(joint));
+            for &joint in moving.filter(|_| real.len() > 1) {
                 lines.push(Line::LatePosition(joint));
                 lines.extend(shows(&fit[joint]).then_some(Line::LateTorque(joint)));
             }

@@ -65,7 +65,8 @@ impl Verdict {
         let is_zero = matches!(misreading, Misreading::Zero(..));
         let is_halved = |change: Change| {
             let of_one = is_zero && change.ratios[0] < BETTER && change.ratios[1] < WORSE;
-            change.ratio < BETTER || of_one
+            let is_less = change.left[1] < BETTER * change.left[0];
+            (change.ratio < BETTER && is_less) || of_one
         };
         let by_fit =
             is_explained && is_halved(fit) && fit.left[0] > least && fit.left[1] < LEFT_BY_ESTIMATE;
@@ -135,6 +136,17 @@ mod tests {
         assert!(verdict(Misreading::Torques(1e-3), [900.0, 0.05], 0.003).is_sure());
         let of_all = verdict(Misreading::Angles(-1.0), [0.15, 0.05], 0.05);
         assert!(of_all.is_believed() && !of_all.is_sure());
+    }
+
+    /// What is halved of one joint is not halved of all: 19 % to 15 % is no other unit.
+    #[test]
+    fn a_small_share_that_falls_does_not_halve_what_is_left() {
+        let [before, after] = [[0.03, 0.27], [0.001, 0.21]].map(|left| left.map(Some).to_vec());
+        let fit = vec![Some(0.05); 2];
+        let told = |own| Verdict::new(Misreading::Time(1e3), Some(own), [&fit, &fit]);
+        assert!(!told([&before, &after]).is_believed());
+        let halved = [0.001, 0.1].map(Some).to_vec();
+        assert!(told([&before, &halved]).is_believed());
     }
 
     /// The zero of a joint whose body can turn instead is told by values that are true with it.

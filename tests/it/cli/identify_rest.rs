@@ -1,0 +1,129 @@
+//! Joints that rest, or whose position only seems to: of logs made by hand whose true parameters
+//! are known.
+
+use super::Directory;
+use super::identify_told::{GOOD, Made, Motion, deviations, motions, round_positions};
+use super::identify_told::{said, write_arm, write_log};
+use denavit::simulate::Random;
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+const STEP: f64 = TAU / 16384.0;
+
+fn made(seed: u64, motions: &[Motion; 2]) -> Vec<[f64; 5]> {
+    let made = Made { step_s: 0.002, samples: 5000, seed, ..GOOD };
+    let mut rows = made.rows(motions);
+    round_positions(&mut rows, STEP);
+    rows
+}
+
+/// A motion in which the second joint is held.
+fn held(seed: u64) -> [Motion; 2] {
+    let [first, _] = motions(seed, 0.7);
+    [first, Motion { about: 0.4, waves: Vec::new() }]
+}
+
+/// By how many standard errors what has one is off the truth, at most.
+fn worst(text: &str) -> f64 {
+    let json: Value = serde_json::from_str(text).expect("JSON");
+    let of = |one: &Value| {
+        let number = |key: &str| one[key].as_f64();
+        Some((number("value")? - number("model_value")?).abs() / number("std")?)
+    };
+    json["parameters"].as_array().expect("a list").iter().filter_map(of).fold(0.0, f64::max)
+}
+
+/// A joint on its brake: the torque of its motor, which is off, says nothing of its load. With it
+/// parameters of the last body were 0.
+#[test]
+fn a_motor_that_is_off_says_nothing() {
+    let directory = Directory::new("rest-brake");
+    write_arm(&directory, None);
+    for (seed, constant) in [(1, 0.0), (2, 0.0), (3, 0.7)] {
+        let mut rows = made(seed, &held(seed));
+        let mut random = Random::new(seed);
+        rows.iter_mut().for_each(|row| row[4] = constant + 0.02 * random.normal());
+        write_log(&directory, "brake.csv", &rows);
+        let (code, text) = said(&directory, &["--train", "brake.csv", "--json"]);
+        assert_eq!(code, Some(0), "{seed}: {text}");
+        assert!(text.contains("`link2` rests, and its torque does not follow"), "{seed}: {text}");
+        assert!(worst(&text) < 4.5, "{seed}: {text}");
+    }
+    // one that is held by its motor is none
+    write_log(&directory, "held.csv", &made(4, &held(4)));
+    let (code, text) = said(&directory, &["--train", "held.csv", "--json"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!text.contains("does not follow") && worst(&text) < 4.5, "{text}");
+}
+
+/// A position that is stuck, in all of a log or from its middle on, is told with its time, alone
+/// and beside a log that is good.
+#[test]
+fn a_position_that_is_stuck_is_told_with_its_time() {
+    let directory = Directory::new("rest-stuck");
+    write_arm(&directory, None);
+    for seed in [1, 2, 3] {
+        for from in [0, 2500] {
+            let mut rows = made(seed, &motions(seed, 0.7));
+            let stuck = rows[from][2];
+            rows[from..].iter_mut().for_each(|row| row[2] = stuck);
+            write_log(&directory, "stuck.csv", &rows);
+            write_log(&directory, "good.csv", &made(seed + 10, &motions(seed + 10, 0.7)));
+            for logs in [&["stuck.csv"][..], &["good.csv", "stuck.csv"]] {
+                let words = [&["--train"], logs].concat();
+                let (code, text) = said(&directory, &words);
+                assert_eq!(code, Some(1), "{seed} {from} {logs:?}: {text}");
+                let line = text.replace('\n', " ");
+                let told = line.split("The torque of link2 is not explained").nth(1).expect(&text);
+                assert!(logs.len() == 1 || told.contains("in stuck.csv"), "{text}");
+                let mut words =
+                    told.split("the joint rests, from ").nth(1).expect(&text).split(' ');
+                let mut time = || words.next().and_then(|one| one.parse::<f64>().ok());
+                let begins_s = time().expect(&text);
+                let is_right =
+                    begins_s > 0.002 * from as f64 && begins_s < 0.002 * from as f64 + 2.0;
+                assert!(is_right, "{seed} {from} {logs:?}: {text}");
+            }
+        }
+    }
+}
+
+/// Stiction holds a joint whose motor follows the load within Coulomb friction: beside a log in
+/// which the joint moves that is neither late nor stuck.
+#[test]
+fn stiction_is_neither_a_delay_nor_a_stuck_position() {
+    let directory = Directory::new("rest-stiction");
+    write_arm(&directory, None);
+    for seed in [1, 2, 3, 4] {
+        let mut rows = made(seed, &held(seed));
+        let mut motor = rows[0][4];
+        for row in &mut rows {
+            motor = motor.clamp(row[4] - 0.3, row[4] + 0.3);
+            row[4] = motor;
+        }
+        write_log(&directory, "stick.csv", &rows);
+        write_log(&directory, "good.csv", &made(seed + 10, &motions(seed + 10, 0.7)));
+        let (code, text) = said(&directory, &["--train", "good.csv", "stick.csv", "--json"]);
+        assert_eq!(code, Some(0), "{seed}: {text}");
+        let worst = deviations(&text).iter().map(|one| one[0].abs()).fold(0.0, f64::max);
+        assert!(worst < 4.5, "{seed}: {text}");
+    }
+}
+
+/// Of a log for validation with an encoder of 10 bits noise of the positions is left: that is no
+/// misfit.
+#[test]
+fn noise_of_a_log_for_validation_is_no_misfit() {
+    let directory = Directory::new("rest-validation");
+    write_arm(&directory, None);
+    for seed in [1, 2, 3] {
+        write_log(&directory, "good.csv", &made(seed, &motions(seed, 0.7)));
+        let mut rows = made(seed + 10, &motions(seed + 10, 0.7));
+        round_positions(&mut rows, TAU / 1024.0);
+        write_log(&directory, "coarse.csv", &rows);
+        let words = ["--train", "good.csv", "--validate", "coarse.csv", "--filter", "25"];
+        let (_, text) = said(&directory, &words);
+        assert!(text.contains("all "), "{text}");
+        assert!(!text.contains("is not explained"), "{seed}: {text}");
+    }
+}

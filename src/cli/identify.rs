@@ -167,7 +167,9 @@ fn slow(text: &str) -> Result<SlowRows, String> {
         "noise" => Ok(SlowRows::Noise),
         text => {
             let below = rate(text).map(SlowRows::Below);
-            below.ok_or_else(|| "a rate above 0, `biasing`, `noise`, or `off`".to_owned())
+            below.ok_or_else(|| {
+                "a rate from 1e-9 to 1000 rad/s or m/s, `biasing`, `noise`, or `off`".to_owned()
+            })
         }
     }
 }
@@ -179,7 +181,10 @@ fn friction(text: &str) -> Result<CoulombLaw, String> {
         Some(("tanh", width)) if rate(width).is_some() => {
             Ok(CoulombLaw::Tanh(rate(width).unwrap_or(STICTION_RATE)))
         }
-        _ => Err("`sign`, `tanh`, or `tanh:RATE` with a rate above 0".to_owned()),
+        _ => {
+            Err("`sign`, `tanh`, or `tanh:RATE` with a rate from 1e-9 to 1000 rad/s or m/s"
+                .to_owned())
+        }
     }
 }
 

@@ -175,7 +175,11 @@ impl fmt::Display for ConditionError {
                  {late_s:.4} s late\n  hint: --columns scales columns; --rates differences takes \
                  the derivatives of the positions"
             ),
-            Self::NothingMoves => write!(f, "no joint moves further than its noise"),
+            Self::NothingMoves => write!(
+                f,
+                "no joint moves further than its noise\n  hint: noise is that of the steps of its \
+                 encoder: --resolution in rad or m, if it was given"
+            ),
             Self::NoPeriod => {
                 write!(f, "the motion does not repeat\n  hint: give its period, or do not average")
             }
@@ -348,11 +352,10 @@ impl Conditioned {
         inner.div_ceil(self.decimation)
     }
 
-    /// Samples that are left and independent of each other: a filter leaves two in a period of its
-    /// cutoff.
+    /// Samples that are left and independent of each other: as many as the band that filter and
+    /// decimator pass has of white noise, about 1.4 in a period of the cutoff.
     pub(crate) fn independent(&self) -> f64 {
-        let share = self.filter.as_ref().map_or(1.0, |filter| (2.0 * filter.cutoff()).min(1.0));
-        (share * self.range.len() as f64).min(self.samples() as f64)
+        (self.noise_gains()[0][0] * self.range.len() as f64).min(self.samples() as f64)
     }
 
     /// Periods of the filter's cutoff; pairs of samples without a filter.

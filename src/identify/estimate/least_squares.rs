@@ -20,7 +20,7 @@ use std::fmt;
 
 /// Samples that are independent of each other which a parameter needs, at least: with fewer,
 /// residuals are far smaller than errors and standard errors say nothing.
-const ROWS_OF_ONE: usize = 4;
+const ROWS_OF_ONE: usize = 3;
 
 /// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
 /// those that the filter's correlation makes, of which chance may show less.

@@ -3,7 +3,7 @@
 use super::INERTIAL;
 use super::estimate::{Experiment, bare};
 use denavit::identify::condition::{Averaging, ConditionError, Conditioned, Conditioning, Filter};
-use denavit::identify::estimate::{Method, Options, estimate, parameters};
+use denavit::identify::estimate::{BlockMaker, Condensed, Method, Options, estimate, parameters};
 use denavit::identify::log::{JointSignals, MeasuredLog};
 use denavit::plants::regression::RegressionModel;
 use denavit::simulate::Random;
@@ -178,4 +178,43 @@ fn samples_near_reversals_are_counted() {
     };
     assert!((share(0) - 0.2).abs() < 0.01, "{}", share(0));
     assert_eq!(share(1), 0.0);
+}
+
+/// The mean of a log of noise scatters as that of its independent samples does.
+#[test]
+fn independent_samples_are_those_of_the_band_that_is_left() {
+    let model = model();
+    for (cutoff_hz, decimation) in [(5.0, 8), (10.0, 1), (2.5, 16)] {
+        let filter = Some(Filter { order: 4, cutoff_hz });
+        let how = Conditioning { filter, decimation, ..Conditioning::default() };
+        let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
+        let mut random = Random::new(7);
+        // logs, rows, squares of rows and of the sums of logs; what is said of a row
+        let (mut sums, mut said) = ([0.0; 4], 0.0);
+        for _ in 0..100 {
+            let mut noise = log(0.01, 3000, 0.0, false);
+            for joint in &mut noise.joints {
+                joint.tau = Some((0..3000).map(|_| random.normal()).collect());
+            }
+            let noise = Conditioned::new(noise, &names, &how).expect("a log");
+            said = Condensed::new(&model, std::slice::from_ref(&noise)).independent[0];
+            let mut of_joints = [[0.0; 3]; 2];
+            BlockMaker::new(&model, &noise).for_each(|block| {
+                for (sums, torque) in of_joints.iter_mut().zip(&block.torque) {
+                    let [torque, _] = torque.as_ref().expect("measured");
+                    sums[0] += torque.len() as f64;
+                    sums[1] += torque.iter().map(|torque| torque * torque).sum::<f64>();
+                    sums[2] += torque.iter().sum::<f64>();
+                }
+            });
+            for [rows, squares, sum] in of_joints {
+                let own = [1.0, rows, squares, sum * sum];
+                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            }
+        }
+        let [_, _, squares, of_sums] = sums;
+        // of independent rows the squares of sums are those of the rows
+        let share = squares / of_sums;
+        assert!((said / share - 1.0).abs() < 0.3, "{cutoff_hz} {decimation}: {said} {share}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Names that the data cannot tell apart.
 
+use super::driven::stands_for;
 use super::evidence::paired;
 use super::gap::Gap;
 use super::problem::Problem;
@@ -48,8 +49,12 @@ pub fn family(
     let [_, trust] = state.trust();
     let gap = |residual: &[f64]| Gap::new(setting.held_out, residual, &trust).all;
     let most = alike([&idle, &chosen]);
-    let is_alike =
-        |trial: &Trial| trial.held_out_cost() <= most && !is_worse(setting, &rest, trial, &chosen);
+    let stands = |trial: &Trial| stands_for(setting, [&idle, trial]);
+    let is_alike = |trial: &Trial| {
+        trial.held_out_cost() <= most
+            && !is_worse(setting, &rest, trial, &chosen)
+            && (!stands(&chosen) || stands(trial))
+    };
     // Where the model's own uncertainty would do, so would any effect that is off.
     let is_off = |trial: &Trial| is_alike(&idle) && !is_worse(setting, &rest, &idle, trial);
     let mut found = Vec::new();

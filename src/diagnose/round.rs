@@ -1,6 +1,7 @@
 //! One round of a search: which effect is added to a state, if any.
 
 use super::data::RowResponse;
+use super::driven::{evidence, stands_for};
 use super::evidence::{by_ranks, paired};
 use super::gap::Gap;
 use super::problem::Problem;
@@ -51,7 +52,7 @@ pub(super) fn forward(
     let mut trials = refine(setting, options.refined, state, (&problem, &scored));
     let idle = setting.trial(&problem, state, &state.taken);
     let round = Round { setting, screen, options, state, before, idle: &idle };
-    let mut first = None;
+    let (all, mut first) = (trials.clone(), None);
     while let Some(best) = best(setting, state, &trials, &idle).cloned() {
         let step = round.weigh(&best, &trials);
         let joint = setting.candidates[step.added].joint;
@@ -60,6 +61,9 @@ pub(super) fn forward(
         }
         first = first.or(Some((best, step)));
         trials.retain(|trial| round.joint(trial) != joint);
+    }
+    if let Some(found) = round.driven(&all) {
+        return Some(found);
     }
     let pairs = fitted(setting, state, &problem, &round.pairs(&problem, &scored));
     let pair = best(setting, state, &pairs, &idle).cloned();
@@ -145,6 +149,17 @@ impl Round<'_, '_> {
         let Self { setting, state, .. } = self;
         let next = setting.state(&best.taken);
         setting.in_motion((&state.taken, &state.z), (&next.taken, &next.z))
+    }
+
+    /// The effect that numbers of the model stand for that are driven, of all `trials`.
+    fn driven(&self, trials: &[Trial]) -> Option<(Trial, Step)> {
+        let Self { setting, idle, .. } = self;
+        let stands = trials.iter().filter(|trial| stands_for(setting, [idle, trial]));
+        let evidence = |trial: &&Trial| evidence(setting, [idle, trial]);
+        let best = stands.max_by(|a, b| evidence(a).total_cmp(&evidence(b)))?;
+        let in_motion = self.in_motion(best);
+        let is_taken = in_motion.is_none_or(|better| better > -WORSE_IN_MOTION);
+        is_taken.then(|| (best.clone(), Step { in_motion, is_taken, ..self.weigh(best, trials) }))
     }
 
     /// Whether a trial is more than chance, against all `trials`.

@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, starts};
 use super::data::{Data, RowResponse};
+use super::driven::stands_for;
 use super::evidence::paired;
 use super::problem::{Fitted, Problem};
 use super::round::{closed, forward};
@@ -113,7 +114,8 @@ pub fn search(
             break Stop::NothingLeft;
         }
         let left = setting.held_out_squares(&state, &state.held_out_residual);
-        if left.iter().all(|[left, noise]| left <= noise) {
+        let is_driven = state.held.iter().any(Option::is_some);
+        if !is_driven && left.iter().all(|[left, noise]| left <= noise) {
             break Stop::Floor;
         }
         let Some((next, step)) =
@@ -337,15 +339,17 @@ fn swap(
         let idle = setting.trial(&problem, &rest, &rest.taken);
         let is_other =
             |trial: &&Trial| trial.taken.last().is_some_and(|last| last.candidate != own.candidate);
+        let is_driven = stands_for(setting, [&idle, &now]);
+        let stands = |trial: &&Trial| !is_driven || stands_for(setting, [&idle, trial]);
         let is_better = |trial: &&Trial| {
             paired(&now.blocks.concat(), &trial.blocks.concat()) > options.significance
                 && trial.score(samples) < now.score(samples)
         };
-        let better = best(setting, &state, &trials, &idle).filter(is_other).filter(is_better);
+        let better = best(setting, &state, &trials, &idle).filter(is_other).filter(is_better).filter(stands);
         let is_simpler = |trial: &&Trial| {
             trial.parameters() < now.parameters() && !is_worse(setting, &state, trial, &now)
         };
-        let simplest = trials.iter().filter(is_other).filter(is_simpler);
+        let simplest = trials.iter().filter(is_other).filter(is_simpler).filter(stands);
         let simplest = simplest.min_by_key(|trial| trial.parameters());
         if let Some(best) = better.or(simplest) {
             state = setting.state(&best.taken);
@@ -377,7 +381,8 @@ fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> Stat
             let parameters = now.parameters().saturating_sub(less.parameters()) as f64;
             let [share, of_rest] = closed(&from, &squares(&less.held_out_residual), &then);
             let is_small = share < IDLE && of_rest < IDLE_OF_REST;
-            let is_idle = worth <= parameters * samples.ln() || is_small;
+            let is_idle = (worth <= parameters * samples.ln() || is_small)
+                && !stands_for(setting, [&less, &now]);
             if is_idle && idlest.as_ref().is_none_or(|(least, _)| worth < *least) {
                 idlest = Some((worth, others));
             }

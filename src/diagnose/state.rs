@@ -233,7 +233,8 @@ impl<'a> Setting<'a> {
 
     /// The same with values as they are.
     pub fn judged(&self, problem: &Problem<'_>, state: &State, taken: &[Taken]) -> Trial {
-        let found = problem.at(&self.fitted(taken), &state.torques[0]);
+        let laws = self.fitted(taken);
+        let found = bounded(problem, |problem| problem.at(&laws, &state.torques[0]));
         self.judge(state, taken, found)
     }
 
@@ -364,14 +365,22 @@ pub(super) fn within(
     laws: &mut [Fitted<'_>],
     torques: &[ModelTorques],
 ) -> Found {
+    bounded(problem, |problem| {
+        let found = problem.fit(laws, torques);
+        laws.iter_mut().zip(&found.values).for_each(|(law, values)| law.values.clone_from(values));
+        found
+    })
+}
+
+/// What is found with every entry of z free until it is at a bound.
+fn bounded<'a>(problem: &Problem<'a>, mut find: impl FnMut(&Problem<'a>) -> Found) -> Found {
     let mut held = vec![None; problem.data.columns.len()];
-    let mut found = problem.fit(laws, torques);
+    let mut found = find(problem);
     for _ in 0..MOST_HELD {
         if !hold(&mut held, &found.z, MOST_Z) {
             break;
         }
-        laws.iter_mut().zip(&found.values).for_each(|(law, values)| law.values.clone_from(values));
-        found = problem.holding(&held).fit(laws, torques);
+        found = find(&problem.holding(&held));
     }
     found
 }

@@ -22,6 +22,10 @@ const WORSE_IN_MOTION: f64 = 1.0;
 /// The share of what is left above noise there that an effect must close.
 const OF_QUIET: f64 = 0.5;
 
+/// A trial that leaves less than this share of the weighted squares of logs that are fitted has
+/// other weights.
+const OTHER_WEIGHTS: f64 = 0.6;
+
 /// The shares that are closed of what could be explained in the beginning, and now, at the joints
 /// that this is about: those with a tenth of what one of them has.
 pub(super) fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
@@ -54,7 +58,7 @@ pub(super) fn forward(
     let round = Round { setting, screen, options, state, before, idle: &idle };
     let (all, mut first) = (trials.clone(), None);
     while let Some(best) = best(setting, state, &trials, &idle).cloned() {
-        let step = round.weigh(&best, &trials);
+        let step = round.judged(&best, &trials);
         let joint = setting.candidates[step.added].joint;
         if step.is_taken {
             return Some((best, step));
@@ -67,7 +71,7 @@ pub(super) fn forward(
     }
     let pairs = fitted(setting, state, &problem, &round.pairs(&problem, &scored));
     let pair = best(setting, state, &pairs, &idle).cloned();
-    let weighed = pair.map(|pair| (round.weigh(&pair, &pairs), pair));
+    let weighed = pair.map(|pair| (round.judged(&pair, &pairs), pair));
     let taken = weighed.filter(|(step, _)| step.is_taken);
     taken.map(|(step, pair)| (pair, step)).or(first)
 }
@@ -163,6 +167,21 @@ impl Round<'_, '_> {
     }
 
     /// Whether a trial is more than chance, against all `trials`.
+    fn judged(&self, best: &Trial, trials: &[Trial]) -> Step {
+        let Self { setting, state, idle, .. } = self;
+        let step = self.weigh(best, trials);
+        if step.is_taken || best.found.cost > OTHER_WEIGHTS * idle.found.cost {
+            return step;
+        }
+        // Weights of what is left without it let the model's own numbers be.
+        let next = setting.state(&best.taken);
+        let problem = Problem::new(setting.train, &next.deviation[0], &[]);
+        let [idle, best] = [&state.taken, &best.taken].map(|of| setting.trial(&problem, &next, of));
+        Round { state: &State { taken: state.taken.clone(), ..next }, idle: &idle, ..*self }
+            .weigh(&best, trials)
+    }
+
+    /// The same with the weights of the state.
     fn weigh(&self, best: &Trial, trials: &[Trial]) -> Step {
         let Self { setting, options, state, idle, .. } = self;
         let [worse, better] = [&idle.blocks[1], &best.blocks[1]];

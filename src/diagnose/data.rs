@@ -5,6 +5,7 @@ use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
 use super::turning::late_friction;
+use crate::plants::effect::Drive;
 
 /// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +59,8 @@ pub struct ModelTorques {
     pub load_rate: PerJoint,
     /// Everything; then, for each spring, what its joint takes less what it passes on.
     pub total: PerJoint,
+    /// The numbers of each joint's drive.
+    pub drives: Vec<Drive>,
 }
 
 impl<'a> Data<'a> {
@@ -188,12 +191,14 @@ impl<'a> Data<'a> {
     pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
         let (phi, load_phi) = (self.nominal.phi(z), self.nominal.load_phi(z));
         let numbers = self.nominal.numbers(z);
+        let drives = Drive::all(self.nominal.model, &phi.drives);
         let one = |signals: &Signals| {
             let load = torques(self.nominal, signals, &load_phi);
             let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
             let load_rate = load.iter().map(rate).collect();
             let total = torques(self.nominal, signals, &phi);
-            ModelTorques { phi: phi.clone(), numbers: numbers.clone(), load, load_rate, total }
+            let (phi, numbers, drives) = (phi.clone(), numbers.clone(), drives.clone());
+            ModelTorques { phi, numbers, load, load_rate, total, drives }
         };
         self.signals.iter().map(one).collect()
     }
@@ -266,12 +271,13 @@ impl ModelTorques {
             load: thin(&self.load),
             load_rate: thin(&self.load_rate),
             total: thin(&self.total),
+            drives: self.drives.clone(),
         }
     }
 
     /// The motion of a log with these torques.
     pub fn motion<'m>(&'m self, nominal: &'m Nominal<'m>, signals: &'m Signals) -> Motion<'m> {
-        let Self { phi, numbers, load, load_rate, total } = self;
-        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total }
+        let Self { phi, numbers, load, load_rate, total, drives } = self;
+        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives }
     }
 }

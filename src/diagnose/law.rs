@@ -4,7 +4,7 @@ use super::given::Belief;
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques};
 use super::signals::Signals;
-use crate::plants::effect::LawParameter;
+use crate::plants::effect::{Drive, LawParameter};
 
 /// What a law may depend on: the motion of a log and the torques that the model gives it; those
 /// that were measured only where a law cuts them.
@@ -22,6 +22,8 @@ pub struct Motion<'a> {
     pub load_rate: &'a PerJoint,
     /// All torques of the model without effects [N m, N].
     pub total: &'a PerJoint,
+    /// The numbers of each joint's drive.
+    pub drives: &'a [Drive],
 }
 
 impl Motion<'_> {

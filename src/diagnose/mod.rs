@@ -15,6 +15,7 @@ mod catalogue;
 mod curve;
 mod data;
 mod diagnosis;
+mod drive_law;
 mod driven;
 mod effects_found;
 mod elastic;

@@ -11,6 +11,7 @@ use crate::identify::condition::{Butterworth, ConditionError, STENCIL, accelerat
 use crate::identify::log::{JointSignals, MeasuredLog};
 use crate::simulate::Random;
 use std::ops::Range;
+use std::rc::Rc;
 
 /// The filters of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,6 +65,8 @@ pub struct Signals {
     pub motor_noise: Vec<Vec<f64>>,
     /// Torques as they were measured, at the samples of the log.
     pub measured: Vec<Option<Vec<f64>>>,
+    /// What a coarse view is of.
+    whole: Option<Rc<Signals>>,
     /// Where the rows are among the samples of the motion.
     rows: Rows,
     filter: Butterworth,
@@ -111,9 +114,8 @@ impl Signals {
         let t = (0..kept.len() * WITHIN)
             .map(|k| start_s + step_s * kept.start as f64 + fine * k as f64 - offset)
             .collect();
-        let (q, qd, qdd) = (Vec::new(), Vec::new(), Vec::new());
-        let (torque, measured) = (Vec::new(), Vec::new());
-        let (position_noise, motor_noise, motor) = (Vec::new(), Vec::new(), Vec::new());
+        let [q, qd, qdd, position_noise, motor_noise] = [const { Vec::new() }; 5];
+        let (torque, measured, motor) = (Vec::new(), Vec::new(), Vec::new());
         let mut signals = Self {
             file,
             torque_hz: filters.torque_hz,
@@ -128,6 +130,7 @@ impl Signals {
             motor_noise,
             torque,
             measured,
+            whole: None,
             rows,
             filter,
         };
@@ -259,10 +262,31 @@ impl Signals {
                 .iter()
                 .map(|m| m.as_ref().map(|m| m.iter().step_by(thin).copied().collect()))
                 .collect(),
+            whole: Some(Rc::new(self.clone())),
             rows,
             filter,
         };
         (stride % thin == 0 && found.rows() == self.rows()).then_some(found)
+    }
+
+    /// The motion at the full rate, of which this is a coarse view or all.
+    pub(super) fn whole(&self) -> &Self {
+        self.whole.as_deref().unwrap_or(self)
+    }
+
+    /// What a signal of the whole motion is at the samples of this one: means, since a coarse view
+    /// must not mistake fast changes for slow ones.
+    pub(super) fn of_whole(&self, signal: Vec<f64>) -> Vec<f64> {
+        let Some(whole) = &self.whole else { return signal };
+        let within = whole.rows.within;
+        let by = within * (self.step_s / whole.log_step_s).round() as usize;
+        let mean = |k: usize| {
+            let middle = within / 2 + k * by;
+            let from = middle.saturating_sub(by / 2);
+            let own = &signal[from..(middle + by.div_ceil(2)).min(signal.len())];
+            own.iter().sum::<f64>() / own.len() as f64
+        };
+        (0..self.samples()).map(mean).collect()
     }
 
     /// What a signal of the fine motion is in this coarse one.

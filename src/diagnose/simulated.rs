@@ -155,13 +155,14 @@ impl Moved<'_> {
         taken: (&[Candidate], &[Taken]),
     ) -> Result<MotionGap, NotMoved> {
         let (robot, is_estimated) = self.robot(nominal, taken)?;
-        let has_states = robot.law_states().next().is_some();
         let model = nominal.0.model;
         let logs = &self.logs[set];
         if logs.iter().flat_map(|log| &log.joints).any(|joint| joint.motor.is_some()) {
             return Err(NotMoved::Springs);
         }
         let laws = apart(&robot, self.effects).map_err(|error| NotMoved::Law(error.to_string()))?;
+        let has_states = robot.law_states().next().is_some()
+            || laws.laws.iter().any(|law| law.law.is_transmission());
         let mut plant = plant_of(&robot, &[]).map_err(NotMoved::Plant)?;
         let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
         let mut joined: Option<Forward> = None;

@@ -9,8 +9,8 @@
 use super::condition::{Butterworth, Conditioned, STENCIL};
 use super::forward::MotionLog;
 use super::log::MeasuredLog;
-use crate::plants::effect::{AddedLaw, JointSamples};
-use crate::plants::regression::{RegressionModel, RegressionRows};
+use crate::plants::effect::{AddedLaw, Drive, JointSamples};
+use crate::plants::regression::{RegressionModel, RegressionRows, StandardParameter};
 use denavit_codegen::effect::Channel;
 use std::ops::Range;
 
@@ -62,7 +62,9 @@ pub fn take_out(log: &mut Conditioned, model: &RegressionModel, laws: &[AddedLaw
     let mut motion = Vec::new();
     log.motion(wide.clone(), &mut motion);
     let loads = loads(model, &motion);
-    let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
+    let (step_s, start_s, drives) =
+        (log.step_s, log.start_s, Drive::all(model, &phi_of(model, false)));
+    let moved = Moved { motion: &motion, loads: &loads, drives, step_s, start_s };
     undo_torques(&mut log.torque, laws, &moved, &wide);
     for law in laws.iter().filter(|law| law.law.channel().is_none()) {
         let [joint, other] = law.joints();
@@ -90,7 +92,9 @@ pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &
     motion.extend(log.qd.iter().map(|qd| slope(qd, log.step_s)));
     debug_assert_eq!(motion.len(), 3 * n);
     let loads = loads(model, &motion);
-    let moved = Moved { motion: &motion, loads: &loads, step_s: log.step_s, start_s: log.start_s };
+    let (step_s, start_s, drives) =
+        (log.step_s, log.start_s, Drive::all(model, &phi_of(model, false)));
+    let moved = Moved { motion: &motion, loads: &loads, drives, step_s, start_s };
     undo_torques(&mut log.torque, laws, &moved, &(0..samples));
     let states = |law: &AddedLaw| {
         moved.with(law.joints(), &[], 0, |samples| law.law.states(samples, &law.values))
@@ -121,6 +125,7 @@ struct Moved<'a> {
     /// q, qd and qdd of every joint.
     motion: &'a [Vec<f64>],
     loads: &'a [Vec<f64>],
+    drives: Vec<Drive>,
     step_s: f64,
     start_s: f64,
 }
@@ -153,21 +158,25 @@ impl Moved<'_> {
             qdd_2: &self.motion[2 * n + other],
             tau_load_2: &self.loads[other],
             tau_load_rate_2: &load_rate_2,
+            drive: self.drives[joint],
         })
     }
 }
 
+/// phi of the bodies alone, or of the drives alone, with the values that the model gives.
+fn phi_of(model: &RegressionModel, of_bodies: bool) -> Vec<f64> {
+    let value = |one: &StandardParameter| {
+        let owner = one.owner.as_ref();
+        let is_of_body = owner.is_none_or(|(_, prefix)| !NOT_OF_BODIES.contains(prefix));
+        if is_of_body == of_bodies { one.value.unwrap_or(0.0) } else { 0.0 }
+    };
+    let standard: Vec<f64> = model.standard.iter().map(value).collect();
+    model.axes_of_standard(&standard)
+}
+
 /// The torques of the bodies alone, with the values that the model gives [N m, N].
 fn loads(model: &RegressionModel, motion: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let is_of_body = |owner: &Option<(String, &str)>| {
-        owner.as_ref().is_none_or(|(_, prefix)| !NOT_OF_BODIES.contains(prefix))
-    };
-    let standard: Vec<f64> = model
-        .standard
-        .iter()
-        .map(|one| if is_of_body(&one.owner) { one.value.unwrap_or(0.0) } else { 0.0 })
-        .collect();
-    let phi = model.axes_of_standard(&standard);
+    let phi = phi_of(model, true);
     let own: Vec<Vec<f64>> = model
         .pattern()
         .iter()

@@ -3,6 +3,7 @@
 use super::paragraph::paragraph;
 use denavit_codegen::effect::{
     Effect, EffectKind, EffectParameter, EffectSite, Law, Measured, Property, SpringSide,
+    Transmission,
 };
 use denavit_codegen::emit::latex::{Notation, write_expression};
 use denavit_codegen::expr::{Dag, ExprId, derivative, substitute};
@@ -144,6 +145,23 @@ fn measured_formulas(
         _ => r"\dot{q}",
     };
     let logged = format!(r"{letter}_{{\mathrm{{log}}}}");
+    if let Some(Transmission { swing_s, damping, play }) = measured.transmission {
+        let [swing, damping, play] = [swing_s, damping, play].map(text);
+        let beyond = match play.as_str() {
+            "0" => r"s = \theta - q".to_owned(),
+            play => {
+                format!(r"s = \theta - q \mp \tfrac{{1}}{{2}} {play} \text{{ beyond the play}}")
+            }
+        };
+        let friction = r"f_v \dot{\theta} + f_c \operatorname{sgn} \dot{\theta}";
+        let passed = r"\tau_{\mathrm{load}}";
+        let pressed = format!(r"\frac{{I_a}}{{{swing}^2}} s");
+        let damped = format!(r"\frac{{2 {damping} I_a}}{{{swing}}} \dot{{s}}");
+        return vec![
+            format!(r"I_a \ddot{{\theta}} + {friction} + {passed} = {logged}"),
+            format!(r"{passed} = {pressed} + {damped}, \quad {beyond}"),
+        ];
+    }
     if measured.lag_s != dag.zero() {
         let lag = text(measured.lag_s);
         return vec![format!(

@@ -187,7 +187,7 @@ pub(crate) const TABLE: [Entry; 45] = [
         2,
     ),
     entry(Law::Damper, "damper", &[], Site::Joint, "d", 1),
-    entry(Law::Backlash, "backlash", &[], Site::Joint, "", 2),
+    entry(Law::Backlash, "play", &["backlash"], Site::Joint, "", 2),
     entry(Law::Payload, "payload", &["payload_point", "link_parameters"], Site::Model, "m", 2),
     entry(
         Law::LinkInertia,

@@ -48,6 +48,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "one_sided_spring_below",
     "payload",
     "payload_point",
+    "play",
     "position_delay",
     "posture_friction",
     "posture_viscous",

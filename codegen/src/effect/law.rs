@@ -1,6 +1,6 @@
 //! The law of an effect: its keys in the file, and their expressions.
 
-use super::{Channel, EffectKind, EffectSite, Law, Measured, ModelTerm, Property};
+use super::{Channel, EffectKind, EffectSite, Law, Measured, ModelTerm, Property, Transmission};
 use crate::expr::{ExprId, SymbolClass};
 use crate::model::check::Scope;
 use crate::model::file::Scalar;
@@ -23,7 +23,7 @@ const TERMS: Word<ModelTerm> = Word {
 /// The law as it is written.
 pub(super) enum LawFile<'a> {
     Torque(Scalar<'a>),
-    Measured { channel: Channel, parts: [Option<Scalar<'a>>; 6] },
+    Measured { channel: Channel, parts: Box<[Option<Scalar<'a>>; 9]> },
     Moves(Vec<(Property, Scalar<'a>)>),
     Term(ModelTerm),
 }
@@ -65,13 +65,23 @@ impl<'a> LawFile<'a> {
 }
 
 fn read_measured<'a>(json: &Json<'a>, report: &mut Report) -> Option<LawFile<'a>> {
-    const KEYS: &[&str] = &["channel", "value", "true", "gain", "offset", "delay_s", "lag_s"];
+    const KEYS: &[&str] = &[
+        "channel", "value", "true", "gain", "offset", "delay_s", "lag_s", "swing_s", "damping",
+        "play",
+    ];
     let fields = Fields::of(json, KEYS, report)?;
     let channel = fields.required_word("channel", &CHANNELS, report);
+    for key in ["swing_s", "damping", "play"] {
+        let Some(json) = fields.get(key) else { continue };
+        if channel != Channel::Torque || KEYS[1..7].iter().any(|&key| fields.get(key).is_some()) {
+            let why = "belongs to a law of `tau` that has nothing else";
+            report.push(json.start, Cause::LawKey(key, why));
+        }
+    }
     if let (Some(json), Some(_)) = (fields.get("true"), fields.get("value")) {
         report.push(json.start, Cause::LawKey("true", "stands in place of `value`, not beside it"));
     }
-    let parts = std::array::from_fn(|part| fields.scalar(KEYS[part + 1], report));
+    let parts = Box::new(std::array::from_fn(|part| fields.scalar(KEYS[part + 1], report)));
     Some(LawFile::Measured { channel, parts })
 }
 
@@ -203,7 +213,7 @@ impl LawReader {
     fn measured(
         &mut self,
         channel: Channel,
-        parts: &[Option<Scalar<'_>>; 6],
+        parts: &[Option<Scalar<'_>>; 9],
         report: &mut Report,
     ) -> Measured {
         // only here: a law that adds to the torque cannot answer to the sum
@@ -213,7 +223,7 @@ impl LawReader {
             Channel::Position => self.position,
             Channel::Rate => self.position.times(Dimension::RATE).unwrap_or(self.position),
         };
-        let [value, truth, gain, offset, delay, lag] = parts;
+        let [value, truth, gain, offset, delay, lag, swing, damping, play] = parts;
         let true_value = match channel {
             Channel::Torque => "tau",
             Channel::Position => "q",
@@ -232,7 +242,13 @@ impl LawReader {
         let second = Dimension::NONE.per(Dimension::RATE).unwrap_or(Dimension::NONE);
         let delay_s = self.quantity(delay.clone(), "a delay", second, report);
         let lag_s = self.quantity(lag.clone(), "a lag", second, report);
-        Measured { channel, is_inverse: truth.is_some(), value, delay_s, lag_s }
+        let transmission = (swing.is_some() || play.is_some()).then(|| Transmission {
+            swing_s: self.quantity(swing.clone(), "a swing", second, report),
+            damping: self.quantity(damping.clone(), "a damping", Dimension::NONE, report),
+            play: self.quantity(play.clone(), "a play", self.position, report),
+        });
+        let is_inverse = truth.is_some() || transmission.is_some();
+        Measured { channel, is_inverse, value, delay_s, lag_s, transmission }
     }
 
     fn symbol(&mut self, name: &str) -> ExprId {

@@ -155,6 +155,19 @@ impl Channel {
     }
 }
 
+/// What joins a drive whose torque is logged to the joint whose position is: its rotor then moves
+/// otherwise than the joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Transmission {
+    /// The root of the rotor's inertia times the compliance \[s\]: one over the angular frequency
+    /// at which the rotor swings while the joint stands.
+    pub swing_s: ExprId,
+    /// Damping of that swing, as a share of the critical one.
+    pub damping: ExprId,
+    /// The width in which nothing is passed on [rad, m].
+    pub play: ExprId,
+}
+
 /// What is logged of a true quantity: value(t - delay), then a first-order lag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
@@ -169,6 +182,8 @@ pub struct Measured {
     pub delay_s: ExprId,
     /// Time constant of the lag \[s\].
     pub lag_s: ExprId,
+    /// What is between the drive, whose torque is logged, and the joint; rigid if there is none.
+    pub transmission: Option<Transmission>,
 }
 
 /// A property of a place that an effect can move.
@@ -241,7 +256,12 @@ impl Law {
     pub fn expressions(&self) -> Vec<ExprId> {
         match self {
             Self::Torque(torque) => vec![*torque],
-            Self::Measured(measured) => vec![measured.value, measured.delay_s, measured.lag_s],
+            Self::Measured(measured) => {
+                let mut all = vec![measured.value, measured.delay_s, measured.lag_s];
+                let parts = measured.transmission.map(|one| [one.swing_s, one.play, one.damping]);
+                all.extend(parts.into_iter().flatten());
+                all
+            }
             Self::Moves(moves) => moves.iter().map(|(_, by)| *by).collect(),
             Self::Term(_) => Vec::new(),
         }

@@ -4,7 +4,7 @@ use super::law::{LawFile, LawReader};
 use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
-    Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law,
+    Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
     SpringSide,
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
@@ -112,7 +112,7 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
     let law = law?;
     let mut exprs = law.expressions();
     exprs.extend(torque_2);
-    note_linear(&mut dag, &mut parameters, &states, &exprs);
+    note_linear(&mut dag, &mut parameters, (&states, &law), &exprs);
     if !vanishes(&mut dag, &parameters, (&law, &exprs)) {
         report.push(fields.at(), Cause::NeverVanishes);
     }
@@ -138,12 +138,16 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
 fn note_linear(
     dag: &mut Dag,
     parameters: &mut [EffectParameter],
-    states: &[EffectState],
+    (states, kind): (&[EffectState], &Law),
     law: &[ExprId],
 ) {
     let symbols: Vec<ExprId> = parameters.iter().map(|parameter| parameter.symbol).collect();
     // a state answers to its parameters in a way that no expression says
-    let hidden: Vec<ExprId> = states.iter().flat_map(|state| [state.rate, state.initial]).collect();
+    let mut hidden: Vec<ExprId> =
+        states.iter().flat_map(|state| [state.rate, state.initial]).collect();
+    if let Law::Measured(Measured { transmission: Some(one), .. }) = kind {
+        hidden.extend([one.swing_s, one.damping, one.play]);
+    }
     let is_linear = linear(dag, law, &symbols);
     for (parameter, is_linear) in parameters.iter_mut().zip(is_linear) {
         parameter.linear = is_linear && !depends(dag, &hidden, parameter.symbol);
@@ -166,7 +170,9 @@ fn vanishes(
     let nothing = match law {
         Law::Measured(measured) => {
             let symbol = dag.find_symbol(measured.channel.as_str());
-            vec![symbol.map(|symbol| dag.symbol_expr(symbol)), Some(dag.zero()), Some(dag.zero())]
+            let value = symbol.map(|symbol| dag.symbol_expr(symbol));
+            // no delay, no lag, no swing and no play; a damping of nothing is nothing
+            std::iter::once(value).chain([Some(dag.zero()); 4]).collect()
         }
         _ => vec![Some(dag.zero()); left.len()],
     };

@@ -4,6 +4,7 @@
 //! quantity that is linear between samples; beyond the ends the quantity rests.
 
 use super::program::LawProgram;
+use super::transmission::TransmissionLaw;
 use super::{EffectError, EffectLaw, JointSamples, columns, gradient, inputs, names};
 use denavit_codegen::effect::{Channel, Effect, Measured};
 use denavit_codegen::expr::{Dag, ExprId};
@@ -22,6 +23,8 @@ pub(super) struct ChannelLaw {
     columns: Vec<usize>,
     /// The derivative of the logged value by the true one.
     slope: LawProgram,
+    /// What is between the drive and the joint.
+    pub(super) transmission: Option<TransmissionLaw>,
 }
 
 impl ChannelLaw {
@@ -37,13 +40,16 @@ impl ChannelLaw {
         let timing = LawProgram::new(dag, &names(effect), Vec::new(), entries)?;
         let id = dag.find_symbol(measured.channel.as_str());
         let channel = dag.symbol_expr(id.expect("the channel is a symbol of its law"));
-        let is_delay = measured.value == channel && measured.lag_s == dag.zero();
+        let is_timed = measured.value == channel && measured.lag_s == dag.zero();
+        let is_delay = is_timed && measured.transmission.is_none();
         let slope = gradient(dag, &[measured.value], &[channel]).concat();
         let columns = columns(dag, &slope);
         let inputs = inputs(dag, &columns, &[]);
         let slope = LawProgram::new(dag, &names(effect), inputs, slope)?;
-        let Measured { channel, is_inverse, .. } = *measured;
-        Ok(Self { channel, is_inverse, is_delay, timing, columns, slope })
+        let Measured { channel, is_inverse, transmission, .. } = *measured;
+        let transmission = transmission.map(|one| TransmissionLaw::new(dag, effect, one));
+        let transmission = transmission.transpose()?;
+        Ok(Self { channel, is_inverse, is_delay, timing, columns, slope, transmission })
     }
 }
 
@@ -71,7 +77,8 @@ const ROUNDS: usize = 60;
 
 impl EffectLaw {
     /// What is logged where the samples are the truth; the channel itself for effects that change
-    /// no channel of the log. Delay and lag need the times of the samples.
+    /// no channel of the log. Delay and lag need the times of the samples. Of a transmission it is
+    /// the truth: what its drive must do for that is not found.
     pub fn logged(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {
         let Some(law) = &self.channel else { return samples.tau.to_vec() };
         let value = match law.is_inverse {
@@ -94,6 +101,10 @@ impl EffectLaw {
             wanted.iter_mut().zip(rate).for_each(|(y, rate)| *y += lag * rate);
         }
         let wanted = shifted(samples.t, &wanted, -delay);
+        if law.transmission.is_some() {
+            let Some(through) = self.through(samples, values) else { return wanted };
+            return wanted.iter().zip(through.torque).map(|(logged, more)| logged - more).collect();
+        }
         if law.is_inverse {
             return self.value(&law.with(samples, &wanted), values).swap_remove(0);
         }

@@ -13,9 +13,11 @@ mod channel;
 mod program;
 mod robot;
 mod states;
+mod transmission;
 
 pub use added::{AddedError, AddedLaw, ApartEffects, apart};
 pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
+pub use transmission::{Drive, Transmitted};
 
 use denavit_codegen::effect::{
     Channel, Effect, EffectKind, EffectParameter, EffectSite, Law, SpringSide,
@@ -108,6 +110,8 @@ pub struct JointSamples<'a> {
     pub tau_load_2: &'a [f64],
     /// Its derivative with respect to time.
     pub tau_load_rate_2: &'a [f64],
+    /// Numbers of the drive, for laws of what is between it and the joint.
+    pub drive: Drive,
 }
 
 /// The names of the columns of [`JointSamples`], which are those of the symbols of laws.
@@ -265,6 +269,10 @@ impl EffectLaw {
     pub fn gradient(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<Vec<f64>> {
         match self.channel() {
             None => self.value(samples, values).split_off(1),
+            Some(Channel::Torque) if self.is_transmission() => {
+                let nothing = || vec![vec![0.0; samples.len()]; values.len()];
+                self.through(samples, values).map_or_else(nothing, |through| through.gradient)
+            }
             Some(Channel::Torque) if self.is_inverse() => {
                 let mut columns = self.value(samples, values).split_off(1);
                 columns.iter_mut().flatten().for_each(|entry| *entry = -*entry);

@@ -10,3 +10,4 @@ mod one_joint;
 mod saturation;
 mod search;
 mod separate;
+mod transmission;

@@ -5,3 +5,4 @@ mod laws;
 mod page;
 mod robot;
 mod states;
+mod transmission;

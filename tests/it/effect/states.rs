@@ -73,21 +73,3 @@ fn dahls_bristle_is_exact_at_constant_rate() {
         assert!((found - expected).abs() < 1e-12, "{t}: {found} is not {expected}");
     }
 }
-
-#[test]
-fn an_elastic_transmission_is_its_transfer_function() {
-    let effect = find("joint_elasticity").expect("shipped");
-    let law = EffectLaw::new(effect, JointKind::Revolute).expect("a law");
-    let (b, filter, omega) = (3e-4, 0.01, 20.0);
-    let t: Vec<f64> = (0..15_000).map(|k| f64::from(k) * 0.0001).collect();
-    let tau_load: Vec<f64> = t.iter().map(|t| (omega * t).sin()).collect();
-    let samples = JointSamples { t: &t, tau_load: &tau_load, ..JointSamples::default() };
-    let found = law.torque(&samples, &[b, filter]);
-    // b s^2/(1 + filter s)^2 at s = i omega, once what it began with has gone
-    let (gain, phase) =
-        (b * omega * omega / (1.0 + (omega * filter).powi(2)), (omega * filter).atan());
-    for (t, found) in t.iter().zip(found).skip(3000) {
-        let expected = -gain * (omega * t - 2.0 * phase).sin();
-        assert!((found - expected).abs() < 1e-3 * gain, "{t}: {found} is not {expected}");
-    }
-}

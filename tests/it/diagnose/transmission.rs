@@ -1,0 +1,55 @@
+//! A drive whose transmission gives way, where the torque is the drive's and the position the
+//! joint's.
+
+use super::one_joint::{diagnosed, log};
+use std::f64::consts::TAU;
+
+const ROTOR: f64 = 0.5;
+const MASS: f64 = 2.0;
+const STIFFNESS: f64 = 800.0;
+const VISCOUS: f64 = 1.5;
+const COULOMB: f64 = 1.0;
+
+const SLED: &str = r#"{
+  "format": "denavit-model/1", "name": "sled", "convention": "standard", "gravity": [0, -9.81, 0],
+  "links": [{
+    "name": "sled", "joint": {"type": "prismatic", "theta": 0, "d": 0, "a": 0, "alpha": 0},
+    "body": {"mass": {"value": 2, "std": 0.02}, "com": [0, 0, 0], "about": "com",
+             "inertia": {"xx": 1, "yy": 1, "zz": 1, "xy": 0, "xz": 0, "yz": 0}}
+  }],
+  "drives": {"sled": {"rotor_inertia": {"value": 0.5, "std": 0.005},
+                      "viscous": {"value": 1.5, "std": 0.05},
+                      "coulomb": {"value": 1, "std": 0.03}}}
+}"#;
+
+/// Accelerations [m/s^2] of waves of so many periods in five seconds.
+const WAVES: [(f64, f64); 3] = [(3.0, 3.0), (2.5, 6.0), (2.0, 11.0)];
+
+/// The position of the sled, the rate of its rotor, and what bodies and rotor take: in closed form,
+/// since the rotor is ahead by what the spring must give.
+fn moved(phase: f64) -> impl Fn(f64) -> [f64; 3] {
+    move |t| {
+        let mut all = [0.0; 3];
+        for (size, periods) in WAVES {
+            let w = TAU * periods / 5.0;
+            let (sine, cosine) = (w * t + periods * phase).sin_cos();
+            let (ahead, size) = (1.0 - MASS / STIFFNESS * w * w, size / (w * w));
+            all[0] += size * sine;
+            all[1] += ahead * size * w * cosine;
+            all[2] -= size * w * w * (MASS + ROTOR * ahead) * sine;
+        }
+        all
+    }
+}
+
+#[test]
+fn a_soft_transmission_is_found_by_the_motion_of_its_rotor() {
+    let torque = |at: [f64; 3]| at[2] + VISCOUS * at[1] + COULOMB * at[1].signum();
+    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&moved(phase), &torque, (seed, 0.02)));
+    let (found, candidates) = diagnosed(SLED, logs);
+    let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
+    assert_eq!(candidates[one.candidate].effect, "joint_elasticity");
+    let swing = (ROTOR / STIFFNESS).sqrt();
+    let value = one.parameters[0].value;
+    assert!((value / swing - 1.0).abs() < 0.05, "{value} is not {swing}");
+}

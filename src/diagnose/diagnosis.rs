@@ -185,10 +185,19 @@ pub fn diagnose(
     let left = |state: &State| {
         where_left(&train, &state.residual, &state.torques[0], train_floor, filter_s)
     };
-    let (after, families) = named((&setting, &outcome.screen), &request.options, outcome.after);
-    let [before, after] = [&outcome.before, &after];
-    let deviations = deviations(&setting, after, smoother.as_ref());
-    let mut effects = found_effects(&setting, [before, after], (&deviations, families));
+    let before = &outcome.before;
+    let name = |state| named((&setting, &outcome.screen), &request.options, state);
+    let (mut after, mut families) = name(outcome.after);
+    let (deviations, mut effects) = loop {
+        let deviations = deviations(&setting, &after, smoother.as_ref());
+        let effects = found_effects(&setting, [before, &after], (&deviations, families));
+        let Some(faint) = effects.iter().position(|one| one.is_faint) else {
+            break (deviations, effects);
+        };
+        after.taken.remove(setting.given.len() + faint);
+        (after, families) = name(setting.settled(setting.state(&after.taken)));
+    };
+    let after = &after;
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }

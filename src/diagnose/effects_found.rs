@@ -3,6 +3,7 @@
 
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
+use super::evidence::{block_costs, by_ranks, paired};
 use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
 use super::family::Alternative;
 use super::gap::Gap;
@@ -36,6 +37,8 @@ pub struct FoundEffect {
     pub share: f64,
     /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
     pub is_named: bool,
+    /// Whether it closes little where it acts, and is not plain for all that.
+    pub is_faint: bool,
     /// Effects that would do as well in its place.
     pub alternatives: Vec<Alternative>,
     /// Parameters of the model that do exactly what it does, together, whatever the motion; none
@@ -59,6 +62,13 @@ pub struct GivenEffect {
 /// many times the deviation of noise stays.
 const FITS: f64 = 0.75;
 const MISFIT: f64 = 2.5;
+
+/// An effect that closes less than this share of what a joint leaves, noise with it, is faint if
+/// its values are within so many errors of nothing, or held-out logs are better with it by less
+/// than so many standard errors.
+const CLOSES: f64 = 0.3;
+const NOTHING: f64 = 3.0;
+const PLAIN: f64 = 5.0;
 
 /// The effects of a state, each with its share, its errors and what would do as well.
 pub(super) fn found_effects(
@@ -86,17 +96,48 @@ pub(super) fn found_effects(
         others.remove(place);
         // Where all was below the floor already, of what the effects closed.
         let whole = (gap(before) - floor).max(gap(before) - gap(after));
+        let without = setting.state(&others);
+        let parameters = values(setting, (after, deviations), place);
+        let own = own_equations(setting, after, taken);
+        let is_little = |own: &Vec<usize>| {
+            let less = squares(&without.held_out_residual);
+            let sum = |of: &[[f64; 2]]| own.iter().map(|&at| of[at][0]).sum::<f64>();
+            sum(&to) > (1.0 - CLOSES) * sum(&less)
+        };
+        let is_plain = || {
+            let [worse, better] = [&without, after].map(|state| {
+                block_costs(setting.held_out, &state.held_out_residual, &after.deviation[1])
+            });
+            paired(&worse, &better).max(by_ranks(&worse, &better)) >= PLAIN
+        };
+        let is_held = |state: &State| state.held.iter().any(Option::is_some);
+        let laws = setting.candidates[taken.candidate].law.parameters();
         found.push(FoundEffect {
             candidate: taken.candidate,
-            parameters: values(setting, (after, deviations), place),
-            share: (gap(&setting.state(&others)) - gap(after)) / whole.max(f64::MIN_POSITIVE),
-            is_named: own_equations(setting, after, taken).is_none_or(|own| fits(&own)),
+            share: (gap(&without) - gap(after)) / whole.max(f64::MIN_POSITIVE),
+            is_named: own.as_ref().is_none_or(|own| fits(own)),
+            // Of what numbers of the model stand for that are driven, logs show little.
+            is_faint: own.as_ref().is_some_and(is_little)
+                && (is_held(after) || !is_held(&without))
+                && (errors_from_nothing(laws, &parameters) < NOTHING || !is_plain()),
+            parameters,
             alternatives,
             exact: Vec::new(),
             experiment: None,
         });
     }
     found
+}
+
+/// The most errors by which what switches an effect off is from where it does; infinite where the
+/// logs do not say so much of any.
+fn errors_from_nothing(parameters: &[LawParameter], values: &[EffectValue]) -> f64 {
+    let of = |(parameter, one): (&LawParameter, &EffectValue)| {
+        let nothing = parameter.nominal.filter(|_| one.std.is_finite())?;
+        Some((one.value - nothing).abs() / one.std.max(f64::MIN_POSITIVE))
+    };
+    let all = parameters.iter().zip(values).filter_map(of);
+    all.max_by(f64::total_cmp).unwrap_or(f64::INFINITY)
 }
 
 /// Where an effect of a joint acts of the joint and its spring; none for one of the whole model.

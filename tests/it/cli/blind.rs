@@ -2,13 +2,18 @@
 
 use super::Directory;
 use crate::blind::battery::{Files, answer, command, examine};
-use crate::blind::score::Answer;
+use crate::blind::score::{Answer, Score};
 use std::path::Path;
 
 /// Small robots, quick to diagnose: nothing hidden in four of them, a leg behind springs among
 /// these; in the others Coulomb friction (twice, weak and medium), viscous friction, both kinds of
 /// its asymmetry, presliding and Stribeck friction, an offset, and a wrong zero of 0.12 rad.
 const CASES: [u64; 13] = [14, 28, 42, 3, 17, 34, 45, 166, 22, 30, 41, 44, 15];
+
+/// Cases of runs that were reported, whose answers were wrong: inertial parameters that are off by
+/// more than the model states and were taken up by all of its deviations; a limit of torques that
+/// is met in the log for training alone; friction with memory named where a leg's ankle sticks.
+const MENDED: [u64; 3] = [3201, 3467, 3174];
 
 fn diagnosed(files: Files<'_>) -> Answer {
     let denavit = Path::new(env!("CARGO_BIN_EXE_denavit"));
@@ -17,16 +22,20 @@ fn diagnosed(files: Files<'_>) -> Answer {
     answer(&said.unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr))))
 }
 
-#[test]
-fn what_is_hidden_is_named_and_nothing_else_with_values_within_their_intervals() {
-    let directory = Directory::new("blind_cases");
-    let halves: Vec<&[u64]> = CASES.chunks(CASES.len().div_ceil(2)).collect();
-    let wrong: Vec<String> = std::thread::scope(|scope| {
+/// Examines cases, two at a time; those whose answer is not as asked for, with what was said.
+fn wrong(
+    name: &str,
+    cases: &'static [u64],
+    is_right: fn(&Score) -> bool,
+) -> Vec<String> {
+    let directory = Directory::new(name);
+    let halves: Vec<&[u64]> = cases.chunks(cases.len().div_ceil(2)).collect();
+    std::thread::scope(|scope| {
         let of_half = |half: &'static [u64]| {
             let path = directory.path.clone();
             scope.spawn(move || {
                 let examined = half.iter().map(|&case| examine(case, &path, diagnosed).unwrap());
-                let wrong = examined.filter(|s| !s.right || s.within[0] < s.within[1]);
+                let wrong = examined.filter(|score| !is_right(score));
                 wrong
                     .map(|s| format!("{}: {:?} -> {:?}, {:?}", s.number, s.truth, s.said, s.within))
                     .collect::<Vec<String>>()
@@ -34,6 +43,18 @@ fn what_is_hidden_is_named_and_nothing_else_with_values_within_their_intervals()
         };
         let threads: Vec<_> = halves.into_iter().map(of_half).collect();
         threads.into_iter().flat_map(|one| one.join().unwrap()).collect()
-    });
+    })
+}
+
+#[test]
+fn what_is_hidden_is_named_and_nothing_else_with_values_within_their_intervals() {
+    let is_right = |score: &Score| score.right && score.within[0] >= score.within[1];
+    let wrong = wrong("blind_cases", &CASES, is_right);
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn answers_that_were_wrong_are_right() {
+    let wrong = wrong("blind_mended", &MENDED, |score| score.right);
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

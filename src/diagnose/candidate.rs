@@ -13,6 +13,8 @@ pub struct Candidate {
     pub at: String,
     /// The joint that it acts on; none for what acts on the whole robot.
     pub joint: Option<usize>,
+    /// Whether it adds to the inertial parameters of a body, as the model's numbers may be off.
+    pub is_body: bool,
     /// What it does.
     pub law: Box<dyn Law>,
 }

@@ -84,6 +84,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
             title: effect.title.clone(),
             at: name,
             joint,
+            is_body: effect.at == EffectSite::Link && matches!(effect.law, EffectKindLaw::Moves(_)),
             law: Box::new(RobotLaw { effect: law, is_of_drives }),
         })
     };
@@ -126,6 +127,7 @@ fn on_joint(
         title: effect.title.clone(),
         at,
         joint: Some(joint),
+        is_body: false,
         law,
     })
 }

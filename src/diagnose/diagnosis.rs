@@ -11,7 +11,7 @@ use super::elastic::SeriesSpring;
 use super::errors::deviations;
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
-use super::family::named;
+use super::family::{Families, named};
 use super::fault::DiagnosisError;
 use super::floor::{NoiseFloor, UNREPEATABLE};
 use super::gap::{Gap, share_closed};
@@ -187,16 +187,9 @@ pub fn diagnose(
     };
     let before = &outcome.before;
     let name = |state| named((&setting, &outcome.screen), &request.options, state);
-    let (mut after, mut families) = name(outcome.after);
-    let (deviations, mut effects) = loop {
-        let deviations = deviations(&setting, &after, smoother.as_ref());
-        let effects = found_effects(&setting, [before, &after], (&deviations, families));
-        let Some(faint) = effects.iter().position(|one| one.is_faint) else {
-            break (deviations, effects);
-        };
-        after.taken.remove(setting.given.len() + faint);
-        (after, families) = name(setting.settled(setting.state(&after.taken)));
-    };
+    let errors = |state: &State| deviations(&setting, state, smoother.as_ref());
+    let Told { state: after, deviations, mut effects } =
+        told(&setting, before, name(outcome.after), (&name, &errors));
     let after = &after;
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
@@ -229,6 +222,31 @@ pub fn diagnose(
     };
     diagnosis.judge(&setting, outcome.stop, after);
     Ok(diagnosis)
+}
+
+/// What is told of the effects of a state.
+struct Told {
+    state: State,
+    deviations: Vec<f64>,
+    effects: Vec<FoundEffect>,
+}
+
+/// The effects of a state, without those that are faint: others are named and estimated anew then.
+fn told(
+    setting: &Setting<'_>,
+    before: &State,
+    (mut state, mut families): Families,
+    (name, errors): (&dyn Fn(State) -> Families, &dyn Fn(&State) -> Vec<f64>),
+) -> Told {
+    loop {
+        let deviations = errors(&state);
+        let effects = found_effects(setting, [before, &state], (&deviations, families));
+        let Some(faint) = effects.iter().position(|one| one.is_faint) else {
+            return Told { state, deviations, effects };
+        };
+        state.taken.remove(setting.given.len() + faint);
+        (state, families) = name(setting.settled(setting.state(&state.taken)));
+    }
 }
 
 /// Logs as rows.

@@ -5,13 +5,18 @@
 
 use super::evidence::paired;
 use super::search::{DISTINCT, ROWS_PER_SAMPLE};
-use super::state::{MOST_Z, Setting, Trial};
+use super::state::{MOST_Z, Setting, Taken, Trial};
 
-/// Whether numbers of the model are driven without an effect, are not with it, and say, with what
-/// is left of the logs, that it is there, while held-out logs do not say otherwise.
+/// Whether numbers of the model are driven without an effect on a body, are not with it, and say,
+/// with what is left of the logs, that it is there, while held-out logs do not say otherwise. Any
+/// other effect would stand for a law that does not quite fit, as the numbers do.
 pub(super) fn stands_for(setting: &Setting<'_>, [without, with]: [&Trial; 2]) -> bool {
     let is_driven = |trial: &Trial| trial.found.z.iter().any(|z| z.abs() >= MOST_Z);
-    is_driven(without)
+    let is_added =
+        |one: &&Taken| without.taken.iter().all(|other| other.candidate != one.candidate);
+    let mut added = with.taken.iter().filter(is_added);
+    added.any(|one| setting.candidates[one.candidate].is_body)
+        && is_driven(without)
         && !is_driven(with)
         && evidence(setting, [without, with]) > 0.0
         && paired(&without.blocks[1], &with.blocks[1]) > -DISTINCT

@@ -84,13 +84,16 @@ pub fn family(
     found
 }
 
+/// A state, and for each effect that was found the names that would do as well.
+pub(super) type Families = (State, Vec<Vec<Alternative>>);
+
 /// The effects of a state with the names that would do as well: of these the simplest is the
 /// effect's, since with what was found it is known better what is left.
 pub(super) fn named(
     (setting, screen): (&Setting<'_>, &Screen),
     options: &SearchOptions,
     mut state: State,
-) -> (State, Vec<Vec<Alternative>>) {
+) -> Families {
     let mut families = Vec::new();
     for place in setting.given.len()..state.taken.len() {
         let of = |state: &State| family((setting, screen), options, state, place);

@@ -66,7 +66,8 @@ pub fn given_candidates(
         }
         let effect = law.name.clone();
         let law = Box::new(GivenLaw { law: law_of(law, joint, second), parameters, beliefs });
-        (Candidate { effect, title, at, joint: Some(joint), law }, Taken { candidate, values })
+        let joint = Some(joint);
+        (Candidate { effect, title, at, joint, is_body: false, law }, Taken { candidate, values })
     };
     laws.enumerate().map(of).unzip()
 }

@@ -345,7 +345,8 @@ fn swap(
             paired(&now.blocks.concat(), &trial.blocks.concat()) > options.significance
                 && trial.score(samples) < now.score(samples)
         };
-        let better = best(setting, &state, &trials, &idle).filter(is_other).filter(is_better).filter(stands);
+        let better =
+            best(setting, &state, &trials, &idle).filter(is_other).filter(is_better).filter(stands);
         let is_simpler = |trial: &&Trial| {
             trial.parameters() < now.parameters() && !is_worse(setting, &state, trial, &now)
         };

@@ -23,11 +23,7 @@ fn diagnosed(files: Files<'_>) -> Answer {
 }
 
 /// Examines cases, two at a time; those whose answer is not as asked for, with what was said.
-fn wrong(
-    name: &str,
-    cases: &'static [u64],
-    is_right: fn(&Score) -> bool,
-) -> Vec<String> {
+fn wrong(name: &str, cases: &'static [u64], is_right: fn(&Score) -> bool) -> Vec<String> {
     let directory = Directory::new(name);
     let halves: Vec<&[u64]> = cases.chunks(cases.len().div_ceil(2)).collect();
     std::thread::scope(|scope| {

@@ -93,6 +93,7 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
                 title: name.to_owned(),
                 at: described.name.clone(),
                 joint: Some(joint),
+                is_body: false,
                 law: Box::new(Handwritten { parameters, joint, at }),
             });
         }

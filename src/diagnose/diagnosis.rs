@@ -181,15 +181,11 @@ pub fn diagnose(
         let taken: Vec<usize> = state.taken.iter().map(|one| one.candidate).collect();
         watch(&taken, Gap::new(&held_out, &state.held_out_residual, &state.trust()[1]).all);
     });
-    let filter_s = 0.35 / filters.torque_hz;
-    let left = |state: &State| {
-        where_left(&train, &state.residual, &state.torques[0], train_floor, filter_s)
-    };
     let before = &outcome.before;
     let name = |state| named((&setting, &outcome.screen), &request.options, state);
     let errors = |state: &State| deviations(&setting, state, smoother.as_ref());
     let Told { state: after, deviations, mut effects } =
-        told(&setting, before, name(outcome.after), (&name, &errors));
+        told(&setting, before, name(outcome.after), &name, &errors);
     let after = &after;
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
@@ -197,6 +193,8 @@ pub fn diagnose(
     if let Some((robot, options)) = request.experiment {
         separate(&setting, (robot, &options), (after, filters), &mut effects);
     }
+    let filter_s = 0.35 / filters.torque_hz;
+    let left = |of: &State| where_left(&train, &of.residual, &of.torques[0], train_floor, filter_s);
     let trust = after.trust();
     let mut diagnosis = Diagnosis {
         verdict: Verdict::CannotTell,
@@ -236,7 +234,8 @@ fn told(
     setting: &Setting<'_>,
     before: &State,
     (mut state, mut families): Families,
-    (name, errors): (&dyn Fn(State) -> Families, &dyn Fn(&State) -> Vec<f64>),
+    name: &dyn Fn(State) -> Families,
+    errors: &dyn Fn(&State) -> Vec<f64>,
 ) -> Told {
     loop {
         let deviations = errors(&state);

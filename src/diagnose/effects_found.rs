@@ -140,9 +140,11 @@ fn errors_from_nothing(parameters: &[LawParameter], values: &[EffectValue]) -> f
     all.max_by(f64::total_cmp).unwrap_or(f64::INFINITY)
 }
 
-/// Where an effect of a joint acts of the joint and its spring; none for one of the whole model.
+/// Where an effect of a joint acts of the joint and its spring; none for one of the whole model, or
+/// of a body, which all joints before it carry.
 fn own_equations(setting: &Setting<'_>, state: &State, taken: &Taken) -> Option<Vec<usize>> {
-    let joint = setting.candidates[taken.candidate].joint?;
+    let candidate = &setting.candidates[taken.candidate];
+    let joint = candidate.joint.filter(|_| !candidate.is_body)?;
     let data = setting.train;
     let fitted = setting.fitted(std::slice::from_ref(taken));
     let motion = state.torques[0].first()?.motion(data.nominal, data.signals.first()?);

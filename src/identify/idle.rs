@@ -36,7 +36,7 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
     let is_idle = |[rows, torque, load, torques, loads, both]: [f64; 6]| {
         let [torques, loads] = [torques - torque * torque / rows, loads - load * load / rows];
         let both = both - torque * load / rows;
-        torques < FOLLOWS.powi(2) * loads && both * both < ALIKE.powi(2) * torques * loads
+        torques < FOLLOWS.powi(2) * loads && both * both <= ALIKE.powi(2) * torques * loads
     };
     let idle = resting.into_iter().zip(sums).filter(|(_, sums)| is_idle(*sums));
     let idle: Vec<usize> = idle.map(|(joint, _)| joint).collect();

@@ -26,6 +26,10 @@ const SURE: f64 = 5.0;
 /// Constants that are found, at most.
 const MOST: usize = 3;
 
+/// The largest zero that is told, half a turn [rad, m]: torques that hardly depend on a position,
+/// as that of a vertical axis, would have any.
+const LARGEST_ZERO: f64 = std::f64::consts::PI;
+
 /// Half the difference of positions that a slope is found with [rad, m].
 const STEP: f64 = 1e-3;
 
@@ -59,7 +63,9 @@ pub(super) fn constant_errors(
         let with = |line: usize| [&chosen[..], &[line]].concat();
         let seen = |line: usize| {
             let own = extended.sizes(&with(line), Errors::Classical)?[chosen.len()];
-            Some((line, own.of_error().abs()))
+            let is_zero = matches!(lines[line], Line::Zero(_));
+            let is_any = is_zero && own.value.abs() > LARGEST_ZERO;
+            (!is_any).then_some((line, own.of_error().abs()))
         };
         let others = (0..lines.len()).filter(|line| !chosen.contains(line));
         let surest = others.filter_map(seen).max_by(|a, b| a.1.total_cmp(&b.1));

@@ -4,7 +4,9 @@
 //! the log, by that torque, by its friction, and by what the transmission passes on where it is
 //! pressed:
 //!
-//!     I th'' = tau - off - fv th' - fc sgn(th') - T,   T = k s + d s' beyond half the play,
+//! ```text
+//! I th'' = tau - off - fv th' - fc sgn(th') - T,   T = k s + d s' beyond half the play,
+//! ```
 //!
 //! with s how far th is ahead of q beyond the play. Steps are short against the swing of the rotor
 //! on the transmission; the position of the joint is the cubic of positions and rates between

@@ -26,18 +26,26 @@ const OF_QUIET: f64 = 0.5;
 /// other weights.
 const OTHER_WEIGHTS: f64 = 0.6;
 
+/// The share of what stays at a joint by which it changes by chance with whatever is fitted.
+const BY_CHANCE: f64 = 1e-3;
+
+/// By how much squares are more at a joint, in units of noise. Logs that have hardly any show a
+/// drive that sticks as many times that: what changes by chance is the unit there.
+fn falls([before, noise]: [f64; 2], after: f64, [then, _]: [f64; 2]) -> f64 {
+    (before - after) / noise.max(BY_CHANCE * then).max(f64::MIN_POSITIVE)
+}
+
 /// The shares that are closed of what could be explained in the beginning, and now, at the joints
 /// that this is about: those with a tenth of what one of them has.
 pub(super) fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> [f64; 2] {
-    let unit = |joint: usize| now[joint][1].max(f64::MIN_POSITIVE);
     let closed: Vec<f64> =
-        (0..now.len()).map(|joint| (now[joint][0] - then[joint][0]) / unit(joint)).collect();
+        now.iter().zip(then).map(|(now, then)| falls(*now, then[0], *then)).collect();
     let most = closed.iter().copied().fold(0.0, f64::max);
     let own = || (0..closed.len()).filter(|&joint| closed[joint] > 0.1 * most);
     let sum: f64 = own().map(|joint| closed[joint]).sum();
     [from, now].map(|all| {
-        let excess: f64 =
-            own().map(|joint| ((all[joint][0] - all[joint][1]) / unit(joint)).max(0.0)).sum();
+        let excess = |joint: usize| falls(all[joint], all[joint][1], then[joint]).max(0.0);
+        let excess: f64 = own().map(excess).sum();
         if excess > 0.0 { sum / excess } else { 0.0 }
     })
 }
@@ -195,7 +203,7 @@ impl Round<'_, '_> {
             [self.before, &idle.held_out_residual, &best.held_out_residual].map(of);
         let [share, of_rest] = closed(&from, &now, &then);
         let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
-        let closed_at = |joint: usize| (now[joint][0] - then[joint][0]) / now[joint][1];
+        let closed_at = |joint: usize| falls(now[joint], then[joint][0], then[joint]);
         let most = (0..now.len()).max_by(|&a, &b| closed_at(a).total_cmp(&closed_at(b)));
         let mut runners_up: Vec<(usize, f64)> = trials
             .iter()
@@ -248,5 +256,18 @@ mod tests {
         let from = [[1000.0, 850.0], [62.0, 2.0]];
         let [share, of_rest] = closed(&from, &now, &then);
         assert!((share - 27.0 / 60.0).abs() < 1e-12 && (of_rest - 0.9).abs() < 1e-12);
+    }
+
+    /// Without noise in the logs a joint that sticks leaves 10^8 times its floor: a ten thousandth
+    /// of that is chance, though it is many times what another joint misses.
+    #[test]
+    fn what_sticks_without_noise_is_no_unit() {
+        let now = [[1e8, 1.0], [32.0, 2.0]];
+        let then = [[1e8 - 1e4, 1.0], [5.0, 2.0]];
+        let [share, of_rest] = closed(&now, &now, &then);
+        assert!((share - 0.9).abs() < 1e-12 && (of_rest - 0.9).abs() < 1e-12);
+        let then = [[1e7, 1.0], [32.0, 2.0]];
+        let [share, _] = closed(&now, &now, &then);
+        assert!((share - 0.9).abs() < 1e-6, "{share}");
     }
 }

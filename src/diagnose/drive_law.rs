@@ -4,9 +4,10 @@ use super::floor::rms;
 use super::law::{Law, Motion, Response};
 use crate::plants::effect::{EffectLaw, JointSamples, LawParameter};
 
-/// The share of the time in which a drive must be pressed against its joint: one that hardly is
-/// passes nothing on that could be compared, which explains nothing.
-const LEAST_PRESSED: f64 = 0.7;
+/// The share that must be passed on of what a transmission that hardly gives way would: one that
+/// passes nothing on leaves nothing to compare, which explains nothing. How long drive and joint
+/// touch says less, since a drive that bounces is pressed for short times, and the harder.
+const LEAST_PASSED: f64 = 0.7;
 
 /// The share of a drive's torque that must be load: what a drive takes for itself a rotor that
 /// moves otherwise would explain, and noise that it does not pass on.
@@ -53,7 +54,7 @@ impl Law for DriveLaw {
             ..JointSamples::default()
         };
         let through = self.law.through(&samples, values);
-        if let Some(through) = through.filter(|through| through.pressed >= LEAST_PRESSED) {
+        if let Some(through) = through.filter(|through| through.share >= LEAST_PASSED) {
             let all = std::iter::once(through.torque).chain(through.gradient);
             let mut all = all.map(|signal| vec![motion.signals.of_whole(signal)]);
             response.torque = all.next().unwrap_or_default();

@@ -164,7 +164,7 @@ impl EffectLaw {
     }
 
     /// What a transmission adds to the torque that is logged, its derivatives by the parameters
-    /// from differences, and the share of the samples at which it passes on anything; none where
+    /// from differences, and the share that it passes on of what a stiff one would; none where
     /// it hardly gives way, and of other laws. The drive's numbers are among the samples.
     pub fn through(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Transmitted> {
         let of = |values: &[f64]| self.transmission()?.rotor(samples.drive, values);
@@ -179,11 +179,12 @@ impl EffectLaw {
             let moved = of(&moved).map_or_else(|| passed.clone(), |rotor| rotor.along(samples));
             passed.iter().zip(moved).map(|(a, b)| (a - b) / (DIFFERENCE * size)).collect()
         };
-        let pressed = passed.iter().filter(|torque| **torque != 0.0).count();
+        let size = |torque: &[f64]| torque.iter().map(|torque| torque.abs()).sum::<f64>();
+        let share = size(&passed) / size(&rigid).max(f64::MIN_POSITIVE);
         Some(Transmitted {
+            share,
             torque: rigid.iter().zip(&passed).map(|(rigid, passed)| rigid - passed).collect(),
             gradient: (0..values.len()).map(by).collect(),
-            pressed: pressed as f64 / passed.len() as f64,
         })
     }
 }
@@ -196,6 +197,7 @@ pub struct Transmitted {
     pub torque: Vec<f64>,
     /// The derivative by each parameter.
     pub gradient: Vec<Vec<f64>>,
-    /// The share of the samples at which something reaches the joint.
-    pub pressed: f64,
+    /// What reaches the joint, as a share of what would through a transmission that hardly gives
+    /// way (means of absolute values).
+    pub share: f64,
 }

@@ -151,7 +151,7 @@ pub(crate) const TABLE: [Entry; 45] = [
         "mu",
         2,
     ),
-    entry(Law::Capstan, "capstan", &["capstan_posture", "load_friction"], Site::Joint, "mu", 2),
+    entry(Law::Capstan, "capstan", &["capstan_posture", "load_friction"], Site::Joint, "", 2),
     entry(
         Law::GearEfficiency,
         "gear_efficiency",
@@ -180,8 +180,8 @@ pub(crate) const TABLE: [Entry; 45] = [
     entry(Law::Cogging, "cogging", &["transmission_error"], Site::Joint, "", 2),
     entry(
         Law::TransmissionError,
-        "transmission_error",
-        &["encoder_eccentricity", "cogging"],
+        "torque_ripple",
+        &["transmission_error", "encoder_eccentricity", "cogging"],
         Site::Joint,
         "a,b",
         2,

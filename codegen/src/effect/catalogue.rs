@@ -67,6 +67,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "torque_gain",
     "torque_lag",
     "torque_offset",
+    "torque_ripple",
     "torque_saturation",
     "transmission_error",
     "viscous",

@@ -3,9 +3,11 @@
 
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
+use super::errors::moves;
 use super::evidence::{block_costs, by_ranks, paired};
 use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
 use super::family::Alternative;
+use super::floor::rms;
 use super::gap::Gap;
 use super::given::is_driven;
 use super::signals::Filters;
@@ -59,9 +61,13 @@ pub struct GivenEffect {
 }
 
 /// A law that closes less than this share of what a joint leaves does not fit it, if more than so
-/// many times the deviation of noise stays.
+/// many times the deviation of noise stays; nor does one that closes less than half, whatever its
+/// values, or one whose values are others in another motion, by more than so many times the
+/// squares of their errors.
 const FITS: f64 = 0.75;
 const MISFIT: f64 = 2.5;
+const HALF: f64 = 0.5;
+const MOVES: f64 = 2.0;
 
 /// An effect that closes less than this share of what a joint leaves, noise with it, is faint if
 /// its values are within so many errors of nothing, or held-out logs are better with it by less
@@ -82,12 +88,17 @@ pub(super) fn found_effects(
     let squares = |left: &[f64]| setting.held_out_squares(after, left);
     let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
     // In units of the noise of each, where one has motor and link to be seen at.
-    let fits = |equations: &[usize]| {
+    let closes = |equations: &[usize]| {
         let over = |of: &[[f64; 2]]| -> f64 {
             equations.iter().map(|&at| of[at][0] / to[at][1].max(f64::MIN_POSITIVE)).sum()
         };
         let (from, to, noise) = (over(&from), over(&to), equations.len() as f64);
-        to < MISFIT * MISFIT * noise || from - to > FITS * (from - noise)
+        let open = (from - noise).max(f64::MIN_POSITIVE);
+        if to < MISFIT * MISFIT * noise { 1.0 } else { (from - to) / open }
+    };
+    let fits = |equations: &[usize], joint: Option<usize>| {
+        let share = closes(equations);
+        share > FITS || share > HALF && stays(setting, (after, deviations), joint)
     };
     let mut found = Vec::new();
     let places = after.taken.iter().enumerate().skip(setting.given.len());
@@ -100,9 +111,16 @@ pub(super) fn found_effects(
         let parameters = values(setting, (after, deviations), place);
         let own = own_equations(setting, after, taken);
         let is_little = |own: &Vec<usize>| {
-            let less = squares(&without.held_out_residual);
-            let sum = |of: &[[f64; 2]]| own.iter().map(|&at| of[at][0]).sum::<f64>();
-            sum(&to) > (1.0 - CLOSES) * sum(&less)
+            let leaves = |set: usize, most: f64| {
+                let [with, less] = [after, &without].map(|state| {
+                    let left = [&state.residual, &state.held_out_residual][set];
+                    let squares = setting.squares(set, after, left);
+                    own.iter().map(|&at| squares[at][0]).sum::<f64>()
+                });
+                with > most * less
+            };
+            // What one log has may not happen in the other.
+            leaves(1, 1.0 - CLOSES) && leaves(0, 1.0 - FITS)
         };
         let is_plain = || {
             let [worse, better] = [&without, after].map(|state| {
@@ -111,11 +129,12 @@ pub(super) fn found_effects(
             paired(&worse, &better).max(by_ranks(&worse, &better)) >= PLAIN
         };
         let is_held = |state: &State| state.held.iter().any(Option::is_some);
-        let laws = setting.candidates[taken.candidate].law.parameters();
+        let candidate = &setting.candidates[taken.candidate];
+        let laws = candidate.law.parameters();
         found.push(FoundEffect {
             candidate: taken.candidate,
             share: (gap(&without) - gap(after)) / whole.max(f64::MIN_POSITIVE),
-            is_named: own.as_ref().is_none_or(|own| fits(own)),
+            is_named: own.as_ref().is_none_or(|own| fits(own, candidate.joint)),
             // Of what numbers of the model stand for that are driven, logs show little.
             is_faint: own.as_ref().is_some_and(is_little)
                 && (is_held(after) || !is_held(&without))
@@ -127,6 +146,22 @@ pub(super) fn found_effects(
         });
     }
     found
+}
+
+/// Whether the effects of a joint have the same values in another motion.
+fn stays(
+    setting: &Setting<'_>,
+    (state, deviations): (&State, &[f64]),
+    joint: Option<usize>,
+) -> bool {
+    let of_joint = |taken: &Taken| {
+        let is_there = setting.candidates[taken.candidate].joint == joint;
+        std::iter::repeat_n(is_there, taken.values.len())
+    };
+    let is_there = state.taken.iter().flat_map(of_joint);
+    let moves = moves(setting, state, deviations).into_iter().zip(is_there);
+    let own: Vec<f64> = moves.filter(|(_, is_there)| *is_there).map(|(by, _)| by).collect();
+    rms(&own) < MOVES.sqrt()
 }
 
 /// The most errors by which what switches an effect off is from where it does; infinite where the

@@ -21,23 +21,9 @@ pub(super) fn deviations(
     let own = of_rows(setting, state);
     let Some(train) = smoother.filter(|_| !own.is_empty()) else { return own };
     let floor = NoiseFloor::of_logs(train.nominal, &train.signals);
-    let smooth = Setting {
-        train,
-        held_out: train,
-        candidates: setting.candidates,
-        given: setting.given.clone(),
-        moved: None,
-        coarse: None,
-        train_floor: &floor,
-        held_out_floor: &floor,
-    };
-    let there = smooth.settled(smooth.state(&state.taken));
-    let theirs = of_rows(&smooth, &there);
-    let values = |state: &State| -> Vec<f64> {
-        state.taken.iter().flat_map(|taken| taken.values.clone()).collect()
-    };
-    let apart = values(state).into_iter().zip(values(&there)).map(|(a, b)| (a - b).powi(2));
-    let both = own.iter().zip(theirs).zip(apart);
+    let there = elsewhere(setting, state, (train, &floor));
+    let apart = state.values().into_iter().zip(there).map(|(a, [b, std])| ((a - b).powi(2), std));
+    let both = own.iter().zip(apart).map(|(own, (apart, theirs))| ((own, theirs), apart));
     let of = |((own, theirs), apart): ((&f64, f64), f64)| {
         let of_noise = (theirs.powi(2) - own.powi(2)).max(0.0);
         let more = (apart - of_noise).max(0.0);
@@ -45,6 +31,35 @@ pub(super) fn deviations(
         if theirs.is_finite() { (own.powi(2) + more).sqrt() } else { *own }
     };
     both.map(of).collect()
+}
+
+/// The values of a state's effects by other logs, with their standard deviations.
+fn elsewhere(
+    setting: &Setting<'_>,
+    state: &State,
+    (logs, floor): (&Data<'_>, &[NoiseFloor]),
+) -> Vec<[f64; 2]> {
+    let there = Setting {
+        train: logs,
+        held_out: logs,
+        candidates: setting.candidates,
+        given: setting.given.clone(),
+        moved: None,
+        coarse: None,
+        train_floor: floor,
+        held_out_floor: floor,
+    };
+    let found = there.settled(there.state(&state.taken));
+    let deviations = of_rows(&there, &found);
+    found.values().into_iter().zip(deviations).map(|(value, std)| [value, std]).collect()
+}
+
+/// How far the values of a state's effects are from what held-out logs alone give them, in their
+/// errors: another law than what is there has other values in another motion (Chow 1960).
+pub(super) fn moves(setting: &Setting<'_>, state: &State, deviations: &[f64]) -> Vec<f64> {
+    let there = elsewhere(setting, state, (setting.held_out, setting.held_out_floor));
+    let both = state.values().into_iter().zip(deviations).zip(there);
+    both.map(|((own, std), [other, of_other])| (own - other) / std.hypot(of_other)).collect()
 }
 
 /// Standard deviations by what is left of the rows.

@@ -307,15 +307,19 @@ pub(super) fn alike([idle, least]: [&Trial; 2]) -> f64 {
 }
 
 /// Whether a trial is worse than another for sure, and by more than a parameter costs (Schwarz
-/// 1978): laws that become each other differ by little, but for sure.
+/// 1978), of the logs that were fitted or of the others: laws that become each other differ by
+/// little, but for sure; and what one log has may not happen in the other.
 pub(super) fn is_worse(setting: &Setting<'_>, state: &State, trial: &Trial, than: &Trial) -> bool {
-    let [of_trial, of_other] =
-        [trial, than].map(|one| setting.held_out_squares(state, &one.held_out_residual));
-    let rows = setting.held_out.rows() as f64;
-    let own = of_trial.iter().zip(&of_other).zip(setting.held_out_rows());
-    let more =
-        own.map(|(([a, noise], [b, _]), rows)| rows * (a - b) / noise.max(f64::MIN_POSITIVE));
-    more.sum::<f64>() > ROWS_PER_SAMPLE * (rows / ROWS_PER_SAMPLE).ln()
+    let costs_more = |set: usize| {
+        let of = |one: &Trial| setting.squares(set, state, one.residuals()[set]);
+        let (of_trial, of_other, rows) = (of(trial), of(than), setting.rows(set));
+        let all: f64 = rows.iter().sum();
+        let own = of_trial.iter().zip(&of_other).zip(rows);
+        let more =
+            own.map(|(([a, noise], [b, _]), rows)| rows * (a - b) / noise.max(f64::MIN_POSITIVE));
+        more.sum::<f64>() > ROWS_PER_SAMPLE * (all / ROWS_PER_SAMPLE).ln()
+    };
+    (costs_more(0) || costs_more(1))
         && paired(&trial.blocks.concat(), &than.blocks.concat()) >= DISTINCT
 }
 

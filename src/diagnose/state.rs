@@ -87,6 +87,11 @@ impl State {
         })
     }
 
+    /// The values of all effects.
+    pub(super) fn values(&self) -> Vec<f64> {
+        self.taken.iter().flat_map(|taken| taken.values.clone()).collect()
+    }
+
     /// The numbers of the effects' candidates, in order.
     pub fn candidates(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.taken.iter().map(|one| one.candidate).collect();
@@ -109,6 +114,11 @@ impl Trial {
     /// Number of parameters as they are written.
     pub fn numbers(&self) -> usize {
         self.taken.iter().map(|taken| taken.values.len()).sum()
+    }
+
+    /// What is left of the logs that were fitted, and of the others [N m, N].
+    pub(super) fn residuals(&self) -> [&[f64]; 2] {
+        [&self.found.residual, &self.held_out_residual]
     }
 
     /// Weighted squares of what is left of held-out logs.
@@ -304,11 +314,18 @@ impl<'a> Setting<'a> {
     /// Weighted squares of what is `left` of held-out logs, for each joint and then for each
     /// spring, and those of noise alone.
     pub fn held_out_squares(&self, state: &State, left: &[f64]) -> Vec<[f64; 2]> {
+        self.squares(1, state, left)
+    }
+
+    /// The same of a set of logs: those fitted, or the others.
+    pub(super) fn squares(&self, set: usize, state: &State, left: &[f64]) -> Vec<[f64; 2]> {
+        let (data, floors) =
+            [(self.train, self.train_floor), (self.held_out, self.held_out_floor)][set];
         let mut squares = vec![[0.0; 2]; self.train.nominal.equations()];
-        for stretch in &self.held_out.stretches {
-            let floor = self.held_out_floor[stretch.log].deviation[stretch.equation];
+        for stretch in &data.stretches {
+            let floor = floors[stretch.log].deviation[stretch.equation];
             for row in stretch.first..stretch.first + stretch.rows {
-                let weight = state.deviation[1][row].powi(-2);
+                let weight = state.deviation[set][row].powi(-2);
                 squares[stretch.equation][0] += weight * left[row].powi(2);
                 squares[stretch.equation][1] += weight * floor.powi(2);
             }
@@ -316,10 +333,11 @@ impl<'a> Setting<'a> {
         squares
     }
 
-    /// The rows of each joint, then of each spring, in held-out logs.
-    pub fn held_out_rows(&self) -> Vec<f64> {
+    /// The rows of each joint, then of each spring, in a set of logs.
+    pub(super) fn rows(&self, set: usize) -> Vec<f64> {
         let mut rows = vec![0.0; self.train.nominal.equations()];
-        self.held_out.stretches.iter().for_each(|own| rows[own.equation] += own.rows as f64);
+        let data = [self.train, self.held_out][set];
+        data.stretches.iter().for_each(|own| rows[own.equation] += own.rows as f64);
         rows
     }
 

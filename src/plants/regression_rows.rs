@@ -67,6 +67,12 @@ impl RegressionRows {
         &self.values[at..at + self.samples]
     }
 
+    /// The same, to be written.
+    pub fn column_mut(&mut self, joint: usize, place: usize) -> &mut [f64] {
+        let at = (self.first[joint] + place) * self.stride;
+        &mut self.values[at..at + self.samples]
+    }
+
     /// What the torque of a joint has besides unknowns [N m, N], one for each sample; none where
     /// that is nothing.
     pub fn known(&self, joint: usize) -> Option<&[f64]> {

@@ -55,15 +55,18 @@ pub struct BlockMaker<'a> {
 }
 
 /// A column of Coulomb friction.
-struct Coulomb {
-    joint: usize,
-    place: usize,
+pub(super) struct Coulomb {
+    pub(super) joint: usize,
+    pub(super) place: usize,
     /// Times the law of the rate.
-    factor: f64,
+    pub(super) factor: f64,
 }
 
 /// The columns of Coulomb friction, as they are at rates of 1.
-fn coulomb(model: &RegressionModel, evaluator: &mut RegressionEvaluator) -> Vec<Coulomb> {
+pub(super) fn coulomb(
+    model: &RegressionModel,
+    evaluator: &mut RegressionEvaluator,
+) -> Vec<Coulomb> {
     let n = model.joints.len();
     let motion: Vec<[f64; 1]> =
         (0..3 * n).map(|at| [if at / n == 1 { 1.0 } else { 0.0 }]).collect();

@@ -424,3 +424,32 @@ fn steps_of_encoders_bias_no_method() {
         assert!(deviation < 1.5, "{more:?}: {deviation}");
     }
 }
+
+/// Slowed down ten times, a log leaves little, since nearly nothing accelerates, and its encoders
+/// ask for a filter that is far too high for what it is. What it would leave in its own time shows
+/// behind lower ones. The model's masses are 30 % off.
+#[test]
+fn a_time_that_is_ten_times_too_slow_is_told() {
+    let directory = Directory::new("told-slow");
+    write_arm(&directory, None);
+    let arm = std::fs::read_to_string(directory.path.join("arm.json")).expect("written");
+    let mut arm: Value = serde_json::from_str(&arm).expect("JSON");
+    for (link, mass) in [(0, 2.6), (1, 1.05)] {
+        assert!(arm["links"][link]["body"]["mass"].is_number());
+        arm["links"][link]["body"]["mass"] = mass.into();
+    }
+    write(&directory, "arm.json", &arm.to_string());
+    for seed in 1..=8 {
+        let made = Made { step_s: 0.002, samples: 4000, seed, torque_noise: 0.08, ..GOOD };
+        let mut rows = made.rows(&motions(seed, 0.7));
+        round_positions(&mut rows, TAU / 16384.0);
+        write_log(&directory, "log.csv", &rows);
+        let (code, text) = said(&directory, &["--train", "log.csv"]);
+        assert_eq!(code, Some(0), "{seed}: {text}");
+        rows.iter_mut().for_each(|row| row[0] *= 10.0);
+        write_log(&directory, "slow.csv", &rows);
+        let (code, text) = said(&directory, &["--train", "slow.csv"]);
+        assert_eq!(code, Some(2), "{seed}: {text}");
+        assert!(text.contains(r#"{"t": {"scale": 0.1}}"#), "{seed}: {text}");
+    }
+}

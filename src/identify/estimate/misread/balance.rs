@@ -1,8 +1,10 @@
 //! How much of the torques is left under a reading of the columns: of those that the model's own
 //! values make of the motion, and of an estimate, whatever its values.
 
-use super::reading::{Reading, Source};
+use super::reading::Reading;
+use super::window::Window;
 use crate::identify::condition::Conditioned;
+use crate::identify::estimate::rows::{Coulomb, coulomb};
 use crate::identify::estimate::solve::{solve, stacked};
 use crate::identify::estimate::triangle::Triangle;
 use crate::plants::regression::{
@@ -41,48 +43,14 @@ pub(in crate::identify) fn nominal_values(model: &RegressionModel) -> Option<Vec
     model.axes.iter().map(value).collect()
 }
 
-/// Samples of a log.
-struct Window<'a> {
-    log: &'a Conditioned,
-    first: usize,
-    count: usize,
-    /// q, qd and qdd of every joint.
-    motion: Vec<Vec<f64>>,
-}
-
-impl Window<'_> {
-    /// Its places, so many samples later.
-    fn places(&self, late: isize) -> impl Iterator<Item = usize> {
-        let (first, last) = (self.log.range.start, self.log.range.end - 1);
-        let places = self.log.places(self.first, self.count);
-        places.map(move |place| place.saturating_add_signed(late).clamp(first, last))
-    }
-
-    fn torque(&self, source: &Source) -> Option<Vec<f64>> {
-        let torque = self.log.torque[source.column].as_ref()?;
-        let at = |place: usize| source.factor * torque[place] + source.offset;
-        Some(self.places(source.late).map(at).collect())
-    }
-
-    /// A position, its rate or its acceleration.
-    fn motion(&self, source: &Source, order: usize, time: f64) -> Vec<f64> {
-        let scale = source.factor * time.powi(-(order as i32));
-        let offset = if order == 0 { source.offset } else { 0.0 };
-        if source.late == 0 {
-            let column = &self.motion[order * self.log.joints() + source.column];
-            return column.iter().map(|value| scale * value + offset).collect();
-        }
-        let at = |place: usize| scale * self.log.moved(source.column, order, place) + offset;
-        self.places(source.late).map(at).collect()
-    }
-}
-
 /// Some samples of logs, to be read in one way or another.
 pub(super) struct Balance<'a> {
     model: &'a RegressionModel,
     evaluator: RegressionEvaluator,
     rows: RegressionRows,
     windows: Vec<Window<'a>>,
+    /// Columns that jump with the rate: they pass the filter of the torque.
+    coulomb: Vec<Coulomb>,
     /// Values of each joint's columns that need no estimate: those of the model, or of an estimate
     /// from other logs; none if one is missing.
     own: Option<Vec<Vec<f64>>>,
@@ -103,10 +71,11 @@ pub(super) struct Fitted {
 }
 
 impl<'a> Balance<'a> {
-    /// Of logs, with values of phi that need no estimate.
+    /// Of logs, whose signals are read up to so many samples late, with values of phi that need no
+    /// estimate.
     pub(super) fn new(
         model: &'a RegressionModel,
-        logs: &[&'a Conditioned],
+        (logs, latest): (&[&'a Conditioned], isize),
         own: Option<&[f64]>,
     ) -> Self {
         let n = model.joints.len();
@@ -119,29 +88,33 @@ impl<'a> Balance<'a> {
             let every = samples.div_ceil(BLOCK * blocks).max(1);
             for first in (0..samples).step_by(BLOCK * every) {
                 let count = BLOCK.min(samples - first);
-                let mut motion = Vec::new();
-                log.motion_at(first, count, &mut motion);
-                windows.push(Window { log, first, count, motion });
+                windows.push(Window::new(log, [first, count], latest));
             }
         }
         let own = own.map(|phi| of_joints(model, phi));
-        let (evaluator, rows) = (model.evaluator(), RegressionRows::default());
-        Self { model, evaluator, rows, windows, own }
+        let (mut evaluator, rows) = (model.evaluator(), RegressionRows::default());
+        let coulomb = coulomb(model, &mut evaluator);
+        Self { model, evaluator, rows, windows, coulomb, own }
     }
 
     /// Whether a joint moves in some of the logs.
     pub(super) fn moves(&self, joint: usize) -> bool {
-        self.windows.iter().any(|window| window.log.resting.get(joint) != Some(&true))
+        self.windows.iter().any(|window| window.log().resting.get(joint) != Some(&true))
     }
 
     /// Makes the rows of a window under a reading.
     fn read(&mut self, window: usize, reading: &Reading) {
         let n = self.model.joints.len();
-        let window = &self.windows[window];
+        let window = &mut self.windows[window];
         let column = |at: usize| window.motion(&reading.positions[at % n], at / n, reading.time);
         let motion: Vec<Vec<f64>> = (0..3 * n).map(column).collect();
         let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
         self.evaluator.evaluate(&motion, &mut self.rows).expect("every joint has its columns");
+        for one in &self.coulomb {
+            let law = window.law(&reading.positions[one.joint], reading.time, self.model.law);
+            let column = self.rows.column_mut(one.joint, one.place).iter_mut();
+            column.zip(law).for_each(|(entry, law)| *entry = one.factor * law);
+        }
     }
 
     /// The torque that was measured of a joint, and what values leave of it, of the rows that were

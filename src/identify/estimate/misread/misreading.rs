@@ -88,14 +88,24 @@ impl Misreading {
         }
     }
 
-    /// Whether it makes less of noise of the positions, whatever is true.
+    /// Whether it makes less of noise of the positions, whatever is true,
     pub(super) fn hides_noise(self) -> bool {
+        self.factor_of_noise() < 1.0
+    }
+
+    /// or more of it.
+    pub(super) fn makes_noise(self) -> bool {
+        self.factor_of_noise() > 1.0
+    }
+
+    /// By what noise of positions, or of their derivatives, is multiplied.
+    fn factor_of_noise(self) -> f64 {
         match self {
-            Self::Time(factor) => factor > 1.0,
+            Self::Time(factor) => 1.0 / factor,
             Self::Angles(factor) | Self::Lengths(factor) | Self::Position(_, factor) => {
-                factor.abs() < 1.0
+                factor.abs()
             }
-            _ => false,
+            _ => 1.0,
         }
     }
 

@@ -13,6 +13,7 @@ mod misreading;
 mod reading;
 mod search;
 mod verdict;
+mod window;
 
 pub use misreading::{ExchangedColumns, Misreading};
 pub(in crate::identify) use verdict::CLEAN;
@@ -31,6 +32,11 @@ use verdict::NEAR;
 
 /// Signals are at most so late \[s\].
 const LATEST_S: f64 = 0.2;
+
+/// How often the cutoff is halved to look for readings that make more of noise, and samples of all
+/// logs that are looked at then, before decimation.
+const HALVINGS: usize = 2;
+const SAMPLES: usize = 200_000;
 
 /// Standard errors by which friction is surely above or below 0.
 const SURE: f64 = 5.0;
@@ -204,10 +210,35 @@ pub(in crate::identify) fn misread_apart(
     logs.iter().flat_map(of).collect()
 }
 
-/// The same of logs that are all misread alike.
+/// The same of logs that are all misread alike. Motion that is read too slow has so little noise
+/// that its filter may be far too high for what it is: what makes more of noise is looked for
+/// behind lower filters, too.
 fn misread_alike(
     model: &RegressionModel,
     logs: &[&Conditioned],
+    evidence: Evidence<'_>,
+) -> Vec<MisreadColumns> {
+    let mut found = misread_as_filtered(model, (logs, false), evidence);
+    let mut lower: Vec<Conditioned> = Vec::new();
+    for _ in 0..HALVINGS {
+        if !found.is_empty() {
+            break;
+        }
+        let before = if lower.is_empty() { logs.to_vec() } else { lower.iter().collect() };
+        lower = Conditioned::behind_half_the_cutoff(&before, SAMPLES);
+        if lower.is_empty() {
+            break;
+        }
+        let lower: Vec<&Conditioned> = lower.iter().collect();
+        found = misread_as_filtered(model, (&lower, true), evidence);
+    }
+    found
+}
+
+/// The same of logs behind the filters that they have, or behind lower ones.
+fn misread_as_filtered(
+    model: &RegressionModel,
+    (logs, is_lower): (&[&Conditioned], bool),
     evidence: Evidence<'_>,
 ) -> Vec<MisreadColumns> {
     let step_s = logs.iter().map(|log| log.step_s).fold(f64::INFINITY, f64::min);
@@ -215,9 +246,9 @@ fn misread_alike(
     let latest = (LATEST_S / step_s).min(shortest as f64 / 8.0) as isize;
     let nominal = nominal_values(model).filter(|_| evidence.values.is_none());
     let values = evidence.values.or(nominal.as_deref());
-    let balance = Balance::new(model, logs, values);
+    let balance = Balance::new(model, (logs, latest), values);
     let noise = values.map(|values| noise_of_positions(model, logs, values)).unwrap_or_default();
-    let mut search = Search { model, balance, noise, latest };
+    let mut search = Search { model, balance, noise, latest, is_lower };
     let mut found: Vec<MisreadColumns> = Vec::new();
     let mut reading = Reading::straight(model.joints.len());
     while found.len() <= model.joints.len() + 1 {

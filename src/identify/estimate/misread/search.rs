@@ -34,6 +34,8 @@ pub(super) struct Search<'a> {
     pub(super) noise: Vec<f64>,
     /// Signals are at most so many samples late.
     pub(super) latest: isize,
+    /// Whether nothing is tried but what makes more of noise.
+    pub(super) is_lower: bool,
 }
 
 /// Readings that differ by degrees.
@@ -97,8 +99,13 @@ impl Search<'_> {
         let is_measured = |joint: usize| fit[joint].is_some();
         let mut tried = hypotheses(self.model, &is_measured, [single, is_noisy]);
         tried.retain(|one| reading.with(*one, self.joints()) != *reading);
-        let along = self.along_lines(reading, (own.as_ref(), &found));
-        tried.extend(&along);
+        let mut along = Vec::new();
+        if self.is_lower {
+            tried.retain(|one| one.makes_noise());
+        } else {
+            along = self.along_lines(reading, (own.as_ref(), &found));
+            tried.extend(&along);
+        }
         let mut judged: Vec<(Misreading, Option<Shares>, f64)> = Vec::new();
         for one in tried {
             let other = reading.with(one, &self.model.joints);

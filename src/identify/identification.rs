@@ -4,9 +4,9 @@ use super::condition::Conditioned;
 use super::estimate::{
     CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
     IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Status, Triangle,
-    Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_logs,
-    convergence, estimate, filter_errors, long_enough, misread_apart, misread_columns, parameters,
-    solve, unexplained_joints, validate,
+    Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_held_out,
+    contradicting_logs, convergence, estimate, filter_errors, long_enough, misread_apart,
+    misread_columns, parameters, solve, unexplained_joints, validate,
 };
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
@@ -41,7 +41,8 @@ pub struct Identification {
     /// Columns that seem to be other ones than they are taken for, one after the other: each with
     /// those before it mended; those of the logs for validation at last.
     pub misread: Vec<MisreadColumns>,
-    /// Logs for the estimate that contradict the others.
+    /// Logs for the estimate that contradict the others, and those for validation that contradict
+    /// the logs for the estimate.
     pub contradicting_logs: Vec<ContradictingLog>,
     /// Logs of several for the estimate of which noise of the positions makes most.
     pub noisy_logs: Vec<NoisyLog>,
@@ -256,13 +257,15 @@ pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
     };
     let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
     let left_together = validate(model, phi, &together);
+    let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
+    contradicting_logs.extend(contradicting_held_out(model, held_out, (&found, options)));
     let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
     Ok(Identification {
         unexplained: unexplained_joints(model, (judges, &judging), judgement),
         misread,
         reversals: reversals(model, train, (&found, options)),
         left_out: left_out(model, train, (&found, &counted)),
-        contradicting_logs: contradicting_logs(model, train, (&found, &shown)),
+        contradicting_logs,
         noisy_logs: noisy_logs(model, train, &found),
         periods: train.iter().map(Conditioned::periods).sum(),
         biasing_logs: biasing_logs(model, &listed, &found),

@@ -5,12 +5,15 @@
 //! of equal parameters, Chow 1960, with samples as independent as the filter leaves them).
 
 use super::condensed::Condensed;
-use super::least_squares::Estimate;
+use super::least_squares::{Estimate, Fit, Method, Options};
+use super::left_out::LeftOut;
+use super::noise_bias::noise_squares;
 use super::rows::BlockMaker;
-use super::solve::solve;
+use super::solve::{DEAD, Solution, solve, stacked};
 use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
+use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
 /// What own parameters explain must be this share of a joint's torque, as root of mean square, and
@@ -20,6 +23,11 @@ const OF_OWN: f64 = 1.5;
 
 /// and this many times what chance explains with as many parameters, in variance.
 const OF_CHANCE: f64 = 25.0;
+
+/// and what noise of the positions makes of it, in variance: to follow that, parameters of a log's
+/// own are biased. Where the filter follows the steps of encoders that noise is known to a few
+/// times.
+const OF_NOISE: f64 = 10.0;
 
 /// Times that the weights of a log's own estimate are found anew.
 const REWEIGHTING: usize = 3;
@@ -34,8 +42,21 @@ pub struct ContradictingLog {
     pub file: String,
     /// The joints that tell it.
     pub joints: Vec<ContradictingJoint>,
-    /// Whether the logs that agree are more, and longer together, than those that contradict them.
-    pub is_of_few: bool,
+    /// Which side is believed.
+    pub standing: Standing,
+}
+
+/// Which of logs that contradict each other are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// The others: they are more, and longer together, than those that contradict them.
+    OfFew,
+    /// The same, but parameters are those of all logs alike.
+    OfFewFollowed,
+    /// Neither.
+    Undecided,
+    /// Those for the estimate: this one is for validation.
+    HeldOut,
 }
 
 /// A joint whose torques in a log contradict those in the others.
@@ -62,7 +83,7 @@ pub enum Likeness {
 
 impl fmt::Display for ContradictingLog {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, joints, is_of_few } = self;
+        let Self { file, joints, standing } = self;
         let of = |one: &ContradictingJoint| {
             let ContradictingJoint { joint, left, own, like } = one;
             let like = match like {
@@ -74,16 +95,33 @@ impl fmt::Display for ContradictingLog {
             format!("{left:.1} % of the torque of {joint} is left, {own:.1} % by its own{like}")
         };
         let joints: Vec<String> = joints.iter().map(of).collect();
+        match standing {
+            Standing::OfFew | Standing::OfFewFollowed => {
+                write!(
+                    f,
+                    "{file} contradicts the other logs, which no parameters explain together "
+                )?;
+                write!(f, "with it")?;
+            }
+            Standing::Undecided => write!(f, "{file} and the other logs contradict each other")?,
+            Standing::HeldOut => {
+                write!(f, "{file} and the logs for the estimate contradict each other")?;
+            }
+        }
         write!(
             f,
-            "{file} contradicts the other logs, which no parameters explain together with it: {}. \
-             It may be of another payload, gain, offset or robot, or show a law that the model \
-             lacks. ",
+            ": {}. It may be of another payload, gain, offset or robot, or show a law that the \
+             model lacks. ",
             joints.join("; ")
         )?;
-        match is_of_few {
-            true => write!(f, "Parameters are those of the others; leave it out."),
-            false => write!(
+        match standing {
+            Standing::OfFew => write!(f, "Parameters are those of the others; leave it out."),
+            Standing::OfFewFollowed => write!(
+                f,
+                "Parameters are those of all logs alike, as --method ols has them; leave it out."
+            ),
+            Standing::HeldOut => write!(f, "Which of them are right cannot be told."),
+            Standing::Undecided => write!(
                 f,
                 "The logs that agree are not both more and longer together than those that do \
                  not: which of them are right cannot be told, and what was found is not to be \
@@ -93,86 +131,207 @@ impl fmt::Display for ContradictingLog {
     }
 }
 
-/// The logs that contradict the others, of some.
+/// The logs that contradict the others, of some: those whose own noise is large beside what the
+/// others agree on, so that an estimate of all rows alike is asked with weights, too.
 pub(in crate::identify) fn contradicting_logs(
     model: &RegressionModel,
-    logs: &[Conditioned],
-    (found, shown): (&Estimate, &[usize]),
+    (logs, shown): (&[Conditioned], &[usize]),
+    (found, options): (&Estimate, &Options),
 ) -> Vec<ContradictingLog> {
     let condensed = &found.condensed;
     if shown.len() < 2 || condensed.rank != model.rank() {
         return Vec::new();
     }
     let triangles = condensed.whole();
-    let phi = found.solution.phi.as_slice();
-    let of = |&log: &usize| -> Option<(usize, Vec<ContradictingJoint>)> {
-        let told = condensed.contradicting((log, &triangles[log]), (phi, &found.weights[log]));
-        let named = |(joint, [left, own]): (usize, [f64; 2])| ContradictingJoint {
-            joint: model.joints[joint].name.clone(),
-            left,
-            own,
-            like: likeness(model, &logs[log], (joint, phi)),
-        };
-        let joints: Vec<ContradictingJoint> = told.into_iter().map(named).collect();
-        (!joints.is_empty()).then_some((log, joints))
+    let is_alike = options.method == Method::Ordinary;
+    let start = found.solution.phi.as_slice();
+    let weighted = is_alike.then(|| Fit { options, start }.settled(condensed, true));
+    let (phi, weights) = match &weighted {
+        Some(weighted) => (&weighted.solution.phi, &weighted.weights),
+        None => (&found.solution.phi, &found.weights),
     };
-    let told: Vec<(usize, Vec<ContradictingJoint>)> = shown.iter().filter_map(of).collect();
+    let claim = Claim { model, phi, covariance: None, left_out: &found.left_out };
+    let told = shown.iter().filter_map(|&log| {
+        let rows = (&triangles[log][..], condensed.independent[log]);
+        let one = Tested { rows, weights: &weights[log] };
+        Some((log, claim.against((log, &logs[log]), one)?))
+    });
+    let mut told: Vec<(usize, ContradictingLog)> = told.collect();
     let time_s = |log: usize| logs[log].range.len() as f64 * logs[log].step_s;
     let [all, few] = [
         shown.iter().map(|&log| time_s(log)).sum::<f64>(),
         told.iter().map(|(log, _)| time_s(*log)).sum(),
     ];
-    let is_of_few = 2 * told.len() < shown.len() && 2.0 * few < all;
-    let of = |(log, joints): (usize, Vec<ContradictingJoint>)| ContradictingLog {
-        file: logs[log].file.clone(),
-        joints,
-        is_of_few,
-    };
-    told.into_iter().map(of).collect()
+    if 2 * told.len() < shown.len() && 2.0 * few < all {
+        let standing = if is_alike { Standing::OfFewFollowed } else { Standing::OfFew };
+        told.iter_mut().for_each(|(_, one)| one.standing = standing);
+    }
+    told.into_iter().map(|(_, one)| one).collect()
 }
 
-impl Condensed {
-    /// The joints of a log of whose torque an estimate of its own leaves much less than phi does,
-    /// each with both shares.
-    fn contradicting(
+/// The logs for validation that contradict those for the estimate: parameters are taken to be
+/// anywhere within their errors, and those that the estimate does not show are the logs' own.
+pub(in crate::identify) fn contradicting_held_out(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (found, options): (&Estimate, &Options),
+) -> Vec<ContradictingLog> {
+    if logs.is_empty() || found.condensed.rank != model.rank() {
+        return Vec::new();
+    }
+    let left_out = found.left_out.of_others(model, logs, options);
+    let condensed = Condensed::counted(model, (logs, &left_out));
+    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
+    let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
+    let of = |(at, triangles): (usize, &Vec<Triangle>)| {
+        let one = Tested { rows: (&triangles[..], condensed.independent[at]), weights: &weights };
+        let phi = &one.with_own(model.pattern(), &found.solution);
+        let (covariance, left_out) = (Some(&found.covariance), &left_out);
+        let told = Claim { model, phi, covariance, left_out }.against((at, &logs[at]), one)?;
+        Some(ContradictingLog { standing: Standing::HeldOut, ..told })
+    };
+    condensed.whole().iter().enumerate().filter_map(of).collect()
+}
+
+/// What others say of a log.
+struct Claim<'a> {
+    model: &'a RegressionModel,
+    phi: &'a DVector<f64>,
+    /// That of phi, if it is from other logs alone.
+    covariance: Option<&'a DMatrix<f64>>,
+    /// The rows of logs that are left out.
+    left_out: &'a LeftOut,
+}
+
+impl Claim<'_> {
+    /// Whether a log of this number contradicts it.
+    fn against(
         &self,
-        (log, triangles): (usize, &[Triangle]),
-        (phi, weights): (&[f64], &[f64]),
-    ) -> Vec<(usize, [f64; 2])> {
-        let independent = self.independent[log];
-        let mut weights = weights.to_vec();
-        // for each joint |W phi - y|^2, the parameters that it decides, and the variance of a row
-        let mut own = Vec::new();
-        for _ in 0..=REWEIGHTING {
-            let r = self.system(&[triangles.to_vec()], &[weights.clone()], &[]);
-            let solution = solve(&r, phi);
-            let of = |(joint, triangle): (usize, &Triangle)| {
-                let pattern = &self.pattern[joint];
-                let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
-                let factor = solution.factor.select_rows(pattern);
-                let decided = weights[joint].powi(2) * (r * factor).norm_squared();
-                let squares = triangle.squares(&self.of_joint(joint, solution.phi.as_slice()));
-                let free = (independent * triangle.rows() as f64 - decided).max(f64::MIN_POSITIVE);
-                [squares, decided, squares * independent / free]
-            };
-            own = triangles.iter().enumerate().map(of).collect();
-            let weight = |[_, _, variance]: &[f64; 3]| {
-                if *variance > 0.0 { variance.powf(-0.5) } else { 0.0 }
-            };
-            weights = own.iter().map(weight).collect();
+        (at, log): (usize, &Conditioned),
+        one: Tested<'_>,
+    ) -> Option<ContradictingLog> {
+        let Self { model, phi, .. } = *self;
+        let mut told = self.joints(&one);
+        if !told.is_empty() {
+            let noise = noise_squares(model, ((at, log), self.left_out), phi);
+            told.retain(|one| one.explained > OF_NOISE * noise[one.joint]);
         }
+        let named = |Told { joint, left, own, .. }: Told| ContradictingJoint {
+            joint: model.joints[joint].name.clone(),
+            left,
+            own,
+            like: likeness(model, log, (joint, phi.as_slice())),
+        };
+        let joints: Vec<ContradictingJoint> = told.into_iter().map(named).collect();
+        let (file, standing) = (log.file.clone(), Standing::Undecided);
+        (!joints.is_empty()).then_some(ContradictingLog { file, joints, standing })
+    }
+
+    /// The joints of whose torque an estimate of a log's own leaves much less than phi does.
+    fn joints(&self, one: &Tested<'_>) -> Vec<Told> {
+        let Self { model, phi, covariance, .. } = *self;
+        let pattern = model.pattern();
+        let (triangles, independent) = one.rows;
+        let own = one.own(pattern, phi.as_slice());
         let of = |(joint, triangle): (usize, &Triangle)| {
-            let ([squares, decided, variance], rows) = (own[joint], triangle.rows() as f64);
+            let (Own { squares, decided, variance }, rows) = (&own[joint], triangle.rows() as f64);
             let all = triangle.target_squares();
-            let left = triangle.squares(&self.of_joint(joint, phi));
+            let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
             let explained = (left - squares).max(0.0);
+            let unsure = covariance.map_or(0.0, |one| spread(triangle, &pattern[joint], one));
+            let chance = decided.max(1.0) * variance / independent + unsure;
             let is_much = explained > OF_TORQUE.powi(2) * all
                 && explained > OF_OWN.powi(2) * variance * rows
-                && independent * explained > OF_CHANCE * decided.max(1.0) * variance;
-            is_much.then(|| (joint, [left, variance * rows].map(|one| (one / all).sqrt())))
+                && explained > OF_CHANCE * chance;
+            let [left, own] = [left, variance * rows].map(|one| (one / all).sqrt());
+            is_much.then_some(Told { joint, left, own, explained })
         };
         triangles.iter().enumerate().filter_map(of).collect()
     }
+}
+
+/// The rows of a log that is compared with what others say.
+struct Tested<'a> {
+    /// By joint, and the share of them that is independent of each other.
+    rows: (&'a [Triangle], f64),
+    /// What rows of each joint count, to begin with.
+    weights: &'a [f64],
+}
+
+/// A joint that tells a contradiction.
+struct Told {
+    joint: usize,
+    /// The shares of its torque that phi and parameters of the log's own leave,
+    left: f64,
+    own: f64,
+    /// and the squares that these explain.
+    explained: f64,
+}
+
+/// What parameters of a log's own leave of a joint's torque.
+struct Own {
+    /// |W phi - y|^2.
+    squares: f64,
+    /// The parameters that the joint decides.
+    decided: f64,
+    /// The variance of a row.
+    variance: f64,
+}
+
+impl Tested<'_> {
+    /// What an estimate of its own leaves of each joint.
+    fn own(&self, pattern: &[Vec<usize>], phi: &[f64]) -> Vec<Own> {
+        let (triangles, independent) = self.rows;
+        let mut weights = self.weights.to_vec();
+        let mut own: Vec<Own> = Vec::new();
+        for _ in 0..=REWEIGHTING {
+            let solution = solve(&self.system(pattern, (&weights, phi.len())), phi);
+            let of = |(joint, triangle): (usize, &Triangle)| {
+                let places = &pattern[joint];
+                let r = triangle.matrix().view((0, 0), (places.len(), places.len()));
+                let factor = solution.factor.select_rows(places);
+                let decided = weights[joint].powi(2) * (r * factor).norm_squared();
+                let squares = triangle.squares(&of_joint(places, solution.phi.as_slice()));
+                let free = (independent * triangle.rows() as f64 - decided).max(f64::MIN_POSITIVE);
+                Own { squares, decided, variance: squares * independent / free }
+            };
+            own = triangles.iter().enumerate().map(of).collect();
+            let weight = |one: &Own| if one.variance > 0.0 { one.variance.powf(-0.5) } else { 0.0 };
+            weights = own.iter().map(weight).collect();
+        }
+        own
+    }
+
+    fn system(&self, pattern: &[Vec<usize>], (weights, rank): (&[f64], usize)) -> DMatrix<f64> {
+        stacked(&[(self.rows.0, weights)], pattern, &[], rank)
+    }
+
+    /// phi of a solution, in the directions that it says nothing about of the log's own.
+    fn with_own(&self, pattern: &[Vec<usize>], solution: &Solution) -> DVector<f64> {
+        let (phi, dead) = (&solution.phi, &solution.dead);
+        if dead.ncols() == 0 {
+            return phi.clone();
+        }
+        let rank = phi.len();
+        let r = self.system(pattern, (self.weights, rank));
+        let w = r.view((0, 0), (rank, rank));
+        let left = r.view((0, rank), (rank, 1)).column(0) - w * phi;
+        let along = (w * dead).svd(true, true);
+        let least = DEAD * along.singular_values.max();
+        along.solve(&left, least).map_or_else(|_| phi.clone(), |along| phi + dead * along)
+    }
+}
+
+/// The entries of phi that a joint's columns belong to.
+fn of_joint(places: &[usize], phi: &[f64]) -> Vec<f64> {
+    places.iter().map(|&place| phi[place]).collect()
+}
+
+/// The squares that errors of phi make of a joint's rows in the mean.
+fn spread(triangle: &Triangle, places: &[usize], covariance: &DMatrix<f64>) -> f64 {
+    let r = triangle.matrix().view((0, 0), (places.len(), places.len()));
+    let own = covariance.select_rows(places).select_columns(places);
+    (r * own * r.transpose()).trace()
 }
 
 /// Whether what phi leaves of a joint's torque in a log is nearly a constant, or as if the torque

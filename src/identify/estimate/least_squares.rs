@@ -240,7 +240,7 @@ pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), Estimat
 /// What estimates have in common.
 pub(super) struct Fit<'a> {
     pub(super) options: &'a Options,
-    start: &'a [f64],
+    pub(super) start: &'a [f64],
 }
 
 impl Fit<'_> {

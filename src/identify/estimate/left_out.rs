@@ -70,12 +70,20 @@ pub(in crate::identify) fn biased_frictions(
 
 /// For each log and joint whether samples before decimation are left out; none where all count.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LeftOut(Vec<Vec<Option<Vec<bool>>>>);
+pub(super) struct LeftOut {
+    rows: Vec<Vec<Option<Vec<bool>>>>,
+    /// Joints whose rows near reversals are left out, and the times they were widened to.
+    widened: Vec<(usize, f64)>,
+}
 
 impl LeftOut {
+    fn of(rows: Vec<Vec<Option<Vec<bool>>>>) -> Self {
+        Self { rows, widened: Vec::new() }
+    }
+
     /// Nothing.
     pub(super) fn none(logs: &[Conditioned]) -> Self {
-        Self(logs.iter().map(|log| vec![None; log.joints()]).collect())
+        Self::of(logs.iter().map(|log| vec![None; log.joints()]).collect())
     }
 
     /// What the options ask for before anything is known of friction; by default where the sign of
@@ -107,7 +115,19 @@ impl LeftOut {
             let slow = |joint: usize| Some(log.slow(joint, slowest[joint], 1));
             (0..log.joints()).map(slow).collect()
         };
-        Self(logs.iter().map(of_log).collect())
+        Self::of(logs.iter().map(of_log).collect())
+    }
+
+    /// The same of other logs.
+    pub(super) fn of_others(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        options: &Options,
+    ) -> Self {
+        let mut others = Self::asked(model, logs, options);
+        self.widened.iter().for_each(|&(joint, times)| _ = others.widen(logs, joint, times));
+        others
     }
 
     /// The same of pieces of logs, each with the number of its log.
@@ -115,9 +135,9 @@ impl LeftOut {
         let of = |&(number, piece): &(usize, Piece)| {
             let first = piece.first * logs[number].decimation;
             let part = |all: &Vec<bool>| all[first..].to_vec();
-            self.0[number].iter().map(|one| one.as_ref().map(part)).collect()
+            self.rows[number].iter().map(|one| one.as_ref().map(part)).collect()
         };
-        Self(pieces.iter().map(of).collect())
+        Self::of(pieces.iter().map(of).collect())
     }
 
     /// The same of pieces whose edges and filters smear over twice the time: each with its log,
@@ -136,15 +156,15 @@ impl LeftOut {
                 }
                 wider[range.clone()].to_vec()
             };
-            self.0[*number].iter().map(|one| one.as_ref().map(part)).collect()
+            self.rows[*number].iter().map(|one| one.as_ref().map(part)).collect()
         };
-        Self(pieces.iter().map(of).collect())
+        Self::of(pieces.iter().map(of).collect())
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.
     pub(super) fn widen(&mut self, logs: &[Conditioned], joint: usize, times: f64) -> bool {
         let mut near = near(logs, joint, times);
-        for (near, before) in near.iter_mut().zip(&self.0) {
+        for (near, before) in near.iter_mut().zip(&self.rows) {
             let before = before[joint].iter().flatten();
             near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
         }
@@ -155,9 +175,10 @@ impl LeftOut {
         let all: usize = logs.iter().map(Conditioned::samples).sum();
         let is_enough = kept as f64 >= LEAST * all as f64;
         if is_enough {
-            for (of_log, near) in self.0.iter_mut().zip(near) {
+            for (of_log, near) in self.rows.iter_mut().zip(near) {
                 of_log[joint] = Some(near);
             }
+            self.widened.push((joint, times));
         }
         is_enough
     }
@@ -170,7 +191,7 @@ impl LeftOut {
         joint: usize,
         (first, samples): (usize, usize),
     ) -> Option<Vec<bool>> {
-        let left_out = self.0[number][joint].as_ref()?;
+        let left_out = self.rows[number][joint].as_ref()?;
         Some(log.counts(left_out, first, samples))
     }
 }

@@ -36,8 +36,8 @@ mod widening;
 
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
-pub(in crate::identify) use contradiction::contradicting_logs;
-pub use contradiction::{ContradictingJoint, ContradictingLog, Likeness};
+pub use contradiction::{ContradictingJoint, ContradictingLog, Likeness, Standing};
+pub(in crate::identify) use contradiction::{contradicting_held_out, contradicting_logs};
 pub use errors::{Errors, interval_factor};
 pub(in crate::identify) use filter_error::filter_errors;
 pub use half_cutoff::Change;

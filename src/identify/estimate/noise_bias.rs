@@ -88,6 +88,59 @@ pub(super) fn noise_bias(
     NoiseBias { bias, share: all.share(solution), of_logs }
 }
 
+/// The squares that noise of the positions of a log makes of what phi leaves of each joint's
+/// torque, of the rows that count.
+pub(super) fn noise_squares(
+    model: &RegressionModel,
+    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+    phi: &DVector<f64>,
+) -> Vec<f64> {
+    let mut squares = vec![0.0; model.joints.len()];
+    if log.position_noise.iter().all(|noise| *noise == 0.0) {
+        return squares;
+    }
+    let own = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let phi: Vec<Vec<f64>> = (0..squares.len()).map(own).collect();
+    with_noise(model, (log, SAMPLES), &mut Random::new(SEED), |first, block, noisy, of_all| {
+        for (joint, sum) in squares.iter_mut().enumerate() {
+            let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
+            let counts = left_out.counts((number, log), joint, (first, block.samples));
+            let counts = counts.unwrap_or_else(|| vec![true; clean.len()]);
+            for noisy in noisy.iter().filter_map(|block| block.residual(joint, &phi[joint])) {
+                let both = noisy.iter().zip(&clean).zip(&counts).filter(|(_, counts)| **counts);
+                *sum += 0.5 * of_all * both.map(|((a, b), _)| (a - b).powi(2)).sum::<f64>();
+            }
+        }
+    });
+    squares
+}
+
+/// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:
+/// the number of the first sample, the block as it is and with noise of its positions added and
+/// subtracted, and how many blocks it stands for.
+fn with_noise(
+    model: &RegressionModel,
+    (log, longest): (&Conditioned, usize),
+    random: &mut Random,
+    mut visit: impl FnMut(usize, &Block, [&Block; 2], f64),
+) {
+    let pieces = log.pieces(longest);
+    let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
+    let of_all = log.samples() as f64 / seen.max(1) as f64;
+    let mut straight = BlockMaker::new(model, log);
+    for piece in pieces {
+        let Piece { first, samples } = piece;
+        let both = log.piece_with_noise(piece, random);
+        let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
+        for from in (0..samples).step_by(BLOCK) {
+            let count = BLOCK.min(samples - from);
+            let block = straight.at(first + from, count);
+            let noisy = makers.each_mut().map(|maker| maker.at(from, count));
+            visit(first + from, block, noisy, of_all);
+        }
+    }
+}
+
 /// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
 /// of the target.
 struct Noise(DMatrix<f64>);
@@ -108,31 +161,20 @@ impl Noise {
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }
-        let pieces = log.pieces(longest);
-        let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
-        let of_all = log.samples() as f64 / seen.max(1) as f64;
-        let mut straight = BlockMaker::new(model, log);
-        for piece in pieces {
-            let Piece { first, samples } = piece;
-            let both = log.piece_with_noise(piece, random);
-            let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
-            for from in (0..samples).step_by(BLOCK) {
-                let count = BLOCK.min(samples - from);
-                let block = straight.at(first + from, count);
-                let noisy = makers.each_mut().map(|maker| maker.at(from, count));
-                for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
-                    let mut squares = vec![weight * weight * of_all; count];
-                    if let Some(factors) = factors {
-                        let factors = factors(number, block, joint);
-                        squares.iter_mut().zip(factors).for_each(|(sq, by)| *sq *= by * by);
-                    }
-                    let counts = left_out.counts((number, log), joint, (first + from, count));
-                    let all = squares.iter_mut().zip(counts.unwrap_or_default());
-                    all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
-                    noise.add(model, joint, (block, noisy), &squares);
+        with_noise(model, (log, longest), random, |first, block, noisy, of_all| {
+            let count = block.samples;
+            for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
+                let mut squares = vec![weight * weight * of_all; count];
+                if let Some(factors) = factors {
+                    let factors = factors(number, block, joint);
+                    squares.iter_mut().zip(factors).for_each(|(sq, by)| *sq *= by * by);
                 }
+                let counts = left_out.counts((number, log), joint, (first, count));
+                let all = squares.iter_mut().zip(counts.unwrap_or_default());
+                all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
+                noise.add(model, joint, (block, noisy), &squares);
             }
-        }
+        });
         noise
     }
 

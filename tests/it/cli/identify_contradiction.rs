@@ -14,6 +14,19 @@ fn write(directory: &Directory, name: &str, seed: u64, change: &dyn Fn(&mut [f64
     write_log(directory, name, &rows);
 }
 
+fn times_1_15(row: &mut [f64; 5]) {
+    row[3..].iter_mut().for_each(|torque| *torque *= 1.15);
+}
+
+/// Factors that a text says torques are like, all of which must be 1.15.
+fn assert_gains(text: &str) {
+    let line = text.replace('\n', " ");
+    for gain in line.split("as if it were ").skip(1) {
+        let gain: f64 = gain.split(' ').next().and_then(|one| one.parse().ok()).expect(&line);
+        assert!((gain - 1.15).abs() < 0.01, "{text}");
+    }
+}
+
 const ALL: [&str; 5] = ["--train", "one.csv", "odd.csv", "other.csv", "--json"];
 
 /// Of three logs one whose torques are 15 % too large is named, with that number, and what is found
@@ -25,21 +38,87 @@ fn a_log_of_another_gain_is_named_and_not_followed() {
     for seed in 1..=8 {
         write(&directory, "one.csv", 3 * seed, &|_| {});
         write(&directory, "other.csv", 3 * seed + 2, &|_| {});
-        write(&directory, "odd.csv", 3 * seed + 1, &|row| {
-            row[3..].iter_mut().for_each(|torque| *torque *= 1.15);
-        });
+        write(&directory, "odd.csv", 3 * seed + 1, &times_1_15);
         let (code, text) = said(&directory, &ALL);
         assert_eq!(code, Some(1), "{seed}: {text}");
         let json = text.replace('\n', " ");
         assert!(json.contains("odd.csv contradicts the other logs"), "{seed}: {text}");
         assert_eq!(json.matches("contradicts").count(), 1, "{seed}: {text}");
-        for gain in json.split("as if it were ").skip(1) {
-            let gain: f64 = gain.split(' ').next().and_then(|one| one.parse().ok()).expect(&json);
-            assert!((gain - 1.15).abs() < 0.01, "{seed}: {text}");
-        }
+        assert_gains(&text);
         assert!(json.contains("Parameters are those of the others"), "{seed}: {text}");
         let spread = spread(&deviations(&text));
         assert!(spread < 2.0, "{seed}: {spread}");
+        // an estimate of all rows alike follows all, and knows as well which one it is
+        let (_, text) = said(&directory, &[&ALL[..], &["--method", "ols"]].concat());
+        assert!(text.contains("odd.csv contradicts the other logs"), "{seed}: {text}");
+        assert_eq!(text.matches("contradict").count(), 1, "{seed}: {text}");
+        assert!(text.contains("Parameters are those of all logs alike"), "{seed}: {text}");
+    }
+}
+
+/// The same of a log for validation alone.
+#[test]
+fn a_log_for_validation_of_another_gain_is_told() {
+    let directory = Directory::new("contradiction-held-out");
+    write_arm(&directory, None);
+    for seed in 1..=6 {
+        write(&directory, "one.csv", 2 * seed, &|_| {});
+        write(&directory, "same.csv", 2 * seed + 1, &|_| {});
+        write(&directory, "odd.csv", 2 * seed + 1, &times_1_15);
+        for (name, is_odd) in [("same.csv", false), ("odd.csv", true)] {
+            let (code, text) = said(&directory, &["--train", "one.csv", "--validate", name]);
+            assert_eq!(code, Some(i32::from(is_odd)), "{seed}: {text}");
+            assert_eq!(text.contains("odd.csv and the logs for the estimate contradict"), is_odd);
+            assert_gains(&text);
+        }
+    }
+}
+
+/// Parameters that the logs for the estimate show badly, or not at all, may be anything: the first
+/// joint hardly moves there, and the model's values are far off.
+#[test]
+fn a_log_for_validation_may_show_what_those_for_the_estimate_do_not() {
+    let directory = Directory::new("contradiction-unshown");
+    write_arm(&directory, None);
+    let arm = std::fs::read_to_string(directory.path.join("arm.json")).expect("written");
+    let heavy = arm.replace("\"yy\":0.04,\"zz\":0.04", "\"yy\":0.4,\"zz\":0.4");
+    assert_ne!(heavy, arm);
+    std::fs::write(directory.path.join("arm.json"), heavy).expect("written");
+    for seed in 1..=6 {
+        let [mut still, second] = motions(seed, 0.7);
+        still.waves.iter_mut().for_each(|wave| wave[0] *= if seed % 2 == 0 { 0.0 } else { 0.01 });
+        let made = Made { step_s: 0.002, samples: 5000, seed, ..GOOD };
+        write_log(&directory, "one.csv", &made.rows(&[still, second]));
+        write(&directory, "other.csv", seed + 9, &|_| {});
+        let (_, text) = said(&directory, &["--train", "one.csv", "--validate", "other.csv"]);
+        assert!(text.contains("validate"), "{seed}: {text}");
+        assert!(!text.contains("contradict"), "{seed}: {text}");
+    }
+}
+
+/// Noise of coarse encoders behind a filter that others leave too high is no contradiction:
+/// parameters of a log's own follow it, by their bias.
+#[test]
+fn noise_of_a_log_beside_others_contradicts_nothing() {
+    let directory = Directory::new("contradiction-noise");
+    write_arm(&directory, None);
+    let log = |name: &str, (seed, slowest): (u64, f64), made: Made, bits: i32| {
+        let mut rows = made.rows(&motions(seed, slowest));
+        round_positions(&mut rows, TAU / 2.0_f64.powi(bits));
+        write_log(&directory, name, &rows);
+    };
+    for seed in [5, 6, 7, 8, 48, 50] {
+        let fine = Made { step_s: 0.004, samples: 3500, torque_noise: 0.3, seed, ..GOOD };
+        log("fine.csv", (2 * seed, 0.4), fine, 20);
+        let steps = Made { step_s: 0.001, samples: 5000, torque_noise: 0.01, ..GOOD };
+        log("steps.csv", (2 * seed + 1, 0.2), Made { seed: seed + 40, ..steps }, 12);
+        for words in
+            [["fine.csv", "steps.csv"].as_slice(), &["fine.csv", "--validate", "steps.csv"]]
+        {
+            let (_, text) = said(&directory, &[&["--train"], words].concat());
+            assert!(text.contains("residual"), "{seed}: {text}");
+            assert!(!text.contains("contradict"), "{seed}: {text}");
+        }
     }
 }
 

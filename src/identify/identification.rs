@@ -46,11 +46,6 @@ pub struct Identification {
     pub contradicting_logs: Vec<ContradictingLog>,
     /// Logs of several for the estimate of which noise of the positions makes most.
     pub noisy_logs: Vec<NoisyLog>,
-    /// For each log for the estimate whether its noise of positions biases parameters, so that it
-    /// needs a lower filter.
-    pub biasing_logs: Vec<bool>,
-    /// For each of them whether it would need one if it were alone.
-    pub biased_alone: Vec<bool>,
     /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
     /// it, and how much: a share of its root of mean square.
     pub filter_error: Option<(String, f64)>,
@@ -229,59 +224,96 @@ fn listed(mut all: Vec<(String, f64)>, text: impl Fn(&(String, f64)) -> String) 
     (!all.is_empty()).then(|| format!("{}{more}", named.join(", ")))
 }
 
+/// An estimate before anything is judged by it but its filters.
+#[derive(Clone, Debug)]
+pub struct Estimated {
+    /// The base parameters that are listed.
+    pub parameters: Vec<IdentifiedParameter>,
+    /// The joint of whose torque the filter makes most by itself, and how much.
+    pub filter_error: Option<(String, f64)>,
+    /// For each log for the estimate whether its noise of positions biases parameters, so that it
+    /// needs a lower filter.
+    pub biasing_logs: Vec<bool>,
+    /// For each of them whether it would need one if it were alone.
+    pub biased_alone: Vec<bool>,
+    left: Validation,
+    found: Estimate,
+}
+
 /// Estimates, judges, and finds the nearest bodies that exist.
 pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
-    let Request { model, train, validate: held_out, instruments, options } = request;
-    let given = model.model_axes();
-    let start = given.clone().unwrap_or_else(|| vec![0.0; model.rank()]);
+    Ok(estimated(request)?.judged(request))
+}
+
+/// Estimates alone: what filters are chosen by.
+pub fn estimated(request: Request<'_>) -> Result<Estimated, EstimateError> {
+    let Request { model, train, instruments, options, .. } = request;
+    let start = model.model_axes().unwrap_or_else(|| vec![0.0; model.rank()]);
     let found = estimate(model, train, instruments, options, &start)?;
     if options.prior.is_empty() {
         long_enough(train, &found)?;
     }
     let phi = found.solution.phi.as_slice();
-    let judged = |phi: &[f64]| (!held_out.is_empty()).then(|| validate(model, phi, held_out));
-    let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
-    let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
     let left = validate(model, phi, train);
     let listed = parameters(model, &found);
-    let held_out_left = judged(phi);
-    let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
-    let torques = torques(model, &left).into_iter();
-    let counted: Vec<f64> = found.noise_of_joints().into_iter().zip(torques).map(share).collect();
-    let misread = misread(request, (&found, &listed, &counted));
-    // of a log that is noise, much is left
-    let shown = shown_logs(train.len(), &found);
-    let (judges, judging) = match held_out.is_empty() {
-        true => (train, shown.clone()),
-        false => (held_out, (0..held_out.len()).collect()),
-    };
-    let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
-    let left_together = validate(model, phi, &together);
-    let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
-    contradicting_logs.extend(contradicting_held_out(model, held_out, (&found, options)));
-    let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
-    Ok(Identification {
-        unexplained: unexplained_joints(model, (judges, &judging), judgement),
-        misread,
-        reversals: reversals(model, train, (&found, options)),
-        left_out: left_out(model, train, (&found, &counted)),
-        contradicting_logs,
-        noisy_logs: noisy_logs(model, train, &found),
-        periods: train.iter().map(Conditioned::periods).sum(),
+    Ok(Estimated {
+        filter_error: filter_error(model, train, (phi, &left)),
         biasing_logs: biasing_logs(model, &listed, &found),
         biased_alone: biased_alone(&found),
         parameters: listed,
-        filter_error: filter_error(model, train, (phi, &left)),
-        train: left,
-        validate: held_out_left,
-        before: given.map(|phi| {
-            let logs = if held_out.is_empty() { train } else { held_out };
-            validate(model, &phi, logs).relative
-        }),
-        convergence: convergence(model, &found),
-        consistent: consistent(model, &found, &standard),
-        estimate: found,
+        left,
+        found,
     })
+}
+
+impl Estimated {
+    /// All that there is to say of it and of the logs that it is from.
+    pub fn judged(self, request: Request<'_>) -> Identification {
+        let Self { parameters: listed, filter_error, left, found, .. } = self;
+        let Request { model, train, validate: held_out, options, .. } = request;
+        let given = model.model_axes();
+        let phi = found.solution.phi.as_slice();
+        let judged = |phi: &[f64]| (!held_out.is_empty()).then(|| validate(model, phi, held_out));
+        let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
+        let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
+        let held_out_left = judged(phi);
+        let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
+        let torques = torques(model, &left).into_iter();
+        let counted: Vec<f64> =
+            found.noise_of_joints().into_iter().zip(torques).map(share).collect();
+        let misread = misread(request, (&found, &listed, &counted));
+        // of a log that is noise, much is left
+        let shown = shown_logs(train.len(), &found);
+        let (judges, judging) = match held_out.is_empty() {
+            true => (train, shown.clone()),
+            false => (held_out, (0..held_out.len()).collect()),
+        };
+        let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
+        let left_together = validate(model, phi, &together);
+        let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
+        contradicting_logs.extend(contradicting_held_out(model, held_out, (&found, options)));
+        let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
+        Identification {
+            unexplained: unexplained_joints(model, (judges, &judging), judgement),
+            misread,
+            reversals: reversals(model, train, (&found, options)),
+            left_out: left_out(model, train, (&found, &counted)),
+            contradicting_logs,
+            noisy_logs: noisy_logs(model, train, &found),
+            periods: train.iter().map(Conditioned::periods).sum(),
+            parameters: listed,
+            filter_error,
+            train: left,
+            validate: held_out_left,
+            before: given.map(|phi| {
+                let logs = if held_out.is_empty() { train } else { held_out };
+                validate(model, &phi, logs).relative
+            }),
+            convergence: convergence(model, &found),
+            consistent: consistent(model, &found, &standard),
+            estimate: found,
+        }
+    }
 }
 
 /// Root of mean square of each joint's torque; 0 where none was measured.

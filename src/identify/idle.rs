@@ -9,6 +9,10 @@ use crate::plants::regression::RegressionModel;
 const FOLLOWS: f64 = 0.1;
 const ALIKE: f64 = 0.7;
 
+/// The share of the squares of a torque below which its variance is rounding: a constant is like
+/// nothing.
+const ROUNDING: f64 = 1e-9;
+
 /// Takes the torques of motors that do not carry their joints out of a log, and says which: the
 /// joint rests, and its torque does not change as the load does that the model's own values make of
 /// the motion of the others. Nothing is known there but that something else holds the joint.
@@ -34,9 +38,11 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
         }
     });
     let is_idle = |[rows, torque, load, torques, loads, both]: [f64; 6]| {
+        let rounding = ROUNDING * torques;
         let [torques, loads] = [torques - torque * torque / rows, loads - load * load / rows];
         let both = both - torque * load / rows;
-        torques < FOLLOWS.powi(2) * loads && both * both <= ALIKE.powi(2) * torques * loads
+        let is_alike = torques > rounding && both * both > ALIKE.powi(2) * torques * loads;
+        torques < FOLLOWS.powi(2) * loads && !is_alike
     };
     let idle = resting.into_iter().zip(sums).filter(|(_, sums)| is_idle(*sums));
     let idle: Vec<usize> = idle.map(|(joint, _)| joint).collect();

@@ -33,7 +33,7 @@ pub mod two_stage;
 mod updated_model;
 
 pub use contact_forces::{Ground, add_contact_forces};
-pub use identification::{Identification, LeftOutRows, Request, identify};
+pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
 pub use model_text::{

@@ -7,7 +7,7 @@ use crate::cli::progress::Progress;
 use denavit::effect::{self, Effect};
 use denavit::identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit::identify::{
-    Identification, Request, UpdateError, UpdatedModel, identify, updated_model,
+    Estimated, Identification, Request, UpdateError, UpdatedModel, estimated, updated_model,
 };
 use denavit::model::Robot;
 use denavit::plants::effect::AddedLaw;
@@ -32,20 +32,32 @@ impl Estimation<'_> {
         logs::read((self.arguments, halvings), (self.robot, self.laws), self.model)
     }
 
-    pub(super) fn found(&self, read: &logs::Read, options: &Options) -> Result<Found, Failure> {
-        let Self { robot, model, own, source, .. } = *self;
-        let request = Request {
-            model,
+    fn request<'a>(&'a self, read: &'a logs::Read, options: &'a Options) -> Request<'a> {
+        Request {
+            model: self.model,
             train: &read.train,
             validate: &read.validate,
             instruments: &read.instruments,
             options,
-        };
-        let found = identify(request)
-            .map_err(|error| IdentifyFailure::Estimate(model.model.clone(), error))?;
+        }
+    }
+
+    pub(super) fn found(&self, read: &logs::Read, options: &Options) -> Result<Found, Failure> {
+        let estimated = self.estimated(read, options)?;
+        Ok(self.judged(read, options, estimated))
+    }
+
+    fn estimated(&self, read: &logs::Read, options: &Options) -> Result<Estimated, Failure> {
+        let failed = |error| IdentifyFailure::Estimate(self.model.model.clone(), error).into();
+        estimated(self.request(read, options)).map_err(failed)
+    }
+
+    fn judged(&self, read: &logs::Read, options: &Options, estimated: Estimated) -> Found {
+        let found = estimated.judged(self.request(read, options));
         let both = (&found.consistent, &found.parameters[..]);
-        let updated = updated_model(robot, model, both, source);
-        Ok((found, updated.and_then(|updated| with_all_effects(updated, own))))
+        let updated = updated_model(self.robot, self.model, both, self.source);
+        let updated = updated.and_then(|updated| with_all_effects(updated, self.own));
+        (found, updated)
     }
 
     /// What is found with the highest filter, of those that nobody asked for, below which noise of
@@ -58,19 +70,17 @@ impl Estimation<'_> {
     ) -> Result<(logs::Read, Found), Failure> {
         let mut halvings = vec![0; read.train.len()];
         self.progress.show("estimating");
-        let mut found = self.found(&read, options)?;
+        let mut found = self.estimated(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
-        while !allows_for_noise && let Some((lower, most)) = self.lower(&read, &halvings, &found.0)
-        {
+        while !allows_for_noise && let Some((lower, most)) = self.lower(&read, &halvings, &found) {
             let times = lower.iter().max().unwrap_or(&0);
             self.progress.show(&format!("reading logs, filter halved {times} times"));
             drop(read); // logs are large: not all of them twice
             read = self.read(&lower)?;
             self.progress.show(&format!("estimating, filter halved {times} times"));
-            let next = self.found(&read, options)?;
-            let parameters = &found.0.parameters;
-            let is_better = growth_of_errors(&next.0.parameters, parameters) < most;
-            if next.0.filter_error.is_some() || !is_better {
+            let next = self.estimated(&read, options)?;
+            let is_better = growth_of_errors(&next.parameters, &found.parameters) < most;
+            if next.filter_error.is_some() || !is_better {
                 // worse than the noise that it takes away
                 drop(read);
                 read = self.read(&halvings)?;
@@ -78,6 +88,7 @@ impl Estimation<'_> {
             }
             (found, halvings) = (next, lower);
         }
+        let found = self.judged(&read, options, found);
         Ok((read, found))
     }
 
@@ -88,7 +99,7 @@ impl Estimation<'_> {
         &self,
         read: &logs::Read,
         halvings: &[u32],
-        found: &Identification,
+        found: &Estimated,
     ) -> Option<(Halvings, f64)> {
         let conditions = &self.arguments.conditions;
         let lower = |asking: &[bool]| conditions.lower(&read.train, (halvings, asking));

@@ -116,7 +116,8 @@ pub struct Judgement<'a> {
 }
 
 /// The joints of whose torque nearly all is left, or much that is no noise, of all logs together of
-/// which noise does not make most, or of one log. Equations of a floating base are none of joints.
+/// which noise does not make most, or of one of these. Equations of a floating base are none of
+/// joints.
 pub fn unexplained_joints(
     model: &RegressionModel,
     (logs, shown): (&[Conditioned], &[usize]),
@@ -129,7 +130,7 @@ pub fn unexplained_joints(
     let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
     let mut all = moving(model, &together, (judged, &least));
     let not_noise = vec![f64::INFINITY; noise.len()];
-    for log in logs {
+    for &log in &together {
         let left = validate(model, phi, &[log]);
         let mut own = resting(model, log, (judged.found, &left));
         if logs.len() > 1 {

@@ -159,3 +159,24 @@ fn options_that_leave_nothing_are_named() {
     assert!(line.contains("The logs are too short for it"), "{text}");
     assert!(!line.contains("is not explained"), "{text}");
 }
+
+/// Steps of encoders as large as the motion, and rates that no joint has, are refused with what to
+/// do about it.
+#[test]
+fn numbers_that_nothing_can_be_are_refused() {
+    let directory = Directory::new("logs-numbers");
+    write_arm(&directory, None);
+    write_log(&directory, "log.csv", &GOOD.rows(&motions(1, 0.7)));
+    for (option, says) in [
+        ("--resolution=1", "no joint moves further than its noise"),
+        ("--resolution=1", "--resolution in rad or m"),
+        ("--resolution=0", "a step above 0 and up to 1 rad or m"),
+        ("--resolution=1.1", "a step above 0 and up to 1 rad or m"),
+        ("--skip-slow=1e9", "a rate from 1e-9 to 1000 rad/s or m/s"),
+        ("--skip-slow=900", "--skip-slow"),
+    ] {
+        let (code, text) = said(&directory, &["--train", "log.csv", option]);
+        assert_eq!(code, Some(2), "{option}: {text}");
+        assert!(text.contains(says), "{option}: {text}");
+    }
+}

@@ -4,7 +4,7 @@ use super::law::{Motion, Response, derivative};
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
-use super::turning::late_friction;
+use super::turning::{late_friction, settle};
 use crate::plants::effect::Drive;
 
 /// A stretch of rows: those of one equation in one log.
@@ -65,10 +65,11 @@ pub struct ModelTorques {
 
 impl<'a> Data<'a> {
     /// The rows of logs.
-    pub fn new(nominal: &'a Nominal<'a>, signals: Vec<Signals>) -> Self {
-        let rows: Vec<LogRows> = signals.iter().map(|log| LogRows::new(nominal, log)).collect();
+    pub fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
         let joints = nominal.model.joints.len();
         let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
+        signals.iter_mut().for_each(|signals| settle(nominal, signals, &given));
+        let rows: Vec<LogRows> = signals.iter().map(|log| LogRows::new(nominal, log)).collect();
         let mut data = Self {
             nominal,
             stretches: Vec::new(),

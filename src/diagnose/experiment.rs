@@ -254,7 +254,8 @@ impl Ambiguity<'_> {
             values: one.values.clone(),
         };
         let laws: Vec<Fitted<'_>> = self.names.iter().chain(&self.others).map(fitted).collect();
-        let mut deviation = turning(&data, &torques, &laws);
+        let unsure = turning(&data, &torques, &laws);
+        let mut deviation: Vec<f64> = unsure.iter().map(|row| row.deviation(1.0)).collect();
         for stretch in &data.stretches {
             let floor = self.floor.deviation[stretch.joint];
             let rows = &mut deviation[stretch.first..stretch.first + stretch.rows];

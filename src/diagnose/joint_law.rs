@@ -4,7 +4,7 @@ use super::law::{Law, Motion, Response};
 use super::rows::PerJoint;
 use super::signals::Signals;
 use crate::plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
-use denavit_codegen::effect::{Channel, SpringSide};
+use denavit_codegen::effect::{Channel, EffectKind, SpringSide};
 
 /// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
 pub(super) struct JointLaw {
@@ -48,6 +48,11 @@ impl Law for JointLaw {
         let mut response = Response::default();
         let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
             let mut samples = samples(&motion, joint, other);
+            let creeping;
+            if law.kind == EffectKind::Mode {
+                creeping = motion.signals.creeping(joint);
+                samples.qd = &creeping;
+            }
             let mut equations = vec![joint];
             if let Some(spring) = motion.model.0.spring_equation(joint)
                 && law.channel().is_none()

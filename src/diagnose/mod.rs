@@ -10,6 +10,7 @@
 //! - [`search()`]: which effects are missing
 
 mod alias;
+mod between;
 mod candidate;
 mod catalogue;
 mod curve;
@@ -40,6 +41,7 @@ mod rows;
 mod search;
 mod signals;
 mod simulated;
+mod standstill;
 mod state;
 mod structure;
 mod turning;

@@ -1,8 +1,8 @@
 //! Whether what is left of torques repeats from lap to lap: what does not has no law of motion.
 
+use super::between::cubic;
 use super::data::{Data, Stretch};
 use super::floor::{NoiseFloor, UNREPEATABLE};
-use super::signals::cubic;
 
 /// How much what is left of a stretch differs from lap to lap.
 struct Scatter {

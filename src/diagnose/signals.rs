@@ -5,8 +5,10 @@
 //! torques of effects. A law with a step at a reversal then has the same edge on both sides of the
 //! equation, which is what tells a step from a slope.
 
+use super::between::{between, cubic};
 use super::floor::white_noise;
 use super::law::derivative;
+use super::standstill::{self, Rest};
 use crate::identify::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use crate::identify::log::{JointSignals, MeasuredLog};
 use crate::simulate::Random;
@@ -56,6 +58,8 @@ pub struct Signals {
     /// Position, rate and acceleration of the motor of a joint behind a spring, on the joint's
     /// side.
     pub motor: Vec<Option<[Vec<f64>; 3]>>,
+    /// Where the drive of a joint rests.
+    pub(super) rests: Vec<Vec<Rest>>,
     /// Torques of the rows, through the filter [N m, N]; none where none was measured.
     pub torque: Vec<Option<Vec<f64>>>,
     /// What the steps of the encoders are of the positions after their filter, drawn at random
@@ -106,8 +110,7 @@ impl Signals {
         let kept = edge..samples - edge;
         // Rows are where a coarse view of the motion has samples.
         let first = filter.settling().next_multiple_of(stride);
-        let range = first..kept.len() - filter.settling();
-        let rows = Rows { range, stride, within: WITHIN };
+        let rows = Rows { range: first..kept.len() - filter.settling(), stride, within: WITHIN };
         let fine = step_s / WITHIN as f64;
         // The cell of a sample is around it.
         let offset = 0.5 * (WITHIN - 1) as f64 * fine;
@@ -115,7 +118,7 @@ impl Signals {
             .map(|k| start_s + step_s * kept.start as f64 + fine * k as f64 - offset)
             .collect();
         let [q, qd, qdd, position_noise, motor_noise] = [const { Vec::new() }; 5];
-        let (torque, measured, motor) = (Vec::new(), Vec::new(), Vec::new());
+        let (torque, measured, motor, rests) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut signals = Self {
             file,
             torque_hz: filters.torque_hz,
@@ -126,6 +129,7 @@ impl Signals {
             qd,
             qdd,
             motor,
+            rests,
             position_noise,
             motor_noise,
             torque,
@@ -159,10 +163,20 @@ impl Signals {
     }
 
     fn push(&mut self, joint: JointSignals, wide: &Butterworth, kept: Range<usize>) {
-        let JointSignals { mut q, tau, motor, .. } = joint;
-        wide.zero_phase(&mut q);
+        let JointSignals { mut q, tau, motor, step, motor_step, .. } = joint;
         let h = self.log_step_s;
         let within = self.rows.within;
+        let (drive, step) = motor.as_ref().map_or((&q, step), |motor| (motor, motor_step));
+        // The time of the first sample of the log, in whose cell the motion begins.
+        let start_s = self.t[within / 2] - h * kept.start as f64;
+        let mut rests =
+            step.map_or_else(Vec::new, |step| standstill::rests(drive, step, [start_s, h]));
+        let whole_s = self.t[0]..self.t[self.t.len() - 1];
+        rests.retain(|Rest { time_s: Range { start, end }, .. }| {
+            whole_s.contains(start) && whole_s.contains(end)
+        });
+        self.rests.push(rests);
+        wide.zero_phase(&mut q);
         let fine = |signal: Vec<f64>| between(&signal, within);
         let rates = |q: &[f64]| fine(kept.clone().map(|k| rate(q, k) / h).collect());
         let accelerations =
@@ -175,10 +189,19 @@ impl Signals {
             [fine(motor[kept.clone()].to_vec()), rates, accelerations]
         }));
         self.q.push(fine(q[kept.clone()].to_vec()));
+        self.rest(self.rests.len() - 1);
         let measured = tau.map(|tau| tau[kept].to_vec());
         let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
         self.torque.push(rows);
         self.measured.push(measured);
+    }
+
+    /// Rate and acceleration of a joint's drive, on the joint's side.
+    pub(super) fn drive_mut(&mut self, joint: usize) -> [&mut Vec<f64>; 2] {
+        match &mut self.motor[joint] {
+            Some([_, rates, accelerations]) => [rates, accelerations],
+            None => [&mut self.qd[joint], &mut self.qdd[joint]],
+        }
     }
 
     /// The motion with another error of its encoders.
@@ -203,6 +226,7 @@ impl Signals {
             let noise = Some(&self.motor_noise[joint]).filter(|noise| !noise.is_empty());
             let noise = noise.into_iter().flat_map(|noise| added(noise));
             motor.zip(noise).for_each(|(signal, noise)| add(signal, &noise));
+            other.rest(joint);
         }
         other
     }
@@ -222,6 +246,7 @@ impl Signals {
         add(&mut self.qd[joint], &of(&|k| rate(&cells, k) / h));
         add(&mut self.qdd[joint], &of(&|k| acceleration(&cells, k) / (h * h)));
         self.q[joint] = positions.to_vec();
+        self.rest(joint);
     }
 
     /// The motion at one cell in so many, for a first look: laws cost less there. Rows are the
@@ -240,7 +265,7 @@ impl Signals {
             stride: stride / thin,
             within: 1,
         };
-        let found = Self {
+        let mut found = Self {
             file: self.file.clone(),
             log_step_s: coarse,
             step_s: coarse,
@@ -254,6 +279,7 @@ impl Signals {
                 .iter()
                 .map(|m| m.as_ref().map(|m| m.each_ref().map(thinned)))
                 .collect(),
+            rests: self.rests.clone(),
             position_noise: Vec::new(),
             motor_noise: Vec::new(),
             torque: Vec::new(),
@@ -266,7 +292,22 @@ impl Signals {
             rows,
             filter,
         };
+        (0..found.joints()).for_each(|joint| found.rest(joint));
         (stride % thin == 0 && found.rows() == self.rows()).then_some(found)
+    }
+
+    /// The motion at a few of its samples, of which there are no rows.
+    pub(super) fn at(&self, samples: &[usize]) -> Self {
+        let at = |signal: &Vec<f64>| samples.iter().map(|&k| signal[k]).collect::<Vec<f64>>();
+        let all = |signals: &[Vec<f64>]| signals.iter().map(at).collect();
+        Self {
+            t: at(&self.t),
+            q: all(&self.q),
+            qd: all(&self.qd),
+            qdd: all(&self.qdd),
+            motor: self.motor.iter().map(|m| m.as_ref().map(|m| m.each_ref().map(at))).collect(),
+            ..self.clone()
+        }
     }
 
     /// The motion at the full rate, of which this is a coarse view or all.
@@ -406,44 +447,10 @@ fn add(signal: &mut [f64], other: &[f64]) {
     signal.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
 }
 
-/// A signal at so many places in the cell of each sample, by the cubic through four samples.
-fn between(signal: &[f64], within: usize) -> Vec<f64> {
-    let last = signal.len() as isize - 1;
-    let at = |k: isize| signal[k.clamp(0, last) as usize];
-    let middle = 0.5 * (within - 1) as f64;
-    let mut fine = Vec::with_capacity(signal.len() * within);
-    for k in 0..signal.len() as isize {
-        for part in 0..within {
-            let x = (part as f64 - middle) / within as f64;
-            // From the sample before a place to the one after.
-            let (from, u) = if x < 0.0 { (k - 1, x + 1.0) } else { (k, x) };
-            fine.push(cubic([-1, 0, 1, 2].map(|offset| at(from + offset)), u));
-        }
-    }
-    fine
-}
-
-/// The cubic through values at -1, 0, 1 and 2, between 0 and 1.
-pub(super) fn cubic([a, b, c, d]: [f64; 4], u: f64) -> f64 {
-    -a * u * (u - 1.0) * (u - 2.0) / 6.0 + b * (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0
-        - c * (u + 1.0) * u * (u - 2.0) / 2.0
-        + d * (u + 1.0) * u * (u - 1.0) / 6.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
-
-    #[test]
-    fn what_is_between_samples_of_a_cubic_is_on_it() {
-        let cubic = |x: f64| 0.3 - 1.1 * x + 0.7 * x * x - 0.05 * x * x * x;
-        let signal: Vec<f64> = (0..12).map(|k| cubic(f64::from(k))).collect();
-        for (k, value) in between(&signal, 3).iter().enumerate().skip(6).take(24) {
-            let x = (k as f64 - 1.0) / 3.0;
-            assert!((value - cubic(x)).abs() < 1e-12, "{k}: {value} {}", cubic(x));
-        }
-    }
 
     #[test]
     fn a_delay_that_is_undone_leaves_the_torque_before_it() {

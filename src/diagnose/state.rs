@@ -9,7 +9,7 @@ use super::held::hold;
 use super::problem::{Fitted, Found, Problem};
 use super::signals::Signals;
 use super::simulated::{MotionGap, Moved, NotMoved};
-use super::turning::turning;
+use super::turning::{Unsure, turning};
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -352,7 +352,7 @@ impl<'a> Setting<'a> {
     /// How far each joint or spring is off where it does not turn around, at least the floor, and
     /// the share of what is not known where it does. A joint that misses something counts less, and
     /// does not bend the model elsewhere.
-    fn spreads(&self, residual: &[f64], floor: &[f64], unsure: &[f64]) -> Vec<Spread> {
+    fn spreads(&self, residual: &[f64], floor: &[f64], unsure: &[Unsure]) -> Vec<Spread> {
         let of = |(equation, floor): (usize, &f64)| {
             let own = self.train.stretches.iter().filter(|stretch| stretch.equation == equation);
             let rows: Vec<usize> =
@@ -361,13 +361,15 @@ impl<'a> Setting<'a> {
             let mut spread = Spread { level: rms(&all).max(*floor), turning: 1.0 };
             for _ in 0..ROUNDS_OF_SPREAD {
                 let Spread { level, turning } = spread;
-                let weight = |row: usize| 1.0 / (1.0 + (turning * unsure[row] / level).powi(2));
+                let weight =
+                    |row: usize| 1.0 / (1.0 + (unsure[row].deviation(turning) / level).powi(2));
                 let sum: f64 = rows.iter().map(|&row| weight(row)).sum();
                 let squares = rows.iter().map(|&row| weight(row) * residual[row].powi(2));
                 let level = (squares.sum::<f64>() / sum.max(f64::MIN_POSITIVE)).sqrt().max(*floor);
-                let near = || rows.iter().filter(|&&row| unsure[row] > level);
-                let most: f64 = near().map(|&row| unsure[row].powi(2)).sum();
-                let more: f64 = near().map(|&row| residual[row].powi(2) - level.powi(2)).sum();
+                let near = || rows.iter().filter(|&&row| unsure[row].corner > level);
+                let most: f64 = near().map(|&row| unsure[row].corner.powi(2)).sum();
+                let known = |row: usize| level.powi(2) + unsure[row].rest.powi(2);
+                let more: f64 = near().map(|&row| residual[row].powi(2) - known(row)).sum();
                 let turning = (more / most.max(f64::MIN_POSITIVE)).clamp(0.0, MOST_TURNING).sqrt();
                 spread = Spread { level, turning };
             }
@@ -413,12 +415,12 @@ struct Spread {
 }
 
 /// What is not known of each row, and its deviation with that.
-fn of_rows(data: &Data<'_>, spreads: &[Spread], unsure: &[f64]) -> [Vec<f64>; 2] {
-    let (mut turning, mut deviation) = (unsure.to_vec(), unsure.to_vec());
+fn of_rows(data: &Data<'_>, spreads: &[Spread], unsure: &[Unsure]) -> [Vec<f64>; 2] {
+    let (mut turning, mut deviation) = (vec![0.0; unsure.len()], vec![0.0; unsure.len()]);
     for stretch in &data.stretches {
         let Spread { level, turning: share } = spreads[stretch.equation];
         for row in stretch.first..stretch.first + stretch.rows {
-            turning[row] *= share;
+            turning[row] = unsure[row].deviation(share);
             deviation[row] = turning[row].hypot(level);
         }
     }

@@ -135,7 +135,7 @@ pub(crate) const TABLE: [Entry; 45] = [
     entry(
         Law::Stiction,
         "stiction",
-        &["stribeck", "stribeck_exponential", "lugre"],
+        &["breakaway", "stribeck", "stribeck_exponential", "lugre"],
         Site::Joint,
         "fs",
         2,

@@ -19,6 +19,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "backlash",
     "base_tilt",
     "bouc_wen",
+    "breakaway",
     "capstan",
     "capstan_posture",
     "cogging",

@@ -13,7 +13,7 @@ use super::signals::Signals;
 use std::ops::Range;
 
 /// Samples of the shortest rest.
-const LEAST: usize = 4;
+const LEAST: usize = 6;
 
 /// Steps that a drive moves in the time of its rest, before and after it: a parabola moves by 8.
 const LEAVES: f64 = 30.0;

@@ -366,11 +366,12 @@ impl<'a> Setting<'a> {
                 let sum: f64 = rows.iter().map(|&row| weight(row)).sum();
                 let squares = rows.iter().map(|&row| weight(row) * residual[row].powi(2));
                 let level = (squares.sum::<f64>() / sum.max(f64::MIN_POSITIVE)).sqrt().max(*floor);
-                let near = || rows.iter().filter(|&&row| unsure[row].corner > level);
+                let of_corner = |row: usize| unsure[row].corner > level.max(unsure[row].rest);
+                let near = || rows.iter().filter(|&&row| of_corner(row));
                 let most: f64 = near().map(|&row| unsure[row].corner.powi(2)).sum();
-                let known = |row: usize| level.powi(2) + unsure[row].rest.powi(2);
-                let more: f64 = near().map(|&row| residual[row].powi(2) - known(row)).sum();
-                let turning = (more / most.max(f64::MIN_POSITIVE)).clamp(0.0, MOST_TURNING).sqrt();
+                let more: f64 = near().map(|&row| residual[row].powi(2) - level.powi(2)).sum();
+                let share = if most > 0.0 { more / most } else { 1.0 };
+                let turning = share.clamp(0.0, MOST_TURNING).sqrt();
                 spread = Spread { level, turning };
             }
             spread

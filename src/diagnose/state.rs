@@ -370,7 +370,10 @@ impl<'a> Setting<'a> {
                 let near = || rows.iter().filter(|&&row| of_corner(row));
                 let most: f64 = near().map(|&row| unsure[row].corner.powi(2)).sum();
                 let more: f64 = near().map(|&row| residual[row].powi(2) - level.powi(2)).sum();
-                let share = if most > 0.0 { more / most } else { 1.0 };
+                // Where a drive rests at all its reversals they say nothing of its corners.
+                let rests = rows.iter().any(|&row| unsure[row].rest > level);
+                let share =
+                    if most == 0.0 && rests { 1.0 } else { more / most.max(f64::MIN_POSITIVE) };
                 let turning = share.clamp(0.0, MOST_TURNING).sqrt();
                 spread = Spread { level, turning };
             }

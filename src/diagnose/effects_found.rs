@@ -128,7 +128,6 @@ pub(super) fn found_effects(
             });
             paired(&worse, &better).max(by_ranks(&worse, &better)) >= PLAIN
         };
-        let is_held = |state: &State| state.held.iter().any(Option::is_some);
         let candidate = &setting.candidates[taken.candidate];
         let laws = candidate.law.parameters();
         found.push(FoundEffect {
@@ -137,7 +136,6 @@ pub(super) fn found_effects(
             is_named: own.as_ref().is_none_or(|own| fits(own, candidate.joint)),
             // Of what numbers of the model stand for that are driven, logs show little.
             is_faint: own.as_ref().is_some_and(is_little)
-                && (is_held(after) || !is_held(&without))
                 && (errors_from_nothing(laws, &parameters) < NOTHING || !is_plain()),
             parameters,
             alternatives,

@@ -4,7 +4,7 @@ use super::law::{Law, Motion, Response};
 use super::rows::PerJoint;
 use super::signals::Signals;
 use crate::plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
-use denavit_codegen::effect::{Channel, EffectKind, SpringSide};
+use denavit_codegen::effect::{Channel, SpringSide};
 
 /// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
 pub(super) struct JointLaw {
@@ -48,11 +48,8 @@ impl Law for JointLaw {
         let mut response = Response::default();
         let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
             let mut samples = samples(&motion, joint, other);
-            let creeping;
-            if law.kind == EffectKind::Mode {
-                creeping = motion.signals.creeping(joint);
-                samples.qd = &creeping;
-            }
+            let creep = motion.signals.creeping(joint);
+            samples.creep = &creep;
             let mut equations = vec![joint];
             if let Some(spring) = motion.model.0.spring_equation(joint)
                 && law.channel().is_none()
@@ -60,6 +57,7 @@ impl Law for JointLaw {
             {
                 let signals = motion.signals;
                 (samples.qd, samples.qdd) = (&signals.qd[joint], &signals.qdd[joint]);
+                samples.creep = samples.qd;
                 // What the link feels the spring passes on.
                 equations.push(spring);
             }

@@ -98,25 +98,38 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
         };
         let creeps = |rate: f64| torques(&|moved| moved.drive_mut(joint)[0].fill(rate));
         let [back, forth] = [-creep, creep].map(creeps);
-        let faster = |all: &mut Vec<f64>| all.iter_mut().for_each(|one| *one += 1.0);
-        let columns: Vec<PerJoint> = match stopped.motor[joint] {
-            Some(_) => vec![torques(&|moved| faster(moved.drive_mut(joint)[1]))],
-            None => (0..joints).map(|of| torques(&|moved| faster(&mut moved.qdd[of]))).collect(),
+        // What moves with the drive, itself first.
+        let mut moving = vec![joint];
+        if stopped.motor[joint].is_none() {
+            moving.extend((0..joints).filter(|&other| other != joint));
+        }
+        let faster = |of: usize| {
+            torques(&|moved| {
+                let accelerations = match &mut moved.motor[joint] {
+                    Some([_, _, accelerations]) => accelerations,
+                    None => &mut moved.qdd[of],
+                };
+                accelerations.iter_mut().for_each(|one| *one += 1.0);
+            })
         };
-        let still = torques(&|_| ());
+        let (still, columns) = (torques(&|_| ()), moving.iter().map(|&of| faster(of)));
+        let columns: Vec<PerJoint> = columns.collect();
         for (k, rest) in signals.rests_mut(joint).iter_mut().enumerate() {
-            let entry = |row: usize, column: usize| columns[column][row][k] - still[row][k];
-            let inertia = match columns.len() {
-                1 => Some(entry(joint, 0)),
-                _ => DMatrix::from_fn(joints, joints, entry)
-                    .cholesky()
-                    .map(|matrix| 1.0 / matrix.inverse()[(joint, joint)]),
-            };
+            let entry =
+                |row: usize, column: usize| columns[column][moving[row]][k] - still[moving[row]][k];
             let friction = 0.5 * (forth[joint][k] - back[joint][k]);
-            rest.settle(inertia.unwrap_or(0.0), friction);
+            let matrix = DMatrix::from_fn(moving.len(), moving.len(), entry);
+            rest.settle(of_first(matrix), friction);
         }
         signals.rest(joint);
     }
+}
+
+/// The inertia of the first of some coordinates while the others are free \[kg m^2, kg\]: 1 over its
+/// entry of the inverse of theirs. A model whose inertia is not positive says nothing of what a
+/// drive loses when it stops: none.
+fn of_first(matrix: DMatrix<f64>) -> f64 {
+    matrix.cholesky().map_or(0.0, |factors| 1.0 / factors.inverse()[(0, 0)])
 }
 
 /// What torques would be less if friction kept its sign until a reversal has left the corner
@@ -155,4 +168,27 @@ fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint 
         (0..b.len()).map(|k| a[k] - 2.0 * b[k] + c[k]).collect()
     };
     (0..as_is.len()).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point mass at the end of two massless links: across the lower one a free elbow gives way.
+    #[test]
+    fn the_inertia_of_a_joint_is_less_while_the_others_are_free() {
+        for elbow in [0.3_f64, 1.2, 2.4] {
+            let (sin, cos) = elbow.sin_cos();
+            // Velocity of the tip by rates of shoulder and elbow, in the frame of the upper link.
+            let lower = [0.5 * sin, 0.5 * cos];
+            let jacobian =
+                DMatrix::from_row_slice(2, 2, &[-lower[0], -lower[0], 0.8 + lower[1], lower[1]]);
+            let inertia = 3.0 * jacobian.transpose() * &jacobian;
+            let alone = inertia[(0, 0)];
+            // What the shoulder moves the mass by along the lower link.
+            let free = 3.0 * (0.8 * sin).powi(2);
+            assert!((of_first(inertia) - free).abs() < 1e-9 * alone && free < alone);
+        }
+        assert_eq!(of_first(DMatrix::from_row_slice(1, 1, &[-1.0])), 0.0);
+    }
 }

@@ -207,7 +207,8 @@ impl Attaching<'_> {
             let motion = variables.get(joint).copied().flatten();
             match (stem, motion) {
                 ("q", Some(motion)) => motion.q,
-                ("qd", Some(motion)) => motion.qd,
+                // What logs do not show of a drive at rest, functions of a state have.
+                ("qd" | "creep", Some(motion)) => motion.qd,
                 ("qdd", Some(motion)) => motion.qdd,
                 ("tau_load" | "tau_load_rate", Some(_)) => {
                     let name = format!("{stem}_{}", names[joint]);

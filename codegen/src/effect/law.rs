@@ -143,6 +143,9 @@ impl LawReader {
             declare("tau_load", Effort, Some(torque));
             declare("tau_load_rate", Effort, torque_rate);
         }
+        if at == EffectSite::Joint {
+            declare("creep", Rate, rate);
+        }
         if at == EffectSite::JointPair {
             declare("q_2", Configuration, Some(position));
             declare("qd_2", Rate, rate);

@@ -311,10 +311,11 @@ pub struct Effect {
 
 /// The symbols that laws may use beside their own: motion of the joint, of the other joint of a
 /// pair, torques.
-pub const VARIABLES: [&str; 15] = [
+pub const VARIABLES: [&str; 16] = [
     "t",
     "q",
     "qd",
+    "creep",
     "qdd",
     "tau_load",
     "tau_load_rate",

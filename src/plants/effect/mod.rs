@@ -19,9 +19,7 @@ pub use added::{AddedError, AddedLaw, ApartEffects, apart};
 pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
 pub use transmission::{Drive, Transmitted};
 
-use denavit_codegen::effect::{
-    Channel, Effect, EffectKind, EffectParameter, EffectSite, Law, SpringSide,
-};
+use denavit_codegen::effect::{Channel, Effect, EffectParameter, EffectSite, Law, SpringSide};
 use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};
 use denavit_codegen::model::JointKind;
 use denavit_codegen::number::to_f64;
@@ -92,6 +90,9 @@ pub struct JointSamples<'a> {
     pub q: &'a [f64],
     /// Rate [rad/s, m/s].
     pub qd: &'a [f64],
+    /// Rate for laws of sticking: of a drive that creeps where a log shows it at rest, and that of
+    /// the joint elsewhere [rad/s, m/s].
+    pub creep: &'a [f64],
     /// Acceleration [rad/s^2, m/s^2].
     pub qdd: &'a [f64],
     /// Rigid-body torque without friction [N m, N].
@@ -115,10 +116,11 @@ pub struct JointSamples<'a> {
 }
 
 /// The names of the columns of [`JointSamples`], which are those of the symbols of laws.
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 13] = [
     "t",
     "q",
     "qd",
+    "creep",
     "qdd",
     "tau_load",
     "tau_load_rate",
@@ -136,6 +138,7 @@ impl<'a> JointSamples<'a> {
             self.t,
             self.q,
             self.qd,
+            self.creep,
             self.qdd,
             self.tau_load,
             self.tau_load_rate,
@@ -164,8 +167,6 @@ impl<'a> JointSamples<'a> {
 pub struct EffectLaw {
     /// The effect's name.
     pub name: String,
-    /// What the effect is to the equations.
-    pub kind: EffectKind,
     /// Where it acts.
     pub at: EffectSite,
     /// On which side of a series spring, if it is a law of a joint.
@@ -225,7 +226,6 @@ impl EffectLaw {
         };
         Ok(Self {
             name: effect.name.clone(),
-            kind: effect.kind,
             at: effect.at,
             side: effect.side,
             parameters: effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect(),

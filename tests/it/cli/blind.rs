@@ -14,8 +14,10 @@ const CASES: [u64; 13] = [14, 28, 42, 3, 17, 34, 45, 166, 22, 30, 41, 44, 15];
 /// more than the model states and were taken up by all of its deviations; a limit of torques that
 /// is met in the log for training alone; friction with memory named where a leg's ankle sticks;
 /// a rotor in a leg whose logs have no noise; play whose rotor bounces; play of a joint whose load
-/// changes its sign in the log for training alone; a torque sensor that does not run true.
-const MENDED: [u64; 9] = [3201, 3467, 3174, 4308, 4233, 3310, 4314, 3163, 4137];
+/// changes its sign in the log for training alone; a torque sensor that does not run true; drives
+/// that rest between two motions, with breakaway friction and without; held-out logs that were
+/// believed at every reversal, since what rests left was less than they might.
+const MENDED: [u64; 10] = [3201, 3467, 3174, 4308, 4233, 3310, 4314, 3163, 4137, 5345];
 
 fn diagnosed(files: Files<'_>) -> Answer {
     let denavit = Path::new(env!("CARGO_BIN_EXE_denavit"));

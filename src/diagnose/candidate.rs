@@ -27,7 +27,7 @@ impl Candidate {
 }
 
 /// Most points from which one law's parameters are searched.
-const MOST_STARTS: usize = 12;
+const MOST_STARTS: usize = 48;
 
 /// Where a position that may be anywhere is looked for first, as shares of a joint's range.
 const PLACES: [f64; 7] = [0.03, 0.2, 0.35, 0.5, 0.65, 0.8, 0.97];

@@ -8,7 +8,7 @@ use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
 use super::elastic::SeriesSpring;
-use super::errors::deviations;
+use super::errors::{Errors, errors};
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
 use super::family::{Families, named};
@@ -183,8 +183,8 @@ pub fn diagnose(
     });
     let before = &outcome.before;
     let name = |state| named((&setting, &outcome.screen), &request.options, state);
-    let errors = |state: &State| deviations(&setting, state, smoother.as_ref());
-    let Told { state: after, deviations, mut effects } =
+    let errors = |state: &State| errors(&setting, state, smoother.as_ref());
+    let Told { state: after, errors, mut effects } =
         told(&setting, before, name(outcome.after), &name, &errors);
     let after = &after;
     if let Some(aliases) = request.aliases {
@@ -202,7 +202,7 @@ pub fn diagnose(
         places: (0..nominal.equations()).map(|at| nominal.equation_name(at)).collect(),
         before: left(before),
         after: left(after),
-        given: given_effects(&setting, after, &deviations),
+        given: given_effects(&setting, after, &errors),
         effects,
         train: Gaps::new((&train, train_floor), [&before.residual, &after.residual], &trust[0]),
         held_out: Gaps::new(
@@ -225,7 +225,7 @@ pub fn diagnose(
 /// What is told of the effects of a state.
 struct Told {
     state: State,
-    deviations: Vec<f64>,
+    errors: Errors,
     effects: Vec<FoundEffect>,
 }
 
@@ -235,13 +235,13 @@ fn told(
     before: &State,
     (mut state, mut families): Families,
     name: &dyn Fn(State) -> Families,
-    errors: &dyn Fn(&State) -> Vec<f64>,
+    errors: &dyn Fn(&State) -> Errors,
 ) -> Told {
     loop {
-        let deviations = errors(&state);
-        let effects = found_effects(setting, [before, &state], (&deviations, families));
+        let errors = errors(&state);
+        let effects = found_effects(setting, [before, &state], (&errors, families));
         let Some(faint) = effects.iter().position(|one| one.is_faint) else {
-            return Told { state, deviations, effects };
+            return Told { state, errors, effects };
         };
         state.taken.remove(setting.given.len() + faint);
         (state, families) = name(setting.settled(setting.state(&state.taken)));

@@ -3,7 +3,7 @@
 
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
-use super::errors::moves;
+use super::errors::Errors;
 use super::evidence::{block_costs, by_ranks, paired};
 use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
 use super::family::Alternative;
@@ -80,7 +80,7 @@ const PLAIN: f64 = 5.0;
 pub(super) fn found_effects(
     setting: &Setting<'_>,
     [before, after]: [&State; 2],
-    (deviations, families): (&[f64], Vec<Vec<Alternative>>),
+    (errors, families): (&Errors, Vec<Vec<Alternative>>),
 ) -> Vec<FoundEffect> {
     let [_, trust] = after.trust();
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
@@ -98,7 +98,7 @@ pub(super) fn found_effects(
     };
     let fits = |equations: &[usize], joint: Option<usize>| {
         let share = closes(equations);
-        share > FITS || share > HALF && stays(setting, (after, deviations), joint)
+        share > FITS || share > HALF && stays(setting, (after, errors), joint)
     };
     let mut found = Vec::new();
     let places = after.taken.iter().enumerate().skip(setting.given.len());
@@ -108,7 +108,7 @@ pub(super) fn found_effects(
         // Where all was below the floor already, of what the effects closed.
         let whole = (gap(before) - floor).max(gap(before) - gap(after));
         let without = setting.state(&others);
-        let parameters = values(setting, (after, deviations), place);
+        let parameters = values(setting, (after, errors), place);
         let own = own_equations(setting, after, taken);
         let is_little = |own: &Vec<usize>| {
             let leaves = |set: usize, most: f64| {
@@ -147,18 +147,14 @@ pub(super) fn found_effects(
 }
 
 /// Whether the effects of a joint have the same values in another motion.
-fn stays(
-    setting: &Setting<'_>,
-    (state, deviations): (&State, &[f64]),
-    joint: Option<usize>,
-) -> bool {
+fn stays(setting: &Setting<'_>, (state, errors): (&State, &Errors), joint: Option<usize>) -> bool {
     let of_joint = |taken: &Taken| {
         let is_there = setting.candidates[taken.candidate].joint == joint;
         std::iter::repeat_n(is_there, taken.values.len())
     };
     let is_there = state.taken.iter().flat_map(of_joint);
-    let moves = moves(setting, state, deviations).into_iter().zip(is_there);
-    let own: Vec<f64> = moves.filter(|(_, is_there)| *is_there).map(|(by, _)| by).collect();
+    let moves = errors.moves.iter().zip(is_there);
+    let own: Vec<f64> = moves.filter(|(_, is_there)| *is_there).map(|(by, _)| *by).collect();
     rms(&own) < MOVES.sqrt()
 }
 
@@ -208,7 +204,7 @@ pub(super) fn tell_aliases(
 /// The parameters of the effect in one place of a state, with their errors.
 fn values(
     setting: &Setting<'_>,
-    (state, deviations): (&State, &[f64]),
+    (state, errors): (&State, &Errors),
     place: usize,
 ) -> Vec<EffectValue> {
     let before: usize = state.taken[..place].iter().map(|taken| taken.values.len()).sum();
@@ -217,7 +213,7 @@ fn values(
     let value = |(k, (value, parameter)): (usize, (&f64, &LawParameter))| EffectValue {
         name: parameter.name.clone(),
         value: *value,
-        std: deviations[before + k],
+        std: errors.deviations[before + k],
         unit: parameter.unit.clone(),
     };
     taken.values.iter().zip(parameters).enumerate().map(value).collect()
@@ -227,11 +223,11 @@ fn values(
 pub(super) fn given_effects(
     setting: &Setting<'_>,
     state: &State,
-    deviations: &[f64],
+    errors: &Errors,
 ) -> Vec<GivenEffect> {
     let of = |(place, taken): (usize, &Taken)| GivenEffect {
         candidate: taken.candidate,
-        parameters: values(setting, (state, deviations), place),
+        parameters: values(setting, (state, errors), place),
     };
     setting.given.iter().enumerate().map(of).collect()
 }

@@ -7,17 +7,32 @@ use super::problem::Problem;
 use super::state::{Setting, State};
 use nalgebra::DMatrix;
 
-/// Standard deviations of all parameters of a state's effects, in order; infinite where the logs
-/// say nothing. `smoother` are the logs for training through lower filters.
+/// Errors of all parameters of a state's effects, in order.
+pub(super) struct Errors {
+    /// Standard deviations; infinite where the logs say nothing.
+    pub(super) deviations: Vec<f64>,
+    /// How far values are from what held-out logs alone give them, in the errors of both.
+    pub(super) moves: Vec<f64>,
+}
+
+/// The errors of a state's effects; `smoother` are the logs for training through lower filters.
+///
+/// Values that differ in another motion by more than both errors have these too small, by that
+/// factor if it is one (Birge 1932).
+pub(super) fn errors(setting: &Setting<'_>, state: &State, smoother: Option<&Data<'_>>) -> Errors {
+    let own = deviations(setting, state, smoother);
+    let moves = if own.is_empty() { Vec::new() } else { moves(setting, state, &own) };
+    let both = own.iter().zip(&moves);
+    let deviations = both.map(|(std, moved)| std * moved.abs().max(1.0)).collect();
+    Errors { deviations, moves }
+}
+
+/// Standard deviations by logs for training.
 ///
 /// What noise alone makes of values differs between two filters by the difference of their
 /// variances (Hausman 1978). What they differ by beyond that is an error of both: of friction that
 /// sticks, of corners that a filter moves, of noise in the columns.
-pub(super) fn deviations(
-    setting: &Setting<'_>,
-    state: &State,
-    smoother: Option<&Data<'_>>,
-) -> Vec<f64> {
+fn deviations(setting: &Setting<'_>, state: &State, smoother: Option<&Data<'_>>) -> Vec<f64> {
     let own = of_rows(setting, state);
     let Some(train) = smoother.filter(|_| !own.is_empty()) else { return own };
     let floor = NoiseFloor::of_logs(train.nominal, &train.signals);
@@ -56,7 +71,7 @@ fn elsewhere(
 
 /// How far the values of a state's effects are from what held-out logs alone give them, in their
 /// errors: another law than what is there has other values in another motion (Chow 1960).
-pub(super) fn moves(setting: &Setting<'_>, state: &State, deviations: &[f64]) -> Vec<f64> {
+fn moves(setting: &Setting<'_>, state: &State, deviations: &[f64]) -> Vec<f64> {
     let there = elsewhere(setting, state, (setting.held_out, setting.held_out_floor));
     let both = state.values().into_iter().zip(deviations).zip(there);
     both.map(|((own, std), [other, of_other])| (own - other) / std.hypot(of_other)).collect()

@@ -6,7 +6,7 @@ use super::evidence::{by_ranks, paired};
 use super::gap::Gap;
 use super::problem::Problem;
 use super::search::{
-    ROWS_PER_SAMPLE, Scored, Screen, SearchOptions, Step, best, fitted, refine, score,
+    DISTINCT, ROWS_PER_SAMPLE, Scored, Screen, SearchOptions, Step, best, fitted, refine, score,
 };
 use super::state::{MOST_Z, Setting, State, Taken, Trial};
 
@@ -170,7 +170,8 @@ impl Round<'_, '_> {
         let evidence = |trial: &&Trial| evidence(setting, [idle, trial]);
         let best = stands.max_by(|a, b| evidence(a).total_cmp(&evidence(b)))?;
         let in_motion = self.in_motion(best);
-        let is_taken = in_motion.is_none_or(|better| better > -WORSE_IN_MOTION);
+        // The numbers that are driven move it as well as the effect does, but for chance.
+        let is_taken = in_motion.is_none_or(|better| better > -DISTINCT);
         is_taken.then(|| (best.clone(), Step { in_motion, is_taken, ..self.weigh(best, trials) }))
     }
 

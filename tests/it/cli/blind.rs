@@ -16,8 +16,9 @@ const CASES: [u64; 13] = [14, 28, 42, 3, 17, 34, 45, 166, 22, 30, 41, 44, 15];
 /// a rotor in a leg whose logs have no noise; play whose rotor bounces; play of a joint whose load
 /// changes its sign in the log for training alone; a torque sensor that does not run true; drives
 /// that rest between two motions, with breakaway friction and without; held-out logs that were
-/// believed at every reversal, since what rests left was less than they might.
-const MENDED: [u64; 10] = [3201, 3467, 3174, 4308, 4233, 3310, 4314, 3163, 4137, 5345];
+/// believed at every reversal, since what rests left was less than they might; play between two
+/// values that a coarser search began with; a body whose driven numbers move it as well.
+const MENDED: [u64; 12] = [3201, 3467, 3174, 4308, 4233, 3310, 4314, 3163, 4137, 5345, 4398, 4510];
 
 fn diagnosed(files: Files<'_>) -> Answer {
     let denavit = Path::new(env!("CARGO_BIN_EXE_denavit"));

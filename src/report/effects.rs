@@ -12,6 +12,9 @@ use denavit_codegen::number::Rational;
 use rustc_hash::FxHashMap;
 use std::fmt::Write;
 
+/// Values from which a parameter is searched that are listed; of more the ends are.
+const MOST_STARTS: usize = 12;
+
 /// The effects as Markdown, one section for each: law, parameters, what it looks like where it is
 /// small, and what it is taken for.
 pub fn effects_page(effects: &[Effect]) -> String {
@@ -97,7 +100,13 @@ fn row(page: &mut String, parameter: &EffectParameter) {
     };
     let nominal = parameter.nominal.as_ref().map_or(String::new(), decimal);
     let start: Vec<String> = parameter.start.iter().map(decimal).collect();
-    let (name, start, linear) = (&parameter.name, start.join(", "), parameter.linear);
+    let start = match start.as_slice() {
+        [first, second, .., last] if start.len() > MOST_STARTS => {
+            format!("{first}, {second} .. {last} ({})", start.len())
+        }
+        all => all.join(", "),
+    };
+    let (name, linear) = (&parameter.name, parameter.linear);
     let linear = if linear { " (linear)" } else { "" };
     let meaning = &parameter.description;
     let _ = writeln!(

@@ -150,10 +150,14 @@ pub(in crate::identify) fn contradicting_logs(
         Some(weighted) => (&weighted.solution.phi, &weighted.weights),
         None => (&found.solution.phi, &found.weights),
     };
-    let claim = Claim { model, phi, covariance: None, left_out: &found.left_out };
+    let left_out = &found.left_out;
+    let sums = |log: usize| left_sums(model, ((log, &logs[log]), left_out), phi.as_slice());
+    let sums: Vec<Vec<[f64; 2]>> = (0..logs.len()).map(sums).collect();
     let told = shown.iter().filter_map(|&log| {
         let rows = (&triangles[log][..], condensed.independent[log]);
         let one = Tested { rows, weights: &weights[log] };
+        let others = shown.iter().filter(|&&other| other != log).map(|&other| &sums[other]);
+        let claim = Claim { model, phi, covariance: None, left_out, means: &means(others) };
         Some((log, claim.against((log, &logs[log]), one)?))
     });
     let mut told: Vec<(usize, ContradictingLog)> = told.collect();
@@ -173,7 +177,7 @@ pub(in crate::identify) fn contradicting_logs(
 /// anywhere within their errors, and those that the estimate does not show are the logs' own.
 pub(in crate::identify) fn contradicting_held_out(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    (train, logs): (&[Conditioned], &[Conditioned]),
     (found, options): (&Estimate, &Options),
 ) -> Vec<ContradictingLog> {
     if logs.is_empty() || found.condensed.rank != model.rank() {
@@ -183,11 +187,15 @@ pub(in crate::identify) fn contradicting_held_out(
     let condensed = Condensed::counted(model, (logs, &left_out));
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
+    let own = found.solution.phi.as_slice();
+    let sums = |both: (usize, &Conditioned)| left_sums(model, (both, &found.left_out), own);
+    let means = &means(&train.iter().enumerate().map(sums).collect::<Vec<_>>());
     let of = |(at, triangles): (usize, &Vec<Triangle>)| {
         let one = Tested { rows: (&triangles[..], condensed.independent[at]), weights: &weights };
         let phi = &one.with_own(model.pattern(), &found.solution);
         let (covariance, left_out) = (Some(&found.covariance), &left_out);
-        let told = Claim { model, phi, covariance, left_out }.against((at, &logs[at]), one)?;
+        let told =
+            Claim { model, phi, covariance, left_out, means }.against((at, &logs[at]), one)?;
         Some(ContradictingLog { standing: Standing::HeldOut, ..told })
     };
     condensed.whole().iter().enumerate().filter_map(of).collect()
@@ -201,6 +209,8 @@ struct Claim<'a> {
     covariance: Option<&'a DMatrix<f64>>,
     /// The rows of logs that are left out.
     left_out: &'a LeftOut,
+    /// The mean of what phi leaves of each joint's torque in the other logs.
+    means: &'a [f64],
 }
 
 impl Claim<'_> {
@@ -211,7 +221,8 @@ impl Claim<'_> {
         one: Tested<'_>,
     ) -> Option<ContradictingLog> {
         let Self { model, phi, .. } = *self;
-        let mut told = self.joints(&one);
+        let sums = left_sums(model, ((at, log), self.left_out), phi.as_slice());
+        let mut told = self.joints(&one, &sums);
         if !told.is_empty() {
             let noise = noise_squares(model, ((at, log), self.left_out), phi);
             told.retain(|one| one.explained > OF_NOISE * noise[one.joint]);
@@ -227,27 +238,69 @@ impl Claim<'_> {
         (!joints.is_empty()).then_some(ContradictingLog { file, joints, standing })
     }
 
-    /// The joints of whose torque an estimate of a log's own leaves much less than phi does.
-    fn joints(&self, one: &Tested<'_>) -> Vec<Told> {
+    /// The joints of whose torque an estimate of a log's own, or a constant beside what others
+    /// have, leaves much less than phi does.
+    fn joints(&self, one: &Tested<'_>, sums: &[[f64; 2]]) -> Vec<Told> {
         let Self { model, phi, covariance, .. } = *self;
         let pattern = model.pattern();
         let (triangles, independent) = one.rows;
         let own = one.own(pattern, phi.as_slice());
         let of = |(joint, triangle): (usize, &Triangle)| {
-            let (Own { squares, decided, variance }, rows) = (&own[joint], triangle.rows() as f64);
+            let rows = triangle.rows() as f64;
             let all = triangle.target_squares();
             let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
-            let explained = (left - squares).max(0.0);
             let unsure = covariance.map_or(0.0, |one| spread(triangle, &pattern[joint], one));
-            let chance = decided.max(1.0) * variance / independent + unsure;
-            let is_much = explained > OF_TORQUE.powi(2) * all
-                && explained > OF_OWN.powi(2) * variance * rows
-                && explained > OF_CHANCE * chance;
-            let [left, own] = [left, variance * rows].map(|one| (one / all).sqrt());
-            is_much.then_some(Told { joint, left, own, explained })
+            let [count, sum] = sums[joint];
+            let by = sum / count.max(1.0) - self.means[joint];
+            let squares = left - by * (2.0 * sum - by * count);
+            let free = (independent * rows - 1.0).max(f64::MIN_POSITIVE);
+            let constant = Own { squares, decided: 1.0, variance: squares * independent / free };
+            let told = |Own { squares, decided, variance }: &Own| {
+                let explained = (left - squares).max(0.0);
+                let chance = decided.max(1.0) * variance / independent + unsure;
+                let is_much = explained > OF_TORQUE.powi(2) * all
+                    && explained > OF_OWN.powi(2) * variance * rows
+                    && explained > OF_CHANCE * chance;
+                let [left, own] = [left, variance * rows].map(|one| (one / all).sqrt());
+                is_much.then_some(Told { joint, left, own, explained })
+            };
+            let both = [&own[joint], &constant].into_iter().filter_map(told);
+            both.max_by(|a, b| a.explained.total_cmp(&b.explained))
         };
         triangles.iter().enumerate().filter_map(of).collect()
     }
+}
+
+/// Rows of each joint in a log that count, and the sum of what phi leaves of its torque there.
+fn left_sums(
+    model: &RegressionModel,
+    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+    phi: &[f64],
+) -> Vec<[f64; 2]> {
+    let own: Vec<Vec<f64>> = model.pattern().iter().map(|places| of_joint(places, phi)).collect();
+    let mut sums = vec![[0.0; 2]; own.len()];
+    BlockMaker::new(model, log).for_each(|block| {
+        for (joint, sums) in sums.iter_mut().enumerate() {
+            let Some(left) = block.residual(joint, &own[joint]) else { continue };
+            let counts = left_out.counts((number, log), joint, (block.first, block.samples));
+            let counted = |at: &usize| counts.as_ref().is_none_or(|counts| counts[*at]);
+            for at in (0..left.len()).filter(counted) {
+                *sums = [sums[0] + 1.0, sums[1] + left[at]];
+            }
+        }
+    });
+    sums
+}
+
+/// The mean of what is left of each joint's torque in some logs.
+fn means<'a>(logs: impl IntoIterator<Item = &'a Vec<[f64; 2]>>) -> Vec<f64> {
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for log in logs {
+        all.resize(log.len(), [0.0; 2]);
+        let both = all.iter_mut().zip(log);
+        both.for_each(|(all, own)| *all = [all[0] + own[0], all[1] + own[1]]);
+    }
+    all.into_iter().map(|[rows, sum]| sum / rows.max(1.0)).collect()
 }
 
 /// The rows of a log that is compared with what others say.

@@ -47,6 +47,7 @@ pub(in crate::identify) use left_out::{biased_frictions, is_biased};
 pub(in crate::identify) use misread::{CLEAN, constants_off, misread_apart, nominal_values};
 pub use misread::{Evidence, ExchangedColumns, MisreadColumns, Misreading, misread_columns};
 pub use noise_bias::NoiseOfLog;
+pub(in crate::identify) use noise_bias::noise_in_torques;
 pub(in crate::identify) use report::BIASING;
 pub use report::{Convergence, HalfCutoff, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;

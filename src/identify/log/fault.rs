@@ -407,8 +407,8 @@ impl fmt::Display for LogRemark {
             }
             Self::LoweredFilter { cutoff_hz } => write!(
                 f,
-                "noise of positions would bias parameters: filtered below {} Hz (--filter says \
-                 otherwise)",
+                "noise of positions would bias parameters or residuals: filtered below {} Hz \
+                 (--filter says otherwise)",
                 short(*cutoff_hz)
             ),
             Self::Averaged { laps, period_s } => {

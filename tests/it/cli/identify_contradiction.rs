@@ -74,6 +74,35 @@ fn a_log_for_validation_of_another_gain_is_told() {
     }
 }
 
+/// A constant in the torque of the last joint, in which no other one shows: no parameters of a
+/// log's own explain it either, so that it is asked for beside them.
+#[test]
+fn a_constant_in_a_log_for_validation_is_told_with_its_size() {
+    let directory = Directory::new("contradiction-constant");
+    write_arm(&directory, None);
+    let wide = |name: &str, seed: u64, offset: f64| {
+        let mut both = motions(seed, 0.7);
+        both.iter_mut().flat_map(|one| &mut one.waves).for_each(|wave| wave[0] *= 3.0);
+        let mut rows = Made { step_s: 0.002, samples: 5000, seed, ..GOOD }.rows(&both);
+        rows.iter_mut().for_each(|row| row[4] += offset);
+        write_log(&directory, name, &rows);
+    };
+    for seed in 1..=4 {
+        wide("one.csv", 2 * seed, 0.0);
+        for offset in [-0.4, 0.4, 0.8] {
+            wide("odd.csv", 2 * seed + 1, offset);
+            let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "odd.csv"]);
+            let line = text.replace('\n', " ");
+            assert_eq!(code, Some(1), "{seed} {offset}: {text}");
+            let told =
+                line.split("link2 is left").nth(1).and_then(|one| one.split("as if ").nth(1));
+            let told = told.and_then(|one| one.split(' ').next()?.parse().ok());
+            let told: f64 = told.expect(&line);
+            assert!((told / offset - 1.0).abs() < 0.05, "{seed} {offset}: {text}");
+        }
+    }
+}
+
 /// Parameters that the logs for the estimate show badly, or not at all, may be anything: the first
 /// joint hardly moves there, and the model's values are far off.
 #[test]

@@ -212,7 +212,7 @@ pub(in crate::identify) fn misread_apart(
 
 /// The same of logs that are all misread alike. Motion that is read too slow has so little noise
 /// that its filter may be far too high for what it is: what makes more of noise is looked for
-/// behind lower filters, too.
+/// behind lower filters, too, unless something is sure.
 fn misread_alike(
     model: &RegressionModel,
     logs: &[&Conditioned],
@@ -221,7 +221,7 @@ fn misread_alike(
     let mut found = misread_as_filtered(model, (logs, false), evidence);
     let mut lower: Vec<Conditioned> = Vec::new();
     for _ in 0..HALVINGS {
-        if !found.is_empty() {
+        if found.iter().any(|one| one.is_sure) {
             break;
         }
         let before = if lower.is_empty() { logs.to_vec() } else { lower.iter().collect() };
@@ -230,7 +230,10 @@ fn misread_alike(
             break;
         }
         let lower: Vec<&Conditioned> = lower.iter().collect();
-        found = misread_as_filtered(model, (&lower, true), evidence);
+        let told = misread_as_filtered(model, (&lower, true), evidence);
+        if found.is_empty() || told.iter().any(|one| one.is_sure) {
+            found = told;
+        }
     }
     found
 }

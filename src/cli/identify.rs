@@ -386,6 +386,9 @@ pub(crate) fn of_log(
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    if !arguments.instruments.is_empty() && arguments.method != MethodName::Iv {
+        return Err(IdentifyFailure::UnusedInstruments.into());
+    }
     if arguments.two_stage {
         return two_stage::run(arguments, out);
     }

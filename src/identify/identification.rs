@@ -366,6 +366,7 @@ fn misread(
     if (squares / measured).sqrt() < CLEAN {
         misread.retain(|one| !one.is_guess());
     }
+    misread.retain(|one| !one.is_of_reversals(counted));
     if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, &shown, found)) {
         misread = held_out_misread(model, &train[log..=log], &phi);
     }

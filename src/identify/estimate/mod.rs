@@ -23,6 +23,7 @@ mod left_out;
 mod likelihood;
 mod misread;
 mod noise_bias;
+mod own_estimate;
 mod report;
 mod robust;
 mod rows;

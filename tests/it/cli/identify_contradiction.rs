@@ -56,6 +56,32 @@ fn a_log_of_another_gain_is_named_and_not_followed() {
     }
 }
 
+/// The same beside noise of the torques that leaves as much: it is alike in no two parts of a log,
+/// and a gain is. Without the gain nothing is told.
+#[test]
+fn a_log_of_another_gain_is_named_beside_as_much_noise() {
+    let directory = Directory::new("contradiction-gain-noise");
+    write_arm(&directory, None);
+    let log = |name: &str, seed: u64, gain: f64| {
+        let made = Made { step_s: 0.002, samples: 5000, torque_noise: 4.0, seed, ..GOOD };
+        let mut rows = made.rows(&motions(seed, 0.7));
+        rows.iter_mut().flat_map(|row| &mut row[3..]).for_each(|torque| *torque *= gain);
+        write_log(&directory, name, &rows);
+    };
+    for seed in 1..=6 {
+        log("one.csv", 3 * seed, 1.0);
+        log("other.csv", 3 * seed + 2, 1.0);
+        for gain in [1.0, 1.15] {
+            log("odd.csv", 3 * seed + 1, gain);
+            let (code, text) = said(&directory, &ALL);
+            assert_eq!(code, Some(i32::from(gain > 1.0)), "{seed}: {text}");
+            let json = text.replace('\n', " ");
+            assert_eq!(json.contains("odd.csv contradicts the other logs"), gain > 1.0, "{text}");
+            assert_eq!(json.matches("contradict").count(), usize::from(gain > 1.0), "{text}");
+        }
+    }
+}
+
 /// The same of a log for validation alone.
 #[test]
 fn a_log_for_validation_of_another_gain_is_told() {

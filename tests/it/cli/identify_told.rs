@@ -248,6 +248,9 @@ fn one_measurement_counts_once_and_instruments_are_of_the_motion() {
         let (code, text) = said(&directory, &words);
         assert_eq!(code, Some(expected), "{instruments}: {text}");
     }
+    let (code, text) = said(&directory, &["--train", "whole.csv", "--instruments", "again.csv"]);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("hint: --method iv"), "{text}");
 }
 
 /// Logged rates and accelerations must be derivatives of the positions, if they are to be taken.

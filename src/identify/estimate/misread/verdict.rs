@@ -29,7 +29,7 @@ const LESS: f64 = 0.8;
 const LIKELIER: f64 = 30.0;
 
 /// A witness speaks against a reading if more than this many times is left.
-const WORSE: f64 = 1.25;
+pub(super) const WORSE: f64 = 1.25;
 
 /// What an estimate leaves of a log that it explains as the log stands, and the share left by the
 /// model's own values below which these are near: then they may be somewhat off, and a reading that

@@ -328,7 +328,7 @@ impl Answered {
         let (own, source) = (&own[..], &source);
         let estimation =
             Estimation { arguments, robot: &robot, laws, model: &model, own, source, progress };
-        let mut read = estimation.read(&vec![0; arguments.train.len()])?;
+        let mut read = estimation.read(&[])?;
         let controller = arguments.controller.as_deref();
         let controller = controller.map(|path| Controlled::read(path, &whole)).transpose()?;
         let options = arguments.options(&model, read.position_noise.clone())?;
@@ -356,7 +356,7 @@ impl Answered {
         if let (Some(gap), true) = (&simulated, controller.is_some()) {
             gap.check()?;
         }
-        let remarks = read.remarks;
+        let remarks = read.into_remarks();
         Ok(Self { robot, model, found, updated, remarks, effects, simulated })
     }
 
@@ -386,6 +386,9 @@ pub(crate) fn of_log(
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    if !arguments.instruments.is_empty() && arguments.method != MethodName::Iv {
+        return Err(IdentifyFailure::UnusedInstruments.into());
+    }
     if arguments.two_stage {
         return two_stage::run(arguments, out);
     }

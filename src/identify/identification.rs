@@ -6,7 +6,7 @@ use super::estimate::{
     IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Status, Triangle,
     Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_held_out,
     contradicting_logs, convergence, estimate, filter_errors, long_enough, misread_apart,
-    misread_columns, parameters, solve, unexplained_joints, validate,
+    misread_columns, noise_in_torques, parameters, solve, unexplained_joints, validate,
 };
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
@@ -85,6 +85,10 @@ const SHORT: f64 = 80.0;
 
 /// Parameters that are named, at most.
 const LISTED: usize = 6;
+
+/// The share of a joint's torque in a log for validation that noise of its positions makes, from
+/// which on it needs a lower filter: more would hide a contradiction, or pass for one.
+const NOISY: f64 = 0.01;
 
 /// The share of a torque from which on it is said what the filter makes of a motion that is too
 /// fast for it, if it is also this share of what is left.
@@ -267,6 +271,20 @@ pub fn estimated(request: Request<'_>) -> Result<Estimated, EstimateError> {
 }
 
 impl Estimated {
+    /// Whether a log for validation needs a lower filter, if it is not the motion that is too fast
+    /// for the one that it has.
+    pub fn is_noisy(&self, model: &RegressionModel, log: &Conditioned) -> bool {
+        let noise = noise_in_torques(model, log, self.found.solution.phi.as_slice());
+        noise.into_iter().any(|share| share > NOISY)
+    }
+
+    /// Whether the filter of a log for validation itself makes a part of what is left.
+    pub fn is_smeared(&self, model: &RegressionModel, log: &Conditioned) -> bool {
+        let phi = self.found.solution.phi.as_slice();
+        let log = std::slice::from_ref(log);
+        filter_error(model, log, (phi, &validate(model, phi, log))).is_some()
+    }
+
     /// All that there is to say of it and of the logs that it is from.
     pub fn judged(self, request: Request<'_>) -> Identification {
         let Self { parameters: listed, filter_error, left, found, .. } = self;
@@ -291,7 +309,11 @@ impl Estimated {
         let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
         let left_together = validate(model, phi, &together);
         let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
-        contradicting_logs.extend(contradicting_held_out(model, held_out, (&found, options)));
+        contradicting_logs.extend(contradicting_held_out(
+            model,
+            (train, held_out),
+            (&found, options),
+        ));
         let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
         Identification {
             unexplained: unexplained_joints(model, (judges, &judging), judgement),
@@ -344,6 +366,7 @@ fn misread(
     if (squares / measured).sqrt() < CLEAN {
         misread.retain(|one| !one.is_guess());
     }
+    misread.retain(|one| !one.is_of_reversals(counted));
     if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, &shown, found)) {
         misread = held_out_misread(model, &train[log..=log], &phi);
     }

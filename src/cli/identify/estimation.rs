@@ -5,6 +5,7 @@ use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
 use denavit::effect::{self, Effect};
+use denavit::identify::condition::Conditioned;
 use denavit::identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit::identify::{
     Estimated, Identification, Request, UpdateError, UpdatedModel, estimated, updated_model,
@@ -29,7 +30,12 @@ pub(super) type Found = (Identification, Result<UpdatedModel, UpdateError>);
 
 impl Estimation<'_> {
     pub(super) fn read(&self, halvings: &[u32]) -> Result<logs::Read, Failure> {
-        logs::read((self.arguments, halvings), (self.robot, self.laws), self.model)
+        logs::read(self.source(), halvings)
+    }
+
+    fn source(&self) -> logs::Source<'_> {
+        let Self { arguments, robot, laws, model, .. } = *self;
+        logs::Source { arguments, robot, laws, model }
     }
 
     fn request<'a>(&'a self, read: &'a logs::Read, options: &'a Options) -> Request<'a> {
@@ -88,8 +94,42 @@ impl Estimation<'_> {
             }
             (found, halvings) = (next, lower);
         }
+        self.lower_held_out(&mut read, halvings, &found)?;
         let found = self.judged(&read, options, found);
         Ok((read, found))
+    }
+
+    /// Reads the logs for validation behind the highest filters that leave little of the noise of
+    /// their positions, if nobody asked for others.
+    fn lower_held_out(
+        &self,
+        read: &mut logs::Read,
+        mut halvings: Halvings,
+        found: &Estimated,
+    ) -> Result<(), Failure> {
+        let train = read.train.len();
+        halvings.resize(read.logs().len(), 0);
+        let mut is_open = vec![true; read.validate.len()];
+        loop {
+            let asks = |(log, is_open): (_, &bool)| *is_open && found.is_noisy(self.model, log);
+            let others = read.validate.iter().zip(&is_open).map(asks);
+            let asking: Vec<bool> = std::iter::repeat_n(false, train).chain(others).collect();
+            let lower = self.arguments.conditions.lower(&read.logs(), (&halvings, &asking));
+            let Some(mut lower) = lower else { return Ok(()) };
+            self.progress.show("reading logs for validation, filter halved");
+            read.held_out(self.source(), &lower[train..])?;
+            for (at, is_open) in is_open.iter_mut().enumerate().filter(|(_, is_open)| **is_open) {
+                let is_lowered = lower[train + at] != halvings[train + at];
+                if is_lowered && found.is_smeared(self.model, &read.validate[at]) {
+                    // worse than the noise that it takes away
+                    (lower[train + at], *is_open) = (halvings[train + at], false);
+                }
+            }
+            if is_open.contains(&false) {
+                read.held_out(self.source(), &lower[train..])?;
+            }
+            halvings = lower;
+        }
     }
 
     /// The next lower filters of logs, if noise of the positions asks for them, and how errors may
@@ -102,7 +142,8 @@ impl Estimation<'_> {
         found: &Estimated,
     ) -> Option<(Halvings, f64)> {
         let conditions = &self.arguments.conditions;
-        let lower = |asking: &[bool]| conditions.lower(&read.train, (halvings, asking));
+        let logs: Vec<&Conditioned> = read.train.iter().collect();
+        let lower = |asking: &[bool]| conditions.lower(&logs, (halvings, asking));
         let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, f64::INFINITY));
         let of_alone = || lower(&found.biased_alone).map(|lower| (lower, NO_LARGER));
         let may_change = found.parameters.iter().any(IdentifiedParameter::may_change);

@@ -42,6 +42,8 @@ pub(crate) enum IdentifyFailure {
     Statics(String, Vec<StaticFault>),
     /// Instrumental variables without instruments, and nothing to simulate them with.
     NoInstruments,
+    /// Instruments for a method that takes none.
+    UnusedInstruments,
     /// Instruments that are a log for training itself, noise and all: its name.
     OwnInstruments(String),
     /// `--prior`, and the model states no standard deviation that says anything.
@@ -85,6 +87,9 @@ impl fmt::Display for IdentifyFailure {
                 f,
                 "--method iv needs --instruments LOG.., or --controller FILE to simulate them"
             ),
+            Self::UnusedInstruments => {
+                write!(f, "--instruments, and no method that takes them\n  hint: --method iv does")
+            }
             Self::OwnInstruments(file) => write!(
                 f,
                 "{file}: a log for training as --instruments has its own noise in them, and \

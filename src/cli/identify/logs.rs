@@ -33,7 +33,8 @@ pub(super) struct Conditions {
     rates: Rates,
 }
 
-/// How often the cutoff of each log for the estimate is halved, if none was given.
+/// How often the cutoff of each log is halved, if none was given: of those for the estimate, and
+/// behind them perhaps of those for validation.
 pub(super) type Halvings = Vec<u32>;
 
 /// Halvings of the cutoff, at most, and periods of it that all logs, each of them, or a lap, must
@@ -103,14 +104,6 @@ impl Conditions {
         }
     }
 
-    /// How often the cutoff is halved for a log beside those for the estimate.
-    fn halvings_beside(&self, halvings: &[u32], samples: usize) -> u32 {
-        let most = halvings.iter().copied().max().unwrap_or(0);
-        let is_long = |halvings: &u32| periods(samples, *halvings) > FEWEST_PERIODS;
-        let allowed = |halvings: &u32| self.average.is_some() || is_long(halvings);
-        (1..=most).rev().find(allowed).unwrap_or(0)
-    }
-
     /// What is done with a log of so many samples at this distance \[s\].
     pub(super) fn of(&self, step_s: f64, samples: usize, halvings: u32) -> Conditioning {
         let filter = self.filter(step_s, halvings);
@@ -149,7 +142,7 @@ impl Conditions {
     /// when they have been found.
     pub(super) fn lower(
         &self,
-        logs: &[Conditioned],
+        logs: &[&Conditioned],
         (halvings, asking): (&[u32], &[bool]),
     ) -> Option<Halvings> {
         let samples = |log: &Conditioned| log.q.first().map_or(0, Vec::len);
@@ -184,41 +177,33 @@ pub(super) struct Read {
     pub(super) motions: Vec<MotionLog>,
     /// Whole logs for the estimate, where instruments are to be simulated.
     pub(super) whole: Vec<MotionLog>,
-    /// What was found, by log.
-    pub(super) remarks: Vec<(String, LogRemark)>,
+    /// What was found, by log, of those that are not for validation, and of those.
+    remarks: [Vec<(String, LogRemark)>; 2],
     /// Deviation of each measured position [rad, m].
     pub(super) position_noise: Vec<f64>,
 }
 
-pub(super) fn read(
-    (arguments, halvings): (&Arguments, &[u32]),
-    (robot, laws): (&Robot, &[AddedLaw]),
-    model: &RegressionModel,
-) -> Result<Read, Failure> {
-    let mapping = mapping(arguments)?;
-    let ground = Ground::under(robot, model)
-        .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
-    let contacts = robot.contacts.values().map(|contact| contact.name.clone()).collect();
-    let mut reader = Reader {
-        arguments,
-        halvings,
-        model,
-        laws,
-        mapping,
-        ground,
-        contacts,
-        names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
-        remarks: Vec::new(),
-        noise: vec![0.0; model.joints.len()],
-        motions: None,
-    };
+/// What all logs of a run are read with.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) arguments: &'a Arguments,
+    pub(super) robot: &'a Robot,
+    /// Effects that the model has beside its equations.
+    pub(super) laws: &'a [AddedLaw],
+    pub(super) model: &'a RegressionModel,
+}
+
+/// All logs, with these halvings of their cutoffs.
+pub(super) fn read(source: Source<'_>, halvings: &[u32]) -> Result<Read, Failure> {
+    let Source { arguments, .. } = source;
+    let (of_train, of_others) = halvings.split_at(arguments.train.len().min(halvings.len()));
+    let mut reader = Reader::new(source)?;
     // Logs for validation are simulated again; with a controller, if there are none, the others.
-    let is_fixed = model.joints.iter().all(|joint| !joint.is_base);
     let controlled = arguments.controller.is_some();
     let needs_instruments = arguments.method == MethodName::Iv && arguments.instruments.is_empty();
     let simulates_train = controlled && (arguments.validate.is_empty() || needs_instruments);
     let longest_s = simulates_train.then_some(f64::INFINITY);
-    let train = reader.kept((&arguments.train, true), longest_s)?;
+    let train = reader.kept((&arguments.train, of_train), longest_s)?;
     let whole = reader.motions.take().unwrap_or_default();
     let mut numbered = train.iter().enumerate();
     let same = numbered.find_map(|(at, log)| {
@@ -228,26 +213,57 @@ pub(super) fn read(
     if let Some(same) = same {
         return Err(IdentifyFailure::SameLogs(same).into());
     }
-    let simulates = is_fixed || controlled;
-    let validate = reader.kept((&arguments.validate, false), simulates.then_some(LONGEST_S))?;
-    let mut motions = reader.motions.take().unwrap_or_default();
-    for log in &validate {
-        if let Some(same) = train.iter().find(|other| other.overlaps(log)) {
-            let remark = LogRemark::SameAs { other: same.file.clone() };
-            reader.remarks.push((log.file.clone(), remark));
-        }
-    }
-    if arguments.validate.is_empty() {
-        motions.clone_from(&whole);
-    }
-    let instruments = reader.kept((&arguments.instruments, false), None)?;
+    let instruments = reader.kept((&arguments.instruments, &[]), None)?;
     let is_measured =
         |one: &&Conditioned| train.iter().any(|log| log.q == one.q && log.torque == one.torque);
     if let Some(one) = instruments.iter().find(is_measured) {
         return Err(IdentifyFailure::OwnInstruments(one.file.clone()).into());
     }
+    let motions = if arguments.validate.is_empty() { whole.clone() } else { Vec::new() };
     let Reader { remarks, noise, .. } = reader;
-    Ok(Read { train, validate, instruments, motions, whole, remarks, position_noise: noise })
+    let (remarks, position_noise) = ([remarks, Vec::new()], noise);
+    let validate = Vec::new();
+    let mut read = Read { train, validate, instruments, motions, whole, remarks, position_noise };
+    read.held_out(source, of_others)?;
+    Ok(read)
+}
+
+impl Read {
+    /// Reads the logs for validation, again perhaps, with these halvings of their cutoffs.
+    pub(super) fn held_out(&mut self, source: Source<'_>, halvings: &[u32]) -> Result<(), Failure> {
+        let Source { arguments, model, .. } = source;
+        if arguments.validate.is_empty() {
+            return Ok(());
+        }
+        self.validate.clear();
+        let mut reader = Reader::new(source)?;
+        let is_fixed = model.joints.iter().all(|joint| !joint.is_base);
+        let simulates = is_fixed || arguments.controller.is_some();
+        let longest_s = simulates.then_some(LONGEST_S);
+        self.validate = reader.kept((&arguments.validate, halvings), longest_s)?;
+        self.motions = reader.motions.take().unwrap_or_default();
+        for log in &self.validate {
+            if let Some(same) = self.train.iter().find(|other| other.overlaps(log)) {
+                let remark = LogRemark::SameAs { other: same.file.clone() };
+                reader.remarks.push((log.file.clone(), remark));
+            }
+        }
+        for (all, own) in self.position_noise.iter_mut().zip(reader.noise) {
+            *all = all.max(own);
+        }
+        self.remarks[1] = reader.remarks;
+        Ok(())
+    }
+
+    /// The logs for the estimate and for validation.
+    pub(super) fn logs(&self) -> Vec<&Conditioned> {
+        self.train.iter().chain(&self.validate).collect()
+    }
+
+    /// What was found, by log.
+    pub(super) fn into_remarks(self) -> Vec<(String, LogRemark)> {
+        self.remarks.into_iter().flatten().collect()
+    }
 }
 
 /// A log as it was measured, without a look at torques of motors behind springs.
@@ -279,10 +295,7 @@ fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
 
 struct Reader<'a> {
     arguments: &'a Arguments,
-    /// Of each log for the estimate.
-    halvings: &'a [u32],
     model: &'a RegressionModel,
-    /// Effects that the model has beside its equations.
     laws: &'a [AddedLaw],
     mapping: ColumnMapping,
     ground: Option<Ground>,
@@ -294,23 +307,39 @@ struct Reader<'a> {
     motions: Option<Vec<MotionLog>>,
 }
 
-impl Reader<'_> {
-    /// Reads logs, for the estimate or beside those, and keeps their motion for so long \[s\].
+impl<'a> Reader<'a> {
+    fn new(source: Source<'a>) -> Result<Self, Failure> {
+        let Source { arguments, robot, laws, model } = source;
+        let ground = Ground::under(robot, model)
+            .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
+        Ok(Self {
+            arguments,
+            model,
+            laws,
+            mapping: mapping(arguments)?,
+            ground,
+            contacts: robot.contacts.values().map(|contact| contact.name.clone()).collect(),
+            names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
+            remarks: Vec::new(),
+            noise: vec![0.0; model.joints.len()],
+            motions: None,
+        })
+    }
+
+    /// Reads logs, whose cutoffs are halved so often, and keeps their motion for so long \[s\].
     fn kept(
         &mut self,
-        (paths, estimates): (&[PathBuf], bool),
+        (paths, halvings): (&[PathBuf], &[u32]),
         longest_s: Option<f64>,
     ) -> Result<Vec<Conditioned>, Failure> {
         self.motions = longest_s.map(|_| Vec::new());
-        let own = |number: usize| Some(self.halvings.get(number).copied().unwrap_or(0));
-        let own: Vec<Option<u32>> =
-            (0..paths.len()).map(|number| own(number).filter(|_| estimates)).collect();
-        paths.iter().zip(own).map(|(path, own)| self.one((path, own), longest_s)).collect()
+        let halvings = halvings.iter().copied().chain(std::iter::repeat(0));
+        paths.iter().zip(halvings).map(|(path, own)| self.one((path, own), longest_s)).collect()
     }
 
     fn one(
         &mut self,
-        (path, halvings): (&Path, Option<u32>),
+        (path, halvings): (&Path, u32),
         longest_s: Option<f64>,
     ) -> Result<Conditioned, Failure> {
         let file = path.display().to_string();
@@ -330,8 +359,6 @@ impl Reader<'_> {
             ground.load(&mut log);
         }
         let conditions = &self.arguments.conditions;
-        let beside = || conditions.halvings_beside(self.halvings, log.samples());
-        let halvings = halvings.unwrap_or_else(beside);
         let how = Conditioning {
             resolution: self.arguments.resolution,
             ..conditions.of(log.step_s, log.samples(), halvings)

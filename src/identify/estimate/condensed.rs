@@ -140,6 +140,21 @@ impl Condensed {
         }
     }
 
+    /// One of the logs alone.
+    pub(super) fn of_log(&self, log: usize) -> Self {
+        let own: Vec<usize> =
+            (0..self.parts.len()).filter(|&part| self.log_of_part[part] == log).collect();
+        Self {
+            pattern: self.pattern.clone(),
+            parts: own.iter().map(|&part| self.parts[part].clone()).collect(),
+            log_of_part: vec![0; own.len()],
+            end_s: own.iter().map(|&part| self.end_s[part]).collect(),
+            independent: vec![self.independent[log]],
+            row_s: vec![self.row_s[log]],
+            rank: self.rank,
+        }
+    }
+
     /// For each log the triangles of its joints, of the given parts.
     pub fn merged(&self, parts: impl Iterator<Item = usize>) -> Vec<Vec<Triangle>> {
         let none = || self.pattern.iter().map(|places| Triangle::new(places.len())).collect();

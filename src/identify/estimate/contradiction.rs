@@ -8,8 +8,8 @@ use super::condensed::Condensed;
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::LeftOut;
 use super::noise_bias::noise_squares;
+use super::own_estimate::{Own, Tested, of_joint, spread, total};
 use super::rows::BlockMaker;
-use super::solve::{DEAD, Solution, solve, stacked};
 use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
@@ -17,20 +17,24 @@ use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
 /// What own parameters explain must be this share of a joint's torque, as root of mean square, and
-/// so many times what they leave, which noise of the positions may have made them follow,
+/// so many times what they leave, which noise may have made them follow; where parts of the log do
+/// not say for how long that is alike, so many times,
 const OF_TORQUE: f64 = 0.03;
-const OF_OWN: f64 = 1.5;
+const OF_OWN: f64 = 0.5;
+const OF_OWN_ALONE: f64 = 1.5;
 
 /// and this many times what chance explains with as many parameters, in variance.
 const OF_CHANCE: f64 = 25.0;
 
 /// and what noise of the positions makes of it, in variance: to follow that, parameters of a log's
-/// own are biased. Where the filter follows the steps of encoders that noise is known to a few
-/// times.
-const OF_NOISE: f64 = 10.0;
+/// own are biased. That noise is known to a few times, since steps of an encoder may beat with the
+/// samples: what is less than these is asked behind half the cutoff, too, and where the filter
+/// follows the steps nothing is.
+const OF_NOISE: f64 = 4.0;
+const OF_BEATS: f64 = 10.0;
 
-/// Times that the weights of a log's own estimate are found anew.
-const REWEIGHTING: usize = 3;
+/// Samples of a log that are looked at behind half the cutoff, before decimation.
+const SAMPLES: usize = 200_000;
 
 /// What a constant or a factor leaves of the squares of what it is told for, at most.
 const ALIKE: f64 = 0.25;
@@ -138,23 +142,30 @@ pub(in crate::identify) fn contradicting_logs(
     (logs, shown): (&[Conditioned], &[usize]),
     (found, options): (&Estimate, &Options),
 ) -> Vec<ContradictingLog> {
-    let condensed = &found.condensed;
-    if shown.len() < 2 || condensed.rank != model.rank() {
+    if shown.len() < 2 || found.condensed.rank != model.rank() {
         return Vec::new();
     }
-    let triangles = condensed.whole();
     let is_alike = options.method == Method::Ordinary;
+    // by other methods rows are weighted one by one
+    let is_by_row = matches!(options.method, Method::Robust(_) | Method::Likelihood);
+    let plain = is_by_row.then(|| Condensed::counted(model, (logs, &found.left_out)));
+    let condensed = plain.as_ref().unwrap_or(&found.condensed);
     let start = found.solution.phi.as_slice();
-    let weighted = is_alike.then(|| Fit { options, start }.settled(condensed, true));
+    let settled = || Fit { options, start }.settled(condensed, true);
+    let weighted = (is_alike || is_by_row).then(settled);
     let (phi, weights) = match &weighted {
         Some(weighted) => (&weighted.solution.phi, &weighted.weights),
         None => (&found.solution.phi, &found.weights),
     };
-    let claim = Claim { model, phi, covariance: None, left_out: &found.left_out };
+    let left_out = &found.left_out;
+    let of_logs = (phi.as_slice(), 1);
+    let sums = |log: usize| left_sums(model, ((log, &logs[log]), left_out), of_logs);
+    let sums: Vec<Vec<Vec<[f64; 2]>>> = (0..logs.len()).map(sums).collect();
     let told = shown.iter().filter_map(|&log| {
-        let rows = (&triangles[log][..], condensed.independent[log]);
-        let one = Tested { rows, weights: &weights[log] };
-        Some((log, claim.against((log, &logs[log]), one)?))
+        let one = Tested::new(condensed, log, &weights[log]);
+        let others = shown.iter().filter(|&&other| other != log).map(|&other| &sums[other]);
+        let claim = Claim { model, phi, covariance: None, left_out, means: &means(others) };
+        Some((log, claim.against((log, logs), one)?))
     });
     let mut told: Vec<(usize, ContradictingLog)> = told.collect();
     let time_s = |log: usize| logs[log].range.len() as f64 * logs[log].step_s;
@@ -173,7 +184,7 @@ pub(in crate::identify) fn contradicting_logs(
 /// anywhere within their errors, and those that the estimate does not show are the logs' own.
 pub(in crate::identify) fn contradicting_held_out(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    (train, logs): (&[Conditioned], &[Conditioned]),
     (found, options): (&Estimate, &Options),
 ) -> Vec<ContradictingLog> {
     if logs.is_empty() || found.condensed.rank != model.rank() {
@@ -183,14 +194,17 @@ pub(in crate::identify) fn contradicting_held_out(
     let condensed = Condensed::counted(model, (logs, &left_out));
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let of = |(at, triangles): (usize, &Vec<Triangle>)| {
-        let one = Tested { rows: (&triangles[..], condensed.independent[at]), weights: &weights };
-        let phi = &one.with_own(model.pattern(), &found.solution);
+    let own = (found.solution.phi.as_slice(), 1);
+    let sums = |both: (usize, &Conditioned)| left_sums(model, (both, &found.left_out), own);
+    let means = &means(&train.iter().enumerate().map(sums).collect::<Vec<_>>());
+    let of = |at: usize| {
+        let one = Tested::new(&condensed, at, &weights);
+        let phi = &one.with_own(&found.solution);
         let (covariance, left_out) = (Some(&found.covariance), &left_out);
-        let told = Claim { model, phi, covariance, left_out }.against((at, &logs[at]), one)?;
+        let told = Claim { model, phi, covariance, left_out, means }.against((at, logs), one)?;
         Some(ContradictingLog { standing: Standing::HeldOut, ..told })
     };
-    condensed.whole().iter().enumerate().filter_map(of).collect()
+    (0..logs.len()).filter_map(of).collect()
 }
 
 /// What others say of a log.
@@ -201,20 +215,34 @@ struct Claim<'a> {
     covariance: Option<&'a DMatrix<f64>>,
     /// The rows of logs that are left out.
     left_out: &'a LeftOut,
+    /// The mean of what phi leaves of each joint's torque in the other logs.
+    means: &'a [f64],
 }
 
 impl Claim<'_> {
     /// Whether a log of this number contradicts it.
     fn against(
         &self,
-        (at, log): (usize, &Conditioned),
+        (at, logs): (usize, &[Conditioned]),
         one: Tested<'_>,
     ) -> Option<ContradictingLog> {
         let Self { model, phi, .. } = *self;
-        let mut told = self.joints(&one);
+        let log = &logs[at];
+        // where the sign of a rate is not known, a constant may be friction
+        let is_known = |joint: usize| !log.resting[joint] && log.unsure_signs(joint).is_none();
+        let signs: Vec<bool> = (0..model.joints.len()).map(is_known).collect();
+        let mut told = self.joints((at, log), (&one, &signs));
         if !told.is_empty() {
             let noise = noise_squares(model, ((at, log), self.left_out), phi);
-            told.retain(|one| one.explained > OF_NOISE * noise[one.joint]);
+            let is_sure = |one: &Told| one.explained > OF_BEATS * noise[one.joint];
+            let lower = match log.follows_steps() || told.iter().all(is_sure) {
+                true => Vec::new(),
+                false => self.behind_half_the_cutoff((at, logs), (one.weights, &signs)),
+            };
+            told.retain(|one| {
+                let is_less = one.explained > OF_NOISE * noise[one.joint];
+                is_sure(one) || (is_less && lower.iter().any(|other| other.joint == one.joint))
+            });
         }
         let named = |Told { joint, left, own, .. }: Told| ContradictingJoint {
             joint: model.joints[joint].name.clone(),
@@ -227,35 +255,92 @@ impl Claim<'_> {
         (!joints.is_empty()).then_some(ContradictingLog { file, joints, standing })
     }
 
-    /// The joints of whose torque an estimate of a log's own leaves much less than phi does.
-    fn joints(&self, one: &Tested<'_>) -> Vec<Told> {
+    /// The joints that tell it behind half the cutoff of the log, where next to no noise of the
+    /// positions is left: of a long log in its first piece.
+    fn behind_half_the_cutoff(
+        &self,
+        (at, logs): (usize, &[Conditioned]),
+        (weights, signs): (&[f64], &[bool]),
+    ) -> Vec<Told> {
+        let log = &logs[at];
+        let piece = log.pieces(SAMPLES)[0];
+        let Some([_, lower]) = log.halved(piece) else { return Vec::new() };
+        let first = piece.first * log.decimation + lower.range.start - log.range.start;
+        let place = first..first + lower.range.len();
+        let left_out = &self.left_out.of_halved(logs, &[(at, place)]);
+        let lower = &[lower];
+        let condensed = Condensed::counted(self.model, (lower, left_out));
+        let one = Tested::new(&condensed, 0, weights);
+        Claim { left_out, ..*self }.joints((0, &lower[0]), (&one, signs))
+    }
+
+    /// The joints of whose torque an estimate of a log's own, or a constant beside what others
+    /// have, leaves much less than phi does.
+    fn joints(
+        &self,
+        (at, log): (usize, &Conditioned),
+        (one, signs): (&Tested<'_>, &[bool]),
+    ) -> Vec<Told> {
         let Self { model, phi, covariance, .. } = *self;
+        let parts = one.condensed.parts.len();
+        let sums = left_sums(model, ((at, log), self.left_out), (phi.as_slice(), parts));
         let pattern = model.pattern();
-        let (triangles, independent) = one.rows;
-        let own = one.own(pattern, phi.as_slice());
+        let own = one.own(phi.as_slice());
+        let of_own = if one.has_parts() { OF_OWN } else { OF_OWN_ALONE };
         let of = |(joint, triangle): (usize, &Triangle)| {
-            let (Own { squares, decided, variance }, rows) = (&own[joint], triangle.rows() as f64);
+            let rows = triangle.rows() as f64;
             let all = triangle.target_squares();
             let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
-            let explained = (left - squares).max(0.0);
             let unsure = covariance.map_or(0.0, |one| spread(triangle, &pattern[joint], one));
-            let chance = decided.max(1.0) * variance / independent + unsure;
-            let is_much = explained > OF_TORQUE.powi(2) * all
-                && explained > OF_OWN.powi(2) * variance * rows
-                && explained > OF_CHANCE * chance;
-            let [left, own] = [left, variance * rows].map(|one| (one / all).sqrt());
-            is_much.then_some(Told { joint, left, own, explained })
+            let constant = one.constant(left, (&sums[joint], self.means[joint]));
+            let constant = signs[joint].then_some(constant);
+            let told = |Own { squares, variance, chance }: &Own| {
+                let explained = (left - squares).max(0.0);
+                let chance = chance + unsure;
+                let is_much = explained > OF_TORQUE.powi(2) * all
+                    && explained > of_own.powi(2) * variance * rows
+                    && explained > OF_CHANCE * chance;
+                let [left, own] = [left, variance * rows].map(|one| (one / all).sqrt());
+                is_much.then_some(Told { joint, left, own, explained })
+            };
+            let both = std::iter::once(&own[joint]).chain(&constant).filter_map(told);
+            both.max_by(|a, b| a.explained.total_cmp(&b.explained))
         };
-        triangles.iter().enumerate().filter_map(of).collect()
+        one.triangles.iter().enumerate().filter_map(of).collect()
     }
 }
 
-/// The rows of a log that is compared with what others say.
-struct Tested<'a> {
-    /// By joint, and the share of them that is independent of each other.
-    rows: (&'a [Triangle], f64),
-    /// What rows of each joint count, to begin with.
-    weights: &'a [f64],
+/// For each joint, and so many parts of a log, rows that count, and the sum of what phi leaves of
+/// its torque there.
+fn left_sums(
+    model: &RegressionModel,
+    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+    (phi, parts): (&[f64], usize),
+) -> Vec<Vec<[f64; 2]>> {
+    let own: Vec<Vec<f64>> = model.pattern().iter().map(|places| of_joint(places, phi)).collect();
+    let mut sums = vec![vec![[0.0; 2]; parts]; own.len()];
+    BlockMaker::new(model, log).for_each(|block| {
+        for (joint, sums) in sums.iter_mut().enumerate() {
+            let Some(left) = block.residual(joint, &own[joint]) else { continue };
+            let counts = left_out.counts((number, log), joint, (block.first, block.samples));
+            let counted = |at: &usize| counts.as_ref().is_none_or(|counts| counts[*at]);
+            for at in (0..left.len()).filter(counted) {
+                let [rows, sum] = &mut sums[(block.first + at) * parts / log.samples()];
+                (*rows, *sum) = (*rows + 1.0, *sum + left[at]);
+            }
+        }
+    });
+    sums
+}
+
+/// The mean of what is left of each joint's torque in some logs.
+fn means<'a>(logs: impl IntoIterator<Item = &'a Vec<Vec<[f64; 2]>>>) -> Vec<f64> {
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for log in logs {
+        all.resize(log.len(), [0.0; 2]);
+        all.iter_mut().zip(log).for_each(|(all, own)| *all = total(&[*all, total(own)]));
+    }
+    all.into_iter().map(|[rows, sum]| sum / rows.max(1.0)).collect()
 }
 
 /// A joint that tells a contradiction.
@@ -266,72 +351,6 @@ struct Told {
     own: f64,
     /// and the squares that these explain.
     explained: f64,
-}
-
-/// What parameters of a log's own leave of a joint's torque.
-struct Own {
-    /// |W phi - y|^2.
-    squares: f64,
-    /// The parameters that the joint decides.
-    decided: f64,
-    /// The variance of a row.
-    variance: f64,
-}
-
-impl Tested<'_> {
-    /// What an estimate of its own leaves of each joint.
-    fn own(&self, pattern: &[Vec<usize>], phi: &[f64]) -> Vec<Own> {
-        let (triangles, independent) = self.rows;
-        let mut weights = self.weights.to_vec();
-        let mut own: Vec<Own> = Vec::new();
-        for _ in 0..=REWEIGHTING {
-            let solution = solve(&self.system(pattern, (&weights, phi.len())), phi);
-            let of = |(joint, triangle): (usize, &Triangle)| {
-                let places = &pattern[joint];
-                let r = triangle.matrix().view((0, 0), (places.len(), places.len()));
-                let factor = solution.factor.select_rows(places);
-                let decided = weights[joint].powi(2) * (r * factor).norm_squared();
-                let squares = triangle.squares(&of_joint(places, solution.phi.as_slice()));
-                let free = (independent * triangle.rows() as f64 - decided).max(f64::MIN_POSITIVE);
-                Own { squares, decided, variance: squares * independent / free }
-            };
-            own = triangles.iter().enumerate().map(of).collect();
-            let weight = |one: &Own| if one.variance > 0.0 { one.variance.powf(-0.5) } else { 0.0 };
-            weights = own.iter().map(weight).collect();
-        }
-        own
-    }
-
-    fn system(&self, pattern: &[Vec<usize>], (weights, rank): (&[f64], usize)) -> DMatrix<f64> {
-        stacked(&[(self.rows.0, weights)], pattern, &[], rank)
-    }
-
-    /// phi of a solution, in the directions that it says nothing about of the log's own.
-    fn with_own(&self, pattern: &[Vec<usize>], solution: &Solution) -> DVector<f64> {
-        let (phi, dead) = (&solution.phi, &solution.dead);
-        if dead.ncols() == 0 {
-            return phi.clone();
-        }
-        let rank = phi.len();
-        let r = self.system(pattern, (self.weights, rank));
-        let w = r.view((0, 0), (rank, rank));
-        let left = r.view((0, rank), (rank, 1)).column(0) - w * phi;
-        let along = (w * dead).svd(true, true);
-        let least = DEAD * along.singular_values.max();
-        along.solve(&left, least).map_or_else(|_| phi.clone(), |along| phi + dead * along)
-    }
-}
-
-/// The entries of phi that a joint's columns belong to.
-fn of_joint(places: &[usize], phi: &[f64]) -> Vec<f64> {
-    places.iter().map(|&place| phi[place]).collect()
-}
-
-/// The squares that errors of phi make of a joint's rows in the mean.
-fn spread(triangle: &Triangle, places: &[usize], covariance: &DMatrix<f64>) -> f64 {
-    let r = triangle.matrix().view((0, 0), (places.len(), places.len()));
-    let own = covariance.select_rows(places).select_columns(places);
-    (r * own * r.transpose()).trace()
 }
 
 /// Whether what phi leaves of a joint's torque in a log is nearly a constant, or as if the torque

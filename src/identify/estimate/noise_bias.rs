@@ -12,8 +12,9 @@ use super::least_squares::Estimate;
 use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
+use super::validate::validate;
 use crate::identify::condition::{Conditioned, Piece};
-use crate::plants::regression::RegressionModel;
+use crate::plants::regression::{RegressionJoint, RegressionModel};
 use crate::simulate::Random;
 use nalgebra::{DMatrix, DVector};
 
@@ -113,6 +114,23 @@ pub(super) fn noise_squares(
         }
     });
     squares
+}
+
+/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
+/// square over root of mean square; 0 where none was measured.
+pub(in crate::identify) fn noise_in_torques(
+    model: &RegressionModel,
+    log: &Conditioned,
+    phi: &[f64],
+) -> Vec<f64> {
+    let all = LeftOut::none(std::slice::from_ref(log));
+    let noise = noise_squares(model, ((0, log), &all), &DVector::from_column_slice(phi));
+    let left = validate(model, phi, &[log]);
+    let share = |(joint, noise): (&RegressionJoint, f64)| {
+        let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
+        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
+    };
+    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:

@@ -10,6 +10,9 @@ const SLOWEST_STEP_S: f64 = 0.1;
 /// A turning joint without limits hardly goes further \[rad\].
 const LARGEST_ANGLE_RAD: f64 = 20.0;
 
+/// Changes of a torque below this are rounding [N m, N].
+const ROUNDING: f64 = 1e-12;
+
 /// Times its limit that a torque goes to if the limits of a trajectory are the model's.
 const FAR_BEYOND: f64 = 3.0;
 
@@ -137,9 +140,9 @@ fn torque(
     if joint.is_base {
         return;
     }
-    if low == high {
+    if high - low < ROUNDING {
         // what has no drive in a model with drives has no torque either
-        let is_passive = low == 0.0 && !joint.is_driven && has_drives;
+        let is_passive = low.abs() < ROUNDING && !joint.is_driven && has_drives;
         if moves && !is_passive {
             found.suspicions.push(Suspicion::ConstantTorque { column });
         }

@@ -278,14 +278,21 @@ impl fmt::Display for LogFault {
     }
 }
 
+/// The step of a time below which it may count hundredths of a second as well as milliseconds.
+const HUNDREDTHS: f64 = 1.0;
+
 impl fmt::Display for Suspicion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TimeUnit { step, factor } => write!(
                 f,
                 "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
-                 {{\"scale\": {factor}}}}}",
-                short(*step)
+                 {{\"scale\": {factor}}}}}{}",
+                short(*step),
+                match *step < HUNDREDTHS {
+                    true => ", or {\"t\": {\"scale\": 0.01}} if it counts hundredths of a second",
+                    false => "",
+                }
             )?,
             Self::Degrees { column, largest } => write!(
                 f,
@@ -407,8 +414,8 @@ impl fmt::Display for LogRemark {
             }
             Self::LoweredFilter { cutoff_hz } => write!(
                 f,
-                "noise of positions would bias parameters: filtered below {} Hz (--filter says \
-                 otherwise)",
+                "noise of positions would bias parameters or residuals: filtered below {} Hz \
+                 (--filter says otherwise)",
                 short(*cutoff_hz)
             ),
             Self::Averaged { laps, period_s } => {

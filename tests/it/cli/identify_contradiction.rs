@@ -56,6 +56,32 @@ fn a_log_of_another_gain_is_named_and_not_followed() {
     }
 }
 
+/// The same beside noise of the torques that leaves as much: it is alike in no two parts of a log,
+/// and a gain is. Without the gain nothing is told.
+#[test]
+fn a_log_of_another_gain_is_named_beside_as_much_noise() {
+    let directory = Directory::new("contradiction-gain-noise");
+    write_arm(&directory, None);
+    let log = |name: &str, seed: u64, gain: f64| {
+        let made = Made { step_s: 0.002, samples: 5000, torque_noise: 4.0, seed, ..GOOD };
+        let mut rows = made.rows(&motions(seed, 0.7));
+        rows.iter_mut().flat_map(|row| &mut row[3..]).for_each(|torque| *torque *= gain);
+        write_log(&directory, name, &rows);
+    };
+    for seed in 1..=6 {
+        log("one.csv", 3 * seed, 1.0);
+        log("other.csv", 3 * seed + 2, 1.0);
+        for gain in [1.0, 1.15] {
+            log("odd.csv", 3 * seed + 1, gain);
+            let (code, text) = said(&directory, &ALL);
+            assert_eq!(code, Some(i32::from(gain > 1.0)), "{seed}: {text}");
+            let json = text.replace('\n', " ");
+            assert_eq!(json.contains("odd.csv contradicts the other logs"), gain > 1.0, "{text}");
+            assert_eq!(json.matches("contradict").count(), usize::from(gain > 1.0), "{text}");
+        }
+    }
+}
+
 /// The same of a log for validation alone.
 #[test]
 fn a_log_for_validation_of_another_gain_is_told() {
@@ -70,6 +96,35 @@ fn a_log_for_validation_of_another_gain_is_told() {
             assert_eq!(code, Some(i32::from(is_odd)), "{seed}: {text}");
             assert_eq!(text.contains("odd.csv and the logs for the estimate contradict"), is_odd);
             assert_gains(&text);
+        }
+    }
+}
+
+/// A constant in the torque of the last joint, in which no other one shows: no parameters of a
+/// log's own explain it either, so that it is asked for beside them.
+#[test]
+fn a_constant_in_a_log_for_validation_is_told_with_its_size() {
+    let directory = Directory::new("contradiction-constant");
+    write_arm(&directory, None);
+    let wide = |name: &str, seed: u64, offset: f64| {
+        let mut both = motions(seed, 0.7);
+        both.iter_mut().flat_map(|one| &mut one.waves).for_each(|wave| wave[0] *= 3.0);
+        let mut rows = Made { step_s: 0.002, samples: 5000, seed, ..GOOD }.rows(&both);
+        rows.iter_mut().for_each(|row| row[4] += offset);
+        write_log(&directory, name, &rows);
+    };
+    for seed in 1..=4 {
+        wide("one.csv", 2 * seed, 0.0);
+        for offset in [-0.4, 0.4, 0.8] {
+            wide("odd.csv", 2 * seed + 1, offset);
+            let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "odd.csv"]);
+            let line = text.replace('\n', " ");
+            assert_eq!(code, Some(1), "{seed} {offset}: {text}");
+            let told =
+                line.split("link2 is left").nth(1).and_then(|one| one.split("as if ").nth(1));
+            let told = told.and_then(|one| one.split(' ').next()?.parse().ok());
+            let told: f64 = told.expect(&line);
+            assert!((told / offset - 1.0).abs() < 0.05, "{seed} {offset}: {text}");
         }
     }
 }

@@ -45,7 +45,9 @@ fn each_log_has_the_filter_that_it_is_long_enough_for() {
     write_log(&directory, "short.csv", &rows);
     let (_, text) = said(&directory, &["--train", "short.csv", "slow.csv", "--json"]);
     let cutoff_hz = |log: &str| {
-        let words = format!("{log}: noise of positions would bias parameters: filtered below ");
+        let words = format!(
+            "{log}: noise of positions would bias parameters or residuals: filtered below "
+        );
         number_after(&text, &words)
     };
     // one line for all joints of a log
@@ -53,6 +55,30 @@ fn each_log_has_the_filter_that_it_is_long_enough_for() {
     // of 1.5 s more than ten periods are left of 12.5 Hz without the edges, and of less none
     assert!((12.5..=50.0).contains(&cutoff_hz("short.csv")), "{text}");
     assert!(cutoff_hz("slow.csv") < 20.0, "{text}");
+}
+
+/// The first joint is eight times slower than the second, under coarse encoders: behind the filter
+/// of the other log, which is fine, noise would be all that is left of a log for validation, which
+/// the parameters explain as they are.
+#[test]
+fn a_log_for_validation_has_the_filter_that_its_noise_asks_for() {
+    let directory = Directory::new("noise-held-out");
+    write_arm(&directory, None);
+    let made = Made { step_s: 0.002, samples: 5000, ..GOOD };
+    write_log(&directory, "fine.csv", &made.rows(&motions(9, 1.0)));
+    for seed in 1..=6 {
+        let ([slow, _], [_, fast]) = (motions(seed, 0.05), motions(seed, 0.4));
+        let made = Made { step_s: 0.001, samples: 5000, seed, ..GOOD };
+        let mut rows = made.rows(&[slow, fast]);
+        round_positions(&mut rows, TAU / 4096.0);
+        write_log(&directory, "coarse.csv", &rows);
+        let words = ["--train", "fine.csv", "--validate", "coarse.csv", "--json"];
+        let (code, text) = said(&directory, &words);
+        assert_eq!(code, Some(0), "{seed}: {text}");
+        let json: Value = serde_json::from_str(&text).expect("JSON");
+        let left = json["residual"]["validate"].as_f64().expect("a share");
+        assert!(left < 0.1, "{seed}: {left}");
+    }
 }
 
 /// What the model has no value of is named where its own torques cannot be compared.

@@ -149,3 +149,35 @@ fn noise_is_no_position_that_is_stuck() {
     let accused: Vec<u64> = (1..=12).filter(is_accused).collect();
     assert_eq!(accused, [0_u64; 0]);
 }
+
+/// An arm that lies all but level, tilted another way than the model says and more: on that its
+/// torques hardly depend on, no position is counted from a zero that is turns away.
+#[test]
+fn no_zero_is_turns_away() {
+    let directory = Directory::new("rest-level");
+    write_arm(&directory, None);
+    let arm = std::fs::read_to_string(directory.path.join("arm.json")).expect("written");
+    let mut arm: serde_json::Value = serde_json::from_str(&arm).expect("JSON");
+    arm["gravity"] = serde_json::json!([0, -0.005, 0]);
+    std::fs::write(directory.path.join("arm.json"), arm.to_string()).expect("written");
+    for seed in 1..=8 {
+        let made = Made { step_s: 0.002, samples: 10_000, torque_noise: 0.01, seed, ..GOOD };
+        let mut both = motions(seed, 0.7);
+        both.iter_mut().flat_map(|one| &mut one.waves).for_each(|wave| wave[0] *= 2.0);
+        let mut rows = made.rows(&both);
+        for [_, a, b, one, other] in &mut rows {
+            // weights along the first axis of the plane and along the second
+            let weight = |along: f64| 1.5 * 0.23 * along;
+            let first = |along: f64| (2.0 * 0.28 + 1.5 * 0.5) * along;
+            let (level, tilt) = (0.005 - 9.81, 0.05);
+            *one += level * (first(a.cos()) + weight((*a + *b).cos()));
+            *other += level * weight((*a + *b).cos());
+            *one += tilt * (first(a.sin()) + weight((*a + *b).sin()));
+            *other += tilt * weight((*a + *b).sin());
+        }
+        write_log(&directory, "level.csv", &rows);
+        let (_, text) = said(&directory, &["--train", "level.csv"]);
+        assert!(text.contains("residual"), "{text}");
+        assert!(!text.contains("position of link"), "{seed}: {text}");
+    }
+}

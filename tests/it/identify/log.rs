@@ -183,11 +183,25 @@ fn milliseconds_are_no_seconds() {
     let faults = Made::new().each(|_, row| row[0] *= 1e3).read().unwrap_err();
     let found = suspicion(faults);
     assert!(matches!(found, Suspicion::TimeUnit { factor: 1e-3, .. }), "{found:?}");
+    assert!(!found.to_string().contains("0.01}"), "{found}");
+    let hundredths = Made::new().each(|_, row| row[0] *= 100.0).read().unwrap_err();
+    let found = suspicion(hundredths).to_string();
+    assert!(found.contains(r#"{"scale": 0.001}"#) && found.contains(r#"{"scale": 0.01}"#));
     // Slower sampling hides it from the step, not from the rates.
     let mut slow = Made::new().each(|_, row| row[0] *= 10.0);
     slow.rows.truncate(1200);
     let found = suspicion(slow.read().unwrap_err());
     assert!(matches!(found, Suspicion::RateScale { ratio, .. } if (ratio - 10.0).abs() < 0.2));
+}
+
+/// Torques of a joint that moves are never as small: what changes by 1e-40 N m does not.
+#[test]
+fn torques_that_vanish_are_refused() {
+    for scale in [1e-40, 1e-160, 1e-300] {
+        let tiny = Made::new().each(|_, row| row[5..].iter_mut().for_each(|tau| *tau *= scale));
+        let found = suspicion(tiny.read().unwrap_err());
+        assert!(matches!(found, Suspicion::ConstantTorque { .. }), "{found:?}");
+    }
 }
 
 #[test]

@@ -97,6 +97,11 @@ impl<'a> Balance<'a> {
         Self { model, evaluator, rows, windows, coulomb, own }
     }
 
+    /// Samples of each torque that are looked at and independent of each other.
+    pub(super) fn independent(&self) -> f64 {
+        self.windows.iter().map(Window::independent).sum()
+    }
+
     /// Whether a joint moves in some of the logs.
     pub(super) fn moves(&self, joint: usize) -> bool {
         self.windows.iter().any(|window| window.log().resting.get(joint) != Some(&true))

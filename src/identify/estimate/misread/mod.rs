@@ -28,7 +28,7 @@ pub(in crate::identify) use balance::nominal_values;
 use reading::Reading;
 use search::Search;
 use std::fmt;
-use verdict::NEAR;
+use verdict::{NEAR, WORSE};
 
 /// Signals are at most so late \[s\].
 const LATEST_S: f64 = 0.2;
@@ -86,6 +86,18 @@ impl MisreadColumns {
         let is_near = self.left_by_model.is_some_and(|[before, _]| before < NEAR);
         let is_zero = matches!(self.misreading, Misreading::Zero(..));
         is_near && !self.is_sure && !is_zero && self.left_by_estimate.is_none()
+    }
+
+    /// Whether an estimate alone speaks for a delay of one joint that would leave no less of its
+    /// torque than it does as it is of the rows that count: the others are near reversals.
+    pub(in crate::identify) fn is_of_reversals(&self, counted: &[f64]) -> bool {
+        let (Misreading::LateTorque(joint, _) | Misreading::LatePosition(joint, _)) =
+            self.misreading
+        else {
+            return false;
+        };
+        let is_explained = |[_, after]: [f64; 2]| counted[joint] < WORSE * after;
+        self.left_by_model.is_none() && self.left_by_estimate.is_some_and(is_explained)
     }
 
     /// How to mend it.
@@ -212,7 +224,7 @@ pub(in crate::identify) fn misread_apart(
 
 /// The same of logs that are all misread alike. Motion that is read too slow has so little noise
 /// that its filter may be far too high for what it is: what makes more of noise is looked for
-/// behind lower filters, too.
+/// behind lower filters, too, unless something is sure.
 fn misread_alike(
     model: &RegressionModel,
     logs: &[&Conditioned],
@@ -221,7 +233,7 @@ fn misread_alike(
     let mut found = misread_as_filtered(model, (logs, false), evidence);
     let mut lower: Vec<Conditioned> = Vec::new();
     for _ in 0..HALVINGS {
-        if !found.is_empty() {
+        if found.iter().any(|one| one.is_sure) {
             break;
         }
         let before = if lower.is_empty() { logs.to_vec() } else { lower.iter().collect() };
@@ -230,7 +242,10 @@ fn misread_alike(
             break;
         }
         let lower: Vec<&Conditioned> = lower.iter().collect();
-        found = misread_as_filtered(model, (&lower, true), evidence);
+        let told = misread_as_filtered(model, (&lower, true), evidence);
+        if found.is_empty() || told.iter().any(|one| one.is_sure) {
+            found = told;
+        }
     }
     found
 }
@@ -290,4 +305,30 @@ fn signs_of_friction(model: &RegressionModel, listed: &[IdentifiedParameter]) ->
         ["fv", "fc"].map(|prefix| sign(format!("{prefix}_{}", joint.name)))
     };
     model.joints.iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A delay that brings what is left of a joint down to what is left of its other rows anyhow
+    /// is that of rows near reversals; one that leaves less, or that values speak for, is none.
+    #[test]
+    fn a_delay_that_mends_rows_near_reversals_alone_is_none() {
+        let told = |left_by_estimate, left_by_model| MisreadColumns {
+            misreading: Misreading::LatePosition(1, -2),
+            left_by_model,
+            left_by_estimate: Some(left_by_estimate),
+            file: None,
+            is_sure: false,
+            errors: None,
+            joints: Vec::new(),
+            step_s: 0.002,
+            values: "",
+        };
+        let counted = [0.02, 0.0038];
+        assert!(told([0.009, 0.004], None).is_of_reversals(&counted));
+        assert!(!told([0.009, 0.001], None).is_of_reversals(&counted));
+        assert!(!told([0.009, 0.004], Some([0.3, 0.1])).is_of_reversals(&counted));
+    }
 }

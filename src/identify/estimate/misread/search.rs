@@ -113,20 +113,22 @@ impl Search<'_> {
             let both = own.as_ref().zip(after.as_ref());
             let ratio = both.map(|(own, after)| Change::of(own, after).ratio);
             // without a misfit an estimate can speak against a reading, not for it
-            if is_misfit || along.contains(&one) || ratio.is_some_and(|ratio| ratio < BETTER) {
+            let is_asked = along.contains(&one) || one.makes_noise();
+            if is_misfit || is_asked || ratio.is_some_and(|ratio| ratio < BETTER) {
                 judged.push((one, after, ratio.unwrap_or(1.0)));
             }
         }
         judged.sort_by(|a, b| a.2.total_cmp(&b.2));
         judged.truncate(ESTIMATED);
+        let independent = self.balance.independent();
         let mut best: Option<Verdict> = None;
         for (one, own_after, _) in judged {
             let other = reading.with(one, &self.model.joints);
             let Some(after) = self.balance.left(&other, true).fit else { continue };
             let both = own.as_ref().zip(own_after.as_ref()).map(|(before, after)| [before, after]);
-            let mut verdict = Verdict::new(one, both, [fit, &after.left]);
-            // of noise an estimate may leave less by chance
-            verdict.by_fit &= !(is_noisy && self.is_noise(fit));
+            let mut verdict = Verdict::new(one, both, ([fit, &after.left], independent));
+            // of noise an estimate may leave less by chance, but not where there is more of it
+            verdict.by_fit &= one.makes_noise() || !(is_noisy && self.is_noise(fit));
             let is_better = best.as_ref().is_none_or(|best| verdict.rank() < best.rank());
             if verdict.is_believed() && is_better {
                 best = Some(verdict);

@@ -22,8 +22,14 @@ const HALF: f64 = 0.5;
 pub(super) const EXPLAINED: f64 = 0.02;
 pub(super) const PROMPT: f64 = 0.005;
 
+/// Where a reading makes more of the noise of positions, an estimate speaks for it, too, if less is
+/// left all the same: this share in the geometric mean of all joints, where their residuals are so
+/// much likelier (the logarithm, of independent samples) than as the log stands.
+const LESS: f64 = 0.8;
+const LIKELIER: f64 = 30.0;
+
 /// A witness speaks against a reading if more than this many times is left.
-const WORSE: f64 = 1.25;
+pub(super) const WORSE: f64 = 1.25;
 
 /// What an estimate leaves of a log that it explains as the log stands, and the share left by the
 /// model's own values below which these are near: then they may be somewhat off, and a reading that
@@ -42,16 +48,19 @@ pub(super) struct Verdict {
     pub(super) fit: Change,
     pub(super) by_own: bool,
     pub(super) by_fit: bool,
+    /// Whether an estimate leaves half as much.
+    is_halved: bool,
     /// What an estimate leaves of all joints, after over before.
     of_all: f64,
 }
 
 impl Verdict {
-    /// `own` is what the given values leave, `fit` what an estimate does, both before and after.
+    /// `own` is what the given values leave, `fit` what an estimate does, both before and after, of
+    /// so many independent samples.
     pub(super) fn new(
         misreading: Misreading,
         own: Option<[&Shares; 2]>,
-        [before, after]: [&Shares; 2],
+        ([before, after], independent): ([&Shares; 2], f64),
     ) -> Self {
         let fit = Change::of(before, after);
         let own_torques = misreading.torques_of().into_iter().filter_map(|joint| after[joint]);
@@ -68,8 +77,9 @@ impl Verdict {
             let is_less = change.left[1] < BETTER * change.left[0];
             (change.ratio < BETTER && is_less) || of_one
         };
-        let by_fit =
-            is_explained && is_halved(fit) && fit.left[0] > least && fit.left[1] < LEFT_BY_ESTIMATE;
+        let is_half = is_halved(fit) && fit.left[0] > least && fit.left[1] < LEFT_BY_ESTIMATE;
+        let is_less = misreading.makes_noise() && is_surely_less([before, after], independent);
+        let by_fit = is_explained && (is_half || is_less);
         // a torque against that of the model is no parameter that is far off
         let is_sign = matches!(misreading, Misreading::Torque(_, -1.0));
         let most = match (misreading.is_of_all() || is_sign, by_fit) {
@@ -91,7 +101,7 @@ impl Verdict {
             is_enough && !is_guess && is_halved(own) && own.left[0] > least && own.left[1] < most
         });
         let of_all = root_mean_square(after).max(LEAST) / root_mean_square(before).max(LEAST);
-        Self { misreading, own: change, fit, by_own, by_fit, of_all }
+        Self { misreading, own: change, fit, by_own, by_fit, is_halved: is_half, of_all }
     }
 
     pub(super) fn is_believed(&self) -> bool {
@@ -105,7 +115,8 @@ impl Verdict {
             return self.by_own && self.by_fit;
         }
         let is_near = self.own.is_some_and(|own| own.left[0] < NEAR);
-        self.by_fit || (self.by_own && self.misreading.is_of_all() && !is_near)
+        let by_fit = self.by_fit && self.is_halved;
+        by_fit || (self.by_own && self.misreading.is_of_all() && !is_near)
     }
 
     /// Less is better. What is late in one joint explains that joint as well as what is late in
@@ -116,6 +127,15 @@ impl Verdict {
     }
 }
 
+/// Whether less is left after than before, by more than chance.
+fn is_surely_less([before, after]: [&Shares; 2], independent: f64) -> bool {
+    let both = before.iter().zip(after).filter_map(|(before, after)| before.zip(*after));
+    let of = |(before, after): (f64, f64)| (before.max(LEAST) / after.max(LEAST)).ln();
+    let all: Vec<f64> = both.map(of).collect();
+    let sum: f64 = all.iter().sum();
+    independent * sum > LIKELIER && sum > -LESS.ln() * all.len() as f64
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::misreading::ExchangedColumns;
@@ -124,7 +144,7 @@ mod tests {
     fn verdict(misreading: Misreading, own: [f64; 2], fit: f64) -> Verdict {
         let [before, after] = own.map(|own| vec![Some(own); 2]);
         let fit = vec![Some(fit); 2];
-        Verdict::new(misreading, Some([&before, &after]), [&fit, &fit])
+        Verdict::new(misreading, Some([&before, &after]), ([&fit, &fit], 100.0))
     }
 
     /// The model's own values alone: against an estimate that explains the log as it stands they
@@ -143,7 +163,7 @@ mod tests {
     fn a_small_share_that_falls_does_not_halve_what_is_left() {
         let [before, after] = [[0.03, 0.27], [0.001, 0.21]].map(|left| left.map(Some).to_vec());
         let fit = vec![Some(0.05); 2];
-        let told = |own| Verdict::new(Misreading::Time(1e3), Some(own), [&fit, &fit]);
+        let told = |own| Verdict::new(Misreading::Time(1e3), Some(own), ([&fit, &fit], 100.0));
         assert!(!told([&before, &after]).is_believed());
         let halved = [0.001, 0.1].map(Some).to_vec();
         assert!(told([&before, &halved]).is_believed());
@@ -156,5 +176,18 @@ mod tests {
         let told = verdict(zero, [0.2, 0.004], 0.003);
         assert!(told.is_believed() && !told.is_sure());
         assert!(!verdict(zero, [0.2, 0.05], 0.003).is_believed());
+    }
+
+    /// A faster time makes more of noise: what leaves 0.8 % of 1.2 then is told of many samples,
+    /// and not of a few; a slower time makes less of it in any case.
+    #[test]
+    fn less_that_is_left_of_more_noise_is_told() {
+        let [before, after] = [0.012, 0.008].map(|left| vec![Some(left); 2]);
+        let told = |time, samples| {
+            Verdict::new(Misreading::Time(time), None, ([&before, &after], samples))
+        };
+        let many = told(0.1, 100.0);
+        assert!(many.is_believed() && !many.is_sure());
+        assert!(!told(0.1, 20.0).is_believed() && !told(10.0, 100.0).is_believed());
     }
 }

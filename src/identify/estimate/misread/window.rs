@@ -43,6 +43,11 @@ impl<'a> Window<'a> {
         self.log
     }
 
+    /// Samples that are independent of each other.
+    pub(super) fn independent(&self) -> f64 {
+        self.log.independent() * self.count as f64 / self.log.samples() as f64
+    }
+
     /// Its places, so many samples later.
     fn places(&self, late: isize) -> impl Iterator<Item = usize> {
         let (first, last) = (self.log.range.start, self.log.range.end - 1);

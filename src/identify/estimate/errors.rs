@@ -88,6 +88,10 @@ impl Problem<'_> {
     fn left_out(&self, part: usize, score: DVector<f64>) -> DVector<f64> {
         let factor = &self.solution.factor;
         let size = factor.ncols();
+        if size == 0 {
+            // a log without torques determines nothing
+            return score;
+        }
         let mut leverage = DMatrix::zeros(size, size);
         let weights = &self.weights[self.condensed.log_of_part[part]];
         for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {

@@ -199,3 +199,20 @@ fn of_two_logs_that_contradict_each_other_neither_is_believed() {
         }
     }
 }
+
+/// A log without torques determines nothing, and contradicts nothing.
+#[test]
+fn a_log_for_validation_without_torques_is_compared_with_nothing() {
+    let directory = Directory::new("contradiction-torqueless");
+    write_arm(&directory, None);
+    write(&directory, "one.csv", 1, &|_| {});
+    write(&directory, "other.csv", 2, &|_| {});
+    let path = directory.path.join("other.csv");
+    let text = std::fs::read_to_string(&path).expect("a log");
+    let positions = |line: &str| line.split(',').take(3).collect::<Vec<_>>().join(",");
+    let without: Vec<String> = text.lines().map(positions).collect();
+    std::fs::write(path, without.join("\n")).expect("a file");
+    let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "other.csv"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!text.contains("contradict"), "{text}");
+}

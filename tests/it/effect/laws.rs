@@ -6,7 +6,7 @@ use denavit::plants::effect::{Drive, EffectLaw, JointSamples, LawParameter};
 
 /// A motion with reversals, as columns.
 pub(super) struct Motion {
-    /// In the order of the fields of [`JointSamples`].
+    /// In the order of the fields of [`JointSamples`]; `creep` is the rate.
     pub(super) columns: Vec<Vec<f64>>,
 }
 
@@ -37,6 +37,7 @@ impl Motion {
             t: column(0),
             q: column(1),
             qd: column(2),
+            creep: column(2),
             qdd: column(3),
             tau_load: column(4),
             tau_load_rate: column(5),

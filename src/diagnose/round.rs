@@ -29,8 +29,8 @@ const OTHER_WEIGHTS: f64 = 0.6;
 /// The share of what stays at a joint by which it changes by chance with whatever is fitted.
 const BY_CHANCE: f64 = 1e-3;
 
-/// By how much squares have become less at a joint, in units of noise. Logs that have hardly any show a
-/// drive that sticks as many times that: what changes by chance is the unit there.
+/// By how much squares have become less at a joint, in units of noise. Logs that have hardly any
+/// show a drive that sticks as many times that: what changes by chance is the unit there.
 fn falls([before, noise]: [f64; 2], after: f64, [then, _]: [f64; 2]) -> f64 {
     (before - after) / noise.max(BY_CHANCE * then).max(f64::MIN_POSITIVE)
 }

@@ -125,9 +125,9 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
     }
 }
 
-/// The inertia of the first of some coordinates while the others are free \[kg m^2, kg\]: 1 over its
-/// entry of the inverse of theirs. A model whose inertia is not positive says nothing of what a
-/// drive loses when it stops: none.
+/// The inertia of the first of some coordinates while the others are free \[kg m^2, kg\]: 1 over
+/// its entry of the inverse of theirs. A model whose inertia is not positive says nothing of what
+/// a drive loses when it stops: none.
 fn of_first(matrix: DMatrix<f64>) -> f64 {
     matrix.cholesky().map_or(0.0, |factors| 1.0 / factors.inverse()[(0, 0)])
 }

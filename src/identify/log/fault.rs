@@ -278,8 +278,8 @@ impl fmt::Display for LogFault {
     }
 }
 
-/// The step of a time below which it may count hundredths of a second as well as milliseconds.
-const HUNDREDTHS: f64 = 1.0;
+/// The step of a time below which it may count longer parts of a second than milliseconds.
+const LONGER_PARTS: f64 = 1.0;
 
 impl fmt::Display for Suspicion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -289,8 +289,11 @@ impl fmt::Display for Suspicion {
                 "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
                  {{\"scale\": {factor}}}}}{}",
                 short(*step),
-                match *step < HUNDREDTHS {
-                    true => ", or {\"t\": {\"scale\": 0.01}} if it counts hundredths of a second",
+                match *step < LONGER_PARTS {
+                    true => {
+                        ", or {\"t\": {\"scale\": 0.01}} if it counts hundredths of a second, \
+                         {\"t\": {\"scale\": 0.016666666666666666}} if sixtieths"
+                    }
                     false => "",
                 }
             )?,

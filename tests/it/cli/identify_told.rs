@@ -428,6 +428,24 @@ fn steps_of_encoders_bias_no_method() {
     }
 }
 
+/// A time in minutes, and one in ticks of 60 a second: the unit is told, and not one beside it.
+#[test]
+fn a_time_in_minutes_or_ticks_is_told_by_its_own_unit() {
+    let directory = Directory::new("told-minutes");
+    write_arm(&directory, None);
+    for (unit_s, scale) in [(60.0, "60"), (1.0 / 60.0, "0.016666666666666666")] {
+        for seed in 1..=4 {
+            let mut rows = Made { samples: 2000, seed, ..GOOD }.rows(&motions(seed, 0.7));
+            rows.iter_mut().for_each(|row| row[0] /= unit_s);
+            write_log(&directory, "log.csv", &rows);
+            let (code, text) = said(&directory, &["--train", "log.csv"]);
+            assert_eq!(code, Some(2), "{seed}: {text}");
+            let hint = format!(r#"{{"t": {{"scale": {scale}}}}}"#);
+            assert!(text.contains(&hint), "{seed}: {text}");
+        }
+    }
+}
+
 /// Slowed down ten times, a log leaves little, since nearly nothing accelerates, and its encoders
 /// ask for a filter that is far too high for what it is. What it would leave in its own time shows
 /// behind lower ones. The model's masses are 30 % off.

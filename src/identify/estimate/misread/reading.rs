@@ -7,6 +7,9 @@ use std::f64::consts::PI;
 /// Units that are another power of ten.
 const POWERS: [f64; 6] = [1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3];
 
+/// Minutes and hours, ticks of 60 a second, and seconds taken for these.
+const OF_TIMES: [f64; 4] = [60.0, 3600.0, 1.0 / 60.0, 1.0 / 3600.0];
+
 /// Degrees that were taken for radians, and radians for degrees.
 pub(super) const OF_ANGLES: [f64; 2] = [PI / 180.0, 180.0 / PI];
 
@@ -127,7 +130,7 @@ pub(super) fn hypotheses(
         Angles, Exchanged, Lengths, Position, Time, Torque, Torques, TorquesOfMotors,
     };
     let joints = &model.joints;
-    let mut tried: Vec<Misreading> = POWERS.into_iter().map(Time).collect();
+    let mut tried: Vec<Misreading> = POWERS.into_iter().chain(OF_TIMES).map(Time).collect();
     tried.extend(POWERS.into_iter().chain([-1.0]).map(Torques));
     if joints.iter().any(is_geared) {
         tried.extend([true, false].map(TorquesOfMotors));

@@ -41,6 +41,9 @@ const NEIGHBOURS: f64 = 1.5;
 /// A larger share of what is known of a direction is taken for this one.
 const MOST_LEVERAGE: f64 = 0.95;
 
+/// The normal deviate below which one of twenty lies.
+const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
+
 /// Neighbouring parts are taken to be no more alike than this.
 const MOST_ALIKE: f64 = 0.8;
 
@@ -171,6 +174,13 @@ pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[usize]) -> DMatrix
     (sum + beside) / (1.0 - alike.clamp(0.0, MOST_ALIKE))
 }
 
+/// What chance leaves of a variance with so many degrees of freedom, less in one of twenty cases
+/// (Wilson and Hilferty 1931).
+pub(super) fn least_by_chance(degrees_of_freedom: f64) -> f64 {
+    let spread = 2.0 / (9.0 * degrees_of_freedom.max(1.0));
+    (1.0 - spread + ONE_OF_TWENTY * spread.sqrt()).max(0.0).powi(3)
+}
+
 /// The factor of a standard error that makes a 95 % interval, by Student's distribution (Cornish
 /// and Fisher's series; better than 1 % from 4 degrees of freedom on).
 pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
@@ -210,6 +220,14 @@ mod tests {
             let distances = (1..PARTS).map(|d| (PARTS - d) as f64 * alike.powi(d as i32));
             let variance = PARTS as f64 + 2.0 * distances.sum::<f64>();
             assert!((mean / variance - 1.0).abs() < 0.12, "{alike}: {mean} {variance}");
+        }
+    }
+
+    /// Tables of the distribution of squares, 5 %.
+    #[test]
+    fn what_chance_leaves_is_that_of_tables() {
+        for (nu, printed) in [(5.0, 1.145), (10.0, 3.940), (30.0, 18.493)] {
+            assert!((least_by_chance(nu) * nu / printed - 1.0).abs() < 0.02, "{nu}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! The estimates: one loop of weighting and solving, by method.
 
 use super::condensed::{Condensed, Rows};
-use super::errors::{Errors, FEWEST_PARTS, Problem};
+use super::errors::{Errors, FEWEST_PARTS, Problem, least_by_chance};
 use super::half_cutoff::Change;
 use super::instruments;
 use super::left_out::{LeftOut, SlowRows};
@@ -23,7 +23,7 @@ use std::fmt;
 const ROWS_OF_ONE: usize = 3;
 
 /// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
-/// those that the filter's correlation makes, of which chance may show less.
+/// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
 
 /// How base parameters are estimated.
@@ -198,7 +198,8 @@ pub fn estimate(
             covariance *= wider;
             degrees_of_freedom = free;
         } else {
-            at_least(&mut covariance, &(first.solution.covariance() * wider));
+            let by_chance = least_by_chance(degrees_of_freedom);
+            at_least(&mut covariance, &(first.solution.covariance() * wider * by_chance));
         }
     }
     if options.method == Method::Ordinary && options.errors == Errors::Classical {

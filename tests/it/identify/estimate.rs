@@ -394,3 +394,25 @@ fn short_logs_do_not_seem_better_than_they_are() {
     let spread = (squares / f64::from(count)).sqrt();
     assert!((0.85..1.15).contains(&spread), "{spread}");
 }
+
+/// White noise, of which errors are known in closed form: 25 parts of a log say as much in the
+/// mean, though by chance of some parameters less.
+#[test]
+fn errors_of_few_parts_are_as_large_in_the_mean_as_they_are() {
+    let robot = bare("planar_2r");
+    let model = RegressionModel::new(&robot, INERTIAL, &[]).expect("a model");
+    let (mut sum, mut count) = (0.0, 0.0);
+    for seed in 0..60 {
+        let log = [Experiment { samples: 500, noise: 0.05, seed, friction: false }.run(&robot)];
+        let [known, found] = [Errors::Classical, Errors::Correlated].map(|errors| {
+            let found = run(&model, &log, &Options { errors, ..Options::default() });
+            parameters(&model, &found)
+        });
+        for (known, found) in known.iter().zip(&found) {
+            sum += found.std.expect("excited") / known.std.expect("excited");
+            count += 1.0;
+        }
+    }
+    let ratio: f64 = sum / count;
+    assert!((0.94..1.06).contains(&ratio), "{ratio}");
+}

@@ -45,6 +45,9 @@ impl Conditioned {
             decimation: self.decimation,
             filter: self.filter.clone(),
             resting: self.resting.clone(),
+            position_noise: self.position_noise.clone(),
+            encoders: self.encoders.clone(),
+            laps: self.laps,
             ..Self::default()
         }
     }

@@ -1,7 +1,7 @@
 //! Where the sign of a joint's rate says little: near its reversals, and while it hardly moves; and
 //! functions of a rate that pass the filter as the torque does.
 
-use super::{Butterworth, Conditioned, Decimator, Encoder, STENCIL, acceleration, rate};
+use super::{Butterworth, Conditioned, Decimator, STENCIL, acceleration, rate};
 use std::ops::Range;
 
 /// Samples that are left within which a decimated one has nearly all of its weight.
@@ -11,9 +11,6 @@ const WEIGHED: f64 = 2.5;
 /// period of the filter's cutoff.
 const NOISE: f64 = 3.0;
 const STEPS: f64 = 2.0;
-
-/// Steps of an encoder in a period of the filter's cutoff below which the filter follows them.
-const FOLLOWED: f64 = 10.0;
 
 /// Periods of the filter's cutoff that a rest takes, at least.
 const RESTS: usize = 6;
@@ -45,17 +42,6 @@ impl Conditioned {
     fn usual_rate(&self, joint: usize) -> f64 {
         let squares = self.range.clone().map(|at| self.rate_at(joint, at).powi(2)).sum::<f64>();
         (squares / self.range.len().max(1) as f64).sqrt()
-    }
-
-    /// Whether the filter follows the steps of an encoder: a joint that moves makes few of them in
-    /// a period of the cutoff.
-    pub(crate) fn follows_steps(&self) -> bool {
-        let Some(filter) = &self.filter else { return false };
-        let follows = |(joint, encoder): (usize, &Option<Encoder>)| {
-            let Some(one) = encoder.as_ref().filter(|_| !self.resting[joint]) else { return false };
-            self.usual_rate(joint) * self.step_s < FOLLOWED * one.step * filter.cutoff()
-        };
-        self.encoders.iter().enumerate().any(follows)
     }
 
     /// A function of a joint's rate at samples of `range`, which must lie within

@@ -140,17 +140,18 @@ impl Condensed {
         }
     }
 
-    /// One of the logs alone.
-    pub(super) fn of_log(&self, log: usize) -> Self {
-        let own: Vec<usize> =
-            (0..self.parts.len()).filter(|&part| self.log_of_part[part] == log).collect();
+    /// Some of the logs alone.
+    pub(super) fn of_logs(&self, logs: &[usize]) -> Self {
+        let number = |part: usize| logs.iter().position(|log| *log == self.log_of_part[part]);
+        let own: Vec<(usize, usize)> =
+            (0..self.parts.len()).filter_map(|part| Some((part, number(part)?))).collect();
         Self {
             pattern: self.pattern.clone(),
-            parts: own.iter().map(|&part| self.parts[part].clone()).collect(),
-            log_of_part: vec![0; own.len()],
-            end_s: own.iter().map(|&part| self.end_s[part]).collect(),
-            independent: vec![self.independent[log]],
-            row_s: vec![self.row_s[log]],
+            parts: own.iter().map(|&(part, _)| self.parts[part].clone()).collect(),
+            log_of_part: own.iter().map(|&(_, log)| log).collect(),
+            end_s: own.iter().map(|&(part, _)| self.end_s[part]).collect(),
+            independent: logs.iter().map(|&log| self.independent[log]).collect(),
+            row_s: logs.iter().map(|&log| self.row_s[log]).collect(),
             rank: self.rank,
         }
     }
@@ -171,6 +172,18 @@ impl Condensed {
                 sum.merge(own);
             }
         }
+    }
+
+    /// The mean of what phi leaves of each joint's torque in some logs.
+    pub(super) fn means(&self, logs: &[usize], phi: &[f64]) -> Vec<f64> {
+        let own = self.parts.iter().zip(&self.log_of_part).filter(|(_, log)| logs.contains(log));
+        let of = |joint: usize| {
+            let phi = self.of_joint(joint, phi);
+            let all = own.clone().map(|(part, _)| (part[joint].rows(), part[joint].sum(&phi)));
+            let (rows, sum) = all.fold((0, 0.0), |(n, s), (rows, sum)| (n + rows, s + sum));
+            sum / rows.max(1) as f64
+        };
+        (0..self.pattern.len()).map(of).collect()
     }
 
     /// For each log the triangles of its joints, of all parts.

@@ -4,16 +4,18 @@
 //! others: it is not its noise that tells it, but that its own estimate leaves much less (a test
 //! of equal parameters, Chow 1960, with samples as independent as the filter leaves them).
 
+use super::comparison::Comparison;
 use super::condensed::Condensed;
 use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::LeftOut;
 use super::noise_bias::noise_squares;
-use super::own_estimate::{Own, Tested, of_joint, spread, total};
+use super::own_estimate::{Own, Tested, of_joint, spread};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 use std::fmt;
 
 /// What own parameters explain must be this share of a joint's torque, as root of mean square, and
@@ -28,9 +30,7 @@ const OF_CHANCE: f64 = 25.0;
 
 /// and what noise of the positions makes of it, in variance: to follow that, parameters of a log's
 /// own are biased. That noise is known to a few times, since steps of an encoder may beat with the
-/// samples: what is less than these is asked behind half the cutoff, too, and where the filter
-/// follows the steps nothing is.
-const OF_NOISE: f64 = 4.0;
+/// samples.
 const OF_BEATS: f64 = 10.0;
 
 /// Samples of a log that are looked at behind half the cutoff, before decimation.
@@ -55,7 +55,7 @@ pub struct ContradictingLog {
 pub enum Standing {
     /// The others: they are more, and longer together, than those that contradict them.
     OfFew,
-    /// The same, but parameters are those of all logs alike.
+    /// The same, but parameters are not theirs alone.
     OfFewFollowed,
     /// Neither.
     Undecided,
@@ -120,10 +120,9 @@ impl fmt::Display for ContradictingLog {
         )?;
         match standing {
             Standing::OfFew => write!(f, "Parameters are those of the others; leave it out."),
-            Standing::OfFewFollowed => write!(
-                f,
-                "Parameters are those of all logs alike, as --method ols has them; leave it out."
-            ),
+            Standing::OfFewFollowed => {
+                write!(f, "Parameters are not those of the others alone: leave it out.")
+            }
             Standing::HeldOut => write!(f, "Which of them are right cannot be told."),
             Standing::Undecided => write!(
                 f,
@@ -135,49 +134,70 @@ impl fmt::Display for ContradictingLog {
     }
 }
 
-/// The logs that contradict the others, of some: those whose own noise is large beside what the
-/// others agree on, so that an estimate of all rows alike is asked with weights, too.
+/// The logs that contradict the others, of some, one after another: each is held against what the
+/// others say without it, and of those that contradict them the one without which the others agree
+/// best is left out, until the others agree.
 pub(in crate::identify) fn contradicting_logs(
     model: &RegressionModel,
     (logs, shown): (&[Conditioned], &[usize]),
     (found, options): (&Estimate, &Options),
 ) -> Vec<ContradictingLog> {
-    if shown.len() < 2 || found.condensed.rank != model.rank() {
+    if logs.len() < 2 || found.condensed.rank != model.rank() {
         return Vec::new();
     }
+    // those whose own noise is large beside what the others agree on: an estimate of all rows alike
+    // is asked with weights, too
     let is_alike = options.method == Method::Ordinary;
-    // by other methods rows are weighted one by one
-    let is_by_row = matches!(options.method, Method::Robust(_) | Method::Likelihood);
-    let plain = is_by_row.then(|| Condensed::counted(model, (logs, &found.left_out)));
-    let condensed = plain.as_ref().unwrap_or(&found.condensed);
-    let start = found.solution.phi.as_slice();
-    let settled = || Fit { options, start }.settled(condensed, true);
-    let weighted = (is_alike || is_by_row).then(settled);
-    let (phi, weights) = match &weighted {
-        Some(weighted) => (&weighted.solution.phi, &weighted.weights),
-        None => (&found.solution.phi, &found.weights),
-    };
-    let left_out = &found.left_out;
-    let of_logs = (phi.as_slice(), 1);
-    let sums = |log: usize| left_sums(model, ((log, &logs[log]), left_out), of_logs);
-    let sums: Vec<Vec<Vec<[f64; 2]>>> = (0..logs.len()).map(sums).collect();
-    let told = shown.iter().filter_map(|&log| {
-        let one = Tested::new(condensed, log, &weights[log]);
-        let others = shown.iter().filter(|&&other| other != log).map(|&other| &sums[other]);
-        let claim = Claim { model, phi, covariance: None, left_out, means: &means(others) };
-        Some((log, claim.against((log, logs), one)?))
-    });
-    let mut told: Vec<(usize, ContradictingLog)> = told.collect();
+    let condensed = &*plain(model, logs, (found, options));
+    let fit = Fit { options, start: found.solution.phi.as_slice() };
+    let weighted = (is_alike || is_by_row(options)).then(|| fit.settled(condensed, true).weights);
+    let weights = weighted.as_ref().unwrap_or(&found.weights);
+    let noise_weights = if is_alike { &found.weights } else { weights };
+    let (left_out, noise) = (&found.left_out, (&found.noise_of_logs[..], &noise_weights[..]));
+    let comparison = Comparison { model, logs, condensed, weights, fit, left_out, noise };
+    let mut agreeing = shown.to_vec();
+    let mut told: Vec<(usize, ContradictingLog)> = Vec::new();
+    while agreeing.len() > 1 {
+        let mut odd = comparison.odd(&agreeing);
+        if agreeing.len() > 2 && odd.len() > 1 {
+            let best = comparison.oddest(&agreeing, &odd);
+            odd.retain(|(log, _)| *log == best);
+        }
+        agreeing.retain(|log| odd.iter().all(|(other, _)| other != log));
+        told.extend(odd.iter().cloned());
+        if odd.is_empty() {
+            break;
+        }
+    }
+    let noisy = (0..logs.len()).filter(|log| !agreeing.is_empty() && !shown.contains(log));
+    told.extend(noisy.filter_map(|log| Some((log, comparison.against(log, &agreeing)?))));
+    told.sort_by_key(|(log, _)| *log);
     let time_s = |log: usize| logs[log].range.len() as f64 * logs[log].step_s;
-    let [all, few] = [
-        shown.iter().map(|&log| time_s(log)).sum::<f64>(),
-        told.iter().map(|(log, _)| time_s(*log)).sum(),
-    ];
-    if 2 * told.len() < shown.len() && 2.0 * few < all {
-        let standing = if is_alike { Standing::OfFewFollowed } else { Standing::OfFew };
+    let [all, few] =
+        [(0..logs.len()).map(time_s).sum::<f64>(), told.iter().map(|(log, _)| time_s(*log)).sum()];
+    if !told.is_empty() && 2 * told.len() < logs.len() && 2.0 * few < all {
+        let is_followed = !comparison.is_of(&agreeing, &found.solution.phi);
+        let standing = if is_followed { Standing::OfFewFollowed } else { Standing::OfFew };
         told.iter_mut().for_each(|(_, one)| one.standing = standing);
     }
     told.into_iter().map(|(_, one)| one).collect()
+}
+
+/// Whether rows are weighted one by one.
+fn is_by_row(options: &Options) -> bool {
+    matches!(options.method, Method::Robust(_) | Method::Likelihood)
+}
+
+/// The rows of an estimate as they were measured.
+fn plain<'a>(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (found, options): (&'a Estimate, &Options),
+) -> Cow<'a, Condensed> {
+    match is_by_row(options) {
+        true => Cow::Owned(Condensed::counted(model, (logs, &found.left_out))),
+        false => Cow::Borrowed(&found.condensed),
+    }
 }
 
 /// The logs for validation that contradict those for the estimate: parameters are taken to be
@@ -194,96 +214,86 @@ pub(in crate::identify) fn contradicting_held_out(
     let condensed = Condensed::counted(model, (logs, &left_out));
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let own = (found.solution.phi.as_slice(), 1);
-    let sums = |both: (usize, &Conditioned)| left_sums(model, (both, &found.left_out), own);
-    let means = &means(&train.iter().enumerate().map(sums).collect::<Vec<_>>());
+    let all: Vec<usize> = (0..train.len()).collect();
+    let train = plain(model, train, (found, options));
+    let means = &train.means(&all, found.solution.phi.as_slice());
     let of = |at: usize| {
         let one = Tested::new(&condensed, at, &weights);
         let phi = &one.with_own(&found.solution);
-        let (covariance, left_out) = (Some(&found.covariance), &left_out);
-        let told = Claim { model, phi, covariance, left_out, means }.against((at, logs), one)?;
+        let (covariance, left_out) = (&found.covariance, &left_out);
+        let told = Claim { model, phi, covariance, left_out, means }.against((at, logs), &one)?;
         Some(ContradictingLog { standing: Standing::HeldOut, ..told })
     };
     (0..logs.len()).filter_map(of).collect()
 }
 
 /// What others say of a log.
-struct Claim<'a> {
-    model: &'a RegressionModel,
-    phi: &'a DVector<f64>,
-    /// That of phi, if it is from other logs alone.
-    covariance: Option<&'a DMatrix<f64>>,
+pub(super) struct Claim<'a> {
+    pub(super) model: &'a RegressionModel,
+    pub(super) phi: &'a DVector<f64>,
+    /// That of phi.
+    pub(super) covariance: &'a DMatrix<f64>,
     /// The rows of logs that are left out.
-    left_out: &'a LeftOut,
+    pub(super) left_out: &'a LeftOut,
     /// The mean of what phi leaves of each joint's torque in the other logs.
-    means: &'a [f64],
+    pub(super) means: &'a [f64],
 }
 
 impl Claim<'_> {
     /// Whether a log of this number contradicts it.
-    fn against(
+    pub(super) fn against(
         &self,
         (at, logs): (usize, &[Conditioned]),
-        one: Tested<'_>,
+        one: &Tested<'_>,
     ) -> Option<ContradictingLog> {
-        let Self { model, phi, .. } = *self;
         let log = &logs[at];
-        // where the sign of a rate is not known, a constant may be friction
-        let is_known = |joint: usize| !log.resting[joint] && log.unsure_signs(joint).is_none();
-        let signs: Vec<bool> = (0..model.joints.len()).map(is_known).collect();
-        let mut told = self.joints((at, log), (&one, &signs));
-        if !told.is_empty() {
-            let noise = noise_squares(model, ((at, log), self.left_out), phi);
-            let is_sure = |one: &Told| one.explained > OF_BEATS * noise[one.joint];
-            let lower = match log.follows_steps() || told.iter().all(is_sure) {
-                true => Vec::new(),
-                false => self.behind_half_the_cutoff((at, logs), (one.weights, &signs)),
-            };
-            told.retain(|one| {
-                let is_less = one.explained > OF_NOISE * noise[one.joint];
-                is_sure(one) || (is_less && lower.iter().any(|other| other.joint == one.joint))
-            });
-        }
         let named = |Told { joint, left, own, .. }: Told| ContradictingJoint {
-            joint: model.joints[joint].name.clone(),
+            joint: self.model.joints[joint].name.clone(),
             left,
             own,
-            like: likeness(model, log, (joint, phi.as_slice())),
+            like: likeness(self.model, log, (joint, self.phi.as_slice())),
         };
-        let joints: Vec<ContradictingJoint> = told.into_iter().map(named).collect();
+        let joints: Vec<_> = self.told((at, logs), one).into_iter().map(named).collect();
         let (file, standing) = (log.file.clone(), Standing::Undecided);
         (!joints.is_empty()).then_some(ContradictingLog { file, joints, standing })
     }
 
-    /// The joints that tell it behind half the cutoff of the log, where next to no noise of the
-    /// positions is left: of a long log in its first piece.
-    fn behind_half_the_cutoff(
-        &self,
-        (at, logs): (usize, &[Conditioned]),
-        (weights, signs): (&[f64], &[bool]),
-    ) -> Vec<Told> {
+    /// The joints that tell it. Those of whose torque noise of the positions may make as much, or
+    /// as much as would tell it, are asked behind half the cutoff, which leaves less of it, and so
+    /// on: of a long log in its first piece.
+    fn told(&self, (at, logs): (usize, &[Conditioned]), one: &Tested<'_>) -> Vec<Told> {
         let log = &logs[at];
+        // where the sign of a rate is not known, a constant may be friction
+        let is_known = |joint: usize| !log.resting[joint] && log.unsure_signs(joint).is_none();
+        let signs: Vec<bool> = (0..self.model.joints.len()).map(is_known).collect();
+        let mut told = self.joints((one, &signs));
+        let noise = noise_squares(self.model, ((at, log), self.left_out), self.phi);
+        told.retain(|told| told.explained > OF_BEATS * noise[told.joint]);
+        let is_noisy = |joint: usize| {
+            let torque = one.triangles[joint].target_squares();
+            OF_BEATS * noise[joint] > OF_TORQUE.powi(2) * torque
+        };
+        let is_open = |joint: usize| is_noisy(joint) && told.iter().all(|one| one.joint != joint);
+        let open: Vec<usize> = (0..signs.len()).filter(|&joint| is_open(joint)).collect();
         let piece = log.pieces(SAMPLES)[0];
-        let Some([_, lower]) = log.halved(piece) else { return Vec::new() };
-        let first = piece.first * log.decimation + lower.range.start - log.range.start;
-        let place = first..first + lower.range.len();
-        let left_out = &self.left_out.of_halved(logs, &[(at, place)]);
-        let lower = &[lower];
-        let condensed = Condensed::counted(self.model, (lower, left_out));
-        let one = Tested::new(&condensed, 0, weights);
-        Claim { left_out, ..*self }.joints((0, &lower[0]), (&one, signs))
+        let halved = if open.is_empty() { None } else { log.halved(piece) };
+        if let Some([_, lower]) = halved {
+            let first = piece.first * log.decimation + lower.range.start - log.range.start;
+            let place = first..first + lower.range.len();
+            let left_out = &self.left_out.of_halved(logs, &[(at, place)]);
+            let lower = &[lower];
+            let condensed = Condensed::counted(self.model, (lower, left_out));
+            let one = Tested::new(&condensed, 0, one.weights);
+            let lower = Claim { left_out, ..*self }.told((0, lower), &one);
+            told.extend(lower.into_iter().filter(|one| open.contains(&one.joint)));
+        }
+        told
     }
 
     /// The joints of whose torque an estimate of a log's own, or a constant beside what others
     /// have, leaves much less than phi does.
-    fn joints(
-        &self,
-        (at, log): (usize, &Conditioned),
-        (one, signs): (&Tested<'_>, &[bool]),
-    ) -> Vec<Told> {
+    fn joints(&self, (one, signs): (&Tested<'_>, &[bool])) -> Vec<Told> {
         let Self { model, phi, covariance, .. } = *self;
-        let parts = one.condensed.parts.len();
-        let sums = left_sums(model, ((at, log), self.left_out), (phi.as_slice(), parts));
         let pattern = model.pattern();
         let own = one.own(phi.as_slice());
         let of_own = if one.has_parts() { OF_OWN } else { OF_OWN_ALONE };
@@ -291,8 +301,8 @@ impl Claim<'_> {
             let rows = triangle.rows() as f64;
             let all = triangle.target_squares();
             let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
-            let unsure = covariance.map_or(0.0, |one| spread(triangle, &pattern[joint], one));
-            let constant = one.constant(left, (&sums[joint], self.means[joint]));
+            let unsure = spread(triangle, &pattern[joint], covariance);
+            let constant = one.constant(left, (joint, phi.as_slice(), self.means[joint]));
             let constant = signs[joint].then_some(constant);
             let told = |Own { squares, variance, chance }: &Own| {
                 let explained = (left - squares).max(0.0);
@@ -308,39 +318,6 @@ impl Claim<'_> {
         };
         one.triangles.iter().enumerate().filter_map(of).collect()
     }
-}
-
-/// For each joint, and so many parts of a log, rows that count, and the sum of what phi leaves of
-/// its torque there.
-fn left_sums(
-    model: &RegressionModel,
-    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
-    (phi, parts): (&[f64], usize),
-) -> Vec<Vec<[f64; 2]>> {
-    let own: Vec<Vec<f64>> = model.pattern().iter().map(|places| of_joint(places, phi)).collect();
-    let mut sums = vec![vec![[0.0; 2]; parts]; own.len()];
-    BlockMaker::new(model, log).for_each(|block| {
-        for (joint, sums) in sums.iter_mut().enumerate() {
-            let Some(left) = block.residual(joint, &own[joint]) else { continue };
-            let counts = left_out.counts((number, log), joint, (block.first, block.samples));
-            let counted = |at: &usize| counts.as_ref().is_none_or(|counts| counts[*at]);
-            for at in (0..left.len()).filter(counted) {
-                let [rows, sum] = &mut sums[(block.first + at) * parts / log.samples()];
-                (*rows, *sum) = (*rows + 1.0, *sum + left[at]);
-            }
-        }
-    });
-    sums
-}
-
-/// The mean of what is left of each joint's torque in some logs.
-fn means<'a>(logs: impl IntoIterator<Item = &'a Vec<Vec<[f64; 2]>>>) -> Vec<f64> {
-    let mut all: Vec<[f64; 2]> = Vec::new();
-    for log in logs {
-        all.resize(log.len(), [0.0; 2]);
-        all.iter_mut().zip(log).for_each(|(all, own)| *all = total(&[*all, total(own)]));
-    }
-    all.into_iter().map(|[rows, sum]| sum / rows.max(1.0)).collect()
 }
 
 /// A joint that tells a contradiction.

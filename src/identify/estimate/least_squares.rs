@@ -403,14 +403,6 @@ impl Estimate {
 
     /// The deviation of each joint's residuals in all logs; 0 where no torque was measured.
     pub fn noise_of_joints(&self) -> Vec<f64> {
-        let (condensed, n) = (&self.condensed, self.condensed.pattern.len());
-        let mut sums = vec![[0.0; 2]; n];
-        for (part, &log) in condensed.parts.iter().zip(&condensed.log_of_part) {
-            for (joint, sum) in sums.iter_mut().enumerate() {
-                let rows = part[joint].rows() as f64;
-                *sum = [sum[0] + rows, sum[1] + rows * self.noise[log][joint].powi(2)];
-            }
-        }
-        sums.iter().map(|[rows, squares]| (squares / rows.max(1.0)).sqrt()).collect()
+        self.condensed.noise_of_joints(&self.noise)
     }
 }

@@ -11,6 +11,7 @@
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
+mod comparison;
 mod condensed;
 mod consistent;
 mod contradiction;

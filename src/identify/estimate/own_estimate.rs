@@ -31,7 +31,7 @@ pub(super) struct Own {
 
 impl<'a> Tested<'a> {
     pub(super) fn new(condensed: &Condensed, log: usize, weights: &'a [f64]) -> Self {
-        let condensed = condensed.of_log(log);
+        let condensed = condensed.of_logs(&[log]);
         let triangles = condensed.whole().remove(0);
         Self { condensed, triangles, weights }
     }
@@ -80,19 +80,22 @@ impl<'a> Tested<'a> {
         own
     }
 
-    /// What a constant beside that of other logs leaves of a joint's torque, of whose squares phi
-    /// leaves `left`.
-    pub(super) fn constant(&self, left: f64, (parts, mean): (&[[f64; 2]], f64)) -> Own {
+    /// What a constant beside that of other logs, of mean `mean`, leaves of a joint's torque, of
+    /// whose squares phi leaves `left`.
+    pub(super) fn constant(&self, left: f64, (joint, phi, mean): (usize, &[f64], f64)) -> Own {
+        let phi = &of_joint(&self.condensed.pattern[joint], phi);
+        let sums = |triangle: &Triangle| [triangle.rows() as f64, triangle.sum(phi)];
         let independent = self.independent();
-        let [rows, sum] = total(parts);
+        let [rows, sum] = sums(&self.triangles[joint]);
         let own = sum / rows.max(1.0);
         let by = own - mean;
         let squares = left - by * (2.0 * sum - by * rows);
         let variance = squares * independent / (independent * rows - 1.0).max(f64::MIN_POSITIVE);
-        let apart = parts.iter().map(|[rows, sum]| DVector::from_element(1, sum - own * rows));
+        let parts = self.condensed.parts.iter().map(|part| sums(&part[joint]));
+        let apart = parts.map(|[rows, sum]| DVector::from_element(1, sum - own * rows));
         let apart: Vec<DVector<f64>> = apart.collect();
         let by_parts = match self.has_parts() {
-            true => long_run(&apart, &vec![0; parts.len()])[(0, 0)] / rows.max(1.0),
+            true => long_run(&apart, &vec![0; apart.len()])[(0, 0)] / rows.max(1.0),
             false => 0.0,
         };
         Own { squares, variance, chance: by_parts.max(variance / independent) }
@@ -129,9 +132,4 @@ pub(super) fn spread(triangle: &Triangle, places: &[usize], covariance: &DMatrix
     let r = triangle.matrix().view((0, 0), (places.len(), places.len()));
     let own = covariance.select_rows(places).select_columns(places);
     (r * own * r.transpose()).trace()
-}
-
-/// Rows, and the sum of what is left.
-pub(super) fn total(parts: &[[f64; 2]]) -> [f64; 2] {
-    parts.iter().fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]])
 }

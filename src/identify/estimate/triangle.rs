@@ -4,20 +4,23 @@
 //! R^T R = [W | y]^T [W | y], without the squares ever being formed. Triangles of parts of a log
 //! make the triangle of the whole.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// R of the rows so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     /// Columns of W, and y: square, upper triangular.
     r: DMatrix<f64>,
+    /// Sums of the columns of W, and y.
+    sums: DVector<f64>,
     rows: usize,
 }
 
 impl Triangle {
     /// No rows of `width` columns.
     pub fn new(width: usize) -> Self {
-        Self { r: DMatrix::zeros(width + 1, width + 1), rows: 0 }
+        let size = width + 1;
+        Self { r: DMatrix::zeros(size, size), sums: DVector::zeros(size), rows: 0 }
     }
 
     /// Number of rows condensed.
@@ -48,6 +51,7 @@ impl Triangle {
             let mut target = stacked.column_mut(index);
             target.rows_mut(0, size).copy_from(&self.r.column(index));
             target.rows_mut(size, added).as_mut_slice().copy_from_slice(column);
+            self.sums[index] += column.iter().sum::<f64>();
         }
         self.r = upper(stacked);
         self.rows += added;
@@ -60,6 +64,7 @@ impl Triangle {
         stacked.rows_mut(0, size).copy_from(&self.r);
         stacked.rows_mut(size, size).copy_from(&other.r);
         self.r = upper(stacked);
+        self.sums += &other.sums;
         self.rows += other.rows;
     }
 
@@ -70,19 +75,26 @@ impl Triangle {
         for (to, &from) in all.iter().enumerate() {
             stacked.set_column(to, &self.r.column(from));
         }
-        Self { r: upper(stacked), rows: self.rows }
+        Self { r: upper(stacked), sums: self.sums.select_rows(&all), rows: self.rows }
     }
 
     /// Turns y round.
     pub fn negate_target(&mut self) {
         let last = self.width();
         self.r.column_mut(last).neg_mut();
+        self.sums[last] = -self.sums[last];
     }
 
     /// |W phi - y|^2.
     pub fn squares(&self, phi: &[f64]) -> f64 {
         let residual = self.residual(phi);
         residual.iter().map(|entry| entry * entry).sum()
+    }
+
+    /// The sum of y - W phi.
+    pub(super) fn sum(&self, phi: &[f64]) -> f64 {
+        let fitted: f64 = self.sums.iter().zip(phi).map(|(sum, phi)| sum * phi).sum();
+        self.sums[self.width()] - fitted
     }
 
     /// Q^T (y - W phi).
@@ -136,11 +148,13 @@ mod tests {
         };
         let squares: f64 = (0..90).map(|k| residual(k).powi(2)).sum();
         let score: f64 = (0..90).map(|k| columns[1][k] * residual(k)).sum();
+        let sum: f64 = (0..90).map(residual).sum();
         first.merge(&second);
         assert_eq!(first.rows(), 90);
         for triangle in [&whole, &first] {
             assert!((triangle.squares(&phi) - squares).abs() < 1e-10);
             assert!((triangle.score(&phi)[1] - score).abs() < 1e-10);
+            assert!((triangle.sum(&phi) - sum).abs() < 1e-10);
         }
     }
 }

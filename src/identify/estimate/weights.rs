@@ -66,6 +66,13 @@ impl Fit<'_> {
         best
     }
 
+    /// The same, from weights that are not far.
+    pub(super) fn settled_from(&self, condensed: &Condensed, weights: ByLog) -> Settled {
+        let triangles = condensed.whole();
+        let first = self.weighed(condensed, &triangles, weights);
+        self.settle(condensed, &triangles, first)
+    }
+
     fn weighed(
         &self,
         condensed: &Condensed,
@@ -199,6 +206,19 @@ impl Condensed {
         };
         let sums: ByLog = scales.iter().zip(&free).map(of_log).collect();
         steady(&sums, &free)
+    }
+
+    /// The deviation of each joint's residuals in all logs, of those in each; 0 where no torque was
+    /// measured.
+    pub(super) fn noise_of_joints(&self, noise: &ByLog) -> Vec<f64> {
+        let mut sums = vec![[0.0; 2]; self.pattern.len()];
+        for (part, &log) in self.parts.iter().zip(&self.log_of_part) {
+            for (joint, sum) in sums.iter_mut().enumerate() {
+                let rows = part[joint].rows() as f64;
+                *sum = [sum[0] + rows, sum[1] + rows * noise[log][joint].powi(2)];
+            }
+        }
+        sums.iter().map(|[rows, squares]| (squares / rows.max(1.0)).sqrt()).collect()
     }
 
     /// 1 / noise; a joint without noise counts like one with a millionth of its torque.

@@ -52,7 +52,7 @@ fn a_log_of_another_gain_is_named_and_not_followed() {
         let (_, text) = said(&directory, &[&ALL[..], &["--method", "ols"]].concat());
         assert!(text.contains("odd.csv contradicts the other logs"), "{seed}: {text}");
         assert_eq!(text.matches("contradict").count(), 1, "{seed}: {text}");
-        assert!(text.contains("Parameters are those of all logs alike"), "{seed}: {text}");
+        assert!(text.contains("Parameters are not those of the others alone"), "{seed}: {text}");
     }
 }
 
@@ -79,6 +79,59 @@ fn a_log_of_another_gain_is_named_beside_as_much_noise() {
             assert_eq!(json.contains("odd.csv contradicts the other logs"), gain > 1.0, "{text}");
             assert_eq!(json.matches("contradict").count(), usize::from(gain > 1.0), "{text}");
         }
+    }
+}
+
+/// Logs by their seed, gain, steps and noise of the torques.
+fn write_as(directory: &Directory, name: &str, (made, gain): (Made, f64), bits: i32) {
+    let mut rows = made.rows(&motions(made.seed, 0.7));
+    round_positions(&mut rows, TAU / 2.0_f64.powi(bits));
+    rows.iter_mut().flat_map(|row| &mut row[3..]).for_each(|torque| *torque *= gain);
+    write_log(directory, name, &rows);
+}
+
+/// A log whose encoders are so coarse, behind the filter that the others leave it, that noise of
+/// its positions makes most of it: behind a lower one its gain is seen. Without it nothing is told.
+#[test]
+fn a_log_of_another_gain_is_named_beside_noise_of_its_positions() {
+    let directory = Directory::new("contradiction-gain-steps");
+    write_arm(&directory, None);
+    for seed in 1..=6 {
+        let fine = Made { step_s: 0.002, samples: 5000, torque_noise: 0.02, seed, ..GOOD };
+        let steps = Made { step_s: 0.001, samples: 8000, seed: 3 * seed, ..fine };
+        write_as(&directory, "one.csv", (Made { seed: 3 * seed + 1, ..fine }, 1.0), 20);
+        write_as(&directory, "other.csv", (Made { seed: 3 * seed + 2, ..fine }, 1.0), 20);
+        for gain in [1.0, 1.2] {
+            write_as(&directory, "odd.csv", (steps, gain), 12);
+            let (code, text) = said(&directory, &ALL);
+            assert_eq!(code, Some(i32::from(gain > 1.0)), "{seed}: {text}");
+            let json = text.replace('\n', " ");
+            assert_eq!(json.contains("odd.csv contradicts the other logs"), gain > 1.0, "{text}");
+            assert_eq!(json.matches("contradict").count(), usize::from(gain > 1.0), "{text}");
+        }
+    }
+}
+
+/// One log that is far more precise than two others pulls the estimate to its own gain: it is
+/// the one that is named, and that parameters are its own is said.
+#[test]
+fn a_precise_log_of_another_gain_does_not_accuse_the_others() {
+    let directory = Directory::new("contradiction-precise");
+    write_arm(&directory, None);
+    for seed in 1..=6 {
+        let noisy = Made { step_s: 0.002, samples: 3500, torque_noise: 0.5, seed, ..GOOD };
+        let precise = Made { samples: 5000, torque_noise: 0.01, seed: 3 * seed, ..noisy };
+        write_as(&directory, "one.csv", (Made { seed: 3 * seed + 1, ..noisy }, 1.0), 16);
+        write_as(&directory, "other.csv", (Made { seed: 3 * seed + 2, ..noisy }, 1.0), 16);
+        write_as(&directory, "odd.csv", (precise, 1.2), 18);
+        let (code, text) = said(&directory, &ALL);
+        assert_eq!(code, Some(1), "{seed}: {text}");
+        let json = text.replace('\n', " ");
+        assert!(json.contains("odd.csv contradicts the other logs"), "{seed}: {text}");
+        assert_eq!(json.matches("contradict").count(), 1, "{seed}: {text}");
+        let is_followed = spread(&deviations(&text)) > 3.0;
+        let is_said = json.contains("not those of the others alone");
+        assert!(is_said || !is_followed, "{seed}: {text}");
     }
 }
 
@@ -192,7 +245,9 @@ fn of_two_logs_that_contradict_each_other_neither_is_believed() {
             assert_eq!(code, Some(i32::from(offset != 0.0)), "{seed}: {text}");
             assert_eq!(line.contains("which of them are right cannot be told"), offset != 0.0);
             if offset != 0.0 {
-                let told = line.split("as if ").nth(1).and_then(|one| one.split(' ').next());
+                // the other log may be told as another gain, in which an offset hides
+                let told = line.split("odd.csv and the other").nth(1).expect(&line);
+                let told = told.split("as if ").nth(1).and_then(|one| one.split(' ').next());
                 let told: f64 = told.and_then(|one| one.parse().ok()).expect(&line);
                 assert!((told.abs() / offset - 1.0).abs() < 0.2, "{seed}: {text}");
             }

@@ -62,6 +62,7 @@ fn torques([a, b]: [[f64; 3]; 2]) -> [f64; 2] {
 }
 
 /// How a log is made.
+#[derive(Clone, Copy)]
 pub(super) struct Made {
     pub(super) step_s: f64,
     pub(super) samples: usize,

@@ -29,6 +29,12 @@ const OTHER_WEIGHTS: f64 = 0.6;
 /// The share of what stays at a joint by which it changes by chance with whatever is fitted.
 const BY_CHANCE: f64 = 1e-3;
 
+/// The noise of a joint, which is hardly more than what is left of it `then`: laps in which a drive
+/// sticks by chance differ by more than noise.
+fn noise([left, noise]: [f64; 2]) -> f64 {
+    noise.min(QUIET * left)
+}
+
 /// By how much squares have become less at a joint, in units of noise. Logs that have hardly any
 /// show a drive that sticks as many times that: what changes by chance is the unit there.
 fn falls([before, noise]: [f64; 2], after: f64, [then, _]: [f64; 2]) -> f64 {
@@ -44,7 +50,7 @@ pub(super) fn closed(from: &[[f64; 2]], now: &[[f64; 2]], then: &[[f64; 2]]) -> 
     let own = || (0..closed.len()).filter(|&joint| closed[joint] > 0.1 * most);
     let sum: f64 = own().map(|joint| closed[joint]).sum();
     [from, now].map(|all| {
-        let excess = |joint: usize| falls(all[joint], all[joint][1], then[joint]).max(0.0);
+        let excess = |joint: usize| falls(all[joint], noise(then[joint]), then[joint]).max(0.0);
         let excess: f64 = own().map(excess).sum();
         if excess > 0.0 { sum / excess } else { 0.0 }
     })
@@ -203,7 +209,7 @@ impl Round<'_, '_> {
         let [from, now, then] =
             [self.before, &idle.held_out_residual, &best.held_out_residual].map(of);
         let [share, of_rest] = closed(&from, &now, &then);
-        let is_noise = |joint: usize| now[joint][0] < QUIET * now[joint][1];
+        let is_noise = |joint: usize| now[joint][0] < QUIET * noise(then[joint]);
         let closed_at = |joint: usize| falls(now[joint], then[joint][0], then[joint]);
         let most = (0..now.len()).max_by(|&a, &b| closed_at(a).total_cmp(&closed_at(b)));
         let mut runners_up: Vec<(usize, f64)> = trials

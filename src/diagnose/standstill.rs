@@ -1,13 +1,13 @@
 //! Where a drive rests between two motions.
 //!
 //! A drive that sticks is seen by its encoder as it is, and by a filter of positions as if it never
-//! stopped. While it rests its friction is what the other torques leave to it. What they are goes
-//! on when the drive stops, and its inertia needs no more of them: friction falls by that. Then it
-//! grows to where the drive leaves, and is on no side for long. Rates of a rest therefore change
-//! their sign all the time, so that a law of the sign has in the mean a torque that does the same.
-//! What the drive does below a step of its encoder is not seen: for laws of sticking it creeps by a
-//! step to where it moves next, as friction before sliding has it (Canudas de Wit, Olsson, Åström,
-//! Lischinsky 1995).
+//! stopped. While it rests its friction is whatever balances the other torques, up to where it
+//! leaves: no motion tells that, but the measured torque does. Rates of a rest therefore change
+//! their sign all the time, so that a law of the sign has in the mean a torque that balances, and
+//! no more than it has while the drive slides. What is needed beyond that is for laws of sticking:
+//! as long as it is, and the drive has not left, they are told that it creeps by a step of its
+//! encoder, below which nobody sees it, as friction before sliding has it (Canudas de Wit, Olsson,
+//! Åström, Lischinsky 1995).
 
 use super::signals::Signals;
 use std::ops::Range;
@@ -21,9 +21,15 @@ const LEAVES: f64 = 30.0;
 /// What two readings of one place may differ by, in steps.
 const SAME: f64 = 1.01;
 
-/// The deviation of friction from the straight line between its sides in the middle of a rest, over
-/// that of sliding.
+/// The deviation of what friction is at rest from what balances the torques by the model, over
+/// that of sliding: another effect that is missing changes the balance.
 const UNSURE: f64 = 0.4;
+
+/// The share of friction while it slides from which on a drive at rest may slide.
+const SLIDES: f64 = 0.9;
+
+/// Samples of the log by which the ends of a rest are not known.
+const EDGE: f64 = 2.0;
 
 /// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if what
 /// opposes its rate is, or if friction falls when it leaves.
@@ -39,12 +45,14 @@ pub(super) struct Rest {
     pub(super) time_s: Range<f64>,
     /// The directions in which the drive came and leaves, 1 or -1.
     directions: [f64; 2],
-    /// How much it was slowed down when it stopped [rad/s^2, m/s^2].
-    slowed: f64,
-    /// On which side its friction is when it has stopped, from -1 to 1.
-    stopped: f64,
+    /// On which side its friction is, from -1 to 1, at equal distances.
+    sides: Vec<f64>,
+    /// From when on it is on the side of sliding \[s\].
+    leaves_s: f64,
     /// How fast it would cover a step of its encoder meanwhile [rad/s, m/s].
     pub(super) creep: f64,
+    /// How well it is known when it began and ended \[s\].
+    edge_s: f64,
 }
 
 impl Rest {
@@ -63,21 +71,40 @@ impl Rest {
         let start = samples.start as f64 + count * (came / before).sqrt();
         let end = (samples.end - 1) as f64 - count * (left / after).powf(1.0 / POWER);
         let time_s = start_s + step_s * start..start_s + step_s * end.max(start + 1.0);
-        let slowed = 2.0 * before * step / (count * step_s).powi(2);
         let creep = step / (time_s.end - time_s.start);
-        Self { time_s, directions: moves.map(f64::signum), slowed, stopped: 0.0, creep }
+        let directions = moves.map(f64::signum);
+        let (leaves_s, sides) = (time_s.start, directions.to_vec());
+        Self { time_s, directions, sides, leaves_s, creep, edge_s: EDGE * step_s }
     }
 
-    /// Tells the inertia of the drive \[kg m^2, kg\] and its friction while it slides [N m, N].
-    pub(super) fn settle(&mut self, inertia: f64, friction: f64) {
-        let lost = inertia * self.slowed / friction;
-        let stopped = self.directions[0] * (1.0 - lost);
-        self.stopped = if friction > 0.0 { stopped.clamp(-1.0, 1.0) } else { 0.0 };
+    /// Tells on which side friction is, over what it is while the drive slides, at equal distances
+    /// from when it begins to when it ends.
+    pub(super) fn settle(&mut self, sides: &[f64]) {
+        self.sides = sides.iter().map(|side| side.clamp(-1.0, 1.0)).collect();
+        let holds = |side: &f64| side * self.directions[1] < SLIDES;
+        let held = self.sides.iter().rposition(holds).map_or(0, |last| last + 1);
+        let share = held.min(self.sides.len() - 1) as f64 / self.sides.len() as f64;
+        let Range { start, end } = self.time_s;
+        self.leaves_s = start + share * (end - start);
+        self.creep *= (end - start) / (end - self.leaves_s);
     }
 
-    /// Its first among so many times.
-    pub(super) fn first(&self, t: &[f64]) -> usize {
-        within(t, &self.time_s).start
+    /// Its samples among so many times.
+    pub(super) fn samples(&self, t: &[f64]) -> Range<usize> {
+        within(t, &self.time_s)
+    }
+
+    /// On which side friction is at a time \[s\] of the rest.
+    fn side(&self, t: f64) -> f64 {
+        let [came, leaves] = self.directions;
+        if t < self.time_s.start {
+            return came;
+        } else if t >= self.time_s.end {
+            return leaves;
+        }
+        let part = (t - self.time_s.start) / (self.time_s.end - self.time_s.start);
+        let count = self.sides.len();
+        self.sides[((part * count as f64) as usize).min(count - 1)]
     }
 }
 
@@ -135,31 +162,32 @@ impl Signals {
     pub(super) fn creeping(&self, joint: usize) -> Vec<f64> {
         let mut rates = self.of_drive(joint)[0].clone();
         for rest in &self.rests[joint] {
-            rates[within(&self.t, &rest.time_s)].fill(rest.directions[1] * rest.creep);
+            rates[rest.samples(&self.t)].fill(0.0);
+            let leaves = within(&self.t, &(rest.leaves_s..rest.time_s.end));
+            rates[leaves].fill(rest.directions[1] * rest.creep);
         }
         rates
     }
 }
 
 /// Gives rates at times \[s\] of a drive that rests another sign at each sample, so that their mean
-/// goes from where friction is when the drive has stopped to where it is when it leaves: straight,
-/// or bent by so many deviations. As long before and after it the drive moves as it is seen to,
-/// which a filter blurs.
+/// is the side of its friction, or bent by so many deviations. As long before and after it the
+/// drive moves as it is seen to, which a filter blurs.
 fn alternate(rates: &mut [f64], t: &[f64], rests: &[Rest], bent: f64) {
     for rest in rests {
-        let Rest { time_s: Range { start, end }, directions, stopped, creep, .. } = rest;
+        let Rest { time_s: Range { start, end }, directions, creep, .. } = rest;
         let [came, leaves] = directions;
         let (bent, long) = (bent * UNSURE, end - start);
         for (from, to, direction) in [(start - long, *start, came), (*end, end + long, leaves)] {
             let moves = rates[within(t, &(from..to))].iter_mut();
             moves.for_each(|rate| *rate = direction * (direction * *rate).max(*creep));
         }
-        let samples = within(t, &rest.time_s);
+        // What is known while it rests may be unknown beside it.
+        let beside = if bent == 0.0 { 0.0 } else { rest.edge_s };
+        let samples = within(t, &(start - beside..end + beside));
         let mut sum = 0.0;
         for (rate, t) in rates[samples.clone()].iter_mut().zip(&t[samples]) {
-            let part = (t - start) / (end - start);
-            let straight = stopped + (leaves - stopped) * part;
-            sum += (straight + bent * 4.0 * part * (1.0 - part)).clamp(-1.0, 1.0);
+            sum += (rest.side(*t) + bent).clamp(-1.0, 1.0);
             let sign = if sum < 0.0 { -1.0 } else { 1.0 };
             sum -= sign;
             *rate = sign * creep;
@@ -197,9 +225,10 @@ mod tests {
         assert_eq!(rests(&read(|_| 0.2), STEP, [0.0, 0.002]), [], "it never moved");
     }
 
-    /// A mass with friction that a controller moves back and forth: what its encoder reads every
-    /// 2 ms, and its friction in steps of 10 us.
-    fn controlled(mass: f64) -> (Vec<f64>, Vec<f64>) {
+    /// A mass with friction that a controller moves back and forth, and that needs more than what
+    /// it slides with to leave where it rests: what its encoder reads every 2 ms, and its friction
+    /// in steps of 10 us.
+    fn controlled(mass: f64, hold: f64) -> (Vec<f64>, Vec<f64>) {
         let (mut position, mut rate, h) = (0.0_f64, 0.0_f64, 1e-5);
         let damping = 1.4 * (400.0 * mass).sqrt();
         let (mut read, mut frictions) = (Vec::new(), Vec::new());
@@ -208,7 +237,7 @@ mod tests {
             let ahead = 0.5 * phase.sin() - position;
             let push = 400.0 * ahead + damping * (1.5 * phase.cos() - rate);
             let side = if rate == 0.0 { push.signum() } else { rate.signum() };
-            let friction = if rate == 0.0 && push.abs() <= 1.0 { push } else { side };
+            let friction = if rate == 0.0 && push.abs() <= hold { push } else { side };
             let next = rate + h * (push - friction) / mass;
             rate = if next * rate < 0.0 { 0.0 } else { next };
             position += h * rate;
@@ -221,30 +250,37 @@ mod tests {
     }
 
     #[test]
-    fn friction_at_rest_falls_by_what_slowed_the_drive_and_grows_to_the_other_side() {
-        for mass in [0.02, 0.1] {
-            let (read, frictions) = controlled(mass);
+    fn friction_at_rest_is_what_balances_up_to_that_of_sliding() {
+        for (mass, hold) in [(0.02, 1.0), (0.1, 1.0), (0.02, 1.8), (0.1, 2.5)] {
+            let (read, frictions) = controlled(mass, hold);
             let mut found = rests(&read, STEP, [0.0, 0.002]);
             assert!(found.len() >= 3, "{mass}: {}", found.len());
-            found.iter_mut().for_each(|rest| rest.settle(mass, 1.0));
             let t: Vec<f64> = (0..40_000).map(|k| 1e-4 * f64::from(k)).collect();
+            let truth = |t: f64| frictions[(t / 1e-5) as usize];
+            for rest in &mut found {
+                // What is measured every 2 ms of a mass that does not move is its friction.
+                let samples = rest.samples(&t).skip(10).step_by(20);
+                rest.settle(&samples.map(|k| truth(t[k])).collect::<Vec<f64>>());
+            }
             let mut rates = vec![0.0; t.len()];
             alternate(&mut rates, &t, &found, 0.0);
             for rest in &found {
                 let Range { start, end } = rest.time_s;
-                let mean = |from: f64, of: &dyn Fn(usize) -> f64, h: f64| {
-                    let at = |part: f64| ((start + (end - start) * part) / h) as usize;
-                    let all = at(from)..at(from + 0.1);
-                    all.clone().map(of).sum::<f64>() / all.len() as f64
-                };
-                for part in [0.05, 0.25, 0.45, 0.65, 0.85] {
-                    let seen = mean(part, &|k| rates[k].signum(), 1e-4);
-                    let truth = mean(part, &|k| frictions[k], 1e-5);
-                    assert!(
-                        (seen - truth).abs() < UNSURE,
-                        "{mass} {rest:?} {part}: {seen} {truth}"
-                    );
+                for part in [0.1, 0.3, 0.5, 0.7, 0.9] {
+                    let middle = start + (end - start) * part;
+                    let own = within(&t, &(middle - 0.004..middle + 0.004));
+                    let mean = |of: &dyn Fn(usize) -> f64| {
+                        own.clone().map(of).sum::<f64>() / own.len() as f64
+                    };
+                    let seen = mean(&|k| rates[k].signum());
+                    let needed = mean(&|k| truth(t[k]).clamp(-1.0, 1.0));
+                    assert!((seen - needed).abs() < 0.1, "{mass} {hold} {part}: {seen} {needed}");
                 }
+                // From then on it needs what it slides with, or more, and creeps by a step.
+                let leaves = truth(rest.leaves_s + 0.002) * rest.directions[1];
+                assert!(leaves > SLIDES - 0.05, "{mass} {hold}: {leaves}");
+                let crept = rest.creep * (end - rest.leaves_s);
+                assert!((crept - STEP).abs() < 1e-9 * STEP);
             }
         }
     }

@@ -11,7 +11,7 @@ use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
-use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// The time by which the filter of positions moves a corner of a rate, times the cutoff of torques.
 const CORNER: f64 = 0.05;
@@ -81,55 +81,37 @@ pub(super) fn turning(
     unsure
 }
 
-/// Tells drives at rest what their inertia and friction come to by the model: when a drive stops,
-/// all others are free to go on with the torques that they have, and so is what is behind a spring.
+/// Tells drives at rest which friction balances their torques by the model, as long as what they
+/// slide with is enough for that.
 pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
-    let joints = signals.joints();
-    for joint in 0..joints {
-        let t = signals.t.clone();
-        let rests = signals.rests_mut(joint);
+    for joint in 0..signals.joints() {
+        let Some(measured) = signals.measured_within(joint) else { continue };
+        let (t, rests) = (&signals.t, &signals.rests[joint]);
         let Some(creep) = rests.first().map(|rest| rest.creep) else { continue };
-        let stops: Vec<usize> = rests.iter().map(|rest| rest.first(&t)).collect();
-        let stopped = signals.at(&stops);
-        let torques = |change: &dyn Fn(&mut Signals)| {
-            let mut moved = stopped.clone();
-            change(&mut moved);
-            torques_of(nominal, &moved, phi)
+        let ranges: Vec<Range<usize>> = rests.iter().map(|rest| rest.samples(t)).collect();
+        let resting: Vec<usize> = ranges.iter().cloned().flatten().collect();
+        let at_rest = signals.at(&resting);
+        let [back, forth] = [-creep, creep].map(|rate| {
+            let mut moved = at_rest.clone();
+            moved.drive_mut(joint)[0].fill(rate);
+            torques_of(nominal, &moved, phi).swap_remove(joint)
+        });
+        let side = |(k, (back, forth)): (&usize, (&f64, &f64))| {
+            let friction = 0.5 * (forth - back);
+            let needed = measured[*k] - 0.5 * (forth + back);
+            if friction > 0.0 { needed / friction } else { 0.0 }
         };
-        let creeps = |rate: f64| torques(&|moved| moved.drive_mut(joint)[0].fill(rate));
-        let [back, forth] = [-creep, creep].map(creeps);
-        // What moves with the drive, itself first.
-        let mut moving = vec![joint];
-        if stopped.motor[joint].is_none() {
-            moving.extend((0..joints).filter(|&other| other != joint));
-        }
-        let faster = |of: usize| {
-            torques(&|moved| {
-                let accelerations = match &mut moved.motor[joint] {
-                    Some([_, _, accelerations]) => accelerations,
-                    None => &mut moved.qdd[of],
-                };
-                accelerations.iter_mut().for_each(|one| *one += 1.0);
-            })
-        };
-        let (still, columns) = (torques(&|_| ()), moving.iter().map(|&of| faster(of)));
-        let columns: Vec<PerJoint> = columns.collect();
-        for (k, rest) in signals.rests_mut(joint).iter_mut().enumerate() {
-            let entry =
-                |row: usize, column: usize| columns[column][moving[row]][k] - still[moving[row]][k];
-            let friction = 0.5 * (forth[joint][k] - back[joint][k]);
-            let matrix = DMatrix::from_fn(moving.len(), moving.len(), entry);
-            rest.settle(of_first(matrix), friction);
+        let sides: Vec<f64> = resting.iter().zip(back.iter().zip(&forth)).map(side).collect();
+        let mut first = 0;
+        for (rest, range) in signals.rests_mut(joint).iter_mut().zip(ranges) {
+            let last = first + range.len();
+            if first < last {
+                rest.settle(&sides[first..last]);
+            }
+            first = last;
         }
         signals.rest(joint);
     }
-}
-
-/// The inertia of the first of some coordinates while the others are free \[kg m^2, kg\]: 1 over
-/// its entry of the inverse of theirs. A model whose inertia is not positive says nothing of what
-/// a drive loses when it stops: none.
-fn of_first(matrix: DMatrix<f64>) -> f64 {
-    matrix.cholesky().map_or(0.0, |factors| 1.0 / factors.inverse()[(0, 0)])
 }
 
 /// What torques would be less if friction kept its sign until a reversal has left the corner
@@ -168,27 +150,4 @@ fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint 
         (0..b.len()).map(|k| a[k] - 2.0 * b[k] + c[k]).collect()
     };
     (0..as_is.len()).map(of).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A point mass at the end of two massless links: across the lower one a free elbow gives way.
-    #[test]
-    fn the_inertia_of_a_joint_is_less_while_the_others_are_free() {
-        for elbow in [0.3_f64, 1.2, 2.4] {
-            let (sin, cos) = elbow.sin_cos();
-            // Velocity of the tip by rates of shoulder and elbow, in the frame of the upper link.
-            let lower = [0.5 * sin, 0.5 * cos];
-            let jacobian =
-                DMatrix::from_row_slice(2, 2, &[-lower[0], -lower[0], 0.8 + lower[1], lower[1]]);
-            let inertia = 3.0 * jacobian.transpose() * &jacobian;
-            let alone = inertia[(0, 0)];
-            // What the shoulder moves the mass by along the lower link.
-            let free = 3.0 * (0.8 * sin).powi(2);
-            assert!((of_first(inertia) - free).abs() < 1e-9 * alone && free < alone);
-        }
-        assert_eq!(of_first(DMatrix::from_row_slice(1, 1, &[-1.0])), 0.0);
-    }
 }

@@ -253,20 +253,29 @@ fn slope(a: &[f64], b: &[f64]) -> f64 {
 const FEWEST_MOVES: usize = 20;
 const FEWEST_STEPS: usize = 5;
 
+/// Steps that the smallest difference of a position that is always fast may be.
+const MOST_OF_LEAST: u32 = 5;
+
 /// The step of an encoder: what all differences of neighbouring samples are multiples of.
 pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
     let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let size = range(q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
     let tiny = 1e-12 * size.max(1e-6);
-    let mut moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
+    let moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
     // where a position rests but for some steps, few tell their size
     let is_staircase = moved.len() >= FEWEST_STEPS && moved.len() * 10 < q.len();
     if moved.len() < FEWEST_MOVES && !is_staircase {
         return None;
     }
     let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
+    (1..=MOST_OF_LEAST).find_map(|times| of_multiples(&moved, least / f64::from(times), size))
+}
+
+/// The step near a first guess that differences are multiples of; none if they are not, or if what
+/// printed positions of this size are rounded to is no less.
+fn of_multiples(moved: &[f64], guess: f64, size: f64) -> Option<f64> {
     // Larger multiples know the step better than the digits of one.
-    let step = (1..=3).fold(least, |step, digits| {
+    let step = (1..=3).fold(guess, |step, digits| {
         let small = moved.iter().filter(|&&d| d < 10.0_f64.powi(digits) * step);
         let (sum, count) = small.fold((0.0, 0.0), |(sum, count), d| {
             let times = (d / step).round();
@@ -274,23 +283,14 @@ pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
         });
         sum / count
     });
-    // Printing rounds: a step is one if it is large against that.
     let rounding = 1e-9 * size;
-    if step < 20.0 * rounding {
-        return None;
-    }
     let is_multiple = |d: &&f64| {
         let times = **d / step;
         (times - times.round()).abs() < 0.02 + 2.0 * rounding / step && times < 1e5
     };
+    // Of a smooth signal hardly any difference is a multiple of its smallest one.
     let multiples = moved.iter().filter(is_multiple).count();
-    let equal = moved.iter().filter(|&&d| d < 1.5 * step).count();
-    moved.truncate(0);
-    let of_moved = |count: usize, all: usize| count as f64 / all.max(1) as f64;
-    let all = q.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > tiny).take(20_000).count();
-    // A smooth signal has few differences that are near its smallest one.
-    let is_step = of_moved(multiples, all) > 0.995 && of_moved(equal, all) > 0.001;
-    is_step.then_some(step)
+    (step >= 20.0 * rounding && multiples as f64 > 0.995 * moved.len() as f64).then_some(step)
 }
 
 #[cfg(test)]
@@ -310,10 +310,10 @@ mod tests {
     }
 
     /// Steps are found to far more digits than one difference has, in full precision and printed
-    /// to 7 digits.
+    /// to 7 digits, and where hardly any difference is as small as a step.
     #[test]
     fn steps_of_encoders_are_found() {
-        for step in [TAU / 4000.0, TAU / 20_000.0, TAU / 200_000.0, 1e-5] {
+        for step in [TAU / 4000.0, TAU / 20_000.0, TAU / 200_000.0, 1e-5, 2e-6, 1e-6] {
             let found = encoder_step(&sampled(step, None)).expect("steps");
             assert!((found / step - 1.0).abs() < 1e-9, "{step}: {found}");
         }

@@ -332,11 +332,21 @@ fn structures(setting: &Setting<'_>, state: &State) -> Vec<Structure> {
     equations.filter_map(|equation| describe(setting, state, equation)).collect()
 }
 
+/// The share of what is left that an effect closes which is likely, though not for sure.
+const LIKELY: f64 = 0.8;
+
 impl Diagnosis {
     /// The share of what could be explained of held-out logs that was explained.
     pub fn share_closed(&self) -> Option<f64> {
         let Gaps { before, after, floor } = &self.held_out;
         share_closed(before.all, after.all, floor.all)
+    }
+
+    /// The effect that was not taken last, if it would explain most of what is left of held-out
+    /// logs, though by few blocks of them.
+    fn likely(&self) -> Option<&Step> {
+        let last = self.steps.last().filter(|step| !step.is_taken)?;
+        (last.share > LIKELY && last.significance > 1.0 && last.gain > last.decoy).then_some(last)
     }
 
     fn judge(&mut self, setting: &Setting<'_>, stop: Stop, state: &State) {
@@ -374,7 +384,16 @@ impl Diagnosis {
         } else if self.effects.is_empty() {
             let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
             let unseen = unseen(setting, &self.visible);
-            if !is_noise {
+            if let Some(step) = self.likely().filter(|_| !is_noise) {
+                reasons.push(format!(
+                    "too little was logged: {} would close {:.0} %, but by {:.1} standard errors \
+                     only; longer logs decide",
+                    setting.candidates[step.added].name(),
+                    100.0 * step.share,
+                    step.significance
+                ));
+                Verdict::CannotTell
+            } else if !is_noise {
                 reasons.push("nothing in the catalogue explains what is left".to_owned());
                 Verdict::Unexplained
             } else {

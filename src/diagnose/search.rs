@@ -104,12 +104,13 @@ pub fn search(
     let screen = Screen::new(setting, &before);
     let mut state = before.clone();
     let (mut steps, mut idle) = (Vec::new(), Vec::new());
+    // Exchanges and removals must not lead round in circles.
+    let mut seen = vec![state.candidates()];
     let stop = loop {
         watch(&state);
         if state.taken.len() >= setting.given.len() + options.most_effects {
             break Stop::MostEffects;
         }
-        // Exchanges and removals must not lead round in circles.
         if idle.len() > options.refined || steps.len() >= 2 * options.most_effects {
             break Stop::NothingLeft;
         }
@@ -129,12 +130,14 @@ pub fn search(
         }
         let swapped = swap((setting, &screen), options, setting.state(&next.taken));
         let next = without_idle(setting, &before.held_out_residual, swapped);
-        // An effect that the model's own uncertainty makes idle is not tried again.
-        if next.candidates() == state.candidates() {
+        // An effect that the model's own uncertainty makes idle is not tried again, nor is one that
+        // leads back.
+        if seen.contains(&next.candidates()) {
             idle.push(step.added);
             continue;
         }
         idle.clear();
+        seen.push(next.candidates());
         state = next;
         steps.push(step);
     };

@@ -147,18 +147,28 @@ impl LeftOut {
         logs: &[Conditioned],
         pieces: &[(usize, std::ops::Range<usize>)],
     ) -> Self {
+        let smear = |number: usize| logs[number].filter.as_ref().map_or(0, Butterworth::smear);
+        self.of_places(pieces, smear)
+    }
+
+    /// The same of places of logs, and of so many beside those that are left out.
+    pub(super) fn of_places(
+        &self,
+        places: &[(usize, std::ops::Range<usize>)],
+        beside: impl Fn(usize) -> usize,
+    ) -> Self {
         let of = |(number, range): &(usize, std::ops::Range<usize>)| {
-            let smear = logs[*number].filter.as_ref().map_or(0, Butterworth::smear);
+            let beside = beside(*number);
             let part = |all: &Vec<bool>| {
                 let mut wider = all.clone();
                 for at in (1..all.len()).filter(|&at| all[at] != all[at - 1]) {
-                    wider[at.saturating_sub(smear)..(at + smear).min(all.len())].fill(true);
+                    wider[at.saturating_sub(beside)..(at + beside).min(all.len())].fill(true);
                 }
                 wider[range.clone()].to_vec()
             };
             self.rows[*number].iter().map(|one| one.as_ref().map(part)).collect()
         };
-        Self::of(pieces.iter().map(of).collect())
+        Self::of(places.iter().map(of).collect())
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.

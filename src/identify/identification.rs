@@ -9,6 +9,7 @@ use super::estimate::{
     misread_apart, misread_columns, noise_in_torques, parameters, solve, unexplained_joints,
     validate,
 };
+use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -210,7 +211,13 @@ impl Identification {
             .chain(self.changed())
             .chain(self.smeared())
             .chain(reversals)
+            .chain(self.no_bodies())
             .collect()
+    }
+
+    /// That the nearest bodies are far from the estimate; none if noise makes most of it.
+    pub fn no_bodies(&self) -> Option<String> {
+        no_bodies(self.consistent.distance).filter(|_| !self.is_noise())
     }
 
     /// The names of parameters that the motion does not show.

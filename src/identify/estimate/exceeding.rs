@@ -5,7 +5,7 @@
 //! what is left of the logs for the estimate, errors of the parameters, noise of the positions and
 //! the filter. Noise of its torques lies beside the cutoff of the filter as well as below it.
 
-use super::condensed::Condensed;
+use super::condensed::{Condensed, MIN_PART};
 use super::filter_error::filter_errors;
 use super::least_squares::{Estimate, Options};
 use super::left_out::LeftOut;
@@ -43,7 +43,7 @@ pub(in crate::identify) fn exceeding_joints(
     if logs.is_empty() || found.condensed.rank != model.rank() {
         return Vec::new();
     }
-    let left_out = &found.left_out.of_others(model, logs, options);
+    let left_out = &found.left_out.sure(model, logs, options);
     let condensed = Condensed::counted(model, (logs, left_out));
     let noise = found.noise_of_joints();
     let weight = |noise: &f64| if *noise > 0.0 { 1.0 / noise } else { 0.0 };
@@ -72,7 +72,8 @@ pub(in crate::identify) fn exceeding_joints(
         let moves = moves(model, &[&logs[at]]);
         let is_told = |&joint: &usize| {
             let (torque, left, known) = all[joint];
-            let moves = moves[joint] && !model.joints[joint].is_base;
+            let is_enough = one.triangles[joint].rows() >= MIN_PART;
+            let moves = is_enough && moves[joint] && !model.joints[joint].is_base;
             moves && !is_noise[joint] && is_much(&(torque, left, known + made[joint]))
         };
         let told = (0..model.joints.len()).filter(is_told);

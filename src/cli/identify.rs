@@ -441,7 +441,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         }
     }
     let judged = found.validate.as_ref().unwrap_or(&found.train);
-    let is_doubted = found.is_noise() || !found.misread.is_empty();
+    let is_doubted = found.is_noise() || !found.misread.is_empty() || found.no_bodies().is_some();
     let is_doubted = is_doubted && !arguments.accept_suspicious;
     let explains = judged.relative < 1.0
         && found.unexplained.is_empty()

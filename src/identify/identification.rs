@@ -5,9 +5,11 @@ use super::estimate::{
     CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
     IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Status, Triangle,
     Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_held_out,
-    contradicting_logs, convergence, estimate, filter_errors, long_enough, misread_apart,
-    misread_columns, noise_in_torques, parameters, solve, unexplained_joints, validate,
+    contradicting_logs, convergence, estimate, exceeding_joints, filter_errors, long_enough,
+    misread_apart, misread_columns, noise_in_torques, parameters, solve, unexplained_joints,
+    validate,
 };
+use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -209,7 +211,13 @@ impl Identification {
             .chain(self.changed())
             .chain(self.smeared())
             .chain(reversals)
+            .chain(self.no_bodies())
             .collect()
+    }
+
+    /// That the nearest bodies are far from the estimate; none if noise makes most of it.
+    pub fn no_bodies(&self) -> Option<String> {
+        no_bodies(self.consistent.distance).filter(|_| !self.is_noise())
     }
 
     /// The names of parameters that the motion does not show.
@@ -314,9 +322,19 @@ impl Estimated {
             (train, held_out),
             (&found, options),
         ));
+        let exceeding = exceeding_joints(model, held_out, (&found, options, &counted));
         let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
+        let mut unexplained = unexplained_joints(model, (judges, &judging), judgement);
+        let is_told = |one: &Unexplained| {
+            let contradicts = |log: &ContradictingLog| one.file.as_ref() == Some(&log.file);
+            contradicting_logs.iter().any(contradicts)
+                || unexplained.iter().any(|other| other.joint == one.joint)
+        };
+        let exceeding: Vec<Unexplained> =
+            exceeding.into_iter().filter(|one| !is_told(one)).collect();
+        unexplained.extend(exceeding);
         Identification {
-            unexplained: unexplained_joints(model, (judges, &judging), judgement),
+            unexplained,
             misread,
             reversals: reversals(model, train, (&found, options)),
             left_out: left_out(model, train, (&found, &counted)),

@@ -26,6 +26,7 @@ mod known_effects;
 pub mod log;
 mod model_text;
 mod model_values;
+mod no_bodies;
 mod noisy_logs;
 pub mod statics;
 mod statics_file;

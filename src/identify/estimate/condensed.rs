@@ -16,7 +16,7 @@ use std::borrow::Cow;
 const PARTS: usize = 96;
 
 /// The fewest samples of a part.
-const MIN_PART: usize = 20;
+pub(super) const MIN_PART: usize = 20;
 
 /// Triangles of every joint, part by part.
 #[derive(Clone, Debug)]

@@ -23,6 +23,15 @@ const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
 /// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
 const LEAST_SHARE: f64 = 1e-4;
 
+/// The least share of its value in the file that a positive number of it keeps.
+const LEAST_OF: f64 = 1e-6;
+
+/// From so many standard errors on the search goes along the way from the model's values to the
+/// estimate, in so many stages: where columns are products, what fits lies in valleys that are
+/// narrow and bent, and each stage begins at the bottom of one.
+const FAR: f64 = 2.0;
+const STAGES: usize = 20;
+
 /// Bodies and joints near an estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Consistent {
@@ -48,8 +57,9 @@ enum Piece {
     NotNegative(usize),
     /// The parameter itself.
     Free(usize),
-    /// A number of the model's file that columns without an owner are made of, or its logarithm:
-    /// its place in [`RegressionModel::parameters`].
+    /// A number of the model's file that columns without an owner are made of, or, of one that is
+    /// positive, the square root of what it is above the least: its place in
+    /// [`RegressionModel::parameters`].
     Own(usize),
 }
 
@@ -79,6 +89,12 @@ pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> C
     let pieces = pieces(model);
     let first = coordinates(model, &pieces, start);
     let (mut eta, mut steps) = problem.search(&pieces, &first, &first);
+    let cost = problem.cost(&pieces, &eta, &first);
+    if cost > FAR.powi(2) * rank as f64 {
+        let (next, more) = problem.search_in_stages(&pieces, &first);
+        steps += more;
+        eta = if problem.cost(&pieces, &next, &first) < cost { next } else { eta };
+    }
     for weight in BOUND_WEIGHTS {
         if problem.bounds.hold(&file_values(model, &pieces, &eta)) {
             break;
@@ -150,6 +166,25 @@ impl Problem<'_> {
             at += piece.len();
         }
         (all, j)
+    }
+
+    /// The nearest coordinates to targets on the way from `first` to the target, one after the
+    /// other, and the steps that were made.
+    fn search_in_stages(
+        &mut self,
+        pieces: &[Piece],
+        first: &DVector<f64>,
+    ) -> (DVector<f64>, usize) {
+        let last = self.target.clone();
+        let begin = &self.jacobian * standard(self.model, pieces, first).0;
+        let (mut eta, mut steps) = (first.clone(), 0);
+        for stage in 1..=STAGES {
+            self.target = &begin + (&last - &begin) * (stage as f64 / STAGES as f64);
+            let (next, more) = self.search(pieces, &eta, first);
+            (eta, steps) = (next, steps + more);
+        }
+        self.target = last;
+        (eta, steps)
     }
 
     /// The nearest coordinates from `eta` on, and the steps that were made (Levenberg, Marquardt).
@@ -280,7 +315,8 @@ fn own_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> 
     for piece in pieces {
         if let Piece::Own(place) = *piece {
             let is_positive = model.parameters[place].is_positive;
-            values.push((place, if is_positive { eta[at].exp() } else { eta[at] }));
+            let least = LEAST_OF * model.parameters[place].value.abs();
+            values.push((place, if is_positive { eta[at] * eta[at] + least } else { eta[at] }));
         }
         at += piece.len();
     }
@@ -347,7 +383,8 @@ fn coordinates(model: &RegressionModel, pieces: &[Piece], start: &[f64]) -> DVec
             Piece::Own(place) => {
                 let own = &model.parameters[place];
                 let start = own.value;
-                eta.push(if own.is_positive { start.max(1e-5).ln() } else { start });
+                let above = (1.0 - LEAST_OF) * start;
+                eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { start });
             }
             Piece::Body(place) => {
                 let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
@@ -453,7 +490,7 @@ fn products(
             values[place] = value - step;
             let below = model.standard_values(&values);
             values[place] = value;
-            let inner = if model.parameters[place].is_positive { value } else { 1.0 };
+            let inner = if model.parameters[place].is_positive { 2.0 * eta[at] } else { 1.0 };
             for row in (0..is_product.len()).filter(|&row| is_product[row]) {
                 slope[(row, at)] = inner * (above[row] - below[row]) / (2.0 * step);
             }

@@ -36,6 +36,20 @@ pub(in crate::identify) fn is_biased(share: f64, friction: f64, variance: f64) -
     friction.abs() * share > BIAS * variance.max(0.0).sqrt()
 }
 
+/// The samples over which a log's filter smears what jumps.
+fn smear(log: &Conditioned) -> usize {
+    log.filter.as_ref().map_or(0, Butterworth::smear)
+}
+
+/// Samples that are left out, and so many beside them.
+fn wider(all: &[bool], beside: usize) -> Vec<bool> {
+    let mut wider = all.to_vec();
+    for at in (1..all.len()).filter(|&at| all[at] != all[at - 1]) {
+        wider[at.saturating_sub(beside)..(at + beside).min(all.len())].fill(true);
+    }
+    wider
+}
+
 /// For each log the samples near reversals of a joint.
 fn near(logs: &[Conditioned], joint: usize, times: f64) -> Vec<Vec<bool>> {
     let of_log = |log: &Conditioned| {
@@ -130,6 +144,29 @@ impl LeftOut {
         others
     }
 
+    /// The same of other logs, and all besides where Coulomb friction as the sign of a rate is not
+    /// sure, however little that leaves: near reversals and at rest, where the sign is that of
+    /// noise or of the filter, and beside, as far as the filter smears that.
+    pub(super) fn sure(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        options: &Options,
+    ) -> Self {
+        let mut sure = self.of_others(model, logs, options);
+        let coulomb = model.coulomb().iter().filter(|_| model.law == CoulombLaw::Sign);
+        for &(joint, _) in coulomb {
+            for (log, rows) in logs.iter().zip(&mut sure.rows) {
+                let Some(mut unsure) = log.near_reversals(joint, 1.0) else { continue };
+                for all in rows[joint].iter().chain(&log.unsure_signs(joint)) {
+                    unsure.iter_mut().zip(all).for_each(|(unsure, one)| *unsure |= one);
+                }
+                rows[joint] = Some(wider(&unsure, smear(log)));
+            }
+        }
+        sure
+    }
+
     /// The same of pieces of logs, each with the number of its log.
     pub(super) fn of_pieces(&self, logs: &[Conditioned], pieces: &[(usize, Piece)]) -> Self {
         let of = |&(number, piece): &(usize, Piece)| {
@@ -147,18 +184,21 @@ impl LeftOut {
         logs: &[Conditioned],
         pieces: &[(usize, std::ops::Range<usize>)],
     ) -> Self {
+        self.of_places(pieces, |number| smear(&logs[number]))
+    }
+
+    /// The same of places of logs, and of so many beside those that are left out.
+    pub(super) fn of_places(
+        &self,
+        places: &[(usize, std::ops::Range<usize>)],
+        beside: impl Fn(usize) -> usize,
+    ) -> Self {
         let of = |(number, range): &(usize, std::ops::Range<usize>)| {
-            let smear = logs[*number].filter.as_ref().map_or(0, Butterworth::smear);
-            let part = |all: &Vec<bool>| {
-                let mut wider = all.clone();
-                for at in (1..all.len()).filter(|&at| all[at] != all[at - 1]) {
-                    wider[at.saturating_sub(smear)..(at + smear).min(all.len())].fill(true);
-                }
-                wider[range.clone()].to_vec()
-            };
+            let beside = beside(*number);
+            let part = |all: &Vec<bool>| wider(all, beside)[range.clone()].to_vec();
             self.rows[*number].iter().map(|one| one.as_ref().map(part)).collect()
         };
-        Self::of(pieces.iter().map(of).collect())
+        Self::of(places.iter().map(of).collect())
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.

@@ -32,7 +32,7 @@ const BLOCKS: usize = 16;
 const BLOCK: usize = 64;
 
 /// Whether each joint moves, against the one of its kind (turning, sliding) that moves most.
-fn moves(model: &RegressionModel, logs: &[&Conditioned]) -> Vec<bool> {
+pub(super) fn moves(model: &RegressionModel, logs: &[&Conditioned]) -> Vec<bool> {
     let n = model.joints.len();
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; n];
     for log in logs {
@@ -77,6 +77,9 @@ pub struct Unexplained {
     /// The longest time that the joint rests in between \[s\], if it is that of which it is left;
     /// all of the log if it never moves.
     pub rest_s: Option<[f64; 2]>,
+    /// What is left of it in the logs for the estimate, if it is that beside which too much is
+    /// left in a log for validation.
+    pub beside: Option<f64>,
 }
 
 impl fmt::Display for Unexplained {
@@ -86,13 +89,23 @@ impl fmt::Display for Unexplained {
         if let Some(file) = &self.file {
             write!(f, " in {file}")?;
         }
-        match self.rest_s {
-            None => write!(
+        match (self.beside, self.rest_s) {
+            (Some(share), _) => {
+                return write!(
+                    f,
+                    ", without what is near reversals, and {:.1} % in the logs for the estimate: \
+                     far more than noise, the filter and errors of the parameters make. The unit \
+                     of its time or of another column may be another, or the robot, or it shows a \
+                     law that the model lacks; it does not confirm what was found.",
+                    100.0 * share
+                );
+            }
+            (None, None) => write!(
                 f,
                 ", although the joint moves. Its column may be another quantity, in another unit, \
                  or noise, or the zero of a position may be off, or the model's geometry"
             )?,
-            Some([from, to]) => write!(
+            (None, Some([from, to])) => write!(
                 f,
                 ", although the joint rests, from {from:.2} to {to:.2} s, and its friction holds \
                  less. The column of its position may be stuck while it moves, or stiction or a \
@@ -160,6 +173,7 @@ fn moving(
             file: None,
             share: found.relative,
             rest_s: None,
+            beside: None,
         })
     };
     let moving = moves(model, logs);
@@ -195,6 +209,7 @@ fn resting(
             file: None,
             share,
             rest_s: Some([spell.start, spell.end].map(|at| first_s + log.step_s * at as f64)),
+            beside: None,
         })
     };
     at_rest(model, log, (found, &rests)).into_iter().enumerate().filter_map(of).collect()

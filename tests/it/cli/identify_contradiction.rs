@@ -182,6 +182,33 @@ fn a_constant_in_a_log_for_validation_is_told_with_its_size() {
     }
 }
 
+/// A ripple of the torque that no parameters make, and of which half a period of the filter's
+/// cutoff later nothing is alike: only how much is left tells it. White noise of the same size is
+/// none.
+#[test]
+fn a_ripple_that_a_log_for_validation_alone_shows_is_said() {
+    let directory = Directory::new("contradiction-ripple");
+    write_arm(&directory, None);
+    for seed in 1..=4 {
+        write(&directory, "one.csv", 2 * seed, &|_| {});
+        for ripple in [0.0, 1.2] {
+            write(&directory, "odd.csv", 2 * seed + 1, &|row| {
+                row[4] += ripple * (25.0 * row[2]).sin()
+            });
+            let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "odd.csv"]);
+            assert_eq!(code, Some(i32::from(ripple > 0.0)), "{seed}: {text}");
+            let line = text.replace('\n', " ");
+            let is_said = line.contains("The torque of link2 is not explained");
+            assert_eq!(is_said && line.contains("is left in odd.csv"), ripple > 0.0, "{text}");
+            assert!(!line.contains("link1 is not explained"), "{seed}: {text}");
+        }
+        let noisy = Made { step_s: 0.002, samples: 5000, torque_noise: 3.0, seed: 9, ..GOOD };
+        write_as(&directory, "odd.csv", (noisy, 1.0), 14);
+        let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "odd.csv"]);
+        assert_eq!(code, Some(0), "{seed}: {text}");
+    }
+}
+
 /// Parameters that the logs for the estimate show badly, or not at all, may be anything: the first
 /// joint hardly moves there, and the model's values are far off.
 #[test]

@@ -3,7 +3,7 @@
 
 use super::Directory;
 use super::identify_told::{GOOD, Made, Motion, deviations, motions, round_positions};
-use super::identify_told::{said, write_arm, write_log};
+use super::identify_told::{said, torques, write_arm, write_log};
 use denavit::simulate::Random;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -179,5 +179,48 @@ fn no_zero_is_turns_away() {
         let (_, text) = said(&directory, &["--train", "level.csv"]);
         assert!(text.contains("residual"), "{text}");
         assert!(!text.contains("position of link"), "{seed}: {text}");
+    }
+}
+
+/// Ten seconds in which one joint after the other moves about where it stands upright, while the
+/// other rests and rubs against nothing: position, rate and acceleration are those of a cycloid.
+fn one_after_the_other(seed: u64, [take_s, rest_s]: [f64; 2]) -> Vec<[f64; 5]> {
+    let mut random = Random::new(seed);
+    let turns = (10.0 / (take_s + rest_s)).ceil() as usize;
+    let places: Vec<f64> = (0..turns + 2).map(|_| random.uniform() - 0.5).collect();
+    let mut rows: Vec<[f64; 5]> = Vec::new();
+    for k in 0..5000 {
+        let t = 0.002 * f64::from(k);
+        let turn = (t / (take_s + rest_s)) as usize;
+        let share = ((t - turn as f64 * (take_s + rest_s)) / take_s).min(1.0);
+        let (sine, cosine) = (TAU * share).sin_cos();
+        let goes = [share - sine / TAU, (1.0 - cosine) / take_s, TAU * sine / take_s.powi(2)];
+        let moves = |joint: usize| {
+            // a joint goes on in every other turn, from where it came to in the one before the last
+            let [from, to] = if turn % 2 == joint { [turn, turn + 2] } else { [turn + 1; 2] };
+            let is_first = f64::from(u8::from(joint == 0));
+            let way = if share < 1.0 { places[to] - places[from] } else { 0.0 };
+            let about = is_first * TAU / 4.0 + if share < 1.0 { places[from] } else { places[to] };
+            [about + way * goes[0], way * goes[1], way * goes[2]]
+        };
+        let both = [moves(0), moves(1)];
+        let [one, other] = torques(both).map(|one| one + 0.02 * random.normal());
+        rows.push([t, both[0][0], both[1][0], one, other]);
+    }
+    round_positions(&mut rows, STEP);
+    rows
+}
+
+/// A good log for validation in which joints rest is none of another robot: friction at rest is not
+/// what the sign of the filter's ringing makes of it.
+#[test]
+fn a_log_for_validation_of_joints_that_rest_is_not_accused() {
+    let directory = Directory::new("rest-validation");
+    write_arm(&directory, None);
+    for (seed, times) in [(1, [0.6, 0.2]), (5, [0.7, 0.4]), (7, [0.4, 0.4]), (8, [0.6, 0.2])] {
+        write_log(&directory, "one.csv", &made(seed, &motions(seed, 0.7)));
+        write_log(&directory, "turns.csv", &one_after_the_other(seed, times));
+        let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "turns.csv"]);
+        assert_eq!(code, Some(0), "{seed}: {text}");
     }
 }

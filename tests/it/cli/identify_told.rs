@@ -42,7 +42,7 @@ pub(super) fn motions(seed: u64, slowest: f64) -> [Motion; 2] {
 const FRICTION: [[f64; 2]; 2] = [[0.3, 0.5], [0.2, 0.3]];
 
 /// Torques of the shipped planar arm with friction.
-fn torques([a, b]: [[f64; 3]; 2]) -> [f64; 2] {
+pub(super) fn torques([a, b]: [[f64; 3]; 2]) -> [f64; 2] {
     let ([qa, va, aa], [qb, vb, ab]) = (a, b);
     let (m, l, r, i, g) = ([2.0, 1.5], 0.5, [0.28, 0.23], [0.04, 0.03], 9.81);
     let (sine, cosine) = qb.sin_cos();

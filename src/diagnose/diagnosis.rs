@@ -349,8 +349,33 @@ impl Diagnosis {
         (last.share > LIKELY && last.significance > 1.0 && last.gain > last.decoy).then_some(last)
     }
 
-    fn judge(&mut self, setting: &Setting<'_>, stop: Stop, state: &State) {
+    /// What it means that no effect was found, and why.
+    fn nothing_found(&self, setting: &Setting<'_>, is_noise: bool) -> (Verdict, Vec<String>) {
         let joints = &setting.train.nominal.model.joints;
+        let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+        if is_noise {
+            let unseen = unseen(setting, &self.visible);
+            // Numbers that are driven beyond what the model says stand for something else.
+            let is_model_right = unseen.is_empty() && self.driven[1].is_empty();
+            let verdict =
+                if is_model_right { Verdict::NothingMissing } else { Verdict::CannotTell };
+            return (verdict, unseen.iter().map(|one| one.sentence(&names)).collect());
+        }
+        let Some(step) = self.likely() else {
+            let why = "nothing in the catalogue explains what is left".to_owned();
+            return (Verdict::Unexplained, vec![why]);
+        };
+        let why = format!(
+            "too little was logged: {} would close {:.0} %, but by {:.1} standard errors only; \
+             longer logs decide",
+            setting.candidates[step.added].name(),
+            100.0 * step.share,
+            step.significance
+        );
+        (Verdict::CannotTell, vec![why])
+    }
+
+    fn judge(&mut self, setting: &Setting<'_>, stop: Stop, state: &State) {
         let squares = setting.held_out_squares(state, &state.held_out_residual);
         let is_noise = squares.iter().all(|[left, noise]| *left <= NOISE * NOISE * noise);
         let trust = state.trust();
@@ -382,26 +407,9 @@ impl Diagnosis {
             ));
             Verdict::CannotTell
         } else if self.effects.is_empty() {
-            let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
-            let unseen = unseen(setting, &self.visible);
-            if let Some(step) = self.likely().filter(|_| !is_noise) {
-                reasons.push(format!(
-                    "too little was logged: {} would close {:.0} %, but by {:.1} standard errors \
-                     only; longer logs decide",
-                    setting.candidates[step.added].name(),
-                    100.0 * step.share,
-                    step.significance
-                ));
-                Verdict::CannotTell
-            } else if !is_noise {
-                reasons.push("nothing in the catalogue explains what is left".to_owned());
-                Verdict::Unexplained
-            } else {
-                reasons.extend(unseen.iter().map(|one| one.sentence(&names)));
-                // Numbers that are driven beyond what the model says stand for something else.
-                let is_model_right = unseen.is_empty() && self.driven[1].is_empty();
-                if is_model_right { Verdict::NothingMissing } else { Verdict::CannotTell }
-            }
+            let (verdict, why) = self.nothing_found(setting, is_noise);
+            reasons.extend(why);
+            verdict
         } else if self.effects.iter().all(|one| !one.is_named) {
             let nearest: Vec<String> =
                 self.effects.iter().map(|one| setting.candidates[one.candidate].name()).collect();

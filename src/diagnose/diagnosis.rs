@@ -8,7 +8,7 @@ use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
 use super::elastic::SeriesSpring;
-use super::errors::errors;
+use super::errors::{Errors, errors};
 use super::excitation::{Visible, unseen, visible};
 use super::experiment::ExperimentOptions;
 use super::family::{Families, named};
@@ -225,7 +225,7 @@ pub fn diagnose(
 /// What is told of the effects of a state.
 struct Told {
     state: State,
-    errors: Vec<f64>,
+    errors: Errors,
     effects: Vec<FoundEffect>,
 }
 
@@ -235,7 +235,7 @@ fn told(
     before: &State,
     (mut state, mut families): Families,
     name: &dyn Fn(State) -> Families,
-    errors: &dyn Fn(&State) -> Vec<f64>,
+    errors: &dyn Fn(&State) -> Errors,
 ) -> Told {
     loop {
         let errors = errors(&state);

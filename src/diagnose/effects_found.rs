@@ -3,9 +3,11 @@
 
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
+use super::errors::Errors;
 use super::evidence::{block_costs, by_ranks, paired};
 use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
 use super::family::Alternative;
+use super::floor::rms;
 use super::gap::Gap;
 use super::given::is_driven;
 use super::signals::Filters;
@@ -58,10 +60,14 @@ pub struct GivenEffect {
     pub parameters: Vec<EffectValue>,
 }
 
-/// A law that closes less than this share of the squares that a joint leaves does not fit it, if
-/// more than so many times the deviation of noise stays.
+/// A law that closes less than this share of what a joint leaves does not fit it, if more than so
+/// many times the deviation of noise stays; nor does one that closes less than half, whatever its
+/// values, or one whose values are others in another motion, by more than so many times the
+/// squares of their errors.
 const FITS: f64 = 0.8;
 const MISFIT: f64 = 2.5;
+const HALF: f64 = 0.5;
+const MOVES: f64 = 2.0;
 
 /// An effect that closes less than these shares of what a joint leaves, noise with it, of held-out
 /// logs and of those that are fitted, is faint if its values are within so many errors of nothing,
@@ -75,7 +81,7 @@ const PLAIN: f64 = 5.0;
 pub(super) fn found_effects(
     setting: &Setting<'_>,
     [before, after]: [&State; 2],
-    (errors, families): (&[f64], Vec<Vec<Alternative>>),
+    (errors, families): (&Errors, Vec<Vec<Alternative>>),
 ) -> Vec<FoundEffect> {
     let [_, trust] = after.trust();
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual, &trust).all;
@@ -90,6 +96,10 @@ pub(super) fn found_effects(
         let (from, to, noise) = (over(&from), over(&to), equations.len() as f64);
         let open = (from - noise).max(f64::MIN_POSITIVE);
         if to < MISFIT * MISFIT * noise { 1.0 } else { (from - to) / open }
+    };
+    let fits = |equations: &[usize], joint: Option<usize>| {
+        let share = closes(equations);
+        share > FITS || share > HALF && stays(setting, (after, errors), joint)
     };
     let mut found = Vec::new();
     let places = after.taken.iter().enumerate().skip(setting.given.len());
@@ -124,7 +134,7 @@ pub(super) fn found_effects(
         found.push(FoundEffect {
             candidate: taken.candidate,
             share: (gap(&without) - gap(after)) / whole.max(f64::MIN_POSITIVE),
-            is_named: own.as_ref().is_none_or(|own| closes(own) > FITS),
+            is_named: own.as_ref().is_none_or(|own| fits(own, candidate.joint)),
             // Of what numbers of the model stand for that are driven, logs show little.
             is_faint: own.as_ref().is_some_and(is_little)
                 && (errors_from_nothing(laws, &parameters) < NOTHING || !is_plain()),
@@ -135,6 +145,18 @@ pub(super) fn found_effects(
         });
     }
     found
+}
+
+/// Whether the effects of a joint have the same values in another motion.
+fn stays(setting: &Setting<'_>, (state, errors): (&State, &Errors), joint: Option<usize>) -> bool {
+    let of_joint = |taken: &Taken| {
+        let is_there = setting.candidates[taken.candidate].joint == joint;
+        std::iter::repeat_n(is_there, taken.values.len())
+    };
+    let is_there = state.taken.iter().flat_map(of_joint);
+    let moves = errors.moves.iter().zip(is_there);
+    let own: Vec<f64> = moves.filter(|(_, is_there)| *is_there).map(|(by, _)| *by).collect();
+    rms(&own) < MOVES.sqrt()
 }
 
 /// The most errors by which what switches an effect off is from where it does; infinite where the
@@ -183,7 +205,7 @@ pub(super) fn tell_aliases(
 /// The parameters of the effect in one place of a state, with their errors.
 fn values(
     setting: &Setting<'_>,
-    (state, errors): (&State, &[f64]),
+    (state, errors): (&State, &Errors),
     place: usize,
 ) -> Vec<EffectValue> {
     let before: usize = state.taken[..place].iter().map(|taken| taken.values.len()).sum();
@@ -192,7 +214,7 @@ fn values(
     let value = |(k, (value, parameter)): (usize, (&f64, &LawParameter))| EffectValue {
         name: parameter.name.clone(),
         value: *value,
-        std: errors[before + k],
+        std: errors.deviations[before + k],
         unit: parameter.unit.clone(),
     };
     taken.values.iter().zip(parameters).enumerate().map(value).collect()
@@ -202,7 +224,7 @@ fn values(
 pub(super) fn given_effects(
     setting: &Setting<'_>,
     state: &State,
-    errors: &[f64],
+    errors: &Errors,
 ) -> Vec<GivenEffect> {
     let of = |(place, taken): (usize, &Taken)| GivenEffect {
         candidate: taken.candidate,

@@ -7,19 +7,24 @@ use super::problem::Problem;
 use super::state::{Setting, State};
 use nalgebra::DMatrix;
 
-/// Standard deviations of all parameters of a state's effects, in order, infinite where the logs
-/// say nothing; `smoother` are the logs for training through lower filters.
+/// Errors of all parameters of a state's effects, in order.
+pub(super) struct Errors {
+    /// Standard deviations; infinite where the logs say nothing.
+    pub(super) deviations: Vec<f64>,
+    /// How far values are from what held-out logs alone give them, in the errors of both.
+    pub(super) moves: Vec<f64>,
+}
+
+/// The errors of a state's effects; `smoother` are the logs for training through lower filters.
 ///
 /// Values that differ in another motion by more than both errors have these too small, by that
 /// factor if it is one (Birge 1932).
-pub(super) fn errors(
-    setting: &Setting<'_>,
-    state: &State,
-    smoother: Option<&Data<'_>>,
-) -> Vec<f64> {
+pub(super) fn errors(setting: &Setting<'_>, state: &State, smoother: Option<&Data<'_>>) -> Errors {
     let own = deviations(setting, state, smoother);
     let moves = if own.is_empty() { Vec::new() } else { moves(setting, state, &own) };
-    own.iter().zip(&moves).map(|(std, moved)| std * moved.abs().max(1.0)).collect()
+    let both = own.iter().zip(&moves);
+    let deviations = both.map(|(std, moved)| std * moved.abs().max(1.0)).collect();
+    Errors { deviations, moves }
 }
 
 /// Standard deviations by logs for training.

@@ -332,7 +332,7 @@ fn structures(setting: &Setting<'_>, state: &State) -> Vec<Structure> {
     equations.filter_map(|equation| describe(setting, state, equation)).collect()
 }
 
-/// The share of what is left that an effect closes which is likely, though not for sure.
+/// The share of what can be explained that an effect closes which is likely, though not for sure.
 const LIKELY: f64 = 0.8;
 
 impl Diagnosis {

@@ -26,7 +26,7 @@ mod regression_values;
 
 pub use cradle::Cradle;
 pub use generated::{planar_biped, plant_of, puma560, tulip};
-pub use laws::{LawMoment, LawResponse};
+pub use laws::{DriveMoment, LawMoment, LawResponse};
 pub use loaded::LoadedPlant;
 pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,

@@ -276,6 +276,14 @@ impl PlantModel {
         }
     }
 
+    /// The joints with a spring between motor and link, of which laws of added effects tell the
+    /// one side from the other.
+    pub fn sprung_joints(&self) -> impl Iterator<Item = usize> + '_ {
+        let has_spring =
+            |joint: &JointModel| joint.drive.is_some_and(|drive| drive.series_elastic.is_some());
+        (0..self.joints.len()).filter(move |&joint| has_spring(&self.joints[joint]))
+    }
+
     /// The joint of that name.
     pub fn find_joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)

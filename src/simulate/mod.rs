@@ -16,6 +16,7 @@ mod drive;
 mod event;
 mod ground;
 pub mod integrate;
+mod laws;
 mod log;
 mod measure;
 mod measured_log;

@@ -1,12 +1,10 @@
 //! The equations of motion between two events (thesis 2.43 and 2.50): the set of closed contacts
 //! and what each of them does stay as they are.
 
-mod laws;
 mod manifold;
 mod moved;
 mod slipping;
 
-use self::laws::solve_laws;
 use self::moved::MovedMemory;
 pub(super) use self::slipping::SlipMemory;
 use super::breakdown::Breakdown;
@@ -17,8 +15,9 @@ use super::control::{Control, ControlMemory};
 use super::drive::{DriveOutput, Drives};
 use super::ground::Ground;
 use super::integrate::Rates;
-use super::state::{INTEGRALS, Layout, Parts};
-use crate::plants::{LawMoment, LawResponse, Plant};
+use super::laws::LawForces;
+use super::state::{INTEGRALS, Layout};
+use crate::plants::Plant;
 
 /// A contact that carries force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +104,7 @@ pub(super) struct Work {
     pub(super) contacts: Vec<Contact>,
     pub(super) modes: Vec<Mode>,
     scratch: Vec<f64>,
-    laws: LawResponse,
+    laws: LawForces,
 }
 
 impl<'a> Motion<'a> {
@@ -129,6 +128,7 @@ impl<'a> Motion<'a> {
             jacobian: zeros(3 * points * n),
             contact_bias: zeros(3 * points),
             scratch: zeros(n),
+            laws: LawForces::new(model, &drives),
             ..Work::default()
         };
         let laws = plant.law_states();
@@ -191,24 +191,27 @@ impl<'a> Motion<'a> {
         }
         self.factor_mass(y)?;
         let parts = self.layout.parts(y);
-        let Work { mass, bias, acceleration, drive, command, scratch, laws, .. } = &mut self.work;
+        let Work { mass, bias, acceleration, drive, command, laws, .. } = &mut self.work;
         self.drives.respond(self.plant.model(), command, parts, drive);
         self.plant.bias(parts.q, parts.qd, bias);
         for (entry, (torque, bias)) in acceleration.iter_mut().zip(drive.torque.iter().zip(bias)) {
             *entry = torque - *bias;
         }
-        scratch.fill(0.0);
-        let Parts { q, qd, laws: states, .. } = parts;
-        let moment = LawMoment { t_s, q, qd, qdd: scratch, states };
-        if !self.plant.laws(&moment, laws) {
+        if !laws.respond(self.plant, t_s, parts, None) {
             self.delassus.solve_mass(acceleration);
-        } else if laws.slopes.is_empty() {
-            acceleration.iter_mut().zip(&laws.torque).for_each(|(entry, law)| *entry -= law);
-            self.delassus.solve_mass(acceleration);
-        } else {
+        } else if laws.is_accelerated() {
             let driving = acceleration.clone();
             self.delassus.solve_mass(acceleration);
-            solve_laws(self.plant, &moment, mass, &driving, (acceleration, laws))?;
+            let motors = &mut drive.motor_acceleration;
+            let (at, torque) = ((t_s, parts), (&mass[..], &driving[..]));
+            laws.solve(self.plant, &self.drives, at, torque, (acceleration, motors))?;
+            laws.pass_on(&mut drive.torque);
+        } else {
+            acceleration.iter_mut().zip(&laws.torque).for_each(|(entry, law)| *entry -= law);
+            self.delassus.solve_mass(acceleration);
+            let drives = (self.plant.model(), &self.drives);
+            laws.brake_motors(drives, &mut drive.motor_acceleration);
+            laws.pass_on(&mut drive.torque);
         }
         match acceleration.iter().all(|entry| entry.is_finite()) {
             true => Ok(()),
@@ -414,13 +417,12 @@ impl Rates for Motion<'_> {
         }
         let [put_in, lost] = self.work.drive.power;
         let parts = self.layout.parts(y);
-        let Parts { q, qd, laws: states, .. } = parts;
-        let Work { laws, acceleration, .. } = &mut self.work;
-        let moment = LawMoment { t_s, q, qd, qdd: acceleration, states };
+        let Work { laws, acceleration, drive, .. } = &mut self.work;
+        let motors = laws.on_joint_side(&drive.motor_acceleration);
         let mut by_laws = 0.0;
-        if self.plant.laws(&moment, laws) {
-            by_laws = laws.torque.iter().zip(qd).map(|(torque, rate)| torque * rate).sum();
-            dy[2 * positions..2 * positions + self.layout.laws].copy_from_slice(&laws.rates);
+        if laws.respond(self.plant, t_s, parts, Some([acceleration, &motors])) {
+            by_laws = laws.power(parts);
+            dy[2 * positions..2 * positions + self.layout.laws].copy_from_slice(laws.rates());
         }
         let integrals = 2 * positions + self.layout.laws;
         dy[integrals] = put_in;

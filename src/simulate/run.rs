@@ -9,6 +9,7 @@ use super::drive::Drives;
 use super::event::{Fired, Watch, Watched, look_ahead};
 use super::ground::TOUCH_M;
 use super::integrate::{Statistics, Stepper};
+use super::laws::LawForces;
 use super::log::Log;
 use super::measure::Instrument;
 use super::motion::{Holding, Motion, SlipMemory};
@@ -16,8 +17,8 @@ use super::record::Recorder;
 use super::settle::{Scuffing, Settled, Settler};
 use super::simulation::Simulation;
 use super::start::{DEPTH_M, StartError, check, check_steps};
-use super::state::State;
-use crate::plants::{LawMoment, Plant};
+use super::state::{Parts, State};
+use crate::plants::Plant;
 
 /// What happened at an instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,10 +116,9 @@ pub fn simulate_believing(
     check(plant, control, &mut state, simulation, &drives)?;
     check_steps(&state, simulation, "integrator", simulation.method.longest_step())?;
     if state.laws.len() != plant.law_states() {
-        let rest = vec![0.0; state.q.len()];
-        let (q, qd) = (&state.q, &state.qd);
-        let moment = LawMoment { t_s: state.t_s, q, qd, qdd: &rest, states: &[] };
-        state.laws = plant.law_start(&moment);
+        let mut laws = LawForces::new(plant.model(), &drives);
+        let started = laws.start(plant, state.t_s, Parts::of(&state));
+        state.laws = started;
     }
     let friction = vec![simulation.friction; plant.model().contacts.len()];
     let holding = Holding {

@@ -85,6 +85,14 @@ impl Layout {
     }
 }
 
+impl<'a> Parts<'a> {
+    /// Those of a state.
+    pub(super) fn of(state: &'a State) -> Self {
+        let State { q, qd, motor, motor_rate, laws, .. } = state;
+        Self { q, qd, motor, motor_rate, laws, work_in: 0.0, lost: 0.0 }
+    }
+}
+
 /// The parts of an integrated vector.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts<'a> {

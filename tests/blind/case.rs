@@ -92,17 +92,8 @@ impl Case {
     /// The plant of a log (0: training, 1: validation) with some of the effects.
     pub(crate) fn plant(&self, hidden: &[Hidden], log: usize) -> Plant {
         let truth = &self.truth;
-        let joints = 0..truth.joints.len();
-        let [rotor, viscous, coulomb] = [0, 1, 2]
-            .map(|k| joints.clone().map(|joint| truth.joint_side(joint)[k]).collect::<Vec<_>>());
-        let (mut rows, mut fall) = (truth.rows(), truth.fall);
-        let mut transmissions: Vec<Transmission> = joints
-            .filter_map(|joint| {
-                let spring = truth.joints[joint].drive.spring?;
-                let stiffness = spring.stiffness * spring.radius * spring.radius;
-                Some(Transmission { joint, stiffness, damping: 0.0, play: 0.0, soft: false })
-            })
-            .collect();
+        let mut plant = Plant { seed: self.seeds[log], ..Plant::new(truth, hidden.to_vec()) };
+        let Plant { rows, fall, rotor, transmissions, .. } = &mut plant;
         for one in hidden {
             let (joint, size) = (one.joint, one.size);
             match one.law {
@@ -119,7 +110,7 @@ impl Case {
                         body.com *= 1.0 + size;
                     }
                 }
-                Law::BaseTilt => fall = turned(&fall, &tilt_axis(truth, one.shape.phase), size),
+                Law::BaseTilt => *fall = turned(fall, &tilt_axis(truth, one.shape.phase), size),
                 Law::Damper => {
                     let own = transmissions.iter_mut().find(|own| own.joint == joint);
                     own.expect("an elastic joint").damping = size;
@@ -130,16 +121,7 @@ impl Case {
                 _ => {}
             }
         }
-        Plant {
-            rows,
-            fall,
-            rotor,
-            viscous,
-            coulomb,
-            transmissions,
-            hidden: hidden.to_vec(),
-            seed: self.seeds[log],
-        }
+        plant
     }
 }
 

@@ -8,6 +8,7 @@
 use super::hidden::{Hidden, Law};
 use super::laws::Moment;
 use super::rigid::{MOST, Posture, Row};
+use super::robots::Robot;
 use nalgebra::Vector3;
 
 /// What joins a drive to its joint where that is not rigid.
@@ -66,6 +67,20 @@ pub(crate) struct State {
 type Matrix = [[f64; MOST]; MOST];
 
 impl Plant {
+    /// A robot with its drives and springs, and laws that act on its coordinates.
+    pub(crate) fn new(robot: &Robot, hidden: Vec<Hidden>) -> Self {
+        let joints = 0..robot.joints.len();
+        let [rotor, viscous, coulomb] =
+            [0, 1, 2].map(|k| joints.clone().map(|joint| robot.joint_side(joint)[k]).collect());
+        let springs = joints.filter_map(|joint| {
+            let spring = robot.joints[joint].drive.spring?;
+            let stiffness = spring.stiffness * spring.radius * spring.radius;
+            Some(Transmission { joint, stiffness, damping: 0.0, play: 0.0, soft: false })
+        });
+        let (rows, fall, transmissions) = (robot.rows(), robot.fall, springs.collect());
+        Self { rows, fall, rotor, viscous, coulomb, transmissions, hidden, seed: 0.0 }
+    }
+
     fn joints(&self) -> usize {
         self.rows.len()
     }

@@ -8,9 +8,9 @@ use crate::expr::text::nearest;
 use crate::expr::{Dag, ExprId, Symbol, SymbolClass, import};
 use crate::model::json;
 use crate::model::{
-    About, AddedEffect, AddedValue, Body, Cause, EffectPlace, Joint, JointKind, JointLaw, LawState,
-    Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role, Terms, Tree, read,
-    read_estimated,
+    About, AddedEffect, AddedValue, Body, Cause, EffectPlace, Joint, JointKind, JointLaw,
+    JointVariables, LawState, Limits, Link, LinkId, ModelError, Parameter, Report, Robot, Role,
+    SpringLaw, Terms, Tree, read, read_estimated,
 };
 use crate::number::Rational;
 
@@ -165,16 +165,20 @@ struct Attaching<'e> {
 impl Attaching<'_> {
     fn change(&self, robot: &mut Robot) -> Result<(), Cause> {
         match &self.effect.law {
-            // torques of joints are those that springs pass on, whatever makes them
-            Law::Torque(_) if self.effect.at == EffectSite::Spring => Ok(()),
+            Law::Torque(torque) if self.effect.at == EffectSite::Spring => {
+                self.add_spring_law(robot, *torque)
+            }
             Law::Torque(torque) => {
-                self.add_law(robot, *torque)?;
+                let law = self.law(robot, *torque, &self.motions(robot))?;
+                robot.laws.push(law);
                 let Some(second) = self.effect.on_second() else { return Ok(()) };
                 let Law::Torque(torque) = second.law else { return Ok(()) };
                 let links = self.links.iter().rev().copied().collect();
                 let suffix = self.suffix.clone();
                 let other = Attaching { effect: &second, links, suffix, place: self.place };
-                other.add_law(robot, torque)
+                let law = other.law(robot, torque, &other.motions(robot))?;
+                robot.laws.push(law);
+                Ok(())
             }
             // what is logged is no matter of equations
             Law::Measured(_) => Ok(()),
@@ -191,10 +195,19 @@ impl Attaching<'_> {
         }
     }
 
-    /// Expressions of the effect in the symbols of the robot, with the loads that they name.
-    fn import(&self, robot: &mut Robot, exprs: &[ExprId]) -> (Vec<ExprId>, Vec<(LinkId, ExprId)>) {
-        let variables: Vec<_> =
-            self.links.iter().map(|&link| robot.links[link].joint.variables).collect();
+    /// The symbols of the motion of its joints; none of a joint that does not move.
+    fn motions(&self, robot: &Robot) -> Vec<Option<JointVariables>> {
+        self.links.iter().map(|&link| robot.links[link].joint.variables).collect()
+    }
+
+    /// Expressions of the effect in the symbols of the robot and of `motions`, with the loads that
+    /// they name.
+    fn import(
+        &self,
+        robot: &mut Robot,
+        exprs: &[ExprId],
+        motions: &[Option<JointVariables>],
+    ) -> (Vec<ExprId>, Vec<(LinkId, ExprId)>) {
         let names: Vec<String> =
             self.links.iter().map(|&link| robot.links[link].name.clone()).collect();
         let mut loads = Vec::new();
@@ -204,7 +217,7 @@ impl Attaching<'_> {
                 Some(stem) => (stem, 1),
                 None => (symbol.name.as_str(), 0),
             };
-            let motion = variables.get(joint).copied().flatten();
+            let motion = motions.get(joint).copied().flatten();
             match (stem, motion) {
                 ("q", Some(motion)) => motion.q,
                 // What logs do not show of a drive at rest, functions of a state have.
@@ -229,7 +242,27 @@ impl Attaching<'_> {
         (imported, loads)
     }
 
-    fn add_law(&self, robot: &mut Robot, torque: ExprId) -> Result<(), Cause> {
+    /// A law between a motor and its joint: its motion is the deflection of the spring there.
+    fn add_spring_law(&self, robot: &mut Robot, torque: ExprId) -> Result<(), Cause> {
+        // No file can name these symbols: they are no identifiers.
+        let name = &robot.links[self.links[0]].name;
+        let names = [format!("deflection of {name}"), format!("rate of the deflection of {name}")];
+        let deflection = robot.dag.symbol(&names[0], SymbolClass::Configuration);
+        let rate = robot.dag.symbol(&names[1], SymbolClass::Rate);
+        // No law of a spring has an acceleration or a torque.
+        let none = robot.dag.zero();
+        let motion = JointVariables { q: deflection, qd: rate, qdd: none, tau: none };
+        let law = self.law(robot, torque, &[Some(motion)])?;
+        robot.spring_laws.push(SpringLaw { law, deflection, rate });
+        Ok(())
+    }
+
+    fn law(
+        &self,
+        robot: &mut Robot,
+        torque: ExprId,
+        motions: &[Option<JointVariables>],
+    ) -> Result<JointLaw, Cause> {
         let effect = self.effect;
         let mut exprs = vec![torque];
         exprs.extend(effect.states.iter().flat_map(|state| [state.rate, state.initial]));
@@ -241,7 +274,7 @@ impl Attaching<'_> {
         }
         let symbols: Vec<ExprId> = effect.states.iter().map(|state| state.symbol).collect();
         exprs.extend(&symbols);
-        let (imported, loads) = self.import(robot, &exprs);
+        let (imported, loads) = self.import(robot, &exprs, motions);
         let (rates, symbols) = imported[1..].split_at(2 * symbols.len());
         let states = effect.states.iter().zip(rates.chunks_exact(2)).zip(symbols);
         let states = states
@@ -258,16 +291,16 @@ impl Attaching<'_> {
             .find_symbol("t")
             .filter(|id| crate::expr::free_symbols(&robot.dag, &all).contains(id));
         let time = time.map(|id| robot.dag.symbol_expr(id));
-        robot.laws.push(JointLaw {
+        Ok(JointLaw {
             effect: effect.name.clone(),
             title: effect.title.clone(),
             joint: self.links[0],
+            side: effect.side,
             torque: imported[0],
             states,
             loads,
             time,
-        });
-        Ok(())
+        })
     }
 
     fn move_properties(
@@ -276,7 +309,7 @@ impl Attaching<'_> {
         moves: &[(Property, ExprId)],
     ) -> Result<(), Cause> {
         let exprs: Vec<ExprId> = moves.iter().map(|(_, by)| *by).collect();
-        let (by, _) = self.import(robot, &exprs);
+        let (by, _) = self.import(robot, &exprs, &self.motions(robot));
         let zero = robot.dag.zero();
         let (mut matter, mut has_matter) = ([zero; 10], false);
         for (&(property, _), &by) in moves.iter().zip(&by) {

@@ -22,6 +22,8 @@ pub use catalogue::{SHIPPED, catalogue, files, find};
 pub use read::read;
 pub use spelling::JointUnit;
 
+pub use crate::model::SpringSide;
+
 use crate::expr::{Dag, ExprId};
 use crate::number::Rational;
 
@@ -84,16 +86,6 @@ pub enum EffectSite {
     Contact,
     /// On the whole model.
     Model,
-}
-
-/// On which side of a series spring a law of a joint acts, where there is such a spring.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum SpringSide {
-    /// On that of the motor: friction of the drive, its gear, its torque.
-    #[default]
-    Motor,
-    /// On that of the link: stops, springs across the joint.
-    Link,
 }
 
 /// A parameter of an effect.

@@ -106,7 +106,7 @@ fn for_each_expression(robot: &mut Robot, visit: &mut dyn FnMut(&mut ExprId)) {
     for contact in robot.contacts.values_mut().chain(&mut robot.bodies_that_must_not_touch) {
         contact.position.iter_mut().for_each(&mut *visit);
     }
-    for law in &mut robot.laws {
+    for law in robot.laws.iter_mut().chain(robot.spring_laws.iter_mut().map(|own| &mut own.law)) {
         visit(&mut law.torque);
         law.states.iter_mut().flat_map(|s| [&mut s.rate, &mut s.initial]).for_each(&mut *visit);
     }

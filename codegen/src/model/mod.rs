@@ -34,7 +34,7 @@ pub use report::Report;
 pub use robot::{
     About, AddedEffect, AddedValue, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace,
     Ground, Joint, JointKind, JointLaw, JointSpring, JointVariables, LawState, Limits, Link,
-    LinkId, ReturnSpring, Robot, SeriesElastic, Side, Terms, TorqueSide,
+    LinkId, ReturnSpring, Robot, SeriesElastic, Side, SpringLaw, SpringSide, Terms, TorqueSide,
 };
 pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};

@@ -308,6 +308,16 @@ pub struct LawState {
     pub initial: ExprId,
 }
 
+/// On which side of a series spring a law of a joint acts, where there is such a spring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SpringSide {
+    /// On that of the motor: friction of the drive, its gear, its torque.
+    #[default]
+    Motor,
+    /// On that of the link: stops, springs across the joint.
+    Link,
+}
+
 /// The law of an effect that adds to the torque of a joint, in the symbols of the robot. The stage
 /// `effect` makes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -318,6 +328,8 @@ pub struct JointLaw {
     pub title: String,
     /// The joint.
     pub joint: LinkId,
+    /// On which side of the joint's series spring it acts, if there is one.
+    pub side: SpringSide,
     /// The torque that the joint needs besides [N m, N].
     pub torque: ExprId,
     /// Its states.
@@ -326,6 +338,18 @@ pub struct JointLaw {
     pub loads: Vec<(LinkId, ExprId)>,
     /// The time, if the law depends on it.
     pub time: Option<ExprId>,
+}
+
+/// The law of an effect beside the series spring of a joint: its torque is what is passed on from
+/// the motor to the link besides that of the spring.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SpringLaw {
+    /// The law, of the joint that has the spring.
+    pub law: JointLaw,
+    /// How far the motor is ahead of the joint, on the joint's side [rad, m].
+    pub deflection: ExprId,
+    /// The rate of that [rad/s, m/s].
+    pub rate: ExprId,
 }
 
 /// A checked robot.
@@ -368,6 +392,9 @@ pub struct Robot {
     pub effects: Vec<AddedEffect>,
     /// Laws of those effects that add to the torque of a joint.
     pub laws: Vec<JointLaw>,
+    /// Laws of those effects that stand beside series springs: part of no function, since joint
+    /// torques are those that springs pass on, whatever makes them.
+    pub spring_laws: Vec<SpringLaw>,
     /// A number that changes when the content of the file changes, and not when only its
     /// whitespace, the order of keys or the writing of a number does.
     pub hash: u64,
@@ -396,7 +423,7 @@ impl Robot {
         self.laws.iter().find_map(|law| law.time)
     }
 
-    /// The states of all laws, in their order.
+    /// The states of all laws of joints, in their order.
     pub fn law_states(&self) -> impl Iterator<Item = &LawState> {
         self.laws.iter().flat_map(|law| &law.states)
     }

@@ -97,7 +97,8 @@ pub fn apart(robot: &Robot, own: &[Effect]) -> Result<ApartEffects, AddedError> 
             }
         }
     }
-    let robot = Robot { effects: Vec::new(), laws: Vec::new(), ..robot.clone() };
+    let bare = robot.clone();
+    let robot = Robot { effects: Vec::new(), laws: Vec::new(), spring_laws: Vec::new(), ..bare };
     Ok(ApartEffects { robot, taken_up, laws })
 }
 

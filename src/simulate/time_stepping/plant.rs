@@ -1,11 +1,12 @@
 //! A plant under control, as a model of time stepping.
 
 use super::{Instant, Terms, TimeSteppingModel};
-use crate::plants::{LawMoment, LawResponse, Plant};
+use crate::plants::Plant;
 use crate::simulate::contact::Space;
 use crate::simulate::control::{Control, ControlMemory};
 use crate::simulate::drive::{DriveModelling, DriveOutput, Drives};
 use crate::simulate::ground::Ground;
+use crate::simulate::laws::LawForces;
 use crate::simulate::measure::Instrument;
 use crate::simulate::state::Parts;
 
@@ -46,8 +47,10 @@ pub(super) struct DriveTerms {
     output: DriveOutput,
     /// Torque on each joint from its drive, Coulomb friction taken off [N m, N].
     pub(super) torque: Vec<f64>,
-    laws: LawResponse,
-    /// Power that laws of added effects take \[W\].
+    laws: LawForces,
+    /// What laws of added effects take from each joint [N m, N].
+    law_torque: Vec<f64>,
+    /// Power that they take \[W\].
     law_power: f64,
 }
 
@@ -69,15 +72,21 @@ impl<'a> ControlledPlant<'a> {
         assert_eq!(control.joints.len(), n, "control of every joint");
         let drives = Drives::new(model, modelling);
         let motors = (0..n).map(|joint| drives.motor_of(model, joint)).collect();
+        let laws = LawForces::new(model, &drives);
         Self {
             ground: Ground::new(model),
-            drives,
             plant,
             control,
             memory: ControlMemory::default(),
             held: None,
             limited: vec![None; n],
-            step: DriveTerms { command: vec![0.0; n], ..DriveTerms::default() },
+            step: DriveTerms {
+                command: vec![0.0; n],
+                law_torque: vec![0.0; n],
+                laws,
+                ..DriveTerms::default()
+            },
+            drives,
             measured: [Vec::new(), Vec::new()],
             motors,
             mass: vec![0.0; n * n],
@@ -128,7 +137,7 @@ impl<'a> ControlledPlant<'a> {
     /// Commands, friction and forces of the drives; torques and accelerations of motors.
     pub(super) fn drive(&mut self, t_s: f64, q: &[f64], qd: &[f64]) {
         let parts = split(self.joints(), q, qd);
-        let DriveTerms { command, gain, friction, output, torque, laws, law_power } =
+        let DriveTerms { command, gain, friction, output, torque, laws, law_torque, law_power } =
             &mut self.step;
         gain.clear();
         if let Some(held) = &self.held {
@@ -154,19 +163,12 @@ impl<'a> ControlledPlant<'a> {
         self.drives.respond(model, command, parts, output);
         torque.clone_from(&output.torque);
         // explicitly: a run with laws of states or accelerations is refused
-        let moment = LawMoment {
-            t_s,
-            q: parts.q,
-            qd: parts.qd,
-            qdd: &vec![0.0; parts.q.len()],
-            states: &[],
-        };
-        *law_power = 0.0;
-        if self.plant.laws(&moment, laws) {
-            for ((torque, law), rate) in torque.iter_mut().zip(&laws.torque).zip(parts.qd) {
-                *torque -= law;
-                *law_power += law * rate;
-            }
+        if laws.respond(self.plant, t_s, parts, None) {
+            law_torque.copy_from_slice(&laws.torque[..parts.q.len()]);
+            *law_power = laws.power(parts);
+            let drives = (self.plant.model(), &self.drives);
+            laws.brake_motors(drives, &mut output.motor_acceleration);
+            laws.pass_on(torque);
         }
     }
 
@@ -258,8 +260,10 @@ impl TimeSteppingModel for ControlledPlant<'_> {
         }
         let smooth = &at.smooth_qd[..n];
         self.plant.bias(q, smooth, &mut terms.force[..n]);
-        for (force, torque) in terms.force.iter_mut().zip(&self.step.torque) {
-            *force = *torque - *force;
+        let laws = &self.step.law_torque;
+        for ((force, torque), law) in terms.force.iter_mut().zip(&self.step.output.torque).zip(laws)
+        {
+            *force = *torque - law - *force;
         }
         // friction, a part of the bias, is that of the rates before the step
         for (joint, model) in self.plant.model().joints.iter().enumerate() {

@@ -79,6 +79,7 @@ pub(super) fn check(file: &ModelFile, hash: u64, report: &mut Report) -> Robot {
         bodies_that_must_not_touch,
         effects,
         laws: Vec::new(),
+        spring_laws: Vec::new(),
         hash,
     }
 }

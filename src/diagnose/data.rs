@@ -44,7 +44,7 @@ pub struct Data<'a> {
 
 /// How far the zero of a spring's deflection may be off: where none is stated the logs say it
 /// [rad, m].
-const SPRING_ZERO: f64 = 1.0;
+pub(super) const SPRING_ZERO: f64 = 1.0;
 
 /// Torques of the model at the samples of one log.
 #[derive(Clone, Debug)]
@@ -190,18 +190,7 @@ impl<'a> Data<'a> {
 
     /// The torques that the model gives the motion of each log with z.
     pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
-        let (phi, load_phi) = (self.nominal.phi(z), self.nominal.load_phi(z));
-        let numbers = self.nominal.numbers(z);
-        let drives = Drive::all(self.nominal.model, &phi.drives);
-        let one = |signals: &Signals| {
-            let load = torques(self.nominal, signals, &load_phi);
-            let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
-            let load_rate = load.iter().map(rate).collect();
-            let total = torques(self.nominal, signals, &phi);
-            let (phi, numbers, drives) = (phi.clone(), numbers.clone(), drives.clone());
-            ModelTorques { phi, numbers, load, load_rate, total, drives }
-        };
-        self.signals.iter().map(one).collect()
+        self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
     }
 
     /// What a response to the motion of one log is in the rows: of the equations that have rows.
@@ -263,6 +252,17 @@ impl RowResponse {
 }
 
 impl ModelTorques {
+    /// The torques that the model gives a motion with z.
+    pub(super) fn new(nominal: &Nominal<'_>, signals: &Signals, z: &[f64]) -> Self {
+        let (phi, numbers) = (nominal.phi(z), nominal.numbers(z));
+        let drives = Drive::all(nominal.model, &phi.drives);
+        let load = torques(nominal, signals, &nominal.load_phi(z));
+        let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
+        let load_rate = load.iter().map(rate).collect();
+        let total = torques(nominal, signals, &phi);
+        Self { phi, numbers, load, load_rate, total, drives }
+    }
+
     /// The torques at the samples of a coarse view.
     pub fn thinned(&self, fine: &Signals, coarse: &Signals) -> Self {
         let thin = |all: &PerJoint| all.iter().map(|one| coarse.thinned(fine, one)).collect();

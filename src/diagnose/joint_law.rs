@@ -58,6 +58,9 @@ impl Law for JointLaw {
                 let signals = motion.signals;
                 (samples.qd, samples.qdd) = (&signals.qd[joint], &signals.qdd[joint]);
                 samples.creep = samples.qd;
+                if let Some(other) = other {
+                    (samples.qd_2, samples.qdd_2) = (&signals.qd[other], &signals.qdd[other]);
+                }
                 // What the link feels the spring passes on.
                 equations.push(spring);
             }

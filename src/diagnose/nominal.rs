@@ -4,6 +4,7 @@
 //! theta0 each within its standard deviation; a unit of z moves one of them by one deviation, so
 //! that z has the prior N(0, 1) in all its entries.
 
+use super::data::SPRING_ZERO;
 use super::elastic::SeriesSpring;
 use crate::plants::regression::{ModelParameter, RegressionModel, StandardParameter};
 
@@ -153,6 +154,13 @@ impl<'a> Nominal<'a> {
     /// The place in z of the first entry of a spring: of its stiffness; its zero follows.
     pub(super) fn place_of_spring(&self, spring: usize) -> usize {
         self.len() + 1 + self.model.joints.len() + 2 * spring
+    }
+
+    /// What the motor of each spring reads more than its joint where the spring is relaxed, with z
+    /// [rad, m].
+    pub(super) fn zeros_of_springs(&self, z: &[f64]) -> Vec<f64> {
+        let of = |place| z.get(self.place_of_spring(place) + 1).copied().unwrap_or(0.0);
+        (0..self.springs.len()).map(|place| SPRING_ZERO * of(place)).collect()
     }
 
     /// Number of entries of z.

@@ -1,6 +1,7 @@
 //! The second gap: models in motion. A model that gives the right torques for a motion need not
 //! move as the robot does; so each is simulated in short windows from measured states under
-//! measured torques, before and after.
+//! measured torques, before and after. Drives whose motors were measured before their springs begin
+//! with angle and rate of these, and are moved by the motors' torques.
 
 use super::candidate::Candidate;
 use super::nominal::Nominal;
@@ -13,9 +14,10 @@ use crate::identify::{
     with_effects,
 };
 use crate::plants::effect::apart;
-use crate::plants::{PlantError, plant_of};
+use crate::plants::{PlantError, PlantModel, plant_of};
 use denavit_codegen::effect::{Effect, EffectSite, read_estimated_model, read_model};
-use denavit_codegen::model::{ModelError, Robot};
+use denavit_codegen::model::{LinkId, ModelError, Robot};
+use denavit_codegen::number::parse_decimal;
 use std::fmt;
 
 /// How far simulated motions run away from measured ones.
@@ -57,8 +59,11 @@ pub enum NotMoved {
     Condition(String, ConditionError),
     /// A log cannot be simulated again; holds its name.
     Forward(String, ForwardError),
-    /// Drives have springs: logs are those of motors.
-    Springs,
+    /// The motor of a joint is in the logs, and the model gives the spring behind it no stiffness:
+    /// holds the joint.
+    NoStiffness(String),
+    /// The same of the rotor before that spring, which nothing moves then.
+    NoRotor(String),
 }
 
 impl fmt::Display for NotMoved {
@@ -70,7 +75,12 @@ impl fmt::Display for NotMoved {
             Self::Law(error) => write!(f, "{error}"),
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Forward(file, error) => write!(f, "{file}: {error}"),
-            Self::Springs => write!(f, "the logs are those of motors before springs"),
+            Self::NoStiffness(joint) => {
+                write!(f, "the model has no stiffness of the spring behind the motor of `{joint}`")
+            }
+            Self::NoRotor(joint) => {
+                write!(f, "the model has no rotor before the spring of `{joint}`")
+            }
         }
     }
 }
@@ -130,12 +140,14 @@ impl Moved<'_> {
         let with = with.ok_or_else(|| NotMoved::NoPlace(name()))?;
         let moved = moved_numbers(nominal, z, &with).ok_or_else(|| NotMoved::NoPlace(name()))?;
         let name = "the model";
-        let moved = read_estimated_model(name, moved.as_bytes(), self.effects);
-        let moved = moved.map(|robot| (robot, true));
-        // Numbers that make no body together stay as they were.
-        let as_it_was = || read_model(name, with.as_bytes(), self.effects);
-        let found = moved.or_else(|_| as_it_was().map(|robot| (robot, false)));
-        found.map_err(|error| NotMoved::Unsound(Box::new(error)))
+        let moved = read_estimated_model(name, moved.as_bytes(), self.effects).ok();
+        let moved = moved.and_then(|robot| with_springs(robot, (nominal, z)));
+        if let Some(moved) = moved {
+            return Ok((moved, true));
+        }
+        // Numbers that make no body together, or no spring, stay as they were.
+        let as_it_was = read_model(name, with.as_bytes(), self.effects);
+        as_it_was.map(|robot| (robot, false)).map_err(|error| NotMoved::Unsound(Box::new(error)))
     }
 
     fn place<'c>(&self, own: &'c Candidate) -> NewPlace<'c> {
@@ -154,16 +166,18 @@ impl Moved<'_> {
         nominal: (&Nominal<'_>, &[f64]),
         taken: (&[Candidate], &[Taken]),
     ) -> Result<MotionGap, NotMoved> {
-        let (robot, is_estimated) = self.robot(nominal, taken)?;
+        let (mut robot, is_estimated) = self.robot(nominal, taken)?;
         let model = nominal.0.model;
         let logs = &self.logs[set];
-        if logs.iter().flat_map(|log| &log.joints).any(|joint| joint.motor.is_some()) {
-            return Err(NotMoved::Springs);
-        }
+        let zeros = drive_by_motors(&mut robot, nominal, logs)?;
         let laws = apart(&robot, self.effects).map_err(|error| NotMoved::Law(error.to_string()))?;
-        let has_states = robot.law_states().next().is_some()
+        let of_springs = robot.spring_laws.iter().flat_map(|own| &own.law.states);
+        let has_states = robot.law_states().chain(of_springs).next().is_some()
             || laws.laws.iter().any(|law| law.law.is_transmission());
         let mut plant = plant_of(&robot, &[]).map_err(NotMoved::Plant)?;
+        if let (Some(joint), true) = (lacks_rotor(plant.model(), logs), zeros.is_some()) {
+            return Err(NotMoved::NoRotor(joint));
+        }
         let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
         let mut joined: Option<Forward> = None;
         let mut lengths = Vec::new();
@@ -173,7 +187,10 @@ impl Moved<'_> {
             let mut log = log.head((LONGEST_S / log.step_s) as usize + 1);
             undo_readings(&mut log, &laws.laws);
             let filter = Some(Filter { order: 4, cutoff_hz });
-            let motion = MotionLog::new(&log, &names, filter);
+            let motion = match &zeros {
+                Some(zeros) => MotionLog::with_drives(&log, &names, filter, zeros),
+                None => MotionLog::new(&log, &names, filter),
+            };
             let file = log.file.clone();
             let mut motion = motion.map_err(|error| NotMoved::Condition(file.clone(), error))?;
             undo_logged_torques(&mut motion, model, &laws.laws);
@@ -189,6 +206,62 @@ impl Moved<'_> {
         let gap = joined.map(|forward| MotionGap::new(&forward, &names, &lengths));
         Ok(MotionGap { has_states, is_estimated, ..gap.unwrap_or_default() })
     }
+}
+
+/// The robot with the stiffness of its springs as z has it; none if that makes no spring.
+fn with_springs(mut robot: Robot, (nominal, z): (&Nominal<'_>, &[f64])) -> Option<Robot> {
+    let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
+    for (spring, stiffness) in nominal.springs.iter().zip(nominal.phi(z).springs) {
+        let share = stiffness / spring.stiffness;
+        let exact = parse_decimal(&format!("{share:?}")).ok().filter(|_| share > 0.0)?;
+        let drive = robot.links[links[spring.joint]].drive.as_mut()?;
+        let elastic = drive.series_elastic.as_mut()?;
+        let share = robot.dag.constant(exact);
+        elastic.stiffness = robot.dag.mul(elastic.stiffness, share);
+    }
+    Some(robot)
+}
+
+/// Readies a robot for logs of motors before springs: what their zeros are by joint; none if there
+/// are no such logs.
+///
+/// A drive without a rotor is none that moves by itself: so springs whose motors the logs lack pass
+/// on the torque that was measured of them.
+fn drive_by_motors(
+    robot: &mut Robot,
+    (nominal, z): (&Nominal<'_>, &[f64]),
+    logs: &[MeasuredLog],
+) -> Result<Option<Vec<f64>>, NotMoved> {
+    let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
+    let is_measured = |joint: usize| logs.iter().any(|log| log.joints[joint].motor.is_some());
+    if !(0..links.len()).any(is_measured) {
+        return Ok(None);
+    }
+    let mut zeros = vec![0.0; links.len()];
+    for (spring, zero) in nominal.springs.iter().zip(nominal.zeros_of_springs(z)) {
+        zeros[spring.joint] = zero;
+    }
+    for (joint, link) in links.into_iter().enumerate() {
+        let has_spring = nominal.springs.iter().any(|spring| spring.joint == joint);
+        let drive = robot.links[link].drive.as_mut();
+        match drive.filter(|drive| drive.series_elastic.is_some()) {
+            Some(drive) if !is_measured(joint) => drive.rotor_inertia = None,
+            Some(_) if !has_spring => {
+                return Err(NotMoved::NoStiffness(nominal.model.joints[joint].name.clone()));
+            }
+            _ => {}
+        }
+    }
+    Ok(Some(zeros))
+}
+
+/// A joint whose motor was measured before a spring, and has no rotor that could be moved.
+fn lacks_rotor(model: &PlantModel, logs: &[MeasuredLog]) -> Option<String> {
+    let is_measured = |joint: &usize| logs.iter().any(|log| log.joints[*joint].motor.is_some());
+    let lacks =
+        |joint: &usize| model.joints[*joint].drive.is_none_or(|drive| drive.rotor_inertia <= 0.0);
+    let joint = model.sprung_joints().find(|joint| is_measured(joint) && lacks(joint))?;
+    Some(model.joints[joint].name.clone())
 }
 
 /// The text with the nominal model's numbers moved by z.

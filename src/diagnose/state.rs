@@ -300,6 +300,10 @@ impl<'a> Setting<'a> {
         now: (&[Taken], &[f64]),
     ) -> Option<f64> {
         self.moved?;
+        // Windows of drives before springs are shown, and judge nothing.
+        if !self.train.nominal.springs.is_empty() {
+            return None;
+        }
         let gap = |one| self.motion_gap(1, one).ok().filter(|gap| !gap.has_states);
         let (mut before, mut after) = (gap(than)?, gap(now)?);
         // Numbers of the file against estimated ones would say more than the effects do.

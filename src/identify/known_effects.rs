@@ -7,11 +7,11 @@
 //! that the model gives.
 
 use super::condition::{Butterworth, Conditioned, STENCIL};
-use super::forward::MotionLog;
+use super::forward::{DriveMotion, MotionLog};
 use super::log::MeasuredLog;
-use crate::plants::effect::{AddedLaw, Drive, JointSamples};
+use crate::plants::effect::{AddedLaw, Drive, EffectLaw, JointSamples};
 use crate::plants::regression::{RegressionModel, RegressionRows, StandardParameter};
-use denavit_codegen::effect::Channel;
+use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
 use std::ops::Range;
 
 /// Samples that are evaluated at once.
@@ -65,16 +65,19 @@ pub fn take_out(log: &mut Conditioned, model: &RegressionModel, laws: &[AddedLaw
     let loads = loads(model, &motion);
     let (step_s, start_s, drives) =
         (log.step_s, log.start_s, Drive::all(model, &phi_of(model, false)));
-    let moved = Moved { motion: &motion, loads: &loads, drives, step_s, start_s };
+    let moved =
+        Moved { motion: &motion, loads: &loads, drives, sprung: Vec::new(), step_s, start_s };
     undo_torques(&mut log.torque, laws, &moved, &wide);
-    for law in laws.iter().filter(|law| law.law.channel().is_none()) {
+    // What springs pass on is the torque of their joints, whatever makes it.
+    let adds = |law: &&AddedLaw| law.law.channel().is_none() && law.law.at != EffectSite::Spring;
+    for law in laws.iter().filter(adds) {
         let [joint, other] = law.joints();
         let first = Some((&law.law, [joint, other]));
         let second = law.law.on_second().map(|own| (own, [other, joint]));
         for (own, joints) in first.into_iter().chain(second) {
             let Some(torque) = &mut log.torque[joints[0]] else { continue };
-            let mut added =
-                moved.with(joints, &[], wide.start, |samples| own.torque(samples, &law.values));
+            let mut added = moved
+                .with((own, joints), &[], wide.start, |samples| own.torque(samples, &law.values));
             if let Some(filter) = &log.filter {
                 Butterworth::zero_phase(filter, &mut added);
             }
@@ -95,13 +98,22 @@ pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &
     let loads = loads(model, &motion);
     let (step_s, start_s, drives) =
         (log.step_s, log.start_s, Drive::all(model, &phi_of(model, false)));
-    let moved = Moved { motion: &motion, loads: &loads, drives, step_s, start_s };
+    let of = |(joint, own): (usize, &Option<DriveMotion>)| {
+        own.as_ref().map(|own| Sprung::new(own, &log.q[joint], &log.qd[joint], log.step_s))
+    };
+    let sprung = log.drives.iter().enumerate().map(of).collect();
+    let moved = Moved { motion: &motion, loads: &loads, drives, sprung, step_s, start_s };
     undo_torques(&mut log.torque, laws, &moved, &(0..samples));
     let states = |law: &AddedLaw| {
-        moved.with(law.joints(), &[], 0, |samples| law.law.states(samples, &law.values))
+        let own = (&law.law, law.joints());
+        moved.with(own, &[], 0, |samples| law.law.states(samples, &law.values))
     };
-    let added = laws.iter().filter(|law| law.law.channel().is_none());
-    log.law_states = added.flat_map(states).collect();
+    // A simulation has states of laws of springs behind those of joints.
+    let (springs, joints): (Vec<&AddedLaw>, Vec<&AddedLaw>) = laws
+        .iter()
+        .filter(|law| law.law.channel().is_none())
+        .partition(|law| law.law.at == EffectSite::Spring);
+    log.law_states = joints.into_iter().chain(springs).flat_map(states).collect();
 }
 
 fn undo_torques(
@@ -114,10 +126,29 @@ fn undo_torques(
     for law in laws.iter().rev().filter(|law| law.law.channel() == Some(Channel::Torque)) {
         let Some(torque) = &mut torques[law.joint] else { continue };
         let logged = torque[range.clone()].to_vec();
-        let truth = moved.with(law.joints(), &logged, range.start, |samples| {
+        let truth = moved.with((&law.law, law.joints()), &logged, range.start, |samples| {
             law.law.corrected(samples, &law.values)
         });
         torque[range.clone()].copy_from_slice(&truth);
+    }
+}
+
+/// A drive before a series spring, on the side of its joint.
+struct Sprung {
+    rate: Vec<f64>,
+    acceleration: Vec<f64>,
+    /// How far it is ahead of the joint, and the rate of that.
+    deflection: [Vec<f64>; 2],
+}
+
+impl Sprung {
+    fn new(own: &DriveMotion, q: &[f64], qd: &[f64], step_s: f64) -> Self {
+        let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        Self {
+            rate: own.rate.clone(),
+            acceleration: slope(&own.rate, step_s),
+            deflection: [less(&own.angle, q), less(&own.rate, qd)],
+        }
     }
 }
 
@@ -127,6 +158,8 @@ struct Moved<'a> {
     motion: &'a [Vec<f64>],
     loads: &'a [Vec<f64>],
     drives: Vec<Drive>,
+    /// Drives that move by themselves: one entry for each joint, or none at all.
+    sprung: Vec<Option<Sprung>>,
     step_s: f64,
     start_s: f64,
 }
@@ -135,7 +168,7 @@ impl Moved<'_> {
     /// What a law is evaluated on; the first sample is the log's sample `first`.
     fn with<T>(
         &self,
-        [joint, other]: [usize; 2],
+        (law, [joint, other]): (&EffectLaw, [usize; 2]),
         tau: &[f64],
         first: usize,
         apply: impl FnOnce(&JointSamples<'_>) -> T,
@@ -146,18 +179,29 @@ impl Moved<'_> {
             (0..samples).map(|k| self.start_s + self.step_s * (first + k) as f64).collect();
         let [load_rate, load_rate_2] =
             [joint, other].map(|joint| slope(&self.loads[joint], self.step_s));
+        let sprung = |joint: usize| self.sprung.get(joint).and_then(Option::as_ref);
+        let rates = |joint: usize| match sprung(joint).filter(|_| law.side == SpringSide::Motor) {
+            Some(own) => [&own.rate, &own.acceleration],
+            None => [&self.motion[n + joint], &self.motion[2 * n + joint]],
+        };
+        let ([mut qd, qdd], [qd_2, qdd_2]) = (rates(joint), rates(other));
+        let (mut q, rest) = (&self.motion[joint], vec![0.0; samples]);
+        if law.at == EffectSite::Spring {
+            let deflection = sprung(joint).map(|own| own.deflection.each_ref());
+            [q, qd] = deflection.unwrap_or([&rest, &rest]);
+        }
         apply(&JointSamples {
             t: &t,
-            q: &self.motion[joint],
-            qd: &self.motion[n + joint],
-            creep: &self.motion[n + joint],
-            qdd: &self.motion[2 * n + joint],
+            q,
+            qd,
+            creep: qd,
+            qdd,
             tau_load: &self.loads[joint],
             tau_load_rate: &load_rate,
             tau,
             q_2: &self.motion[other],
-            qd_2: &self.motion[n + other],
-            qdd_2: &self.motion[2 * n + other],
+            qd_2,
+            qdd_2,
             tau_load_2: &self.loads[other],
             tau_load_rate_2: &load_rate_2,
             drive: self.drives[joint],

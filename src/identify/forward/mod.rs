@@ -41,12 +41,17 @@ pub struct MotionLog {
     pub q: Vec<Vec<f64>>,
     /// Their rates; 0 outside `range` [rad/s, m/s].
     pub qd: Vec<Vec<f64>>,
-    /// Required torques, filtered; none where they were not measured [N m, N].
+    /// Required torques, filtered; none where they were not measured [N m, N]. Of a joint in
+    /// `drives` it is the torque of the motor.
     pub torque: Vec<Option<Vec<f64>>>,
     /// References, as they were logged [rad, m].
     pub reference: Vec<Option<Vec<f64>>>,
     /// Angles of motors before springs, as they were logged \[rad\].
     pub motor: Vec<Option<Vec<f64>>>,
+    /// Motion of motors before springs, filtered, on the side of their joints: windows move these
+    /// drives by themselves, under the torques of the motors. One entry for each joint, or none at
+    /// all where springs are taken to have passed on what was measured.
+    pub drives: Vec<Option<DriveMotion>>,
     /// States of laws of the model at every sample, one column for each; none if they begin as if
     /// joints had rested.
     pub law_states: Vec<Vec<f64>>,
@@ -55,6 +60,15 @@ pub struct MotionLog {
     /// Below this rate Coulomb friction is a steep line where the log is simulated [rad/s, m/s].
     pub stiction_rate: f64,
     filter: Option<Butterworth>,
+}
+
+/// How a motor before a series spring moves, on the side of its joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriveMotion {
+    /// How far it has turned [rad, m].
+    pub angle: Vec<f64>,
+    /// Its rate; 0 outside the range of the log [rad/s, m/s].
+    pub rate: Vec<f64>,
 }
 
 impl MotionLog {
@@ -95,11 +109,39 @@ impl MotionLog {
             torque: conditioned.torque,
             reference: log.joints.iter().map(|joint| joint.reference.clone()).collect(),
             motor: log.joints.iter().map(|joint| joint.motor.clone()).collect(),
+            drives: Vec::new(),
             law_states: Vec::new(),
             range,
             stiction_rate: STICTION_RATE,
             filter: conditioned.filter,
         })
+    }
+
+    /// Filters a log of which the angles and torques of motors before springs stand on the side of
+    /// their joints: these drives move by themselves. `zeros` are for each joint what its motor
+    /// reads more than the joint where the spring is relaxed [rad, m].
+    pub fn with_drives(
+        log: &MeasuredLog,
+        names: &[String],
+        filter: Option<Filter>,
+        zeros: &[f64],
+    ) -> Result<Self, ConditionError> {
+        let mut motion = Self::new(log, names, filter)?;
+        // Motors in place of their joints, through the same filter.
+        let mut turned = log.clone();
+        for joint in &mut turned.joints {
+            if let Some(angle) = joint.motor.take() {
+                joint.q = angle;
+            }
+        }
+        let turned = Self::new(&turned, names, filter)?;
+        let of = |(joint, own): (usize, &JointSignals)| {
+            own.motor.as_ref()?;
+            let angle = turned.q[joint].iter().map(|angle| angle - zeros[joint]).collect();
+            Some(DriveMotion { angle, rate: turned.qd[joint].clone() })
+        };
+        motion.drives = log.joints.iter().enumerate().map(of).collect();
+        Ok(motion)
     }
 
     /// The time of a sample \[s\].
@@ -111,8 +153,8 @@ impl MotionLog {
         self.q.first().map_or(0, Vec::len)
     }
 
-    /// The state at a sample; motors as they were logged, or with the elongation of springs that
-    /// the torque makes, and turning with their joints.
+    /// The state at a sample; motors as they move or were logged, or with the elongation of springs
+    /// that the torque makes, and turning with their joints.
     fn state(&self, model: &PlantModel, sample: usize, has_motors: bool) -> State {
         let at = sample.clamp(self.range.start, self.range.end - 1);
         let mut state = State {
@@ -128,6 +170,11 @@ impl MotionLog {
             };
             let Some(spring) = drive.series_elastic else { continue };
             let ratio = drive.gear_ratio / spring.motor_radius;
+            if let Some(moved) = self.drives.get(index).and_then(Option::as_ref) {
+                state.motor.push(ratio * spring.load_radius * moved.angle[sample]);
+                state.motor_rate.push(ratio * spring.load_radius * moved.rate[at]);
+                continue;
+            }
             let torque = self.torque[index].as_ref().map_or(0.0, |torque| torque[sample]);
             let stretched = torque / (spring.stiffness * spring.load_radius);
             let taut = ratio * (stretched + spring.load_radius * state.q[index]);

@@ -1,4 +1,7 @@
 //! Short windows from measured states, under measured torques.
+//!
+//! Where the motors before springs were measured, windows begin with their angles and rates as well
+//! and the torques are those of the motors: springs pass on what the model makes of them.
 
 use super::{
     ACCURACY, Compared, Forward, ForwardError, ForwardJoint, ForwardKind, MotionLog, column, names,
@@ -45,12 +48,14 @@ pub fn in_windows(
     let spare = log.range.len() - 1 - count * steps;
     let begin = |k: usize| log.range.start + k * steps + spare * k / (count - 1).max(1);
     let n = model.joints.len();
+    let has_motors = log.drives.iter().any(Option::is_some);
+    let drives = if has_motors { DriveModelling::Model } else { DriveModelling::Required };
     let mut signals = vec![[const { Vec::new() }; 4]; n];
     let mut went = vec![Vec::new(); n];
     let mut t_s = Vec::new();
     for from in (0..count).map(begin) {
-        let initial = log.state(&model, from, false);
-        let how = simulation(DriveModelling::Required, log.time_s(from + steps), log);
+        let initial = log.state(&model, from, has_motors);
+        let how = simulation(drives, log.time_s(from + steps), log);
         // Friction that is a steep line at rest makes explicit steps short, with light links most.
         let how = Simulation { method: Method::Radau(ACCURACY), ..how };
         let run = simulate(plant, &torques, &initial, &how).map_err(ForwardError::Start)?;

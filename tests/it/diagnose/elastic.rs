@@ -2,8 +2,8 @@
 //! spring damps, its deflection is integrated.
 
 use denavit::diagnose::{
-    BeforeSprings, DiagnosisError, Request, SearchOptions, Uncertainty, Verdict, before_springs,
-    candidates, diagnose, spring_candidates,
+    BeforeSprings, Candidate, Diagnosis, DiagnosisError, Moved, Request, SearchOptions,
+    Uncertainty, Verdict, before_springs, candidates, diagnose, spring_candidates,
 };
 use denavit::effect;
 use denavit::identify::log::{JointSignals, MeasuredLog};
@@ -61,9 +61,11 @@ struct Hidden {
     drag: f64,
     across: f64,
     damping: f64,
+    /// What the motor reads where spring and joint are at 0, on the joint's side \[rad\].
+    zero: f64,
 }
 
-const NOTHING: Hidden = Hidden { drag: 0.0, across: 0.0, damping: 0.0 };
+const NOTHING: Hidden = Hidden { drag: 0.0, across: 0.0, damping: 0.0, zero: 0.0 };
 
 /// Torque of the load and its first two derivatives by time.
 fn load([q, v, a, jerk, snap]: Angle, across: f64) -> [f64; 3] {
@@ -105,7 +107,7 @@ fn deflections(damping: f64, load: impl Fn(f64) -> [f64; 3]) -> Vec<[f64; 3]> {
 }
 
 /// A log of the motor before the spring.
-fn log(seed: u64, Hidden { drag, across, damping }: Hidden) -> MeasuredLog {
+fn log(seed: u64, Hidden { drag, across, damping, zero }: Hidden) -> MeasuredLog {
     let mut random = Random::new(seed);
     let waves: Vec<[f64; 3]> = (1..=4)
         .map(|k| [0.5 / f64::from(k), TAU * f64::from(k) / 4.0, TAU * random.uniform()])
@@ -122,7 +124,7 @@ fn log(seed: u64, Hidden { drag, across, damping }: Hidden) -> MeasuredLog {
             + GEAR * COULOMB * rate.signum()
             + drag * rate * rate.abs();
         own.q.push((at[0] * 20_000.0).round() / 20_000.0);
-        motor.push((GEAR * turned * 2_000.0).round() / 2_000.0);
+        motor.push((GEAR * (turned + zero) * 2_000.0).round() / 2_000.0);
         torque.push((spring + drive + 0.02 * random.normal()) / GEAR);
     }
     (own.step, own.motor_step) = (Some(1.0 / 20_000.0), Some(1.0 / 2_000.0));
@@ -139,6 +141,15 @@ fn log(seed: u64, Hidden { drag, across, damping }: Hidden) -> MeasuredLog {
 type Said = (Verdict, Vec<(String, [f64; 2])>);
 
 fn found(hidden: Hidden) -> Result<Said, DiagnosisError> {
+    let (diagnosis, candidates) = diagnosed(hidden)?;
+    let named = diagnosis.effects.iter().map(|one| {
+        let first = &one.parameters[0];
+        (candidates[one.candidate].name(), [first.value, first.std])
+    });
+    Ok((diagnosis.verdict, named.collect()))
+}
+
+fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), DiagnosisError> {
     let robot = denavit::model::read("elastic_pendulum", MODEL.as_bytes()).expect("a model");
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
     let (mut train, mut held_out) = (vec![log(5, hidden)], vec![log(6, hidden)]);
@@ -148,6 +159,8 @@ fn found(hidden: Hidden) -> Result<Said, DiagnosisError> {
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
     let mut candidates = candidates(effect::catalogue(), &robot, &model);
     candidates.append(&mut spring_candidates(effect::catalogue(), &springs, &model));
+    let logs = [train.clone(), held_out.clone()];
+    let moved = Moved { source: MODEL, effects: effect::catalogue(), numbers: &[], logs };
     let request = Request {
         model: &model,
         springs: &springs,
@@ -157,17 +170,32 @@ fn found(hidden: Hidden) -> Result<Said, DiagnosisError> {
         given: Vec::new(),
         aliases: None,
         experiment: None,
-        moved: None,
+        moved: Some(&moved),
         uncertainty: Uncertainty::default(),
         options: SearchOptions::default(),
         filters: None,
     };
     let diagnosis = diagnose(request, &mut |_, _| ())?;
-    let named = diagnosis.effects.iter().map(|one| {
-        let first = &one.parameters[0];
-        (candidates[one.candidate].name(), [first.value, first.std])
-    });
-    Ok((diagnosis.verdict, named.collect()))
+    Ok((diagnosis, candidates))
+}
+
+/// The motion of the logs is in closed form, and so is what moves there: a model that has all of it
+/// goes along, from where the motor is less its zero, and one that lacks it does not.
+#[test]
+fn a_model_with_what_was_found_moves_as_the_motor_behind_a_spring_does() {
+    for hidden in [
+        Hidden { drag: 0.15, zero: 0.05, ..NOTHING },
+        Hidden { across: 0.5, zero: -0.3, ..NOTHING },
+        Hidden { damping: 0.1, ..NOTHING },
+    ] {
+        let (found, _) = diagnosed(hidden).expect("logs that say something");
+        assert_eq!(found.effects.len(), 1, "{:?}", found.reasons);
+        let gaps = found.motion.expect("asked for").expect("a pendulum can be simulated");
+        for [before, after] in [&gaps.train, &gaps.held_out] {
+            assert!(after.all < 0.3 * before.all, "{} {}", before.all, after.all);
+            assert!(after.all < 0.01 && after.is_estimated, "{}", after.all);
+        }
+    }
 }
 
 /// One effect is found, of that name, and its first value is within three of its errors, which are

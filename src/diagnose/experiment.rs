@@ -10,6 +10,7 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::evidence::{block_costs, paired};
 use super::floor::{NoiseFloor, rms};
+use super::followed::Follower;
 use super::nominal::Nominal;
 use super::problem::{Fitted, Problem};
 use super::search::{DISTINCT, ROWS_PER_SAMPLE};
@@ -79,8 +80,9 @@ pub enum NoExperiment {
     Limits(ExciteError),
     /// Even rest exceeds a limit.
     Rest,
-    /// Drives have springs, whose motors have a motion of their own.
-    Springs,
+    /// The motor of a joint was measured, and the model gives the spring behind it no stiffness, so
+    /// that nothing says how its motor moves: holds the joint.
+    NoStiffness(String),
 }
 
 impl fmt::Display for NoExperiment {
@@ -88,7 +90,9 @@ impl fmt::Display for NoExperiment {
         match self {
             Self::Limits(error) => write!(f, "{error}"),
             Self::Rest => write!(f, "even at rest a limit of the robot is exceeded"),
-            Self::Springs => write!(f, "the motion of motors before springs is not computed"),
+            Self::NoStiffness(joint) => {
+                write!(f, "the model has no stiffness of the spring behind the motor of `{joint}`")
+            }
         }
     }
 }
@@ -125,14 +129,23 @@ impl Ambiguity<'_> {
         robot: &Robot,
         options: &ExperimentOptions,
     ) -> Result<Experiment, NoExperiment> {
-        if self.log.motor.iter().any(Option::is_some) {
-            return Err(NoExperiment::Springs);
+        let nominal = self.nominal;
+        let is_lost = |joint: &usize| {
+            self.log.motor[*joint].is_some() && nominal.spring_equation(*joint).is_none()
+        };
+        if let Some(joint) = (0..nominal.model.joints.len()).find(is_lost) {
+            return Err(NoExperiment::NoStiffness(nominal.model.joints[joint].name.clone()));
         }
         let of_harmonics = |harmonics: usize| {
             let excite = ExciteOptions {
                 family: Family::Fourier { harmonics },
                 duration_s: options.duration_s,
-                ends: Ends { at_rest: true, unaccelerated: false, closed: true },
+                // The motor before a spring is ahead by what accelerations take, and must not jump.
+                ends: Ends {
+                    at_rest: true,
+                    unaccelerated: !nominal.springs.is_empty(),
+                    closed: true,
+                },
                 with: modelled(robot),
                 seed: options.seed,
                 ..ExciteOptions::default()
@@ -145,7 +158,7 @@ impl Ambiguity<'_> {
         let (separation, x, space) = found;
         let feasible = &spaces[space];
         let references = feasible.references(&x);
-        let seen = self.seen(self.log_of(&references, options));
+        let seen = self.log_of(&references, options).and_then(|log| self.seen(log));
         let power = seen.map_or(0.0, |seen| self.power(&seen, options));
         let rivals: Vec<usize> = self.names[1..].iter().map(|one| one.candidate).collect();
         let separation_before = self.seen(self.log.clone()).map_or(0.0, |seen| self.least(&seen));
@@ -215,11 +228,13 @@ impl Ambiguity<'_> {
 
     fn value(&self, feasible: &Feasible, x: &[f64], options: &ExperimentOptions) -> f64 {
         let log = self.log_of(&feasible.references(x), options);
-        self.seen(log).map_or(f64::NEG_INFINITY, |seen| self.least(&seen))
+        let seen = log.and_then(|log| self.seen(log));
+        seen.map_or(f64::NEG_INFINITY, |seen| self.least(&seen))
     }
 
-    /// One lap, and as much of the next as the edges of filters take.
-    fn log_of(&self, references: &[Reference], options: &ExperimentOptions) -> Signals {
+    /// One lap, and as much of the next as the edges of filters take; none if no motion of motors
+    /// before springs makes the joints follow.
+    fn log_of(&self, references: &[Reference], options: &ExperimentOptions) -> Option<Signals> {
         let step_s = self.log.log_step_s;
         let rows = (1.1 * options.duration_s / step_s) as usize;
         let position = |reference: &Reference| -> Vec<f64> {
@@ -227,8 +242,19 @@ impl Ambiguity<'_> {
                 .map(|k| reference.at((step_s * k as f64) % options.duration_s).position)
                 .collect()
         };
+        let mut motors = vec![None; references.len()];
+        if !self.nominal.springs.is_empty() {
+            let follower = Follower {
+                nominal: self.nominal,
+                z: self.z,
+                laws: self.names[..1].iter().chain(&self.others).map(|o| self.fitted(o)).collect(),
+                log: self.log,
+            };
+            motors = follower.motors(references, (rows, options.duration_s))?;
+        }
         let joint = |(joint, reference): (usize, &Reference)| JointSignals {
             q: position(reference),
+            motor: motors[joint].clone(),
             // What is measured is made afterwards, in the rows.
             tau: self.log.torque[joint].as_ref().map(|_| vec![0.0; rows]),
             ..JointSignals::default()
@@ -239,7 +265,12 @@ impl Ambiguity<'_> {
             joints: references.iter().enumerate().map(joint).collect(),
             ..MeasuredLog::default()
         };
-        Signals::new(log, self.filters).unwrap_or_else(|_| self.log.clone())
+        Some(Signals::new(log, self.filters).unwrap_or_else(|_| self.log.clone()))
+    }
+
+    fn fitted(&self, one: &Taken) -> Fitted<'_> {
+        let law = self.candidates[one.candidate].law.as_ref();
+        Fitted { law, values: one.values.clone() }
     }
 
     /// What names and the others do in a motion; none if nothing is measured there.
@@ -249,15 +280,12 @@ impl Ambiguity<'_> {
             return None;
         }
         let torques = data.model_torques(self.z);
-        let fitted = |one: &Taken| Fitted {
-            law: self.candidates[one.candidate].law.as_ref(),
-            values: one.values.clone(),
-        };
-        let laws: Vec<Fitted<'_>> = self.names.iter().chain(&self.others).map(fitted).collect();
+        let all = self.names.iter().chain(&self.others);
+        let laws: Vec<Fitted<'_>> = all.map(|one| self.fitted(one)).collect();
         let unsure = turning(&data, &torques, &laws);
         let mut deviation: Vec<f64> = unsure.iter().map(|row| row.deviation(1.0)).collect();
         for stretch in &data.stretches {
-            let floor = self.floor.deviation[stretch.joint];
+            let floor = self.floor.deviation[stretch.equation];
             let rows = &mut deviation[stretch.first..stretch.first + stretch.rows];
             rows.iter_mut().for_each(|row| *row = row.hypot(floor));
         }
@@ -322,7 +350,7 @@ impl Ambiguity<'_> {
         let signals = &seen.data.signals[0];
         let gain = signals.noise_gain();
         for stretch in &seen.data.stretches {
-            let deviation = self.floor.deviation[stretch.joint] / gain;
+            let deviation = self.floor.deviation[stretch.equation] / gain;
             let noise = signals.white_rows(|| deviation * random.normal());
             let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
             rows.iter_mut().zip(noise).for_each(|(row, noise)| *row += noise);

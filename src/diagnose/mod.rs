@@ -27,6 +27,7 @@ mod experiment;
 mod family;
 mod fault;
 mod floor;
+mod followed;
 mod gap;
 mod given;
 mod held;

@@ -92,6 +92,18 @@ impl Reference {
         Self { lap_s, joints: robot.joints.iter().map(series).collect() }
     }
 
+    /// A motion of so many waves as a lap may have: for each joint its middle, and amplitude and
+    /// phase of each harmonic.
+    pub(crate) fn of_waves(lap_s: f64, joints: impl Iterator<Item = (f64, Vec<[f64; 2]>)>) -> Self {
+        let series = |(middle, given): (f64, Vec<[f64; 2]>)| {
+            assert!(given.len() <= HARMONICS, "more harmonics than a reference has");
+            let mut waves = [[0.0; 2]; HARMONICS];
+            waves[..given.len()].copy_from_slice(&given);
+            Series { middle, waves }
+        };
+        Self { lap_s, joints: joints.map(series).collect() }
+    }
+
     /// Position and rate of a joint at time t \[s\].
     pub(crate) fn at(&self, joint: usize, t: f64) -> [f64; 2] {
         let frequency = std::f64::consts::TAU / self.lap_s;

@@ -10,4 +10,5 @@ mod one_joint;
 mod saturation;
 mod search;
 mod separate;
+mod separate_elastic;
 mod transmission;

@@ -8,7 +8,7 @@ mod text;
 use super::Answer;
 use super::failure::Failure;
 use super::files::{
-    check_outputs, effects_folder, make_directory, open_log, read_file, write_whole,
+    NewDirectory, check_outputs, effects_folder, make_directory, open_log, read_file, write_whole,
 };
 use super::identify::IdentifyFailure;
 use super::model_effects::{EffectUse, ModelApart};
@@ -41,9 +41,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  denavit simulate tulip_leg_identification -o leg.csv
-  denavit diagnose tulip_leg_table34 --train leg.csv --validate leg.csv
-  denavit diagnose tulip_leg_table34 --train leg.csv --validate leg.csv --out found")]
+  denavit demo --out demo   makes logs of a leg with something hidden, among others
+  denavit diagnose tulip_leg_table34 --train demo/blind_train.csv --validate demo/blind_validate.csv
+  denavit diagnose tulip_leg_table34 --train demo/blind_train.csv \
+    --validate demo/blind_validate.csv --out found   also writes report.html, and the model")]
 pub(crate) struct Arguments {
     /// Path of a model, name of a shipped one, or - for standard input
     #[arg(value_name = "MODEL")]
@@ -193,8 +194,8 @@ impl Shown {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let _made = arguments.out.as_deref().map(NewDirectory::make).transpose()?;
     if let Some(folder) = &arguments.out {
-        make_directory(folder)?;
         let files = [DIAGNOSIS, MODEL, REPORT].map(|name| folder.join(name));
         check_outputs(&files.each_ref().map(Some))?;
     }
@@ -349,15 +350,34 @@ fn logs(
 ) -> Result<[Vec<MeasuredLog>; 2], Failure> {
     let mut ground = Ground::under(robot, model)
         .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
-    let mut read = |path: &PathBuf| {
-        let mut log = log(arguments, robot, model, path, remarks)?;
-        if let Some(ground) = &mut ground {
-            ground.load(&mut log);
+    let mut wrong = Vec::new();
+    let mut all = |paths: &[PathBuf]| {
+        let mut found: Vec<MeasuredLog> = Vec::new();
+        for path in paths {
+            match log(arguments, robot, model, path, remarks) {
+                Ok(log) => found.push(log),
+                Err(Failure::Identify(IdentifyFailure::Logs(one))) => wrong.extend(one),
+                Err(failure) => return Err(failure),
+            }
         }
-        Ok(log)
+        Ok(found)
     };
-    let mut all = |paths: &[PathBuf]| paths.iter().map(&mut read).collect::<Result<_, Failure>>();
-    Ok([all(&arguments.train)?, all(&arguments.validate)?])
+    let mut sets = [all(&arguments.train)?, all(&arguments.validate)?];
+    if !wrong.is_empty() {
+        return Err(IdentifyFailure::Logs(wrong).into());
+    }
+    let [train, _] = &sets;
+    let same = train.iter().enumerate().find_map(|(at, log)| {
+        let before = train[..at].iter().find(|other| other.joints == log.joints)?;
+        Some([&before.file, &log.file].map(String::clone))
+    });
+    if let Some(same) = same {
+        return Err(IdentifyFailure::SameLogs(same).into());
+    }
+    if let Some(ground) = &mut ground {
+        sets.iter_mut().flatten().for_each(|log| ground.load(log));
+    }
+    Ok(sets)
 }
 
 fn log(
@@ -382,7 +402,8 @@ fn log(
         contacts: &contacts,
         accepts_suspicious: arguments.accept_suspicious,
     };
-    let mut log = read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::Log)?;
+    let read = read_log(&file, open_log(path)?, of, &mapping);
+    let mut log = read.map_err(|one| IdentifyFailure::Logs(vec![one]))?;
     let found = std::mem::take(&mut log.remarks);
     for remark in found.into_iter().map(|remark| (file.clone(), remark)) {
         // A log may be given twice.

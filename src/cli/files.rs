@@ -298,3 +298,28 @@ pub(crate) fn make_directory(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path)
         .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })
 }
+
+/// A directory for outputs of a run. What of it was not there before and is empty in the end, since
+/// the run failed, goes with it.
+pub(crate) struct NewDirectory {
+    made: Vec<PathBuf>,
+}
+
+impl NewDirectory {
+    /// Makes a directory with those above it.
+    pub(crate) fn make(path: &Path) -> Result<Self, Failure> {
+        let is_new = |one: &&Path| !one.as_os_str().is_empty() && !one.exists();
+        let made = path.ancestors().take_while(is_new).map(Path::to_owned).collect();
+        make_directory(path)?;
+        Ok(Self { made })
+    }
+}
+
+impl Drop for NewDirectory {
+    fn drop(&mut self) {
+        for path in &self.made {
+            // those with something in them stay
+            let _ = fs::remove_dir(path);
+        }
+    }
+}

@@ -26,6 +26,7 @@ use super::structure::{Structure, describe};
 use crate::identify::log::MeasuredLog;
 use crate::plants::regression::RegressionModel;
 use denavit_codegen::model::Robot;
+use std::collections::BTreeSet;
 
 /// What is to be diagnosed, from what.
 pub struct Request<'a> {
@@ -443,6 +444,18 @@ impl Diagnosis {
                 "exact alias: {name} does what parameters of the model do in every motion ({}); \
                  what is told is that they are off by more than the model states",
                 one.exact.join(", ")
+            ));
+        }
+        let laws: BTreeSet<&String> =
+            self.effects.iter().filter_map(|one| one.outdone_by.as_ref()).collect();
+        for law in laws {
+            let own = self.effects.iter().filter(|one| one.outdone_by.as_ref() == Some(law));
+            let names: Vec<String> =
+                own.map(|one| setting.candidates[one.candidate].name()).collect();
+            reasons.push(format!(
+                "{} stands for another law: {law}, g being some smooth function, leaves less than \
+                 half as much",
+                names.join(" + ")
             ));
         }
         if stop == Stop::MostEffects {

@@ -10,9 +10,12 @@ use super::family::Alternative;
 use super::floor::rms;
 use super::gap::Gap;
 use super::given::is_driven;
+use super::profile::best_profile;
+use super::search::DISTINCT;
 use super::signals::Filters;
 use super::state::{Setting, State, Taken};
 use crate::plants::effect::LawParameter;
+use crate::plants::regression::RegressionJoint;
 use denavit_codegen::model::Robot;
 
 /// A parameter of an effect, with its error.
@@ -41,6 +44,9 @@ pub struct FoundEffect {
     pub is_named: bool,
     /// Whether it closes little where it acts, and is not plain for all that.
     pub is_faint: bool,
+    /// A law of its joint's own motion, as a formula, that leaves less than half as much; so it is
+    /// not named.
+    pub outdone_by: Option<String>,
     /// Effects that would do as well in its place.
     pub alternatives: Vec<Alternative>,
     /// Parameters of the model that do exactly what it does, together, whatever the motion; none
@@ -69,6 +75,10 @@ const MISFIT: f64 = 2.5;
 const HALF: f64 = 0.5;
 const MOVES: f64 = 2.0;
 
+/// A law that is not of the catalogue leaves less than this share of what names leave that stand
+/// for it, noise apart.
+const OUTDONE: f64 = 0.5;
+
 /// An effect that closes less than these shares of what a joint leaves, noise with it, of held-out
 /// logs and of those that are fitted, is faint if its values are within so many errors of nothing,
 /// or held-out logs are better with it by less than so many standard errors.
@@ -88,17 +98,9 @@ pub(super) fn found_effects(
     let floor = Gap::of_floor(setting.held_out, setting.held_out_floor, &trust).all;
     let squares = |left: &[f64]| setting.held_out_squares(after, left);
     let (from, to) = (squares(&before.held_out_residual), squares(&after.held_out_residual));
-    // In units of the noise of each, where one has motor and link to be seen at.
-    let closes = |equations: &[usize]| {
-        let over = |of: &[[f64; 2]]| -> f64 {
-            equations.iter().map(|&at| of[at][0] / to[at][1].max(f64::MIN_POSITIVE)).sum()
-        };
-        let (from, to, noise) = (over(&from), over(&to), equations.len() as f64);
-        let open = (from - noise).max(f64::MIN_POSITIVE);
-        if to < MISFIT * MISFIT * noise { 1.0 } else { (from - to) / open }
-    };
+    let outdone = outdone(setting, after);
     let fits = |equations: &[usize], joint: Option<usize>| {
-        let share = closes(equations);
+        let share = closed_at(equations, [&from, &to]);
         share > FITS || share > HALF && stays(setting, (after, errors), joint)
     };
     let mut found = Vec::new();
@@ -131,13 +133,17 @@ pub(super) fn found_effects(
         };
         let candidate = &setting.candidates[taken.candidate];
         let laws = candidate.law.parameters();
+        let at = |own: &Vec<usize>| own.iter().find_map(|&at| outdone.get(at)?.clone());
+        let outdone_by = own.as_ref().and_then(at);
+        let is_fitting = own.as_ref().is_none_or(|own| fits(own, candidate.joint));
         found.push(FoundEffect {
             candidate: taken.candidate,
             share: (gap(&without) - gap(after)) / whole.max(f64::MIN_POSITIVE),
-            is_named: own.as_ref().is_none_or(|own| fits(own, candidate.joint)),
+            is_named: is_fitting && outdone_by.is_none(),
             // Of what numbers of the model stand for that are driven, logs show little.
             is_faint: own.as_ref().is_some_and(is_little)
                 && (errors_from_nothing(laws, &parameters) < NOTHING || !is_plain()),
+            outdone_by,
             parameters,
             alternatives,
             exact: Vec::new(),
@@ -145,6 +151,41 @@ pub(super) fn found_effects(
         });
     }
     found
+}
+
+/// The share that is closed of what equations had, in units of the noise of each: an effect may have
+/// motor and link to be seen at. All of it where little more than noise stays.
+fn closed_at(equations: &[usize], [from, to]: [&[[f64; 2]]; 2]) -> f64 {
+    let over = |of: &[[f64; 2]]| -> f64 {
+        equations.iter().map(|&at| of[at][0] / to[at][1].max(f64::MIN_POSITIVE)).sum()
+    };
+    let (from, to, noise) = (over(from), over(to), equations.len() as f64);
+    let open = (from - noise).max(f64::MIN_POSITIVE);
+    if to < MISFIT * MISFIT * noise { 1.0 } else { (from - to) / open }
+}
+
+/// For each joint the profile that leaves much less of it than its effects, as a formula.
+fn outdone(setting: &Setting<'_>, state: &State) -> Vec<Option<String>> {
+    let costs = |left: &[f64]| block_costs(setting.held_out, left, &state.deviation[1]);
+    let squares = |left: &[f64]| setting.held_out_squares(state, left);
+    let now = squares(&state.held_out_residual);
+    let acts = |joint: usize| {
+        let mut taken = state.taken[setting.given.len()..].iter();
+        let of = |one: &Taken| &setting.candidates[one.candidate];
+        taken.any(|one| of(one).joint == Some(joint) && !of(one).is_body)
+    };
+    let of = |(joint, described): (usize, &RegressionJoint)| {
+        let [left, noise] = now[joint];
+        if !acts(joint) || left < noise {
+            return None;
+        }
+        let profile = best_profile(setting, state, joint)?;
+        let [less, _] = squares(&profile.held_out_residual)[joint];
+        let better = paired(&costs(&state.held_out_residual), &costs(&profile.held_out_residual));
+        let is_less = less - noise < OUTDONE * (left - noise);
+        (is_less && better > DISTINCT).then(|| profile.formula(&described.name))
+    };
+    setting.train.nominal.model.joints.iter().enumerate().map(of).collect()
 }
 
 /// Whether the effects of a joint have the same values in another motion.

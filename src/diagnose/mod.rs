@@ -35,6 +35,7 @@ mod joint_law;
 mod law;
 mod nominal;
 mod problem;
+mod profile;
 mod regime;
 mod repeat;
 mod round;

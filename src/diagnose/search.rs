@@ -217,7 +217,7 @@ fn largest(data: &Data<'_>, joint: usize) -> Option<f64> {
 }
 
 /// The least and the largest position of a joint.
-fn range(data: &Data<'_>, joint: usize) -> [f64; 2] {
+pub(super) fn range(data: &Data<'_>, joint: usize) -> [f64; 2] {
     let all = data.signals.iter().flat_map(|signals| &signals.q[joint]);
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
 }

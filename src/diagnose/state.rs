@@ -269,8 +269,18 @@ impl<'a> Setting<'a> {
 
     /// What a model leaves of the logs that it was not fitted to.
     fn left(&self, taken: &[Taken], z: &[f64], torques: &[ModelTorques]) -> Vec<f64> {
+        self.left_by(&self.fitted(taken), z, torques)
+    }
+
+    /// The same of laws, whatever they are.
+    pub(super) fn left_by(
+        &self,
+        laws: &[Fitted<'_>],
+        z: &[f64],
+        torques: &[ModelTorques],
+    ) -> Vec<f64> {
         let mut residual = self.held_out.residual_of(z);
-        for fitted in self.fitted(taken) {
+        for fitted in laws {
             for (log, torques) in torques.iter().enumerate() {
                 let signals = &self.held_out.signals[log];
                 let motion = torques.motion(self.held_out.nominal, signals);

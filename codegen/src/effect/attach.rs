@@ -134,7 +134,8 @@ fn values_at_fault(robot: &Robot, effect: &Effect, added: &AddedEffect) -> Vec<C
             let end = |end: &Option<Rational>| {
                 end.as_ref().map_or_else(|| "null".to_owned(), ToString::to_string)
             };
-            faults.push(Cause::OutOfBounds(end(low), end(high)));
+            let name = Some(format!("{name} of {}", effect.name));
+            faults.push(Cause::OutOfBounds(name, end(low), end(high)));
         }
     }
     faults

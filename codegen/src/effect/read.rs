@@ -230,7 +230,7 @@ impl Reading<'_> {
             let end = |end: &Option<Rational>| {
                 end.as_ref().map_or_else(|| "null".to_owned(), ToString::to_string)
             };
-            self.report.push(at, Cause::OutOfBounds(end(low), end(high)));
+            self.report.push(at, Cause::OutOfBounds(None, end(low), end(high)));
         }
     }
 

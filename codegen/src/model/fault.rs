@@ -241,7 +241,7 @@ pub enum Cause {
     /// A number that must be rational, and is not; holds its text.
     NotRational(String),
     /// A number outside the bounds of the parameter that it is of; holds both ends as text.
-    OutOfBounds(String, String),
+    OutOfBounds(Option<String>, String, String),
     /// An effect without a law of its kind; holds the kind and the key of the law.
     NoLaw(&'static str, &'static str),
     /// An effect with a law that its kind does not have; holds the kind and the key.

@@ -158,7 +158,10 @@ impl Cause {
     fn fmt_effect(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotRational(text) => write!(f, "\"{}\" is not a rational number", clip(text)),
-            Self::OutOfBounds(low, high) => write!(f, "the value is not in [{low}, {high}]"),
+            Self::OutOfBounds(name, low, high) => {
+                let of = name.as_ref().map_or_else(String::new, |name| format!(" of `{name}`"));
+                write!(f, "the value{of} is not in [{low}, {high}]")
+            }
             Self::NoLaw(kind, key) => write!(f, "an effect of the kind `{kind}` has `{key}`"),
             Self::WrongLaw(kind, key) => {
                 write!(f, "an effect of the kind `{kind}` has no `{key}`")

@@ -54,6 +54,8 @@ struct EffectJson<'a> {
     effect: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     nearest: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_law: Option<&'a str>,
     at: &'a str,
     share: f64,
     parameters: BTreeMap<&'a str, ValueJson<'a>>,
@@ -191,6 +193,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         EffectJson {
             effect: if one.is_named { &own.effect } else { "unnamed" },
             nearest: (!one.is_named).then_some(own.effect.as_str()),
+            other_law: one.outdone_by.as_deref(),
             at: &own.at,
             share: one.share,
             parameters: values(&one.parameters),

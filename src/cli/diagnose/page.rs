@@ -12,6 +12,7 @@ pub(super) fn of(arguments: &Arguments, shown: &Shown) -> Page {
     };
     let filters = shown.found.filters;
     let facts = [
+        ("verdict", shown.found.verdict.word().replace('_', " ")),
         ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
         ("model", format!("{}, content {:016x}", shown.robot.name, shown.robot.hash)),
         ("searched", list(&arguments.train)),

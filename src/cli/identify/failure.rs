@@ -22,6 +22,8 @@ pub(crate) enum IdentifyFailure {
     Mapping(MappingError),
     /// A log is wrong.
     Log(LogFaults),
+    /// Logs are.
+    Logs(Vec<LogFaults>),
     /// A log cannot be conditioned; holds its name.
     Condition(String, ConditionError),
     /// A model has no plant; holds its name.
@@ -62,6 +64,10 @@ impl fmt::Display for IdentifyFailure {
             Self::Regression(error) => write!(f, "{error}"),
             Self::Mapping(error) => write!(f, "{error}"),
             Self::Log(error) => write!(f, "{error}"),
+            Self::Logs(all) => {
+                let all: Vec<String> = all.iter().map(ToString::to_string).collect();
+                write!(f, "{}", all.join("\n"))
+            }
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
             Self::Estimate(model, error) => write!(f, "{model}: {error}"),

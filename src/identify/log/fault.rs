@@ -166,6 +166,17 @@ impl LogFault {
     }
 }
 
+const NO_COLUMNS: &str = "no line with the names of columns\n  hint: a log begins with one, as \
+                          `t,q_knee,tau_knee`";
+
+fn not_a_number(f: &mut fmt::Formatter<'_>, column: &str, cell: &str) -> fmt::Result {
+    write!(f, "`{cell}` in column `{column}` is not a number")?;
+    match cell.replace(',', ".").parse::<f64>() {
+        Ok(_) => write!(f, "\n  hint: numbers have a decimal point, and no comma"),
+        Err(_) => Ok(()),
+    }
+}
+
 fn meant(f: &mut fmt::Formatter<'_>, nearest: &Option<String>, other: &str) -> fmt::Result {
     match nearest {
         Some(name) => write!(f, "\n  hint: the log has `{name}`; --columns MAP.json can name it"),
@@ -212,7 +223,7 @@ impl fmt::Display for LogFault {
             Self::Unreadable(reason) => write!(f, "cannot be read: {reason}"),
             Self::NotUtf8 { .. } => write!(f, "not UTF-8 text"),
             Self::LongLine { .. } => write!(f, "more than {LONGEST_LINE} bytes: is it CSV?"),
-            Self::NoColumns => write!(f, "no line with the names of columns"),
+            Self::NoColumns => write!(f, "{NO_COLUMNS}"),
             Self::RepeatedColumn { column } => write!(f, "two columns `{column}`"),
             Self::MissingColumn { column, nearest } => {
                 write!(f, "there is no column `{column}`")?;
@@ -251,9 +262,7 @@ impl fmt::Display for LogFault {
             Self::RowLength { expected, found, .. } => {
                 write!(f, "{found} cells, where there are {expected} columns")
             }
-            Self::NotANumber { column, cell, .. } => {
-                write!(f, "`{cell}` in column `{column}` is not a number")
-            }
+            Self::NotANumber { column, cell, .. } => not_a_number(f, column, cell),
             Self::Undefined { column, count, .. } => write!(
                 f,
                 "{count} cells of column `{column}` have no number, more than can be filled in"

@@ -70,8 +70,14 @@ impl ColumnMapping {
         let raw: BTreeMap<String, Option<Entry>> =
             serde_json::from_slice(source).map_err(|problem| {
                 let text = problem.to_string();
-                let end = text.find(" at line").unwrap_or(text.len());
-                error((problem.line(), problem.column()), text[..end].to_owned())
+                let cause = text.find(" at line").map_or(text.as_str(), |end| &text[..end]);
+                let cause = match problem.classify() {
+                    serde_json::error::Category::Data => {
+                        format!("an entry is the name of a column, an object, or null: {cause}")
+                    }
+                    _ => format!("no JSON: {cause}"),
+                };
+                error((problem.line(), problem.column()), cause)
             })?;
         let mut sources = BTreeMap::new();
         for (name, entry) in raw {

@@ -52,7 +52,7 @@ fn block(svg: &mut Svg, joint: &str, curve: &Curve, corner: [f64; 2]) {
         y: Scale::around(all.copied(), 4.0),
     };
     torques.draw(svg, false);
-    torques.name_y(svg, "torque");
+    torques.name_y(svg, "torque [N m, N]");
     torques.curve(svg, times, measured, BLUE);
     torques.curve(svg, times, &nominal, RED);
     torques.curve(svg, times, &corrected, WANTED);
@@ -64,7 +64,7 @@ fn block(svg: &mut Svg, joint: &str, curve: &Curve, corner: [f64; 2]) {
         y: Scale::around(before.iter().chain(after).copied(), 2.0),
     };
     left.draw(svg, true);
-    left.name_y(svg, "left");
+    left.name_y(svg, "left [N m, N]");
     left.curve(svg, times, before, RED);
     left.curve(svg, times, after, GREY);
     let legend = [("left before", RED), ("left with the effects", GREY)];

@@ -1,6 +1,7 @@
 //! `denavit diagnose` as a user meets it.
 
 use super::{Directory, command, run_in};
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
@@ -15,9 +16,9 @@ pub(super) fn leg(name: &str) -> (Directory, String) {
     (directory, text)
 }
 
-/// The log with `added(rate)` on the torque of a joint, whose rate is a difference of its
+/// The log with `added(q, rate)` on the torque of a joint, whose rate is a difference of its
 /// positions.
-pub(super) fn with_torque(log: &str, joint: &str, added: impl Fn(f64) -> f64) -> String {
+pub(super) fn with_torque(log: &str, joint: &str, added: impl Fn(f64, f64) -> f64) -> String {
     let (comments, table): (Vec<&str>, Vec<&str>) =
         log.lines().partition(|line| line.starts_with('#'));
     let names: Vec<&str> = table[0].split(',').collect();
@@ -35,7 +36,7 @@ pub(super) fn with_torque(log: &str, joint: &str, added: impl Fn(f64) -> f64) ->
         let [from, to] = [k.saturating_sub(reach), (k + reach).min(rows.len() - 1)];
         let rate = (rows[to][q] - rows[from][q]) / (rows[to][0] - rows[from][0]);
         let mut row = row.clone();
-        row[tau] += added(rate);
+        row[tau] += added(row[q], rate);
         lines.push(row.iter().map(f64::to_string).collect::<Vec<String>>().join(","));
     }
     lines.join("\n")
@@ -45,12 +46,12 @@ pub(super) fn with_torque(log: &str, joint: &str, added: impl Fn(f64) -> f64) ->
 fn a_drag_that_is_added_to_a_log_is_named_with_its_joint() {
     let (directory, log) = leg("diagnose_drag");
     let drag = 0.4;
-    let dragged = with_torque(&log, "knee", |rate| drag * rate * rate.abs());
+    let dragged = with_torque(&log, "knee", |_, rate| drag * rate * rate.abs());
     fs::write(directory.path.join("drag.csv"), dragged).unwrap();
     let words = ["diagnose", MODEL, "--train", "drag.csv", "--validate", "drag.csv", "--json"];
     let words = [&words[..], &["--out", "found"]].concat();
     let run = run_in(&directory.path, &words);
-    let json: serde_json::Value = serde_json::from_str(&run.stdout).expect(&run.stderr);
+    let json: Value = serde_json::from_str(&run.stdout).expect(&run.stderr);
     let effect = &json["effects"][0];
     assert_eq!((&effect["effect"], &effect["at"]), (&"quadratic_drag".into(), &"knee".into()));
     let value = effect["parameters"].as_object().unwrap().values().next().unwrap();
@@ -86,13 +87,13 @@ fn read(directory: &Directory, name: &str) -> String {
 }
 
 /// But for the effect the file is the one that was given, line by line.
-fn the_model_has_the_effect(directory: &Directory, c: &serde_json::Value) {
+fn the_model_has_the_effect(directory: &Directory, c: &Value) {
     let text = read(directory, "found/model.json");
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(MODEL);
     let shipped = fs::read_to_string(shipped.with_extension("json")).unwrap();
     let is_kept = |line: &&str| text.contains(line.trim_end_matches([',', '\r']));
     assert_eq!(shipped.lines().find(|line| !is_kept(line)), None);
-    let model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let model: Value = serde_json::from_str(&text).unwrap();
     let effects = model["effects"].as_array().unwrap();
     assert_eq!(effects.len(), 1);
     assert_eq!(effects[0]["effect"], "quadratic_drag");
@@ -119,8 +120,7 @@ fn the_model_is_used(directory: &Directory) {
     assert!(read(directory, "leg.rs").contains("c_quadratic_drag_knee"));
     let path = "models/scenarios/tulip_leg_identification.json";
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let mut scenario: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let mut scenario: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     scenario["duration_s"] = 1.into();
     let torque = |model: &str| {
         let mut scenario = scenario.clone();
@@ -195,4 +195,49 @@ fn what_cannot_be_diagnosed_is_said_and_exits_with_2() {
         assert_eq!(run.code, Some(2), "{words:?}: {}", run.stdout);
         assert!(run.stderr.contains(said) && run.stdout.is_empty(), "{words:?}: {}", run.stderr);
     }
+}
+
+/// All logs that cannot be read are named at once, and no empty folder is left.
+#[test]
+fn every_wrong_log_is_named_and_nothing_is_left_behind() {
+    let directory = Directory::new("diagnose_wrong_logs");
+    fs::write(directory.path.join("a.csv"), "").unwrap();
+    fs::write(directory.path.join("b.csv"), "t,q_knee\n0,1\n").unwrap();
+    let words = ["diagnose", MODEL, "--train", "a.csv", "--validate", "b.csv"];
+    let run = run_in(&directory.path, &[&words[..], &["--out", "new/found"]].concat());
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    let named = ["a.csv: no line with the names", "hint: a log begins with", "b.csv: "];
+    assert!(named.iter().all(|text| run.stderr.contains(text)), "{}", run.stderr);
+    assert!(!directory.path.join("new").exists());
+}
+
+#[test]
+fn a_log_that_is_searched_twice_is_refused() {
+    let (directory, log) = leg("diagnose_twice");
+    fs::write(directory.path.join("again.csv"), log).unwrap();
+    let words = ["diagnose", MODEL, "--train", "leg.csv", "again.csv", "--validate", "leg.csv"];
+    let run = run_in(&directory.path, &words);
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("again.csv says the same as leg.csv"), "{}", run.stderr);
+}
+
+/// A stop that is reached once in each log leaves nothing when it is known, but by so few blocks
+/// that it may be chance: it has no name then, and it is said what longer logs would decide.
+#[test]
+fn what_one_moment_shows_is_said_and_not_named() {
+    let (directory, log) = leg("diagnose_likely");
+    let stopped = with_torque(&log, "knee", |q, _| 20.0 * (q - 2.2825).max(0.0));
+    let time = |line: &&str| line.split(',').next().and_then(|cell| cell.parse::<f64>().ok());
+    let is_within = |line: &&str| time(line).is_none_or(|t| (3.0..8.0).contains(&t));
+    let part: Vec<&str> = stopped.lines().filter(is_within).collect();
+    fs::write(directory.path.join("part.csv"), part.join("\n")).unwrap();
+    fs::write(directory.path.join("whole.csv"), stopped).unwrap();
+    let words = ["diagnose", MODEL, "--train", "whole.csv", "--validate", "part.csv", "--json"];
+    let run = run_in(&directory.path, &words);
+    let said: Value = serde_json::from_str(&run.stdout).expect(&run.stderr);
+    assert_eq!((&said["verdict"], &said["effects"][0]), (&"cannot_tell".into(), &Value::Null));
+    let why = said["reasons"].to_string();
+    let parts =
+        ["too little was logged: one_sided_spring at knee would close 100 %", "longer logs"];
+    assert!(parts.iter().all(|part| why.contains(part)), "{why}");
 }

@@ -9,8 +9,8 @@ use std::path::Path;
 
 const DRAG: f64 = 0.4;
 
-fn drag(factor: f64) -> impl Fn(f64) -> f64 {
-    move |rate| factor * rate * rate.abs()
+fn drag(factor: f64) -> impl Fn(f64, f64) -> f64 {
+    move |_, rate| factor * rate * rate.abs()
 }
 
 fn answer(directory: &Directory, words: &[&str]) -> Value {

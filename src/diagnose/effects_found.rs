@@ -153,8 +153,8 @@ pub(super) fn found_effects(
     found
 }
 
-/// The share that is closed of what equations had, in units of the noise of each: an effect may have
-/// motor and link to be seen at. All of it where little more than noise stays.
+/// The share that is closed of what equations had, in units of the noise of each: an effect may
+/// have motor and link to be seen at. All of it where little more than noise stays.
 fn closed_at(equations: &[usize], [from, to]: [&[[f64; 2]]; 2]) -> f64 {
     let over = |of: &[[f64; 2]]| -> f64 {
         equations.iter().map(|&at| of[at][0] / to[at][1].max(f64::MIN_POSITIVE)).sum()

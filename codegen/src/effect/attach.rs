@@ -77,14 +77,34 @@ pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Ve
         Some(&link) => format!("_{}_{}", effect.name, robot.links[link].name),
         None => format!("_{}", effect.name),
     };
-    let names = effect.parameters.iter().map(|parameter| format!("{}{suffix}", parameter.name));
-    if let Some(taken) = names.into_iter().find(|name| robot.dag.find_symbol(name).is_some()) {
+    if let Some(taken) = taken_name(robot, effect, (&links, &suffix)) {
         return Err(vec![Cause::DuplicateName(taken, "another quantity")]);
     }
     let attaching = Attaching { effect, links, suffix, place };
     attaching.change(robot).map_err(|cause| vec![cause])?;
     attaching.add_parameters(robot, &added);
     Ok(())
+}
+
+/// A name that the effect would give to a quantity of its own, and that has another one already.
+fn taken_name(
+    robot: &Robot,
+    effect: &Effect,
+    (links, suffix): (&[LinkId], &str),
+) -> Option<String> {
+    let parameters = effect.parameters.iter().map(|parameter| &parameter.name);
+    let states = effect.states.iter().map(|state| &state.name);
+    let mut own = parameters.chain(states).map(|name| format!("{name}{suffix}"));
+    let taken = own.find(|name| robot.dag.find_symbol(name).is_some());
+    // Effects share the loads of a joint.
+    let loads = links.iter().flat_map(|&link| {
+        ["tau_load", "tau_load_rate"].map(|stem| format!("{stem}_{}", robot.links[link].name))
+    });
+    let is_other = |name: &String| {
+        let known = robot.dag.find_symbol(name);
+        known.is_some_and(|id| robot.dag.symbols()[id].class != SymbolClass::Effort)
+    };
+    taken.or_else(|| loads.into_iter().find(is_other))
 }
 
 /// The joints or links of the place, if the effect can act there.

@@ -301,7 +301,7 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         ("/effects/0", "no effect is called `striebeck`"),
         ("/effects/1", "`coulomb` acts on a joint that moves, not here"),
         ("/effects/2", "`coulomb` has no parameter `fcc`"),
-        ("/effects/3", "the value is not in [0, null]"),
+        ("/effects/3", "the value of `fv of viscous` is not in [0, null]"),
         ("/effects/5", "`spring` is added twice in this place"),
         ("/effects/6", "the model has the term already"),
         ("/effects/7", "`base_tilt` acts on the whole model, not here"),
@@ -311,4 +311,26 @@ fn effects_that_a_robot_cannot_have_are_faults_of_its_file() {
         assert!(found, "{place}: {what}\nnot in\n{said}");
     }
     assert!(said.contains("did you mean `stribeck`?") && !said.contains("/effects/4"), "{said}");
+}
+
+/// Loads and states of effects are quantities of the model as well.
+#[test]
+fn a_constant_cannot_have_the_name_of_what_an_effect_brings() {
+    let of = |constant: &str, effect: &str| {
+        let name = robot(&text("planar_2r")).links.values().nth(1).expect("a link").name.clone();
+        let constant = constant.replace("LINK", &name);
+        let effects = format!(r#""effects": [{{"effect": {effect}, "at": {{"link": "{name}"}}}}]"#);
+        let text = text("planar_2r").replacen("\"links\"", &format!("{effects}, \"links\""), 1);
+        let text = text.replace("\"l2\"", &format!("\"{constant}\""));
+        read_model("arm.json", text.as_bytes(), &[]).map_err(|error| error.to_string())
+    };
+    for (constant, effect) in [
+        ("tau_load_LINK", r#""load_friction""#),
+        ("z_dahl_LINK", r#""dahl""#),
+        ("fc_dahl_LINK", r#""dahl""#),
+    ] {
+        let said = of(constant, effect).expect_err("a fault");
+        assert!(said.contains("is already that of another quantity"), "{constant}: {said}");
+    }
+    of("l2", r#""dahl""#).expect("no fault");
 }

@@ -1,7 +1,7 @@
 //! The design matrix: which case a number stands for.
 //!
-//! Numbers below 1000 are for tuning, those from 1000 to 6999 were run once, and are for
-//! tuning since; those from 7000 are reported, once. A number modulo [`ROWS`] is a row of the
+//! Numbers below 1000 are for tuning, those from 1000 to 9999 were run once, and are for
+//! tuning since; those from 10000 are reported, once. A number modulo [`ROWS`] is a row of the
 //! matrix; everything that the row leaves open is drawn from the number.
 //! Rows are dealt out with a stride, so that any thirty numbers in a row are a fair mixture.
 

@@ -3,14 +3,14 @@
 use super::condition::Conditioned;
 use super::estimate::{
     CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
-    IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Status, Triangle,
+    IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Standing, Status,
     Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_held_out,
     contradicting_logs, convergence, estimate, exceeding_joints, filter_errors, long_enough,
-    misread_apart, misread_columns, noise_in_torques, parameters, solve, unexplained_joints,
-    validate,
+    misread_apart, misread_columns, noise_in_torques, parameters, unexplained_joints, validate,
 };
 use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
+use super::odd_log::odd_log;
 use crate::plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
@@ -307,16 +307,16 @@ impl Estimated {
         let torques = torques(model, &left).into_iter();
         let counted: Vec<f64> =
             found.noise_of_joints().into_iter().zip(torques).map(share).collect();
-        let misread = misread(request, (&found, &listed, &counted));
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
+        let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
+        let misread = misread(request, (&found, &listed, &counted), &contradicting_logs);
         let (judges, judging) = match held_out.is_empty() {
             true => (train, shown.clone()),
             false => (held_out, (0..held_out.len()).collect()),
         };
         let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
         let left_together = validate(model, phi, &together);
-        let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
         contradicting_logs.extend(contradicting_held_out(
             model,
             (train, held_out),
@@ -370,6 +370,7 @@ fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
 fn misread(
     request: Request<'_>,
     (found, listed, counted): (&Estimate, &[IdentifiedParameter], &[f64]),
+    contradicting: &[ContradictingLog],
 ) -> Vec<MisreadColumns> {
     let Request { model, train, validate: held_out, .. } = request;
     if found.noise_share > MOST {
@@ -385,8 +386,15 @@ fn misread(
         misread.retain(|one| !one.is_guess());
     }
     misread.retain(|one| !one.is_of_reversals(counted));
-    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, &shown, found)) {
+    // values that a log gives which contradicts the others would accuse a good one
+    let is_told = |&log: &usize| contradicting.iter().any(|one| one.file == train[log].file);
+    let told: Vec<usize> = shown.iter().copied().filter(is_told).collect();
+    let asked = if told.is_empty() { &shown } else { &told };
+    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, (asked, &shown), found)) {
         misread = held_out_misread(model, &train[log..=log], &phi);
+        if contradicting.iter().any(|one| one.standing == Standing::Undecided) {
+            misread.iter_mut().for_each(|one| one.is_sure = false);
+        }
     }
     // noise of the positions makes constants, too
     if misread.is_empty() && !listed.iter().any(IdentifiedParameter::is_biased) {
@@ -400,30 +408,6 @@ fn misread(
     let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
     misread.extend(others);
     misread
-}
-
-/// Of several logs the one without which the others agree best, and phi of the others.
-fn odd_log(model: &RegressionModel, logs: &[usize], found: &Estimate) -> Option<(usize, Vec<f64>)> {
-    let condensed = &found.condensed;
-    if logs.len() < 2 || condensed.rank != model.rank() {
-        return None;
-    }
-    // weighted by log, a log that is odd would count for little
-    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
-    let by_joint: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let weights = vec![by_joint; condensed.independent.len()];
-    let without = |log: usize| {
-        let others = (0..condensed.parts.len()).filter(|&part| condensed.log_of_part[part] != log);
-        let triangles = condensed.merged(others);
-        let r = condensed.system(&triangles, &weights, &[]);
-        let solution = solve(&r, found.solution.phi.as_slice());
-        // of rows that are weighted, the last of R is what is left
-        let rows: usize = triangles.iter().flatten().map(Triangle::rows).sum();
-        let left = r[(condensed.rank, condensed.rank)].powi(2);
-        (left / rows.max(1) as f64, log, solution.phi.as_slice().to_vec())
-    };
-    let least = logs.iter().copied().map(without).min_by(|a, b| a.0.total_cmp(&b.0));
-    least.map(|(_, log, phi)| (log, phi))
 }
 
 /// Columns that seem to be other ones in each of the logs for validation: by what was found in the

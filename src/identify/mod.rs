@@ -28,6 +28,7 @@ mod model_text;
 mod model_values;
 mod no_bodies;
 mod noisy_logs;
+mod odd_log;
 pub mod statics;
 mod statics_file;
 pub mod two_stage;

@@ -15,6 +15,7 @@ mod given_effects;
 mod help;
 mod identify;
 mod identify_contradiction;
+mod identify_doubts;
 mod identify_logs;
 mod identify_noise;
 mod identify_procedures;

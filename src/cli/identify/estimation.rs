@@ -95,7 +95,9 @@ impl Estimation<'_> {
             (found, halvings) = (next, lower);
         }
         self.lower_held_out(&mut read, halvings, &found)?;
-        let found = self.judged(&read, options, found);
+        let mut found = self.judged(&read, options, found);
+        let given = logs::mapping(self.arguments)?;
+        found.0.misread.iter_mut().for_each(|one| one.given = given.clone());
         Ok((read, found))
     }
 

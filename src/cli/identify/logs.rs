@@ -286,7 +286,8 @@ pub(super) fn measured(
     Ok(read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::Log)?)
 }
 
-fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
+/// How columns are mapped.
+pub(super) fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
     let Some(path) = &arguments.columns else { return Ok(ColumnMapping::default()) };
     let name = path.display().to_string();
     let read = ColumnMapping::from_json(&name, &read_file(path)?);

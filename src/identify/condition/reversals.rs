@@ -12,8 +12,10 @@ const WEIGHED: f64 = 2.5;
 const NOISE: f64 = 3.0;
 const STEPS: f64 = 2.0;
 
-/// Periods of the filter's cutoff that a rest takes, at least.
+/// Periods of the filter's cutoff that a rest takes, at least; and one whose rows count: without
+/// the first and the last period, and a constant, something is left.
 const RESTS: usize = 6;
+const COUNTED: usize = 4;
 
 /// The share of its usual rate, root of mean square, below which a joint stands still.
 const STILL: f64 = 1e-4;
@@ -117,17 +119,30 @@ impl Conditioned {
     /// while the sign of its rate is not known, for some periods of the filter's cutoff, without
     /// the first and the last, into which the filter smears what is beside.
     pub(crate) fn rests(&self, joint: usize) -> Vec<bool> {
-        let mut rests = vec![false; self.range.len()];
-        if let Some(filter) = &self.filter {
-            let period = 2 * filter.smear();
-            let least = STILL * self.usual_rate(joint);
-            for Range { start, end } in self.slow_spells(joint, (filter, least)) {
-                if end - start > RESTS * period {
-                    rests[start + period..end - period].fill(true);
-                }
+        let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
+        let least = STILL * self.usual_rate(joint);
+        self.within(self.slow_spells(joint, (filter, least)), RESTS)
+    }
+
+    /// The same of rests whose rows may count, if there are any: they are shorter, and the joint
+    /// need not be slower than the sign of its rate is known.
+    pub(crate) fn counted_rests(&self, joint: usize) -> Option<Vec<bool>> {
+        let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
+        let rests = self.within(self.slow_spells(joint, (filter, 0.0)), COUNTED);
+        rests.contains(&true).then_some(rests)
+    }
+
+    /// The samples within spells of more than so many periods of the filter's cutoff, without the
+    /// first and the last, into which the filter smears what is beside.
+    fn within(&self, spells: Vec<Range<usize>>, periods: usize) -> Vec<bool> {
+        let mut within = vec![false; self.range.len()];
+        let period = self.filter.as_ref().map_or(0, |filter| 2 * filter.smear());
+        for Range { start, end } in spells {
+            if end - start > periods * period {
+                within[start + period..end - period].fill(true);
             }
         }
-        rests
+        within
     }
 
     /// The samples of [`Conditioned::range`] in which a joint is no faster than noise of its

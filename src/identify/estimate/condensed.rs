@@ -99,7 +99,8 @@ impl Condensed {
                 let last = if part + 1 == count { log.samples() } else { (part + 1) * length };
                 condensed.end_s.push(log.time_s(last.max(1) - 1) - log.time_s(0));
             }
-            BlockMaker::new(model, log).for_each(|block| {
+            let rests = left_out.all_rests((index, log));
+            BlockMaker::resting(model, log, &rests).for_each(|block| {
                 for joint in 0..condensed.pattern.len() {
                     let Some(columns) = rows(index, block, joint) else { continue };
                     let (first, samples) = (block.first, block.samples);

@@ -210,7 +210,8 @@ pub(in crate::identify) fn contradicting_held_out(
     if logs.is_empty() || found.condensed.rank != model.rank() {
         return Vec::new();
     }
-    let left_out = found.left_out.of_others(model, logs, options);
+    // near reversals and at rest friction is not what the sign of a rate says
+    let left_out = found.left_out.sure(model, logs, options);
     let condensed = Condensed::counted(model, (logs, &left_out));
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();

@@ -22,6 +22,11 @@ use std::fmt;
 /// residuals are far smaller than errors and standard errors say nothing.
 const ROWS_OF_ONE: usize = 3;
 
+/// Rounds in which robust scales are found anew, and the change of phi, in standard errors, that
+/// weights which creep for long may make at last: next to what errors say, it is little.
+const ROUNDS_OF_SCALES: usize = 10;
+const MOVES_LITTLE: f64 = 0.1;
+
 /// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
 /// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
@@ -178,7 +183,7 @@ pub fn estimate(
     let (mut covariance, mut degrees_of_freedom) = match options.method {
         Method::Robust(loss) => {
             let of = (first.solution.phi.as_slice(), &first.noise[..], loss);
-            problem.robust_covariance(options.errors, &influences(model, logs, of))
+            problem.robust_covariance(options.errors, &influences(model, rows, of))
         }
         _ => problem.covariance(options.errors),
     };
@@ -308,17 +313,22 @@ impl Fit<'_> {
         mut found: Estimate,
         loss: Loss,
     ) -> Result<Estimate, EstimateError> {
-        for _ in 0..MAX_REWEIGHTING {
-            let scales = scales(model, logs, found.solution.phi.as_slice());
-            found.noise = found.condensed.steadied(&scales, (&found.solution, &found.weights));
+        let mut change = f64::INFINITY;
+        for round in 0..MAX_REWEIGHTING {
+            // medians jump: with scales that stay the weights settle
+            if round < ROUNDS_OF_SCALES {
+                let scales = scales(model, (logs, left_out), found.solution.phi.as_slice());
+                found.noise = found.condensed.steadied(&scales, (&found.solution, &found.weights));
+            }
             let factors = factors_of_loss(&found, loss);
             let condensed = Condensed::weighted(model, (logs, left_out), &factors);
             let weights = condensed.reciprocal(&found.noise, &condensed.whole());
-            if self.reweighted(&mut found, condensed, weights) < SETTLED {
-                return Ok(found);
+            change = self.reweighted(&mut found, condensed, weights);
+            if change < SETTLED {
+                break;
             }
         }
-        Err(EstimateError::NotSettled)
+        settled(found, change)
     }
 
     fn likely(
@@ -327,17 +337,19 @@ impl Fit<'_> {
         (logs, left_out): Rows<'_>,
         mut found: Estimate,
     ) -> Result<Estimate, EstimateError> {
+        let mut change = f64::INFINITY;
         for _ in 0..MAX_REWEIGHTING {
             let factors = self.factors_of_noise(model, logs, &found);
             let condensed = Condensed::weighted(model, (logs, left_out), &factors);
             let triangles = condensed.whole();
             let ones = vec![vec![1.0; condensed.pattern.len()]; logs.len()];
             let weights = condensed.reciprocal(&ones, &triangles);
-            if self.reweighted(&mut found, condensed, weights) < SETTLED {
-                return Ok(found);
+            change = self.reweighted(&mut found, condensed, weights);
+            if change < SETTLED {
+                break;
             }
         }
-        Err(EstimateError::NotSettled)
+        settled(found, change)
     }
 
     /// Solves with other weights, and says how far phi moves, in its standard errors.
@@ -376,6 +388,11 @@ impl Fit<'_> {
             _ => noise_bias(of, rows, found, None),
         }
     }
+}
+
+/// An estimate whose last weights changed an entry of phi by so many standard errors, at most.
+fn settled(found: Estimate, change: f64) -> Result<Estimate, EstimateError> {
+    if change < MOVES_LITTLE { Ok(found) } else { Err(EstimateError::NotSettled) }
 }
 
 /// What rows count by the loss of their residuals, whose deviations are the estimate's noise.

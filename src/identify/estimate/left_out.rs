@@ -1,10 +1,11 @@
 //! Rows that are left out: where a joint turns round or hardly moves, its friction is not what the
 //! sign of its rate says, and the filter smears that over its own time.
 
-use super::Options;
+use super::least_squares::{Method, Options};
 use crate::identify::condition::{Butterworth, Conditioned, Piece};
 use crate::plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Which rows of a joint are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,6 +59,18 @@ fn near(logs: &[Conditioned], joint: usize, times: f64) -> Vec<Vec<bool>> {
     logs.iter().map(of_log).collect()
 }
 
+/// Samples of all logs near reversals of a joint, of those in which its rate has a sign, and the
+/// number of these: a rest is no reversal.
+fn near_of_moving(logs: &[Conditioned], joint: usize) -> (usize, usize) {
+    let of_log = |(log, near): (&Conditioned, Vec<bool>)| {
+        let unsure = log.unsure_signs(joint).unwrap_or_else(|| vec![false; near.len()]);
+        let moving = near.into_iter().zip(unsure).filter(|(_, unsure)| !unsure);
+        moving.fold((0, 0), |(near, all), (one, _)| (near + usize::from(one), all + 1))
+    };
+    let all = logs.iter().zip(near(logs, joint, 1.0)).map(of_log);
+    all.fold((0, 0), |(near, all), (one, of)| (near + one, all + of))
+}
+
 /// The joints whose Coulomb friction, as the sign of a rate, is biased by rows near reversals by
 /// more than its error shows, each with the share of samples.
 pub(in crate::identify) fn biased_frictions(
@@ -74,9 +87,8 @@ pub(in crate::identify) fn biased_frictions(
             return None; // it has no column
         }
         let at = model.pattern()[joint][place];
-        let near = near(logs, joint, 1.0);
-        let count = near.iter().flatten().filter(|&&near| near).count();
-        let share = count as f64 / near.iter().map(Vec::len).sum::<usize>().max(1) as f64;
+        let (near, all) = near_of_moving(logs, joint);
+        let share = near as f64 / all.max(1) as f64;
         is_biased(share, phi[at], covariance[(at, at)]).then_some((joint, share))
     };
     model.coulomb().iter().filter_map(biased).collect()
@@ -85,14 +97,18 @@ pub(in crate::identify) fn biased_frictions(
 /// For each log and joint whether samples before decimation are left out; none where all count.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LeftOut {
-    rows: Vec<Vec<Option<Vec<bool>>>>,
+    pub(super) rows: Vec<Vec<Option<Vec<bool>>>>,
+    /// For each log and joint whether samples before decimation are none of a rest whose rows count
+    /// beside a constant, though they are left out else; none where there is no such rest.
+    pub(super) awake: Vec<Vec<Option<Vec<bool>>>>,
     /// Joints whose rows near reversals are left out, and the times they were widened to.
     widened: Vec<(usize, f64)>,
 }
 
 impl LeftOut {
     fn of(rows: Vec<Vec<Option<Vec<bool>>>>) -> Self {
-        Self { rows, widened: Vec::new() }
+        let awake = rows.iter().map(|of_log| vec![None; of_log.len()]).collect();
+        Self { rows, awake, widened: Vec::new() }
     }
 
     /// Nothing.
@@ -101,7 +117,7 @@ impl LeftOut {
     }
 
     /// What the options ask for before anything is known of friction; by default where the sign of
-    /// a rate is not known, if enough is left.
+    /// a rate is not known, but rests that the torque follows the load in, if enough is left.
     pub(super) fn asked(model: &RegressionModel, logs: &[Conditioned], options: &Options) -> Self {
         let of_log = |log: &Conditioned| -> Vec<Option<Vec<bool>>> {
             let slowest: Vec<f64> = match options.slow {
@@ -110,12 +126,8 @@ impl LeftOut {
                         let mut frictions = model.coulomb().iter();
                         model.law == CoulombLaw::Sign && frictions.any(|(of, _)| of == joint)
                     };
-                    let unsure = |joint: usize| {
-                        let all = log.unsure_signs(joint).filter(|_| has_sign(&joint))?;
-                        let kept = log.counts(&all, 0, log.samples());
-                        let kept = kept.into_iter().filter(|counts| *counts).count() as f64;
-                        (kept >= LEAST * log.samples() as f64).then_some(all)
-                    };
+                    let unsure =
+                        |joint: usize| log.unsure_signs(joint).filter(|_| has_sign(&joint));
                     return (0..log.joints()).map(unsure).collect();
                 }
                 SlowRows::Kept => return vec![None; log.joints()],
@@ -129,7 +141,30 @@ impl LeftOut {
             let slow = |joint: usize| Some(log.slow(joint, slowest[joint], 1));
             (0..log.joints()).map(slow).collect()
         };
-        Self::of(logs.iter().map(of_log).collect())
+        let mut asked = Self::of(logs.iter().map(of_log).collect());
+        if options.slow == SlowRows::Biasing {
+            // instruments have no rows of rests
+            if options.method != Method::Instrumental {
+                asked.add_rests(model, logs);
+            }
+            (0..logs.len()).for_each(|log| asked.keep_enough((log, logs)));
+        }
+        asked
+    }
+
+    /// Leaves out nothing of joints of a log of which too little would be left.
+    pub(super) fn keep_enough(&mut self, (number, logs): (usize, &[Conditioned])) {
+        let log = &logs[number];
+        for joint in 0..log.joints() {
+            let Some(counts) = self.counts((number, log), joint, (0, log.samples())) else {
+                continue;
+            };
+            let kept = counts.into_iter().filter(|counts| *counts).count() as f64;
+            if kept < LEAST * log.samples() as f64 {
+                self.rows[number][joint] = None;
+                self.awake[number][joint] = None;
+            }
+        }
     }
 
     /// The same of other logs.
@@ -153,7 +188,7 @@ impl LeftOut {
         logs: &[Conditioned],
         options: &Options,
     ) -> Self {
-        let mut sure = self.of_others(model, logs, options);
+        let mut sure = self.of_others(model, logs, options).without_rests();
         let coulomb = model.coulomb().iter().filter(|_| model.law == CoulombLaw::Sign);
         for &(joint, _) in coulomb {
             for (log, rows) in logs.iter().zip(&mut sure.rows) {
@@ -161,7 +196,7 @@ impl LeftOut {
                 for all in rows[joint].iter().chain(&log.unsure_signs(joint)) {
                     unsure.iter_mut().zip(all).for_each(|(unsure, one)| *unsure |= one);
                 }
-                rows[joint] = Some(wider(&unsure, smear(log)));
+                rows[joint] = Some(wider(&unsure, 2 * smear(log)));
             }
         }
         sure
@@ -174,31 +209,30 @@ impl LeftOut {
             let part = |all: &Vec<bool>| all[first..].to_vec();
             self.rows[number].iter().map(|one| one.as_ref().map(part)).collect()
         };
+        // rests do not count: a piece has other means of them
         Self::of(pieces.iter().map(of).collect())
     }
 
     /// The same of pieces whose edges and filters smear over twice the time: each with its log,
     /// where its first sample stands there, and how many it has.
-    pub(super) fn of_halved(
-        &self,
-        logs: &[Conditioned],
-        pieces: &[(usize, std::ops::Range<usize>)],
-    ) -> Self {
+    pub(super) fn of_halved(&self, logs: &[Conditioned], pieces: &[(usize, Range<usize>)]) -> Self {
         self.of_places(pieces, |number| smear(&logs[number]))
     }
 
     /// The same of places of logs, and of so many beside those that are left out.
     pub(super) fn of_places(
         &self,
-        places: &[(usize, std::ops::Range<usize>)],
+        places: &[(usize, Range<usize>)],
         beside: impl Fn(usize) -> usize,
     ) -> Self {
-        let of = |(number, range): &(usize, std::ops::Range<usize>)| {
+        let of = |all: &[Vec<Option<Vec<bool>>>], (number, range): &(usize, Range<usize>)| {
             let beside = beside(*number);
             let part = |all: &Vec<bool>| wider(all, beside)[range.clone()].to_vec();
-            self.rows[*number].iter().map(|one| one.as_ref().map(part)).collect()
+            all[*number].iter().map(|one| one.as_ref().map(part)).collect()
         };
-        Self::of(places.iter().map(of).collect())
+        let mut those = Self::of(places.iter().map(|place| of(&self.rows, place)).collect());
+        those.awake = places.iter().map(|place| of(&self.awake, place)).collect();
+        those
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.
@@ -208,10 +242,12 @@ impl LeftOut {
             let before = before[joint].iter().flatten();
             near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
         }
-        let counted = |(log, near): (&Conditioned, &Vec<bool>)| {
-            log.counts(near, 0, log.samples()).into_iter().filter(|counts| *counts).count()
+        let counted = |((number, log), near): ((usize, &Conditioned), &Vec<bool>)| {
+            let counts = log.counts(near, 0, log.samples()).into_iter();
+            let rests: usize = self.rests((number, log), joint).iter().map(Range::len).sum();
+            counts.filter(|counts| *counts).count() + rests
         };
-        let kept: usize = logs.iter().zip(&near).map(counted).sum();
+        let kept: usize = logs.iter().enumerate().zip(&near).map(counted).sum();
         let all: usize = logs.iter().map(Conditioned::samples).sum();
         let is_enough = kept as f64 >= LEAST * all as f64;
         if is_enough {
@@ -223,8 +259,8 @@ impl LeftOut {
         is_enough
     }
 
-    /// Which of so many samples that are left after decimation count for a joint, from `first` on;
-    /// none where all do.
+    /// Which of so many samples that are left after decimation count for a joint, from `first` on,
+    /// those of rests beside a constant; none where all do.
     pub(super) fn counts(
         &self,
         (number, log): (usize, &Conditioned),
@@ -232,6 +268,11 @@ impl LeftOut {
         (first, samples): (usize, usize),
     ) -> Option<Vec<bool>> {
         let left_out = self.rows[number][joint].as_ref()?;
-        Some(log.counts(left_out, first, samples))
+        let mut counts = log.counts(left_out, first, samples);
+        if let Some(awake) = &self.awake[number][joint] {
+            let rests = log.counts(awake, first, samples);
+            counts.iter_mut().zip(rests).for_each(|(counts, rests)| *counts |= rests);
+        }
+        Some(counts)
     }
 }

@@ -27,6 +27,7 @@ mod misread;
 mod noise_bias;
 mod own_estimate;
 mod report;
+mod rests;
 mod robust;
 mod rows;
 mod solve;

@@ -17,6 +17,7 @@ use crate::identify::condition::{Conditioned, Piece};
 use crate::plants::regression::{RegressionJoint, RegressionModel};
 use crate::simulate::Random;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Samples of all logs that are looked at, before decimation.
 const SAMPLES: usize = 60_000;
@@ -121,7 +122,9 @@ pub(super) fn noise_squares(
     }
     let own = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
     let phi: Vec<Vec<f64>> = (0..squares.len()).map(own).collect();
-    with_noise(model, (log, SAMPLES), &mut Random::new(SEED), |first, block, noisy, of_all| {
+    let rests = &left_out.all_rests((number, log));
+    let mut random = Random::new(SEED);
+    with_noise(model, (log, SAMPLES, rests), &mut random, |first, block, noisy, of_all| {
         for (joint, sum) in squares.iter_mut().enumerate() {
             let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
             let counts = left_out.counts((number, log), joint, (first, block.samples));
@@ -157,18 +160,27 @@ pub(in crate::identify) fn noise_in_torques(
 /// subtracted, and how many blocks it stands for.
 fn with_noise(
     model: &RegressionModel,
-    (log, longest): (&Conditioned, usize),
+    (log, longest, rests): (&Conditioned, usize, &[Vec<Range<usize>>]),
     random: &mut Random,
     mut visit: impl FnMut(usize, &Block, [&Block; 2], f64),
 ) {
     let pieces = log.pieces(longest);
     let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
     let of_all = log.samples() as f64 / seen.max(1) as f64;
-    let mut straight = BlockMaker::new(model, log);
     for piece in pieces {
         let Piece { first, samples } = piece;
         let both = log.piece_with_noise(piece, random);
-        let mut makers = both.each_ref().map(|piece| BlockMaker::new(model, piece));
+        // means of rests of the piece alone, so that they differ by nothing but noise
+        let within = |from: usize| -> Vec<Vec<Range<usize>>> {
+            let clamp = |at: usize| at.clamp(first, first + samples) - first + from;
+            let of = |rest: &Range<usize>| clamp(rest.start)..clamp(rest.end);
+            let of_joint = |rests: &Vec<Range<usize>>| {
+                rests.iter().map(of).filter(|rest| !rest.is_empty()).collect()
+            };
+            rests.iter().map(of_joint).collect()
+        };
+        let mut straight = BlockMaker::resting(model, log, &within(first));
+        let mut makers = both.each_ref().map(|piece| BlockMaker::resting(model, piece, &within(0)));
         for from in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - from);
             let block = straight.at(first + from, count);
@@ -202,7 +214,8 @@ impl Noise {
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }
-        with_noise(model, (log, longest), random, |first, block, noisy, of_all| {
+        let rests = &left_out.all_rests((number, log));
+        with_noise(model, (log, longest, rests), random, |first, block, noisy, of_all| {
             let count = block.samples;
             for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
                 let mut squares = vec![weight * weight * of_all; count];

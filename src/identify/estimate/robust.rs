@@ -1,6 +1,7 @@
 //! Weights that outliers lose (iteratively reweighted least squares; Huber 1964, Beaton and Tukey
 //! 1974).
 
+use super::condensed::Rows;
 use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::rows::BlockMaker;
 use super::solve::solve;
@@ -63,23 +64,18 @@ const LEAST_SLOPE: f64 = 0.1;
 /// The influences of all joints' residuals, whose deviations are `scales`.
 pub(super) fn influences(
     model: &RegressionModel,
-    logs: &[Conditioned],
+    rows: Rows<'_>,
     (phi, scales, loss): (&[f64], &[Vec<f64>], Loss),
 ) -> Vec<Influence> {
     let mut sums = vec![[0.0; 3]; model.joints.len()];
-    for (log, scales) in logs.iter().zip(scales) {
-        BlockMaker::new(model, log).for_each(|block| {
-            for (joint, sums) in sums.iter_mut().enumerate() {
-                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-                let scale = scales[joint].max(f64::MIN_POSITIVE);
-                for residual in block.residual(joint, &own).unwrap_or_default() {
-                    let deviations = residual / scale;
-                    let weight = loss.factor(deviations).powi(2);
-                    sums[0] += weight;
-                    sums[1] += loss.slope(deviations);
-                    sums[2] += (weight * deviations).powi(2);
-                }
-            }
+    for (number, scales) in scales.iter().enumerate() {
+        counted_residuals(model, (number, rows), phi, |joint, _, residual| {
+            let sums = &mut sums[joint];
+            let deviations = residual / scales[joint].max(f64::MIN_POSITIVE);
+            let weight = loss.factor(deviations).powi(2);
+            sums[0] += weight;
+            sums[1] += loss.slope(deviations);
+            sums[2] += (weight * deviations).powi(2);
         });
     }
     let of = |[weights, slopes, squares]: [f64; 3]| match weights > 0.0 {
@@ -127,22 +123,41 @@ impl Problem<'_> {
 
 /// For each log the deviation of each joint's residuals, by their median, which outliers do not
 /// move.
-pub(super) fn scales(model: &RegressionModel, logs: &[Conditioned], phi: &[f64]) -> ByLog {
-    let samples: usize = logs.iter().map(Conditioned::samples).sum();
+pub(super) fn scales(model: &RegressionModel, rows: Rows<'_>, phi: &[f64]) -> ByLog {
+    let samples: usize = rows.0.iter().map(Conditioned::samples).sum();
     let stride = samples.div_ceil(SCALE_SAMPLES).max(1);
-    let of_log = |log: &Conditioned| {
+    let of_log = |number: usize| {
         let mut found: Vec<Vec<f64>> = vec![Vec::new(); model.joints.len()];
-        BlockMaker::new(model, log).for_each(|block| {
-            for (joint, sizes) in found.iter_mut().enumerate() {
-                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-                let residual = block.residual(joint, &own).unwrap_or_default();
-                let offset = (stride - block.first % stride) % stride;
-                sizes.extend(residual.iter().skip(offset).step_by(stride).map(|r| r.abs()));
+        counted_residuals(model, (number, rows), phi, |joint, sample, residual| {
+            if sample % stride == 0 {
+                found[joint].push(residual.abs());
             }
         });
         found.into_iter().map(deviation).collect()
     };
-    logs.iter().map(of_log).collect()
+    (0..rows.0.len()).map(of_log).collect()
+}
+
+/// Calls `visit` with the joint, the sample and the residual of every row of a log that counts:
+/// those that are left out are no noise.
+fn counted_residuals(
+    model: &RegressionModel,
+    (number, (logs, left_out)): (usize, Rows<'_>),
+    phi: &[f64],
+    mut visit: impl FnMut(usize, usize, f64),
+) {
+    let log = (number, &logs[number]);
+    let of_joint = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
+    let own: Vec<Vec<f64>> = model.pattern().iter().map(of_joint).collect();
+    BlockMaker::resting(model, log.1, &left_out.all_rests(log)).for_each(|block| {
+        for (joint, own) in own.iter().enumerate() {
+            let counts = left_out.counts(log, joint, (block.first, block.samples));
+            let left = block.residual(joint, own).unwrap_or_default().into_iter().enumerate();
+            for (at, left) in left.filter(|(at, _)| counts.as_ref().is_none_or(|one| one[*at])) {
+                visit(joint, block.first + at, left);
+            }
+        }
+    });
 }
 
 /// The deviation of residuals of these sizes, if they are normal.

@@ -7,6 +7,10 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// share of the largest.
 pub(in crate::identify) const DEAD: f64 = 1e-9;
 
+/// Rows count no more than this, so that squares of what is weighted are numbers: torques of 1e-160
+/// have other squares than they can have.
+const MOST_WEIGHT: f64 = 1e100;
+
 /// What is known of phi from elsewhere: a sum of entries, what it is, and how surely.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorRow {
@@ -66,7 +70,7 @@ pub fn stacked(
         for own in 0..r.nrows() {
             for place in own..r.ncols() {
                 let target = pattern[joint].get(place).copied().unwrap_or(rank);
-                stacked[(row, target)] = weight * r[(own, place)];
+                stacked[(row, target)] = weight.min(MOST_WEIGHT) * r[(own, place)];
             }
             row += 1;
         }
@@ -79,6 +83,18 @@ pub fn stacked(
         row += 1;
     }
     upper(stacked)
+}
+
+/// What follows from rows that say nothing.
+fn nothing(start: &[f64]) -> Solution {
+    let rank = start.len();
+    Solution {
+        phi: DVector::from_column_slice(start),
+        factor: DMatrix::zeros(rank, 0),
+        dead: DMatrix::identity(rank, rank),
+        condition: f64::INFINITY,
+        scaled_condition: f64::INFINITY,
+    }
 }
 
 /// Solves min |W phi - y|^2 of R of [W | y]. In directions that W says nothing about phi stays at
@@ -94,6 +110,10 @@ pub fn solve(r: &DMatrix<f64>, start: &[f64]) -> Solution {
     let mut scaled = w.clone();
     for (mut column, scale) in scaled.column_iter_mut().zip(&scale) {
         column /= *scale;
+    }
+    // singular values of what is no number are looked for without end
+    if scaled.iter().any(|entry| !entry.is_finite()) {
+        return nothing(start);
     }
     let start = DVector::from_column_slice(start);
     let target = r.view((0, rank), (rank, 1)).column(0) - &w * &start;
@@ -126,5 +146,25 @@ pub fn solve(r: &DMatrix<f64>, start: &[f64]) -> Solution {
         dead: dead_directions,
         condition: ratio(&w.svd(false, false).singular_values),
         scaled_condition: ratio(&sigma),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Torques whose squares are 0, and rows that are no numbers, end a search that would go on.
+    #[test]
+    fn rows_beyond_numbers_say_nothing() {
+        let mut triangle = Triangle::new(2);
+        let columns: [&[f64]; 3] = [&[1.0, 2.0, 3.0], &[0.5, -1.0, 0.3], &[1e-160, 0.0, 2e-160]];
+        triangle.push(&columns);
+        for weight in [1e160, f64::INFINITY] {
+            let r = stacked(&[(&[triangle.clone()], &[weight])], &[vec![0, 1]], &[], 2);
+            assert!(r.iter().all(|entry| entry.is_finite()), "{weight}: {r}");
+            assert_eq!(solve(&r, &[0.0, 0.0]).excited(), 2);
+        }
+        let none = solve(&DMatrix::from_element(3, 3, f64::NAN), &[1.0, 2.0]);
+        assert_eq!((none.excited(), none.phi.as_slice()), (0, &[1.0, 2.0][..]));
     }
 }

@@ -113,7 +113,8 @@ pub fn validate(
             }
         })
         .collect();
-    let squares: f64 = joints.iter().map(|joint| joint.relative.powi(2)).sum();
+    // a sum of nothing is -0, which would be shown
+    let squares = joints.iter().map(|joint| joint.relative.powi(2)).fold(0.0, |a, b| a + b);
     let relative = (squares / joints.len().max(1) as f64).sqrt();
     Validation { joints, relative, samples }
 }

@@ -36,6 +36,19 @@ impl Fit<'_> {
         logs: &[Conditioned],
     ) -> Result<(Estimate, LeftOut), EstimateError> {
         let mut fitted = self.fitted(model, logs, LeftOut::asked(model, logs, self.options))?;
+        if fitted.left_out.has_rests() {
+            // what holds a joint at rest may be taken for parameters, and leave much of motion too
+            let left_out = fitted.left_out.clone().without_rests();
+            let moving = self.plain(model, (logs, &left_out))?;
+            let moving = moving.condensed.mean_squares(moving.solution.phi.as_slice());
+            let fewer = |one: &Fitted| {
+                let phi = one.found.solution.phi.as_slice();
+                one.left_out.without_held(model, logs, (phi, &moving))
+            };
+            while let Some(fewer) = fewer(&fitted) {
+                fitted = self.fitted(model, logs, fewer)?;
+            }
+        }
         let mut tried = vec![false; model.joints.len()];
         if self.options.slow != SlowRows::Biasing {
             return Ok((fitted.found, fitted.left_out));

@@ -337,12 +337,18 @@ fn what_only_the_model_shows_is_told() {
         of("link1") + &of("link2")
     };
     let cases = [
-        (map(r#", "t": {"scale": 0.1}"#), Some(("the time seems", r#""scale": 10"#))),
-        (map(r#", "t": {"scale": 0.001}"#), Some(("the time seems", r#""scale": 1000"#))),
-        (map(&torques(1000.0)), Some(("torques seem to", r#""scale": 0.001"#))),
+        (map(r#", "t": {"scale": 0.1}"#), Some(("the time seems", r#""scale": 1}"#))),
+        (map(r#", "t": {"scale": 0.001}"#), Some(("the time seems", r#""scale": 1}"#))),
+        (
+            map(&torques(1000.0)),
+            Some((
+                "torques seem to",
+                r#""scale": 0.001}} mends that, times the scale that a column has already"#,
+            )),
+        ),
         (
             map(r#", "tau_link2": {"scale": 1000}"#),
-            Some(("the torque of link2 seems", r#""scale": 0.001"#)),
+            Some(("the torque of link2 seems", r#""scale": 1}"#)),
         ),
         (
             map(r#", "q_link1": {"scale": 0.017453}, "q_link2": {"scale": 0.017453}"#),

@@ -2,7 +2,7 @@
 //! are known.
 
 use super::Directory;
-use super::identify_told::{GOOD, Made, Motion, deviations, motions, round_positions};
+use super::identify_told::{FRICTION, GOOD, Made, Motion, deviations, motions, round_positions};
 use super::identify_told::{said, torques, write_arm, write_log};
 use denavit::simulate::Random;
 use serde_json::Value;
@@ -222,5 +222,86 @@ fn a_log_for_validation_of_joints_that_rest_is_not_accused() {
         write_log(&directory, "turns.csv", &one_after_the_other(seed, times));
         let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "turns.csv"]);
         assert_eq!(code, Some(0), "{seed}: {text}");
+    }
+}
+
+/// What friction does to the torque of a motor whose joint rests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum AtRest {
+    /// Nothing.
+    Nothing,
+    /// What it did before.
+    Stays,
+    /// It takes what changes of the load, as far as Coulomb friction goes.
+    Holds,
+}
+
+/// Twenty-four seconds in which one joint moves for three, then the other one, each from where it
+/// came to a halt.
+fn in_turns(seed: u64, at_rest: AtRest) -> Vec<[f64; 5]> {
+    let mut random = Random::new(seed);
+    let motions = motions(seed, 1.5);
+    let mut rows: Vec<[f64; 5]> = Vec::new();
+    let (mut sign, mut motor) = ([1.0_f64; 2], [0.0_f64; 2]);
+    for k in 0..12_000 {
+        let t = 0.002 * f64::from(k);
+        let turn = (t / 3.0) as usize;
+        let share = t / 3.0 - turn as f64;
+        // the time of a joint goes on in its turns alone
+        let along = [0, 1].map(|joint: usize| {
+            let before = 3.0 * ((turn + 1 - joint) / 2) as f64;
+            let (sine, cosine) = (TAU * share).sin_cos();
+            match turn % 2 == joint {
+                true => [before + 3.0 * (share - sine / TAU), 1.0 - cosine, TAU / 3.0 * sine],
+                false => [before, 0.0, 0.0],
+            }
+        });
+        let both = [0, 1].map(|joint: usize| {
+            let [s, rate, acceleration] = along[joint];
+            let [q, v, a] = motions[joint].at(s);
+            [q, v * rate, a * rate * rate + v * acceleration]
+        });
+        let mut all = torques(both);
+        for joint in 0..2 {
+            let coulomb = FRICTION[joint][1];
+            if both[joint][1] != 0.0 {
+                sign[joint] = both[joint][1].signum();
+            } else if at_rest == AtRest::Stays {
+                all[joint] += coulomb * sign[joint];
+            } else if at_rest == AtRest::Holds {
+                all[joint] = motor[joint].clamp(all[joint] - coulomb, all[joint] + coulomb);
+            }
+        }
+        motor = all;
+        let [one, other] = all.map(|one| one + 0.05 * random.normal());
+        rows.push([t, both[0][0], both[1][0], one, other]);
+    }
+    round_positions(&mut rows, STEP);
+    rows
+}
+
+/// The share of the rows of a joint that are left out, at least.
+fn left_out(text: &str) -> f64 {
+    let json: Value = serde_json::from_str(text).expect("JSON");
+    let share = |one: &Value| Some(one["samples"].as_f64()? / one["of"].as_f64()?);
+    let all = json["left_out"].as_array().expect("a list");
+    all.iter().filter_map(share).fold(1.0, f64::min) * (all.len() as f64 / 2.0).floor()
+}
+
+/// A joint at rest is near no reversal: its rows count where its motor carries the load, whatever
+/// constant holds it, and do not where friction takes what changes of the load.
+#[test]
+fn rows_of_a_rest_count_if_the_motor_carries_the_load() {
+    let directory = Directory::new("rest-turns");
+    write_arm(&directory, None);
+    for seed in [1, 2, 3] {
+        for at_rest in [AtRest::Nothing, AtRest::Stays, AtRest::Holds] {
+            write_log(&directory, "turns.csv", &in_turns(seed, at_rest));
+            let (code, text) = said(&directory, &["--train", "turns.csv", "--json"]);
+            assert_eq!(code, Some(0), "{seed} {at_rest:?}: {text}");
+            assert!(worst(&text) < 4.5, "{seed} {at_rest:?}: {text}");
+            let is_left_out = left_out(&text) > 0.5;
+            assert_eq!(is_left_out, at_rest == AtRest::Holds, "{seed} {at_rest:?}: {text}");
+        }
     }
 }

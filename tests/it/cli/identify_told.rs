@@ -14,7 +14,7 @@ pub(super) struct Motion {
 
 impl Motion {
     /// Position, rate and acceleration.
-    fn at(&self, t: f64) -> [f64; 3] {
+    pub(super) fn at(&self, t: f64) -> [f64; 3] {
         let mut all = [self.about, 0.0, 0.0];
         for [size, w, phase] in &self.waves {
             let (sine, cosine) = (w * t + phase).sin_cos();
@@ -39,7 +39,7 @@ pub(super) fn motions(seed: u64, slowest: f64) -> [Motion; 2] {
     [one(), one()]
 }
 
-const FRICTION: [[f64; 2]; 2] = [[0.3, 0.5], [0.2, 0.3]];
+pub(super) const FRICTION: [[f64; 2]; 2] = [[0.3, 0.5], [0.2, 0.3]];
 
 /// Torques of the shipped planar arm with friction.
 pub(super) fn torques([a, b]: [[f64; 3]; 2]) -> [f64; 2] {

@@ -419,32 +419,3 @@ fn errors_of_few_parts_are_as_large_in_the_mean_as_they_are() {
     let ratio: f64 = sum / count;
     assert!((0.94..1.06).contains(&ratio), "{ratio}");
 }
-
-/// The leg whose bodies are written in unknowns of its own, products of which are its columns,
-/// its values up to 60 % off: no bodies are nearer than those that torques were made of, but for
-/// chance.
-#[test]
-fn the_nearest_bodies_are_found_from_far_away() {
-    let robot = bare("tulip_leg");
-    let truth = RegressionModel::new(&robot, INERTIAL, &[]).expect("a model");
-    let data = Experiment { samples: 1500, noise: 0.02, seed: 3, friction: false }.run(&robot);
-    let found = run(&truth, std::slice::from_ref(&data), &Options::default());
-    let standard = |model: &RegressionModel| -> Vec<f64> {
-        model.standard.iter().map(|one| one.value.expect("a value")).collect()
-    };
-    let true_distance = consistent(&truth, &found, &standard(&truth)).distance;
-    for seed in 1..=12 {
-        let mut random = Random::new(seed);
-        let shipped = denavit::shipped::find("tulip_leg").expect("shipped");
-        let mut file: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
-        for unknown in file["unknowns"].as_object_mut().expect("unknowns").values_mut() {
-            if let Some(value) = unknown["value"].as_f64() {
-                unknown["value"] = (value * (0.4 + 1.2 * random.uniform())).into();
-            }
-        }
-        let off = denavit::model::read("off", file.to_string().as_bytes()).expect("a model");
-        let model = RegressionModel::new(&without_drives(off), INERTIAL, &[]).expect("a model");
-        let near = consistent(&model, &found, &standard(&model));
-        assert!(near.distance < true_distance.max(2.0), "{seed}: {}", near.distance);
-    }
-}

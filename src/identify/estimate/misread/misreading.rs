@@ -1,6 +1,7 @@
 //! The ways in which columns can be other ones than they are taken for, and how each is said.
 
 use super::reading::{OF_ANGLES, Signal};
+use crate::identify::log::ColumnMapping;
 use crate::plants::regression::RegressionJoint;
 use std::fmt;
 
@@ -188,15 +189,36 @@ impl Misreading {
         words.to_owned()
     }
 
-    /// How to mend it.
-    pub(super) fn hint(self, joints: &[RegressionJoint]) -> String {
+    /// How to mend it, beside what is mapped already.
+    pub(super) fn hint(self, joints: &[RegressionJoint], given: &ColumnMapping) -> String {
         let mends = |column: &str, what: &str, number: String| {
             format!("--columns with {{\"{column}\": {{\"{what}\": {number}}}}} mends that")
         };
         let scale = |column: &str, factor: f64| {
-            let factor =
-                if factor == OF_ANGLES[0] { "0.0174532925".into() } else { factor.to_string() };
-            mends(column, "scale", factor)
+            let (prefix, is_of_all) = match column.strip_suffix("JOINT") {
+                Some(prefix) => (prefix, true),
+                None => (column, false),
+            };
+            let own = given.source(column).filter(|_| !is_of_all);
+            let number = factor * own.as_ref().map_or(1.0, |own| own.scale);
+            let number = match number == OF_ANGLES[0] {
+                true => "0.0174532925".to_owned(),
+                false => number.to_string(),
+            };
+            let hint = mends(column, "scale", number);
+            let has_scale = |name: &str| given.source(name).is_some_and(|one| one.scale != 1.0);
+            let scaled = |name: &&str| name.starts_with(prefix) && has_scale(name);
+            match (is_of_all && given.names().any(|name| scaled(&name)), own) {
+                (true, _) => hint + ", times the scale that a column has already",
+                (false, Some(own)) if own.offset != 0.0 => {
+                    hint + &format!(", with an offset of {}", factor * own.offset)
+                }
+                _ => hint,
+            }
+        };
+        let offset = |column: &str, by: f64| {
+            let own = given.source(column).map_or(0.0, |own| own.offset);
+            mends(column, "offset", format!("{:.5}", own + by))
         };
         let of =
             |signal: Signal, joint: usize| format!("{}{}", signal.prefix(), joints[joint].name);
@@ -210,15 +232,13 @@ impl Misreading {
             Self::Torque(joint, factor) => scale(&of(Signal::Torque, joint), factor),
             Self::Angles(factor) | Self::Lengths(factor) => scale("q_JOINT", factor),
             Self::Position(joint, factor) => scale(&of(Signal::Position, joint), factor),
-            Self::Zero(joint, offset) => {
+            Self::Zero(joint, by) => {
                 let column = of(Signal::Position, joint);
-                mends(&column, "offset", format!("{offset:.5}"))
-                    + ", if the model's zero is that of the robot"
+                offset(&column, by) + ", if the model's zero is that of the robot"
             }
-            Self::TorqueOffset(joint, offset) => {
+            Self::TorqueOffset(joint, by) => {
                 let column = of(Signal::Torque, joint);
-                "--with friction,offset estimates it; ".to_owned()
-                    + &mends(&column, "offset", format!("{offset:.5}"))
+                "--with friction,offset estimates it; ".to_owned() + &offset(&column, by)
             }
             Self::Exchanged(..) => "--columns can name them the other way round".to_owned(),
             Self::Late(_) | Self::LateTorque(..) | Self::LatePosition(..) => {

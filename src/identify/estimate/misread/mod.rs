@@ -22,6 +22,7 @@ use super::least_squares::Estimate;
 use super::likelihood::noise_of_positions;
 use super::report::{IdentifiedParameter, Status};
 use crate::identify::condition::Conditioned;
+use crate::identify::log::ColumnMapping;
 use crate::plants::regression::{RegressionJoint, RegressionModel};
 use balance::Balance;
 pub(in crate::identify) use balance::nominal_values;
@@ -68,6 +69,8 @@ pub struct MisreadColumns {
     pub is_sure: bool,
     /// Its size in standard errors, of a constant that an estimate has beside the parameters.
     pub errors: Option<f64>,
+    /// How columns were mapped: a hint says what is right beside that.
+    pub given: ColumnMapping,
     joints: Vec<RegressionJoint>,
     step_s: f64,
     /// Whose values `left_by_model` is of, in words.
@@ -102,7 +105,7 @@ impl MisreadColumns {
 
     /// How to mend it.
     pub fn hint(&self) -> String {
-        self.misreading.hint(&self.joints)
+        self.misreading.hint(&self.joints, &self.given)
     }
 }
 
@@ -191,6 +194,7 @@ fn of_logs(model: &RegressionModel, misreading: Misreading) -> MisreadColumns {
         file: None,
         is_sure: false,
         errors: None,
+        given: ColumnMapping::default(),
         joints: model.joints.clone(),
         step_s: 0.0,
         values: "",
@@ -280,6 +284,7 @@ fn misread_as_filtered(
             file: None,
             is_sure,
             errors: None,
+            given: ColumnMapping::default(),
             joints: model.joints.clone(),
             step_s,
             values: match evidence.values {
@@ -322,6 +327,7 @@ mod tests {
             file: None,
             is_sure: false,
             errors: None,
+            given: ColumnMapping::default(),
             joints: Vec::new(),
             step_s: 0.002,
             values: "",

@@ -12,10 +12,10 @@ const WEIGHED: f64 = 2.5;
 const NOISE: f64 = 3.0;
 const STEPS: f64 = 2.0;
 
-/// Periods of the filter's cutoff that a rest takes, at least; and one whose rows count: without
-/// the first and the last period, and a constant, something is left.
+/// Periods of the filter's cutoff that a rest takes, at least; and that are left of one whose rows
+/// count, so that something is left beside a constant.
 const RESTS: usize = 6;
-const COUNTED: usize = 4;
+const COUNTED: usize = 2;
 
 /// The share of its usual rate, root of mean square, below which a joint stands still.
 const STILL: f64 = 1e-4;
@@ -121,25 +121,32 @@ impl Conditioned {
     pub(crate) fn rests(&self, joint: usize) -> Vec<bool> {
         let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
         let least = STILL * self.usual_rate(joint);
-        self.within(self.slow_spells(joint, (filter, least)), RESTS)
+        let period = 2 * filter.smear();
+        let spells = self.slow_spells(joint, (filter, least));
+        self.within(spells, (period, (RESTS - 2) * period))
     }
 
     /// The same of rests whose rows may count, if there are any: they are shorter, and the joint
-    /// need not be slower than the sign of its rate is known.
+    /// need not be slower than the sign of its rate is known. Unseen by its encoder it creeps for a
+    /// while before it stands still, and rubs: as long as it takes to stop, by its usual rate and
+    /// acceleration, is none of the rest either.
     pub(crate) fn counted_rests(&self, joint: usize) -> Option<Vec<bool>> {
         let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
-        let rests = self.within(self.slow_spells(joint, (filter, 0.0)), COUNTED);
+        let period = 2 * filter.smear();
+        let stops_s = self.usual_rate(joint) / self.usual_acceleration(joint);
+        let stops = (stops_s / self.step_s).ceil().min(self.range.len() as f64) as usize;
+        let spells = self.slow_spells(joint, (filter, 0.0));
+        let rests = self.within(spells, (period.max(stops), COUNTED * period));
         rests.contains(&true).then_some(rests)
     }
 
-    /// The samples within spells of more than so many periods of the filter's cutoff, without the
-    /// first and the last, into which the filter smears what is beside.
-    fn within(&self, spells: Vec<Range<usize>>, periods: usize) -> Vec<bool> {
+    /// The samples within spells, without so many at either end, into which the filter smears what
+    /// is beside, if more than so many are left.
+    fn within(&self, spells: Vec<Range<usize>>, (edge, least): (usize, usize)) -> Vec<bool> {
         let mut within = vec![false; self.range.len()];
-        let period = self.filter.as_ref().map_or(0, |filter| 2 * filter.smear());
         for Range { start, end } in spells {
-            if end - start > periods * period {
-                within[start + period..end - period].fill(true);
+            if end - start > 2 * edge + least {
+                within[start + edge..end - edge].fill(true);
             }
         }
         within

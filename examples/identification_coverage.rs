@@ -89,10 +89,10 @@ fn experiment(regression: &RegressionModel, seed: u64) -> Estimates {
     let found = found.expect("the motion excites");
     let to = regression.to_listed();
     let (values, spread) = (to * &found.solution.phi, to * &found.covariance * to.transpose());
-    let factor = interval_factor(found.degrees_of_freedom);
+    let factor = |at: usize| interval_factor(found.degrees_of_freedom[at]);
     let one = |at: usize| {
         let std = spread[(at, at)].sqrt();
-        [values[at], std, factor * std]
+        [values[at], std, factor(at) * std]
     };
     (0..values.len()).map(one).collect()
 }

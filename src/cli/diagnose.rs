@@ -350,22 +350,11 @@ fn logs(
 ) -> Result<[Vec<MeasuredLog>; 2], Failure> {
     let mut ground = Ground::under(robot, model)
         .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
-    let mut wrong = Vec::new();
-    let mut all = |paths: &[PathBuf]| {
-        let mut found: Vec<MeasuredLog> = Vec::new();
-        for path in paths {
-            match log(arguments, robot, model, path, remarks) {
-                Ok(log) => found.push(log),
-                Err(Failure::Identify(IdentifyFailure::Logs(one))) => wrong.extend(one),
-                Err(failure) => return Err(failure),
-            }
-        }
-        Ok(found)
-    };
-    let mut sets = [all(&arguments.train)?, all(&arguments.validate)?];
-    if !wrong.is_empty() {
-        return Err(IdentifyFailure::Logs(wrong).into());
-    }
+    let paths = arguments.train.iter().chain(&arguments.validate);
+    let mut train =
+        IdentifyFailure::of_any(paths.map(|path| log(arguments, robot, model, path, remarks)))?;
+    let validate = train.split_off(arguments.train.len());
+    let mut sets = [train, validate];
     let [train, _] = &sets;
     let same = train.iter().enumerate().find_map(|(at, log)| {
         let before = train[..at].iter().find(|other| other.joints == log.joints)?;
@@ -403,7 +392,7 @@ fn log(
         accepts_suspicious: arguments.accept_suspicious,
     };
     let read = read_log(&file, open_log(path)?, of, &mapping);
-    let mut log = read.map_err(|one| IdentifyFailure::Logs(vec![one]))?;
+    let mut log = read.map_err(IdentifyFailure::from)?;
     let found = std::mem::take(&mut log.remarks);
     for remark in found.into_iter().map(|remark| (file.clone(), remark)) {
         // A log may be given twice.

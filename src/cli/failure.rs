@@ -9,6 +9,7 @@ use denavit::plants::effect::AddedError;
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
+use denavit::shipped::ShippedModel;
 use denavit::simulate::scenario::ScenarioError;
 use std::fmt;
 use std::io;
@@ -64,9 +65,14 @@ pub(crate) enum Failure {
     TooLongToSet { name: String, formulas: usize },
     /// A scenario file is wrong.
     Scenario(ScenarioError),
-    /// Neither a file nor a shipped scenario has this name; holds it and the one that was meant,
-    /// perhaps.
-    NoScenario { name: String, nearest: Option<&'static str> },
+    /// Neither a file nor a shipped one of a kind has this name; holds both, the one that was
+    /// meant, perhaps, and all there are.
+    NoShipped {
+        kind: &'static str,
+        name: String,
+        nearest: Option<&'static str>,
+        all: &'static [ShippedModel],
+    },
     /// Two outputs would be one file.
     SameOutput(String),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
@@ -149,12 +155,12 @@ impl Failure {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
             Self::StepOfEventScheme => "add --scheme time-stepping".to_owned(),
-            Self::NoScenario { nearest: Some(nearest), .. } => {
-                format!("`{nearest}` is a shipped scenario")
+            Self::NoShipped { kind, nearest: Some(nearest), .. } => {
+                format!("`{nearest}` is a shipped {kind}")
             }
-            Self::NoScenario { .. } => {
-                let names: Vec<_> = denavit::shipped::SCENARIOS.iter().map(|s| s.name).collect();
-                format!("give the path of a scenario file, or one of {}", names.join(", "))
+            Self::NoShipped { kind, all, .. } => {
+                let names: Vec<_> = all.iter().map(|one| one.name).collect();
+                format!("give the path of a {kind} file, or one of {}", names.join(", "))
             }
             Self::SameOutput(_) => "give each a file of its own".to_owned(),
             Self::Window(_) => "choose two times of the run".to_owned(),
@@ -249,8 +255,8 @@ impl fmt::Display for Failure {
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }
-            Self::NoScenario { name, .. } => {
-                write!(f, "{name}: there is no such file, and no shipped scenario of that name")?;
+            Self::NoShipped { kind, name, .. } => {
+                write!(f, "{name}: there is no such file, and no shipped {kind} of that name")?;
             }
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
             Self::Window([from, to]) => write!(f, "--window: the run is from {from} to {to} s")?,

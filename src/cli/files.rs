@@ -129,6 +129,26 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
     read_all(&name, &mut file)
 }
 
+/// The bytes of a file, or of the shipped one of a kind that has this name.
+pub(crate) fn read_or_shipped(
+    path: &Path,
+    (kind, all): (&'static str, &'static [ShippedModel]),
+) -> Result<Vec<u8>, Failure> {
+    let name = path.display().to_string();
+    let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
+    if let Some(shipped) = all.iter().find(|one| one.name == name && !is_file) {
+        return Ok(shipped.text.as_bytes().to_vec());
+    }
+    read_file(path).map_err(|failure| match failure {
+        Failure::Read { error, .. } if error.kind() == io::ErrorKind::NotFound => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let nearest = denavit::expr::text::nearest(&stem, all.iter().map(|one| one.name));
+            Failure::NoShipped { kind, name, nearest, all }
+        }
+        failure => failure,
+    })
+}
+
 fn open(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     if let (Ok(path), Ok(mut read)) = (path.canonicalize(), READ.lock()) {

@@ -2,16 +2,17 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{check_outputs, load_beside, on_stdout, read_file, say_written, write_whole};
+use super::files::{
+    check_outputs, load_beside, on_stdout, read_or_shipped, say_written, write_whole,
+};
 use super::json::write_json;
 use clap::{Args, ValueEnum};
-use denavit::expr::text::nearest;
 use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
 use denavit::simulate::scenario::{self, RunScheme, Scenario};
 use denavit::simulate::{Run, Stop};
 use serde_json::json as value;
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -145,18 +146,7 @@ fn shown(path: &Path) -> String {
 
 fn open(path: &Path) -> Result<Scenario, Failure> {
     let name = shown(path);
-    let file = path.metadata().is_ok_and(|metadata| metadata.is_file());
-    let bytes = match shipped::find_scenario(&name).filter(|_| !file) {
-        Some(shipped) => shipped.text.as_bytes().to_vec(),
-        None => read_file(path).map_err(|failure| match failure {
-            Failure::Read { error, .. } if error.kind() == ErrorKind::NotFound => {
-                let names = shipped::SCENARIOS.iter().map(|shipped| shipped.name);
-                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                Failure::NoScenario { nearest: nearest(&stem, names), name: name.clone() }
-            }
-            failure => failure,
-        })?,
-    };
+    let bytes = read_or_shipped(path, ("scenario", shipped::SCENARIOS))?;
     let load = |model: &str| load_beside(path, model);
     scenario::read(&name, &bytes, &load).map_err(Failure::Scenario)
 }

@@ -114,7 +114,7 @@ impl Identification {
                 "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
                  parameters. How far they are off cannot be told, nor whether columns are other \
                  ones than they are taken for. A filter with a lower cutoff (--filter) has less \
-                 of it; so has a longer or faster motion.",
+                 of it; so has a longer or faster motion, or one of all joints at once.",
                 100.0 * self.estimate.noise_share
             ));
         }

@@ -20,9 +20,7 @@ pub(crate) enum IdentifyFailure {
     Regression(Box<RegressionError>),
     /// A mapping of columns is wrong.
     Mapping(MappingError),
-    /// A log is wrong.
-    Log(LogFaults),
-    /// Logs are.
+    /// Logs are wrong.
     Logs(Vec<LogFaults>),
     /// A log cannot be conditioned; holds its name.
     Condition(String, ConditionError),
@@ -63,7 +61,6 @@ impl fmt::Display for IdentifyFailure {
         match self {
             Self::Regression(error) => write!(f, "{error}"),
             Self::Mapping(error) => write!(f, "{error}"),
-            Self::Log(error) => write!(f, "{error}"),
             Self::Logs(all) => {
                 let all: Vec<String> = all.iter().map(ToString::to_string).collect();
                 write!(f, "{}", all.join("\n"))
@@ -118,6 +115,29 @@ impl fmt::Display for IdentifyFailure {
                  does that, for robots on a fixed base"
             ),
         }
+    }
+}
+
+impl IdentifyFailure {
+    /// All of some logs, or the faults of all that are wrong.
+    pub(crate) fn of_any<T>(
+        logs: impl Iterator<Item = Result<T, Failure>>,
+    ) -> Result<Vec<T>, Failure> {
+        let (mut right, mut wrong) = (Vec::new(), Vec::new());
+        for log in logs {
+            match log {
+                Ok(log) => right.push(log),
+                Err(Failure::Identify(Self::Logs(faults))) => wrong.extend(faults),
+                Err(failure) => return Err(failure),
+            }
+        }
+        if wrong.is_empty() { Ok(right) } else { Err(Self::Logs(wrong).into()) }
+    }
+}
+
+impl From<LogFaults> for IdentifyFailure {
+    fn from(faults: LogFaults) -> Self {
+        Self::Logs(vec![faults])
     }
 }
 

@@ -3,7 +3,7 @@
 use super::logs::Read;
 use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
-use crate::cli::files::{load_beside, read_file};
+use crate::cli::files::{load_beside, read_or_shipped};
 use denavit::identify::condition::Conditioned;
 use denavit::identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
@@ -26,11 +26,7 @@ pub(super) struct Controlled {
 impl Controlled {
     pub(super) fn read(path: &Path, robot: &Robot) -> Result<Self, Failure> {
         let name = path.display().to_string();
-        let shipped = shipped::find_controller(&name).filter(|_| !path.is_file());
-        let bytes = match shipped {
-            Some(shipped) => shipped.text.as_bytes().to_vec(),
-            None => read_file(path)?,
-        };
+        let bytes = read_or_shipped(path, ("controller", shipped::CONTROLLERS))?;
         let plant = plant_of(robot, &[])
             .map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
         let load = |file: &str| load_beside(path, file);

@@ -20,7 +20,6 @@ struct IdentifyJson<'a> {
     rank: usize,
     excited: usize,
     samples: usize,
-    degrees_of_freedom: f64,
     /// The largest share of noise of the positions in what the motion shows of the parameters.
     noise_share: f64,
     /// Samples that do not count, since a joint turns round or is slow there.
@@ -44,6 +43,8 @@ pub(super) struct ParameterJson<'a> {
     value: f64,
     std: Option<f64>,
     interval: Option<[f64; 2]>,
+    /// Of the standard error.
+    degrees_of_freedom: f64,
     /// In standard errors.
     noise_bias: Option<f64>,
     /// Change with half the cutoff of the filter, and its deviation by chance.
@@ -63,6 +64,7 @@ impl<'a> ParameterJson<'a> {
             value: one.value,
             std: one.std,
             interval: one.interval.map(|half| [one.value - half, one.value + half]),
+            degrees_of_freedom: one.degrees_of_freedom,
             noise_bias: one.noise_bias,
             half_cutoff: one.half_cutoff.map(|one| [one.change, one.deviation]),
             unit: &one.unit,
@@ -250,7 +252,6 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         rank: model.rank(),
         excited: solution.excited(),
         samples: found.train.samples,
-        degrees_of_freedom: found.estimate.degrees_of_freedom,
         noise_share: found.estimate.noise_share,
         left_out: found
             .left_out

@@ -283,7 +283,7 @@ pub(super) fn measured(
         accepts_suspicious: arguments.accept_suspicious,
     };
     let mapping = mapping(arguments)?;
-    Ok(read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::Log)?)
+    Ok(read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::from)?)
 }
 
 /// How columns are mapped.
@@ -335,7 +335,8 @@ impl<'a> Reader<'a> {
     ) -> Result<Vec<Conditioned>, Failure> {
         self.motions = longest_s.map(|_| Vec::new());
         let halvings = halvings.iter().copied().chain(std::iter::repeat(0));
-        paths.iter().zip(halvings).map(|(path, own)| self.one((path, own), longest_s)).collect()
+        let all = paths.iter().zip(halvings);
+        IdentifyFailure::of_any(all.map(|(path, own)| self.one((path, own), longest_s)))
     }
 
     fn one(
@@ -351,8 +352,8 @@ impl<'a> Reader<'a> {
             accepts_suspicious: self.arguments.accept_suspicious,
         };
         let mut log: MeasuredLog =
-            read_log(&file, open_log(path)?, of, &self.mapping).map_err(IdentifyFailure::Log)?;
-        log.require_joint_torques(of).map_err(IdentifyFailure::Log)?;
+            read_log(&file, open_log(path)?, of, &self.mapping).map_err(IdentifyFailure::from)?;
+        log.require_joint_torques(of).map_err(IdentifyFailure::from)?;
         let remarks = std::mem::take(&mut log.remarks);
         self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
         undo_readings(&mut log, self.laws);

@@ -45,7 +45,7 @@ impl Comparison<'_> {
         let (solution, noise) = (settled.solution, settled.noise);
         let (prior, weights) = (&self.fit.options.prior[..], &settled.weights[..]);
         let problem = Problem { condensed: &condensed, weights, prior, solution: &solution };
-        let (mut covariance, _) = problem.covariance(Errors::Correlated);
+        let mut covariance = problem.covariance(Errors::Correlated);
         let bias = self.bias(logs, (&solution, weights));
         covariance += &bias * bias.transpose();
         let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };

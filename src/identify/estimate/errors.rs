@@ -48,21 +48,58 @@ const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
 const MOST_ALIKE: f64 = 0.8;
 
 impl Problem<'_> {
-    /// The covariance of phi, and its degrees of freedom.
-    pub(super) fn covariance(&self, errors: Errors) -> (DMatrix<f64>, f64) {
+    /// The covariance of phi.
+    pub(super) fn covariance(&self, errors: Errors) -> DMatrix<f64> {
+        match errors {
+            _ if self.condensed.parts.len() < FEWEST_PARTS => self.solution.covariance(),
+            Errors::Classical => self.solution.covariance(),
+            Errors::Correlated => self.correlated(),
+            Errors::Bootstrap { draws, seed } => self.bootstrap(draws.max(2), seed),
+        }
+    }
+
+    /// Rows beyond those that the estimate takes.
+    pub(super) fn free_rows(&self) -> f64 {
         let rows: usize =
             self.condensed.parts.iter().flatten().map(super::triangle::Triangle::rows).sum();
-        let parts = self.condensed.parts.len();
-        let free = (rows as f64 - self.solution.excited() as f64).max(1.0);
-        match errors {
-            Errors::Correlated if parts >= FEWEST_PARTS => {
-                (self.correlated(), (parts as f64 - 1.0) / NEIGHBOURS)
-            }
-            Errors::Bootstrap { draws, seed } if parts >= FEWEST_PARTS => {
-                (self.bootstrap(draws.max(2), seed), (parts - 1) as f64)
-            }
-            _ => (self.solution.covariance(), free),
+        (rows as f64 - self.solution.excited() as f64).max(1.0)
+    }
+
+    /// Degrees of freedom of the variances of sums of phi, the rows of a matrix. A variance that is
+    /// found from parts of the logs has as many as parts that decide alike would leave
+    /// (Satterthwaite 1946, with what residuals that are independent make of each part as Bell and
+    /// McCaffrey 2002): of a parameter that few parts decide they say little.
+    pub(super) fn degrees_of_freedom(&self, errors: Errors, sums: &DMatrix<f64>) -> DVector<f64> {
+        let neighbours = match errors {
+            Errors::Correlated => NEIGHBOURS,
+            Errors::Bootstrap { .. } => 1.0,
+            Errors::Classical => return DVector::from_element(sums.nrows(), self.free_rows()),
+        };
+        if self.condensed.parts.len() < FEWEST_PARTS {
+            return DVector::from_element(sums.nrows(), self.free_rows());
         }
+        let follows = &self.solution.factor * (sums * &self.solution.factor).transpose();
+        let mut moments = vec![[0.0; 2]; sums.nrows()];
+        for (part, triangles) in self.condensed.parts.iter().enumerate() {
+            let weights = &self.weights[self.condensed.log_of_part[part]];
+            let mut decides = vec![0.0; sums.nrows()];
+            for (joint, triangle) in triangles.iter().enumerate() {
+                let pattern = &self.condensed.pattern[joint];
+                let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+                let rows = weights[joint] * (r * follows.select_rows(pattern));
+                for (decides, column) in decides.iter_mut().zip(rows.column_iter()) {
+                    *decides += column.norm_squared();
+                }
+            }
+            for ([sum, squares], decides) in moments.iter_mut().zip(decides) {
+                *sum += decides;
+                *squares += decides * decides;
+            }
+        }
+        let parts_alike =
+            |[sum, squares]: [f64; 2]| if squares > 0.0 { sum * sum / squares } else { 0.0 };
+        let degrees = moments.into_iter().map(|both| (parts_alike(both) / neighbours).max(1.0));
+        DVector::from_iterator(sums.nrows(), degrees)
     }
 
     /// F F^T S F F^T with S the long-run covariance of the scores.
@@ -182,19 +219,24 @@ pub(super) fn least_by_chance(degrees_of_freedom: f64) -> f64 {
 }
 
 /// The factor of a standard error that makes a 95 % interval, by Student's distribution (Cornish
-/// and Fisher's series; better than 1 % from 4 degrees of freedom on).
+/// and Fisher's series; better than 1 % from 2 degrees of freedom on).
 pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
     let z: f64 = 1.959_963_984_540_054;
-    let nu = degrees_of_freedom.max(3.0);
+    let nu = degrees_of_freedom.max(2.0);
     let first = (z.powi(3) + z) / (4.0 * nu);
     let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * nu * nu);
     let third =
         (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / (384.0 * nu.powi(3));
-    z + first + second + third
+    let fourth = (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5)
+        - 1920.0 * z.powi(3)
+        - 945.0 * z)
+        / (92160.0 * nu.powi(4));
+    z + first + second + third + fourth
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::triangle::Triangle;
     use super::*;
 
     /// Sums over 64 parts of a process of first order, whose variance is known: white, and one
@@ -223,6 +265,40 @@ mod tests {
         }
     }
 
+    /// Of 24 parts six decide a parameter alike, and all another one: their variances have as many
+    /// degrees of freedom as sums with neighbours counted half, of so many.
+    #[test]
+    fn what_few_parts_decide_has_few_degrees_of_freedom() {
+        let part = |at: usize| {
+            let shows = if at < 6 { 1.0 } else { 0.0 };
+            let mut triangle = Triangle::new(2);
+            triangle.push(&[&[shows, 0.0], &[0.0, 1.0], &[0.1, -0.1]]);
+            vec![triangle]
+        };
+        let condensed = Condensed {
+            pattern: vec![vec![0, 1]],
+            parts: (0..24).map(part).collect(),
+            log_of_part: vec![0; 24],
+            end_s: (1..25).map(f64::from).collect(),
+            independent: vec![1.0],
+            row_s: vec![1.0],
+            rank: 2,
+        };
+        let weights = [vec![1.0]];
+        let system = condensed.system(&condensed.whole(), &weights, &[]);
+        let solution = solve(&system, &[0.0, 0.0]);
+        let problem =
+            Problem { condensed: &condensed, weights: &weights, prior: &[], solution: &solution };
+        // each by itself, and a sum that the first decides
+        let sums = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 0.0, 1.0, 1.0, 1e-6]);
+        let degrees = problem.degrees_of_freedom(Errors::Correlated, &sums);
+        for (degrees, expected) in degrees.iter().zip([4.0, 16.0, 4.0]) {
+            assert!((degrees - expected).abs() < 1e-6, "{degrees} {expected}");
+        }
+        let degrees = problem.degrees_of_freedom(Errors::Classical, &sums);
+        assert_eq!(degrees[0], 46.0);
+    }
+
     /// Tables of the distribution of squares, 5 %.
     #[test]
     fn what_chance_leaves_is_that_of_tables() {
@@ -234,8 +310,10 @@ mod tests {
     /// Tables of Student's distribution, 97.5 %.
     #[test]
     fn interval_factors_are_those_of_tables() {
-        for (nu, printed) in [(4.0, 2.776), (10.0, 2.228), (30.0, 2.042), (1e6, 1.960)] {
-            assert!((interval_factor(nu) - printed).abs() < 0.03 * printed, "{nu}");
+        for (nu, printed) in
+            [(2.0, 4.303), (4.0, 2.776), (10.0, 2.228), (30.0, 2.042), (1e6, 1.960)]
+        {
+            assert!((interval_factor(nu) - printed).abs() < 0.01 * printed, "{nu}");
         }
     }
 }

@@ -39,10 +39,7 @@ pub(super) fn instrumental(
     let system = System::new(&condensed, &condensed.whole(), &found.weights[..]);
     let solved = system.solve().ok_or(EstimateError::Instruments)?;
     found.solution.phi = solved;
-    let (covariance, degrees_of_freedom) =
-        system.covariance(&condensed, found).ok_or(EstimateError::Instruments)?;
-    found.covariance = covariance;
-    found.degrees_of_freedom = degrees_of_freedom;
+    found.covariance = system.covariance(&condensed, found).ok_or(EstimateError::Instruments)?;
     Ok(())
 }
 
@@ -107,7 +104,7 @@ impl System {
 
     /// The long-run covariance of what parts do to phi: left out, a part p with A_p = Z_p^T W_p
     /// changes it by (A - A_p)^-1 Z_p^T (y - W phi), since the estimate has adapted to it.
-    fn covariance(&self, condensed: &Condensed, found: &Estimate) -> Option<(DMatrix<f64>, f64)> {
+    fn covariance(&self, condensed: &Condensed, found: &Estimate) -> Option<DMatrix<f64>> {
         let rank = self.rank;
         let z = self.r.view((0, 0), (rank, rank)).into_owned();
         // Z^T W = R_z^T Q^T W
@@ -139,6 +136,6 @@ impl System {
                 sum += (&cross + cross.transpose()) * 0.5;
             }
         }
-        Some((sum * (count as f64 / (count as f64 - 1.0).max(1.0)), count as f64 - 1.0))
+        Some(sum * (count as f64 / (count as f64 - 1.0).max(1.0)))
     }
 }

@@ -31,6 +31,10 @@ const MOVES_LITTLE: f64 = 0.1;
 /// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
 
+/// Degrees of freedom of an error that is found from parts of logs, below which it says little: it
+/// is at least what the filter's correlation makes.
+const FEWEST_DEGREES: f64 = 3.0;
+
 /// How base parameters are estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Method {
@@ -131,8 +135,8 @@ pub struct Estimate {
     pub solution: Solution,
     /// Covariance of phi.
     pub covariance: DMatrix<f64>,
-    /// Degrees of freedom of the errors.
-    pub degrees_of_freedom: f64,
+    /// Degrees of freedom of the errors of the listed parameters.
+    pub degrees_of_freedom: DVector<f64>,
     /// What noise of the positions adds to phi in the mean; 0 of instrumental variables.
     pub noise_bias: DVector<f64>,
     /// The largest share of noise of the positions in what the columns say of a direction of phi.
@@ -174,41 +178,41 @@ pub fn estimate(
         Method::Total => total::total(&mut first),
         Method::Instrumental => {
             instruments::instrumental(model, rows, instruments, &mut first)?;
+            let of_parts = (first.condensed.parts.len() as f64 - 1.0).max(1.0);
+            let problem = fit.problem(&first);
+            let degrees = problem.degrees_of_freedom(Errors::Correlated, model.to_listed());
+            first.degrees_of_freedom = degrees.map(|degrees| degrees.min(of_parts));
             return Ok(first);
         }
     }
     let NoiseBias { bias, share, of_logs } = fit.noise_bias(model, rows, &first);
     (first.noise_bias, first.noise_share, first.noise_of_logs) = (bias, share, of_logs);
     let problem = fit.problem(&first);
-    let (mut covariance, mut degrees_of_freedom) = match options.method {
+    let mut covariance = match options.method {
         Method::Robust(loss) => {
             let of = (first.solution.phi.as_slice(), &first.noise[..], loss);
             problem.robust_covariance(options.errors, &influences(model, rows, of))
         }
         _ => problem.covariance(options.errors),
     };
-    let parts = first.condensed.parts.len();
-    if options.errors == Errors::Correlated && parts < ENOUGH_PARTS {
-        // as the filter makes residuals correlated
-        let rows = first.condensed.counted_rows();
-        let used = first.solution.excited() as f64;
-        let free = (independent(logs).min(rows) - used).max(1.0);
-        let of_noise = match options.method {
-            Method::Ordinary => first.sum_of_squares() / (rows - used).max(1.0),
-            _ => 1.0,
-        };
-        let wider = of_noise * (rows - used).max(1.0) / free;
-        if parts < FEWEST_PARTS {
-            // too few parts to say more
-            covariance *= wider;
-            degrees_of_freedom = free;
-        } else {
-            let by_chance = least_by_chance(degrees_of_freedom);
-            at_least(&mut covariance, &(first.solution.covariance() * wider * by_chance));
+    let mut degrees_of_freedom = problem.degrees_of_freedom(options.errors, model.to_listed());
+    match options.errors {
+        Errors::Correlated => {
+            let (wider, free) = first.widened_by_filter(options.method);
+            let parts = first.condensed.parts.len();
+            if parts < FEWEST_PARTS {
+                // too few parts to say more
+                covariance *= wider;
+                degrees_of_freedom.fill(free);
+            } else {
+                let by_filter = first.solution.covariance() * wider;
+                at_least(model, &mut covariance, (&by_filter, &degrees_of_freedom, parts));
+            }
         }
-    }
-    if options.method == Method::Ordinary && options.errors == Errors::Classical {
-        covariance *= first.sum_of_squares() / degrees_of_freedom;
+        Errors::Classical if options.method == Method::Ordinary => {
+            covariance *= first.sum_of_squares() / problem.free_rows();
+        }
+        _ => {}
     }
     let mut change = fit.change(model, rows, &first);
     if let Some(change) = &mut change {
@@ -217,14 +221,27 @@ pub fn estimate(
     Ok(Estimate { covariance, degrees_of_freedom, change, ..first })
 }
 
-/// Makes variances at least as large as others, correlations as they are.
-fn at_least(covariance: &mut DMatrix<f64>, least: &DMatrix<f64>) {
-    let factor = |at: usize| {
-        let (own, least) = (covariance[(at, at)], least[(at, at)]);
-        if own > 0.0 && least > own { (least / own).sqrt() } else { 1.0 }
-    };
-    let factors = DMatrix::from_diagonal(&DVector::from_fn(covariance.nrows(), |at, _| factor(at)));
-    *covariance = &factors * &*covariance * &factors;
+/// Makes variances of listed parameters that parts of the logs say little of at least as large as
+/// others, less what chance shows less of them. What lacks is added along what goes with an error
+/// of the parameter: sums that are known well, although what they are of is not, stay so.
+fn at_least(
+    model: &RegressionModel,
+    covariance: &mut DMatrix<f64>,
+    (other, degrees_of_freedom, parts): (&DMatrix<f64>, &DVector<f64>, usize),
+) {
+    for (parameter, &degrees) in model.to_listed().row_iter().zip(degrees_of_freedom) {
+        let share = match degrees {
+            degrees if degrees < FEWEST_DEGREES => 1.0,
+            degrees if parts < ENOUGH_PARTS => least_by_chance(degrees),
+            _ => continue,
+        };
+        let goes_with = other * parameter.transpose();
+        let variance = (parameter * &goes_with)[0];
+        let lacks = share * variance - (parameter * &*covariance * parameter.transpose())[0];
+        if variance > 0.0 && lacks > 0.0 {
+            *covariance += &goes_with * goes_with.transpose() * (lacks / (variance * variance));
+        }
+    }
 }
 
 /// Samples of all torques that are independent of each other.
@@ -293,7 +310,7 @@ impl Fit<'_> {
         Estimate {
             solution,
             covariance: DMatrix::zeros(0, 0),
-            degrees_of_freedom: 0.0,
+            degrees_of_freedom: DVector::zeros(0),
             noise_bias: DVector::zeros(condensed.rank),
             noise_share: 0.0,
             noise_of_logs: Vec::new(),
@@ -411,6 +428,20 @@ fn factors_of_loss(
 }
 
 impl Estimate {
+    /// By how much the filter's correlation of residuals makes variances larger than independent
+    /// residuals would, and the degrees of freedom that are left.
+    fn widened_by_filter(&self, method: Method) -> (f64, f64) {
+        let rows = self.condensed.counted_rows();
+        let used = self.solution.excited() as f64;
+        let left = (rows - used).max(1.0);
+        let free = (self.condensed.independent_rows().min(rows) - used).max(1.0);
+        let of_noise = match method {
+            Method::Ordinary => self.sum_of_squares() / left,
+            _ => 1.0,
+        };
+        (of_noise * left / free, free)
+    }
+
     /// |W phi - y|^2 of all rows.
     fn sum_of_squares(&self) -> f64 {
         let triangles = self.condensed.whole();

@@ -61,6 +61,8 @@ pub struct IdentifiedParameter {
     pub std: Option<f64>,
     /// Half the width of the interval that holds the true value in 95 of 100 cases.
     pub interval: Option<f64>,
+    /// Degrees of freedom of the standard error.
+    pub degrees_of_freedom: f64,
     /// What noise of the positions adds to the estimate in the mean, in standard errors.
     pub noise_bias: Option<f64>,
     /// How it changes with half the cutoff of the filter.
@@ -122,14 +124,14 @@ pub fn parameters(model: &RegressionModel, found: &Estimate) -> Vec<IdentifiedPa
     let covariance = to_listed * &found.covariance * to_listed.transpose();
     let biases = to_listed * &found.noise_bias;
     let dead = to_listed * &found.solution.dead;
-    let factor = interval_factor(found.degrees_of_freedom);
     // Against how far a parameter moves along all directions, the excited among them.
     let alive = to_listed * &found.solution.factor;
     let size = |row: usize| (dead.row(row).norm_squared() + alive.row(row).norm_squared()).sqrt();
     let one = |(row, listed): (usize, &crate::plants::regression::RegressionParameter)| {
         let is_dead = dead.row(row).norm() > DEAD_SHARE * size(row);
         let std = (!is_dead).then(|| covariance[(row, row)].max(0.0).sqrt());
-        let interval = std.map(|std| factor * std);
+        let degrees_of_freedom = found.degrees_of_freedom[row];
+        let interval = std.map(|std| interval_factor(degrees_of_freedom) * std);
         let status = match interval {
             None => Status::NotExcited,
             Some(interval) if values[row].abs() > interval => Status::Identified,
@@ -143,6 +145,7 @@ pub fn parameters(model: &RegressionModel, found: &Estimate) -> Vec<IdentifiedPa
             value: values[row],
             std,
             interval,
+            degrees_of_freedom,
             noise_bias: std.filter(|std| *std > 0.0).map(|std| biases[row] / std),
             half_cutoff: found.change.as_ref().filter(|_| !is_dead).map(|one| HalfCutoff {
                 change: one.change[row],

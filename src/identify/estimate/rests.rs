@@ -6,13 +6,13 @@
 //! brake carries it, the torque does not follow the load, or an estimate leaves more of it than
 //! while the joint moves: such rows are left out.
 
-use super::condensed::Condensed;
 use super::left_out::LeftOut;
 use super::misread::nominal_values;
 use super::rows::BlockMaker;
-use super::weights::ByLog;
+use super::unexplained::samples_of;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::{CoulombLaw, RegressionModel};
+use std::collections::VecDeque;
 use std::ops::Range;
 
 /// How much the torque of a joint at rest must be like the load that the model's own values make of
@@ -22,6 +22,81 @@ const ALIKE: f64 = 0.7;
 /// The variance of what is left at rest over that of what an estimate from motion alone leaves of
 /// motion, above which something else than the motor holds the joint.
 const HELD: f64 = 4.0;
+
+/// What stiction holds is a share of Coulomb friction; of less an estimate that is not the last
+/// one, with more noise of positions, may be wrong.
+const OF_FRICTION: f64 = 0.1;
+
+/// Of rests in which something holds the joint those are left out first of which at least this
+/// share of the most is left.
+const WORST: f64 = 0.25;
+
+/// Noise is another one after half a period of the filter's cutoff: what is left is still
+/// correlated with itself by so much if it is none.
+const NO_NOISE: f64 = 0.5;
+
+/// What is left of the torque of a joint in a log.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Left {
+    rows: f64,
+    squares: f64,
+    /// Of rows half a period of the filter's cutoff apart their products, and mean squares.
+    alike: f64,
+    both: f64,
+    /// Rows in that time.
+    apart: f64,
+    /// Coulomb friction of the joint [N m, N].
+    friction: f64,
+}
+
+impl Left {
+    /// Adds a row, or one that does not count; `recent` are those before, the last one first.
+    fn add(&mut self, one: Option<f64>, recent: &mut VecDeque<Option<f64>>) {
+        if let Some(one) = one {
+            self.rows += 1.0;
+            self.squares += one * one;
+            if let Some(Some(other)) = recent.get(self.apart as usize - 1) {
+                self.alike += one * other;
+                self.both += 0.5 * (one * one + other * other);
+            }
+        }
+        recent.push_front(one);
+        recent.truncate(self.apart as usize);
+    }
+
+    fn mean_square(&self) -> f64 {
+        self.squares / self.rows.max(1.0)
+    }
+
+    /// How much it is like itself half a period later, and how much of that is chance.
+    fn alike(&self) -> [f64; 2] {
+        let alike = if self.both > 0.0 { self.alike / self.both } else { 0.0 };
+        [alike, (2.0 * self.apart / self.rows.max(1.0)).sqrt()]
+    }
+
+    /// The mean square of what is surely no noise.
+    fn without_noise(&self) -> f64 {
+        let [alike, by_chance] = self.alike();
+        self.mean_square() * (alike - by_chance).max(0.0)
+    }
+
+    /// Whether it is no noise, by more than chance.
+    fn is_no_noise(&self) -> bool {
+        let [alike, by_chance] = self.alike();
+        alike > NO_NOISE + by_chance
+    }
+
+    /// How much more is left of a joint at rest than of motion, if something else than its motor
+    /// holds it: so much of its friction, and more than noise, or, where noise of positions is
+    /// larger in motion, more of what is none.
+    fn held(&self, moving: &Self) -> Option<f64> {
+        let left = self.mean_square();
+        let is_more = left > HELD * moving.mean_square()
+            || self.is_no_noise() && left > HELD * moving.without_noise();
+        let is_held = is_more && left > (OF_FRICTION * moving.friction).powi(2);
+        is_held.then(|| left / moving.mean_square().max(f64::MIN_POSITIVE))
+    }
+}
 
 impl LeftOut {
     /// Counts rests in which the torque of a joint follows the load that the model's values make.
@@ -118,36 +193,118 @@ impl LeftOut {
         Some(alone)
     }
 
-    /// The same without rests of joints in which something else than their motors holds them: phi
-    /// leaves more of their torques there than an estimate from motion alone does of that; `moving`
-    /// is the mean square of it, by log and joint. None if there are none.
+    /// The same without the worst of rests in which something else than its motor holds a joint:
+    /// phi leaves more of their torques there than an estimate from motion alone does of that;
+    /// `moving` is what that leaves, by log and joint. None if there are none.
     pub(super) fn without_held(
         &self,
         model: &RegressionModel,
         logs: &[Conditioned],
-        (phi, moving): (&[f64], &ByLog),
+        (phi, moving): (&[f64], &[Vec<Left>]),
     ) -> Option<Self> {
-        let alone = self.of_rests_alone()?;
-        let left = Condensed::counted(model, (logs, &alone)).mean_squares(phi);
+        let left = self.of_rests_alone()?.left(model, logs, phi);
+        let held = |log: usize, joint: usize| {
+            self.awake[log][joint].as_ref()?;
+            left[log][joint].held(&moving[log][joint])
+        };
+        let all =
+            (0..logs.len()).flat_map(|log| (0..left[log].len()).map(move |joint| (log, joint)));
+        // what holds one joint may be taken for parameters of others
+        let most = all.clone().filter_map(|(log, joint)| held(log, joint)).fold(0.0, f64::max);
         let mut fewer = self.clone();
-        for (log, awake) in fewer.awake.iter_mut().enumerate() {
-            for (joint, awake) in awake.iter_mut().enumerate() {
-                awake.take_if(|_| left[log][joint] > HELD * moving[log][joint]);
+        for (log, joint) in all {
+            if held(log, joint).is_some_and(|held| held >= WORST * most) {
+                fewer.awake[log][joint] = None;
             }
         }
         (0..logs.len()).for_each(|log| fewer.keep_enough((log, logs)));
         (fewer != *self).then_some(fewer)
     }
+
+    /// What phi leaves of the rows that count, by log and joint.
+    pub(super) fn left(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        phi: &[f64],
+    ) -> Vec<Vec<Left>> {
+        let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+        let own: Vec<Vec<f64>> = (0..model.joints.len()).map(of_joint).collect();
+        let of_log = |(number, log): (usize, &Conditioned)| {
+            let apart = samples_of(log, 0.5);
+            let rests = self.all_rests((number, log));
+            let mut maker = BlockMaker::resting(model, log, &rests);
+            let mut left: Vec<Left> = (0..own.len())
+                .map(|joint| Left {
+                    apart: apart as f64,
+                    friction: maker.coulomb_friction(joint, phi),
+                    ..Left::default()
+                })
+                .collect();
+            let mut recent = vec![VecDeque::new(); left.len()];
+            maker.for_each(|block| {
+                for (joint, (left, recent)) in left.iter_mut().zip(&mut recent).enumerate() {
+                    let Some(all) = block.residual(joint, &own[joint]) else { continue };
+                    let counts = self.counts((number, log), joint, (block.first, block.samples));
+                    for (k, one) in all.into_iter().enumerate() {
+                        let one = counts.as_ref().is_none_or(|counts| counts[k]).then_some(one);
+                        left.add(one, recent);
+                    }
+                }
+            });
+            left
+        };
+        logs.iter().enumerate().map(of_log).collect()
+    }
 }
 
-impl Condensed {
-    /// The mean square of what phi leaves of each joint in each log.
-    pub(super) fn mean_squares(&self, phi: &[f64]) -> ByLog {
-        let triangles = self.whole();
-        let mut left = self.squares(&triangles, phi);
-        for (left, triangle) in left.iter_mut().flatten().zip(triangles.iter().flatten()) {
-            *left /= triangle.rows().max(1) as f64;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::Random;
+
+    const ROWS: usize = 600;
+    const APART: usize = 4;
+
+    /// What is left: a slow wave and white noise.
+    fn left(seed: u64, [wave, noise]: [f64; 2]) -> Left {
+        let mut random = Random::new(seed);
+        let mut left = Left { apart: APART as f64, friction: 1.0, ..Left::default() };
+        let mut recent = VecDeque::new();
+        for k in 0..ROWS {
+            let slow = wave * (0.05 * k as f64).sin();
+            left.add(Some(slow + noise * random.normal()), &mut recent);
         }
         left
+    }
+
+    /// Stiction is told beside motion in which noise of the positions is ten times as large, by
+    /// being slow, and beside motion without noise by its size; noise is none, however large it is,
+    /// nor is what is little beside friction.
+    #[test]
+    fn what_holds_a_joint_is_told_from_noise() {
+        for seed in [1, 2, 3] {
+            let told = |rest: [f64; 2], moving: [f64; 2]| {
+                left(seed, rest).held(&left(seed + 10, moving)).is_some()
+            };
+            assert!(told([0.4, 0.1], [0.0, 1.0]));
+            assert!(told([0.4, 0.4], [0.0, 0.02]));
+            assert!(!told([0.0, 0.5], [0.0, 0.4]));
+            assert!(!told([0.0, 0.5], [0.0, 1.0]));
+            assert!(!told([0.1, 0.02], [0.0, 0.01]));
+            assert!(!told([0.4, 0.1], [0.4, 0.1]));
+        }
+    }
+
+    /// Rows are compared with those half a period before, none that does not count between.
+    #[test]
+    fn rows_are_compared_over_half_a_period() {
+        let mut left = Left { apart: 2.0, ..Left::default() };
+        let mut recent = VecDeque::new();
+        for one in [Some(1.0), None, Some(3.0), Some(5.0), None, Some(7.0)] {
+            left.add(one, &mut recent);
+        }
+        assert_eq!((left.rows, left.squares), (4.0, 84.0));
+        assert_eq!((left.alike, left.both), (3.0 + 35.0, 5.0 + 37.0));
     }
 }

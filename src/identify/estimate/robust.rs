@@ -96,7 +96,7 @@ impl Problem<'_> {
         &self,
         errors: Errors,
         influences: &[Influence],
-    ) -> (DMatrix<f64>, f64) {
+    ) -> DMatrix<f64> {
         let Self { condensed, weights, prior, solution } = self;
         let (rank, triangles) = (condensed.rank, condensed.whole());
         let of = |times: &dyn Fn(&Influence) -> f64| {
@@ -112,12 +112,12 @@ impl Problem<'_> {
             w.tr_mul(&w)
         };
         let slope = solve(&of(&|one| one.slope), solution.phi.as_slice()).covariance();
-        let (plain, free) = self.covariance(errors);
+        let plain = self.covariance(errors);
         if errors == Errors::Classical || condensed.parts.len() < FEWEST_PARTS {
-            return (&slope * squared(&of(&|one| one.spread)) * &slope, free);
+            return &slope * squared(&of(&|one| one.spread)) * &slope;
         }
         let turned = slope * squared(&of(&|_| 1.0));
-        (&turned * plain * turned.transpose(), free)
+        &turned * plain * turned.transpose()
     }
 }
 

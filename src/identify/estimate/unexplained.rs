@@ -60,7 +60,7 @@ pub(super) fn moves(model: &RegressionModel, logs: &[&Conditioned]) -> Vec<bool>
 }
 
 /// Samples that are left in so many periods of the filter's cutoff.
-fn samples_of(log: &Conditioned, periods: f64) -> usize {
+pub(super) fn samples_of(log: &Conditioned, periods: f64) -> usize {
     let cutoff = log.filter.as_ref().map_or(0.5, |filter| filter.cutoff());
     ((periods / (cutoff * log.decimation.max(1) as f64)).ceil().min(1e6) as usize).max(1)
 }

@@ -140,6 +140,13 @@ impl Condensed {
         (0..self.parts.len()).map(|part| counts[self.log_of_part[part]] * rows(part)).sum()
     }
 
+    /// Rows that are independent of each other.
+    pub(super) fn independent_rows(&self) -> f64 {
+        let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
+        let of_part = |part: usize| self.independent[self.log_of_part[part]] * rows(part);
+        (0..self.parts.len()).map(of_part).sum()
+    }
+
     /// Weights to begin with: all alike, or torques of one size, whatever their units.
     fn first_weights(&self, triangles: &[Vec<Triangle>], is_weighted: bool) -> ByLog {
         let sizes: Vec<f64> = (0..self.pattern.len())

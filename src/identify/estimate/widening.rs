@@ -37,17 +37,7 @@ impl Fit<'_> {
     ) -> Result<(Estimate, LeftOut), EstimateError> {
         let mut fitted = self.fitted(model, logs, LeftOut::asked(model, logs, self.options))?;
         if fitted.left_out.has_rests() {
-            // what holds a joint at rest may be taken for parameters, and leave much of motion too
-            let left_out = fitted.left_out.clone().without_rests();
-            let moving = self.plain(model, (logs, &left_out))?;
-            let moving = moving.condensed.mean_squares(moving.solution.phi.as_slice());
-            let fewer = |one: &Fitted| {
-                let phi = one.found.solution.phi.as_slice();
-                one.left_out.without_held(model, logs, (phi, &moving))
-            };
-            while let Some(fewer) = fewer(&fitted) {
-                fitted = self.fitted(model, logs, fewer)?;
-            }
+            fitted = self.without_held(model, logs, fitted)?;
         }
         let mut tried = vec![false; model.joints.len()];
         if self.options.slow != SlowRows::Biasing {
@@ -66,6 +56,47 @@ impl Fit<'_> {
         }
     }
 
+    /// Without rests in which something else than its motor holds a joint. What that leaves may be
+    /// taken for parameters, and leave much of motion, too; so does the wrong sign of friction near
+    /// reversals, where nothing is asked therefore.
+    fn without_held(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        fitted: Fitted,
+    ) -> Result<Fitted, EstimateError> {
+        let mut asked = fitted.left_out.clone();
+        for &(joint, _) in model.coulomb() {
+            asked.widen(logs, joint, 1.0);
+        }
+        let of_motion = |asked: &LeftOut| {
+            let motion = asked.clone().without_rests();
+            let found = self.plain(model, (logs, &motion))?;
+            Ok::<_, EstimateError>(motion.left(model, logs, found.solution.phi.as_slice()))
+        };
+        let moving = match of_motion(&asked) {
+            Ok(moving) => moving,
+            Err(_) => {
+                // too little is left of the motion
+                asked = fitted.left_out.clone();
+                of_motion(&asked)?
+            }
+        };
+        loop {
+            let found = self.plain(model, (logs, &asked))?;
+            let phi = found.solution.phi.as_slice();
+            let Some(fewer) = asked.without_held(model, logs, (phi, &moving)) else { break };
+            asked = fewer;
+        }
+        if asked.awake == fitted.left_out.awake {
+            return Ok(fitted);
+        }
+        let mut left_out = fitted.left_out;
+        left_out.awake = asked.awake;
+        (0..logs.len()).for_each(|log| left_out.keep_enough((log, logs)));
+        self.fitted(model, logs, left_out)
+    }
+
     fn fitted(
         &self,
         model: &RegressionModel,
@@ -73,7 +104,7 @@ impl Fit<'_> {
         left_out: LeftOut,
     ) -> Result<Fitted, EstimateError> {
         let found = self.plain(model, (logs, &left_out))?;
-        let (covariance, _) = self.problem(&found).covariance(Errors::Correlated);
+        let covariance = self.problem(&found).covariance(Errors::Correlated);
         Ok(Fitted { found, covariance, left_out })
     }
 

@@ -47,3 +47,32 @@ fn hints_go_on_from_scales_that_are_given() {
         assert!((number.abs() - 1.0).abs() < 1e-9, "{given}: {text}");
     }
 }
+
+/// All logs that cannot be read are named, not the first alone.
+#[test]
+fn faults_of_all_logs_are_said_at_once() {
+    let directory = Directory::new("doubts-logs");
+    write_arm(&directory, None);
+    for (name, text) in [("one.csv", "a,b\n"), ("other.csv", "t,q_link1\n")] {
+        std::fs::write(directory.path.join(name), text).expect("written");
+    }
+    let (code, text) = said(&directory, &["--train", "one.csv", "other.csv"]);
+    assert_eq!(code, Some(2), "{text}");
+    for fault in ["one.csv: there is no column `t`", "other.csv: there is no column `q_link2`"] {
+        assert!(text.contains(fault), "{text}");
+    }
+}
+
+/// A controller that is neither a file nor shipped: the hint says which are.
+#[test]
+fn controllers_that_are_shipped_are_said() {
+    let directory = Directory::new("doubts-controller");
+    write_arm(&directory, None);
+    write_log(&directory, "log.csv", &GOOD.rows(&motions(3, 0.7)));
+    for (name, hint) in [("emsp", "`emps` is a shipped controller"), ("x/y", "one of emps, tulip")]
+    {
+        let (code, text) = said(&directory, &["--train", "log.csv", "--controller", name]);
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains("no shipped controller") && text.contains(hint), "{text}");
+    }
+}

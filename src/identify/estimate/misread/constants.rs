@@ -304,7 +304,7 @@ impl Extended {
         let (condensed, solution, lengths) = self.solved(chosen);
         let (condensed, solution, weights) = (&condensed, &solution, &self.weights[..]);
         let problem = Problem { condensed, weights, prior: &[], solution };
-        let (covariance, _) = problem.covariance(errors);
+        let covariance = problem.covariance(errors);
         let of = |at: usize| {
             let [dead, alive] = [&solution.dead, &solution.factor].map(|one| one.row(at).norm());
             let std = covariance[(at, at)].max(0.0).sqrt();

@@ -43,11 +43,12 @@ use std::path::PathBuf;
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:
+  denavit simulate tulip_leg_identification -o leg.csv
+  denavit identify tulip_leg_table34 --train leg.csv --keep e6,c6x*m6,m6,e5,c5x*m5,e4
+  denavit identify tulip_leg_table34 --train leg.csv --svg torques.svg --html leg.html
+  denavit identify tulip_leg_table34 --train leg.csv --method huber -o identified.json --json
   denavit simulate tulip_leg_tracking -o tracking.csv
-  denavit identify tulip_leg --train tracking.csv --filter 20 --svg torques.svg
-  denavit identify tulip_leg --train tracking.csv --filter 20 --html tulip_leg.html
   denavit identify tulip_leg --train tracking.csv --filter 20 --controller tulip_leg
-  denavit identify tulip_leg --train tracking.csv --method huber -o identified.json --json
   denavit simulate tulip_leg_elastic_identification -o springs.csv
   denavit identify tulip_leg --train springs.csv --two-stage --friction tanh --accept-suspicious")]
 pub(crate) struct Arguments {
@@ -433,7 +434,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(path, page::of(arguments, &shown)?.as_bytes())?;
     }
     match (is_answered, arguments.json) {
-        (true, _) => {}
+        // the document has no place for it
+        (true, _) => text::write_doubts(&mut std::io::stderr().lock(), &shown)?,
         (_, true) => json::write(out, &shown)?,
         (_, false) => {
             text::write(out, &shown)?;
@@ -441,8 +443,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         }
     }
     let judged = found.validate.as_ref().unwrap_or(&found.train);
-    let is_doubted = found.is_noise() || !found.misread.is_empty() || found.no_bodies().is_some();
-    let is_doubted = is_doubted && !arguments.accept_suspicious;
+    let is_doubted = found.is_noise() || !found.misread.is_empty() || found.is_of_other_robot();
+    let is_doubted = is_doubted && !arguments.accept_suspicious || found.no_bodies().is_some();
     let explains = judged.relative < 1.0
         && found.unexplained.is_empty()
         && found.contradicting_logs.is_empty();

@@ -8,6 +8,7 @@ use super::estimate::{
     contradicting_logs, convergence, estimate, exceeding_joints, filter_errors, long_enough,
     misread_apart, misread_columns, noise_in_torques, parameters, unexplained_joints, validate,
 };
+use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
@@ -59,6 +60,8 @@ pub struct Identification {
     /// Joints of whose torque nearly all is left, or much that is no noise, in the logs for
     /// validation or, if there are none, those of the estimate.
     pub unexplained: Vec<Unexplained>,
+    /// Joints of whose torque something is left that is no noise, with its share.
+    pub lacking: Vec<(String, f64)>,
     /// Periods of the filter's cutoff that all logs for the estimate have.
     pub periods: f64,
     /// The estimate came about so.
@@ -164,8 +167,13 @@ impl Identification {
         ))
     }
 
-    /// What is to be said of rows that do not count.
-    pub fn rows_left_out(&self) -> Option<String> {
+    /// What is to be said of rows that do not count, and of what is left of the others.
+    pub fn notes(&self) -> Vec<String> {
+        let lacking = said(&self.lacking).filter(|_| !self.is_noise());
+        self.rows_left_out().into_iter().chain(lacking).collect()
+    }
+
+    fn rows_left_out(&self) -> Option<String> {
         let of = |one: &LeftOutRows| {
             let left = 100.0 * one.left;
             format!("{} of {} samples of {} ({left:.2} %)", one.samples, one.of, one.joint)
@@ -211,8 +219,14 @@ impl Identification {
             .chain(self.changed())
             .chain(self.smeared())
             .chain(reversals)
+            .chain(other_robot(self.before))
             .chain(self.no_bodies())
             .collect()
+    }
+
+    /// Whether the model's own values leave far more than there is.
+    pub fn is_of_other_robot(&self) -> bool {
+        other_robot(self.before).is_some()
     }
 
     /// That the nearest bodies are far from the estimate; none if noise makes most of it.
@@ -304,9 +318,9 @@ impl Estimated {
         let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
         let held_out_left = judged(phi);
         let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
-        let torques = torques(model, &left).into_iter();
-        let counted: Vec<f64> =
-            found.noise_of_joints().into_iter().zip(torques).map(share).collect();
+        let torques = torques(model, &left);
+        let noise = found.noise_of_joints().into_iter();
+        let counted: Vec<f64> = noise.zip(torques.iter().copied()).map(share).collect();
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
         let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
@@ -340,6 +354,7 @@ impl Estimated {
             left_out: left_out(model, train, (&found, &counted)),
             contradicting_logs,
             noisy_logs: noisy_logs(model, train, &found),
+            lacking: lacking(model, (train, &shown), (&found, &torques)),
             periods: train.iter().map(Conditioned::periods).sum(),
             parameters: listed,
             filter_error,

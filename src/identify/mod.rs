@@ -23,6 +23,7 @@ mod identification;
 mod idle;
 pub mod knowledge;
 mod known_effects;
+mod lacking;
 pub mod log;
 mod model_text;
 mod model_values;

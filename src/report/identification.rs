@@ -72,7 +72,7 @@ impl IdentificationPage<'_> {
             text += &format!("; the model left {} before", percent(before));
         }
         text.push('.');
-        for warning in found.rows_left_out().into_iter().chain(found.warnings()) {
+        for warning in found.notes().into_iter().chain(found.warnings()) {
             text = format!("{text} {warning}");
         }
         if found.consistent.distance > 1.0 {

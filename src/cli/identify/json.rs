@@ -24,6 +24,8 @@ struct IdentifyJson<'a> {
     noise_share: f64,
     /// Samples that do not count, since a joint turns round or is slow there.
     left_out: Vec<LeftOutJson<'a>>,
+    /// Joints of whose torque something is left that is no noise, and its share.
+    lacking: Vec<LackingJson<'a>>,
     /// theta0 of the nearest bodies that exist, and how far they are.
     consistent: ConsistentJson<'a>,
     convergence: Vec<ConvergenceJson<'a>>,
@@ -92,6 +94,12 @@ struct JointJson<'a> {
     torque_rms: f64,
     residual_rms: f64,
     autocorrelation: &'a [f64],
+}
+
+#[derive(Serialize)]
+struct LackingJson<'a> {
+    joint: &'a str,
+    left: f64,
 }
 
 #[derive(Serialize)]
@@ -262,6 +270,11 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
                 of: one.of,
                 left: one.left,
             })
+            .collect(),
+        lacking: found
+            .lacking
+            .iter()
+            .map(|(joint, left)| LackingJson { joint, left: *left })
             .collect(),
         consistent: ConsistentJson::new(model, &found.consistent),
         convergence: convergence.collect(),

@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Conditions {
     /// Cutoff of the zero-phase Butterworth filter [Hz], with the order of one pass if it is not 4;
-    /// or none. A tenth of the rate of sampling if nothing is said
+    /// or none. If nothing is said, a tenth of the rate of sampling, halved as long as noise of the
+    /// positions biases parameters
     #[arg(long, value_name = "HZ[:ORDER]", value_parser = filter)]
     filter: Option<FilterChoice>,
     /// Leave one sample in so many; if nothing is said, as the filter allows and 1200 are left

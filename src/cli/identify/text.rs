@@ -7,6 +7,17 @@ use denavit::identify::forward::Forward;
 use denavit::report::{Align, Table, paragraph, short};
 use std::io::Write;
 
+/// What is remarked and doubted, for whom the answer does not say it.
+pub(super) fn write_doubts(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
+    for (file, remark) in shown.remarks {
+        writeln!(out, "{file}: {remark}")?;
+    }
+    for text in shown.found.notes().into_iter().chain(shown.found.warnings()) {
+        writeln!(out, "{}", paragraph("", "", &text))?;
+    }
+    Ok(())
+}
+
 pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
     let Shown { robot, model, found, remarks, .. } = shown;
     let solution = &found.estimate.solution;
@@ -32,10 +43,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     if let Some(gap) = shown.simulated {
         write_simulation(out, gap)?;
     }
-    if let Some(text) = found.rows_left_out() {
-        writeln!(out, "\n{}", paragraph("", "", &text))?;
-    }
-    for text in found.warnings() {
+    for text in found.notes().into_iter().chain(found.warnings()) {
         writeln!(out, "\n{}", paragraph("", "", &text))?;
     }
     write_nearest(out, found.consistent.distance)

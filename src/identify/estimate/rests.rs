@@ -7,12 +7,11 @@
 //! while the joint moves: such rows are left out.
 
 use super::left_out::LeftOut;
+use super::left_over::Left;
 use super::misread::nominal_values;
 use super::rows::BlockMaker;
-use super::unexplained::samples_of;
 use crate::identify::condition::Conditioned;
 use crate::plants::regression::{CoulombLaw, RegressionModel};
-use std::collections::VecDeque;
 use std::ops::Range;
 
 /// How much the torque of a joint at rest must be like the load that the model's own values make of
@@ -30,73 +29,6 @@ const OF_FRICTION: f64 = 0.1;
 /// Of rests in which something holds the joint those are left out first of which at least this
 /// share of the most is left.
 const WORST: f64 = 0.25;
-
-/// Noise is another one after half a period of the filter's cutoff: what is left is still
-/// correlated with itself by so much if it is none.
-const NO_NOISE: f64 = 0.5;
-
-/// What is left of the torque of a joint in a log.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Left {
-    rows: f64,
-    squares: f64,
-    /// Of rows half a period of the filter's cutoff apart their products, and mean squares.
-    alike: f64,
-    both: f64,
-    /// Rows in that time.
-    apart: f64,
-    /// Coulomb friction of the joint [N m, N].
-    friction: f64,
-}
-
-impl Left {
-    /// Adds a row, or one that does not count; `recent` are those before, the last one first.
-    fn add(&mut self, one: Option<f64>, recent: &mut VecDeque<Option<f64>>) {
-        if let Some(one) = one {
-            self.rows += 1.0;
-            self.squares += one * one;
-            if let Some(Some(other)) = recent.get(self.apart as usize - 1) {
-                self.alike += one * other;
-                self.both += 0.5 * (one * one + other * other);
-            }
-        }
-        recent.push_front(one);
-        recent.truncate(self.apart as usize);
-    }
-
-    fn mean_square(&self) -> f64 {
-        self.squares / self.rows.max(1.0)
-    }
-
-    /// How much it is like itself half a period later, and how much of that is chance.
-    fn alike(&self) -> [f64; 2] {
-        let alike = if self.both > 0.0 { self.alike / self.both } else { 0.0 };
-        [alike, (2.0 * self.apart / self.rows.max(1.0)).sqrt()]
-    }
-
-    /// The mean square of what is surely no noise.
-    fn without_noise(&self) -> f64 {
-        let [alike, by_chance] = self.alike();
-        self.mean_square() * (alike - by_chance).max(0.0)
-    }
-
-    /// Whether it is no noise, by more than chance.
-    fn is_no_noise(&self) -> bool {
-        let [alike, by_chance] = self.alike();
-        alike > NO_NOISE + by_chance
-    }
-
-    /// How much more is left of a joint at rest than of motion, if something else than its motor
-    /// holds it: so much of its friction, and more than noise, or, where noise of positions is
-    /// larger in motion, more of what is none.
-    fn held(&self, moving: &Self) -> Option<f64> {
-        let left = self.mean_square();
-        let is_more = left > HELD * moving.mean_square()
-            || self.is_no_noise() && left > HELD * moving.without_noise();
-        let is_held = is_more && left > (OF_FRICTION * moving.friction).powi(2);
-        is_held.then(|| left / moving.mean_square().max(f64::MIN_POSITIVE))
-    }
-}
 
 impl LeftOut {
     /// Counts rests in which the torque of a joint follows the load that the model's values make.
@@ -220,41 +152,18 @@ impl LeftOut {
         (0..logs.len()).for_each(|log| fewer.keep_enough((log, logs)));
         (fewer != *self).then_some(fewer)
     }
+}
 
-    /// What phi leaves of the rows that count, by log and joint.
-    pub(super) fn left(
-        &self,
-        model: &RegressionModel,
-        logs: &[Conditioned],
-        phi: &[f64],
-    ) -> Vec<Vec<Left>> {
-        let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-        let own: Vec<Vec<f64>> = (0..model.joints.len()).map(of_joint).collect();
-        let of_log = |(number, log): (usize, &Conditioned)| {
-            let apart = samples_of(log, 0.5);
-            let rests = self.all_rests((number, log));
-            let mut maker = BlockMaker::resting(model, log, &rests);
-            let mut left: Vec<Left> = (0..own.len())
-                .map(|joint| Left {
-                    apart: apart as f64,
-                    friction: maker.coulomb_friction(joint, phi),
-                    ..Left::default()
-                })
-                .collect();
-            let mut recent = vec![VecDeque::new(); left.len()];
-            maker.for_each(|block| {
-                for (joint, (left, recent)) in left.iter_mut().zip(&mut recent).enumerate() {
-                    let Some(all) = block.residual(joint, &own[joint]) else { continue };
-                    let counts = self.counts((number, log), joint, (block.first, block.samples));
-                    for (k, one) in all.into_iter().enumerate() {
-                        let one = counts.as_ref().is_none_or(|counts| counts[k]).then_some(one);
-                        left.add(one, recent);
-                    }
-                }
-            });
-            left
-        };
-        logs.iter().enumerate().map(of_log).collect()
+impl Left {
+    /// How much more is left of a joint at rest than of motion, if something else than its motor
+    /// holds it: so much of its friction, and more than noise, or, where noise of positions is
+    /// larger in motion, more of what is none.
+    fn held(&self, moving: &Self) -> Option<f64> {
+        let left = self.mean_square();
+        let is_more = left > HELD * moving.mean_square()
+            || self.is_no_noise() && left > HELD * moving.without_noise();
+        let is_held = is_more && left > (OF_FRICTION * moving.friction).powi(2);
+        is_held.then(|| left / moving.mean_square().max(f64::MIN_POSITIVE))
     }
 }
 
@@ -262,6 +171,7 @@ impl LeftOut {
 mod tests {
     use super::*;
     use crate::simulate::Random;
+    use std::collections::VecDeque;
 
     const ROWS: usize = 600;
     const APART: usize = 4;
@@ -294,17 +204,5 @@ mod tests {
             assert!(!told([0.1, 0.02], [0.0, 0.01]));
             assert!(!told([0.4, 0.1], [0.4, 0.1]));
         }
-    }
-
-    /// Rows are compared with those half a period before, none that does not count between.
-    #[test]
-    fn rows_are_compared_over_half_a_period() {
-        let mut left = Left { apart: 2.0, ..Left::default() };
-        let mut recent = VecDeque::new();
-        for one in [Some(1.0), None, Some(3.0), Some(5.0), None, Some(7.0)] {
-            left.add(one, &mut recent);
-        }
-        assert_eq!((left.rows, left.squares), (4.0, 84.0));
-        assert_eq!((left.alike, left.both), (3.0 + 35.0, 5.0 + 37.0));
     }
 }

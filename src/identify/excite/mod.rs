@@ -156,9 +156,17 @@ pub fn check_trajectory(
     options: &ExciteOptions,
     trajectory: &Trajectory,
 ) -> Result<(Check, Stack), ExciteError> {
+    let joints: Vec<&String> = robot.joints().map(|(link, _)| &robot.links[link].name).collect();
+    let unknown = |(name, _): &(String, Reference)| {
+        let nearest = denavit_codegen::expr::text::nearest(name, joints.iter().map(|j| j.as_str()));
+        let (option, nearest) = ("--check", nearest.map(str::to_owned));
+        let is_unknown = !joints.contains(&name);
+        is_unknown.then(|| ExciteFault::UnknownJoint { option, name: name.clone(), nearest })
+    };
+    ExciteOptions::error(robot, trajectory.joints.iter().filter_map(unknown).collect())?;
     let mut options = options.clone();
     options.duration_s = trajectory.duration_s;
-    for joint in robot.joints().map(|(link, _)| &robot.links[link].name) {
+    for &joint in &joints {
         let is_held = options.hold.iter().any(|(held, _)| held == joint);
         if trajectory.find(joint).is_none() && !is_held {
             options.hold.push((joint.clone(), 0.0));
@@ -166,17 +174,6 @@ pub fn check_trajectory(
     }
     let mut faults = Vec::new();
     let model = options.model(robot, &mut faults);
-    if let Some(model) = &model {
-        let names: Vec<&str> = model.joints.iter().map(|joint| joint.name.as_str()).collect();
-        for (name, _) in &trajectory.joints {
-            if !names.contains(&name.as_str()) {
-                let option = "--check";
-                let meant = denavit_codegen::expr::text::nearest(name, names.iter().copied());
-                let nearest = meant.map(str::to_owned);
-                faults.push(ExciteFault::UnknownJoint { option, name: name.clone(), nearest });
-            }
-        }
-    }
     ExciteOptions::error(robot, faults)?;
     let Some(model) = model else { unreachable!("what is missing has been reported") };
     let (stack, mut evaluators) = stacked(robot, &model)?;

@@ -76,3 +76,48 @@ fn controllers_that_are_shipped_are_said() {
         assert!(text.contains("no shipped controller") && text.contains(hint), "{text}");
     }
 }
+
+/// A torque that is scaled, or late, moves parameters by many of their errors and leaves little: it
+/// is said that this is no noise, and of good logs it is not.
+#[test]
+fn what_is_left_is_said_to_be_no_noise() {
+    let directory = Directory::new("doubts-noise");
+    write_arm(&directory, None);
+    for seed in [1, 2, 3, 4] {
+        for gain in [1.0, 1.3] {
+            let mut rows = Made { seed, ..GOOD }.rows(&motions(seed, 0.7));
+            rows.iter_mut().for_each(|row| row[3] *= gain);
+            write_log(&directory, "log.csv", &rows);
+            let (_, text) = said(&directory, &["--train", "log.csv"]);
+            let words = text.replace('\n', " ");
+            assert_eq!(words.contains("is no noise"), gain != 1.0, "{seed} {gain}: {text}");
+        }
+    }
+}
+
+/// Where the answer is a document, doubts are said beside it.
+#[test]
+fn doubts_are_said_beside_a_document() {
+    let directory = Directory::new("doubts-document");
+    write_arm(&directory, None);
+    let mut rows = GOOD.rows(&motions(3, 0.7));
+    rows.iter_mut().for_each(|row| row[4] *= 1.2);
+    write_log(&directory, "log.csv", &rows);
+    for option in ["-o", "--html", "--svg"] {
+        let (_, text) = said(&directory, &["--train", "log.csv", option, "-"]);
+        assert!(text.replace('\n', " ").contains("is no noise"), "{option}: {text}");
+    }
+}
+
+/// A log that the model's own values miss by far is of another robot, whatever an estimate says.
+#[test]
+fn values_that_are_far_off_are_said() {
+    let directory = Directory::new("doubts-robot");
+    write_arm(&directory, None);
+    let mut rows = GOOD.rows(&motions(3, 0.7));
+    rows.iter_mut().for_each(|row| row[3..].iter_mut().for_each(|torque| *torque *= 0.06));
+    write_log(&directory, "log.csv", &rows);
+    let (code, text) = said(&directory, &["--train", "log.csv"]);
+    assert_ne!(code, Some(0), "{text}");
+    assert!(text.contains("another robot"), "{text}");
+}

@@ -77,8 +77,8 @@ fn controllers_that_are_shipped_are_said() {
     }
 }
 
-/// A torque that is scaled, or late, moves parameters by many of their errors and leaves little: it
-/// is said that this is no noise, and of good logs it is not.
+/// A torque that is scaled moves parameters by many of their errors and leaves little: it is said
+/// that this is no noise, and by how much it is scaled; of good logs it is not.
 #[test]
 fn what_is_left_is_said_to_be_no_noise() {
     let directory = Directory::new("doubts-noise");
@@ -88,11 +88,23 @@ fn what_is_left_is_said_to_be_no_noise() {
             let mut rows = Made { seed, ..GOOD }.rows(&motions(seed, 0.7));
             rows.iter_mut().for_each(|row| row[3] *= gain);
             write_log(&directory, "log.csv", &rows);
-            let (_, text) = said(&directory, &["--train", "log.csv"]);
+            let (code, text) = said(&directory, &["--train", "log.csv"]);
+            assert_eq!(code, Some(i32::from(gain != 1.0)), "{seed} {gain}: {text}");
             let words = text.replace('\n', " ");
             assert_eq!(words.contains("is no noise"), gain != 1.0, "{seed} {gain}: {text}");
+            if gain != 1.0 {
+                assert!((told_gain(&words) / gain - 1.0).abs() < 0.01, "{seed}: {text}");
+            }
         }
     }
+}
+
+/// How many times too large the torque of the first joint is said to be, or those of all others too
+/// small.
+fn told_gain(words: &str) -> f64 {
+    let (joint, told) = words.split_once(" seems to be ").expect(words);
+    let factor = told.split(' ').next().expect("a number").parse::<f64>().expect(told);
+    if joint.ends_with("link1") { factor } else { 1.0 / factor }
 }
 
 /// Where the answer is a document, doubts are said beside it.

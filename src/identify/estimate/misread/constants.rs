@@ -1,4 +1,5 @@
-//! Constant errors: zeros of positions and offsets of torques, as parameters beside the others.
+//! Constant errors: zeros of positions, offsets and gains of torques, as parameters beside the
+//! others.
 //!
 //! What a constant does to the torques may be less than their noise, and yet move parameters by
 //! many of their errors. An estimate sees it if it is many of its own errors large, and nothing
@@ -45,56 +46,88 @@ const NOTHING: f64 = 1e-6;
 /// what is less hangs on how a filter smears the sign of a rate.
 const OWN: f64 = 0.01;
 
+/// Times that gains are found anew, beside the parameters that follow from them, and the change of
+/// a gain that is none.
+const ROUNDS: usize = 8;
+const SETTLED: f64 = 2e-3;
+
+/// The least gain that is told.
+const LEAST_GAIN: f64 = 0.01;
+
 /// The constant errors that an estimate sees, each with its size in standard errors.
 pub(super) fn constant_errors(
     model: &RegressionModel,
     logs: &[Conditioned],
     found: &Estimate,
 ) -> Vec<(Misreading, f64)> {
-    let (pieces, left_out, log_of_piece) = pieces(logs, &found.left_out);
-    let mut columns = Columns::new(model, &pieces, found.solution.phi.as_slice());
+    let (mut pieces, left_out, log_of_piece) = pieces(logs, &found.left_out);
     let weights = found.condensed.reciprocal(&found.noise, &found.condensed.whole());
-    let weights = log_of_piece.iter().map(|&log| weights[log].clone()).collect();
-    let extended = Extended::new(model, (&pieces, &left_out), (weights, &mut columns));
-    let lines = columns.lines.clone();
-    let mut chosen: Vec<usize> = Vec::new();
-    let mut sizes: Vec<Size> = Vec::new();
-    while chosen.len() < MOST {
-        let with = |line: usize| [&chosen[..], &[line]].concat();
-        let seen = |line: usize| {
-            let own = extended.sizes(&with(line), Errors::Classical)?[chosen.len()];
-            let is_zero = matches!(lines[line], Line::Zero(_));
-            let is_any = is_zero && own.value.abs() > LARGEST_ZERO;
-            (!is_any).then_some((line, own.of_error().abs()))
-        };
-        let others = (0..lines.len()).filter(|line| !chosen.contains(line));
-        let surest = others.filter_map(seen).max_by(|a, b| a.1.total_cmp(&b.1));
-        let next = surest.map_or_else(Vec::new, |(line, _)| with(line));
-        let own = extended.sizes(&next, Errors::Correlated).unwrap_or_default();
-        if own.last().is_none_or(|last| last.of_error().abs() < SURE) {
-            break;
+    let weights: ByLog = log_of_piece.iter().map(|&log| weights[log].clone()).collect();
+    let mut phi = found.solution.phi.as_slice().to_vec();
+    // a gain is to first order beside the parameters as they were: it is taken out, and again
+    let mut gains: Vec<Gain> = Vec::new();
+    for _ in 0..ROUNDS {
+        let mut columns = Columns::new(model, &pieces, &phi);
+        let rows = (&pieces[..], &left_out);
+        let extended = Extended::new(model, rows, (weights.clone(), &mut columns));
+        let (chosen, sizes) = extended.chosen(&columns.lines);
+        if chosen.is_empty() && gains.is_empty() {
+            return Vec::new();
         }
-        (chosen, sizes) = (next, own);
+        let (_, solution, _) = extended.solved(&chosen);
+        phi = solution.phi.as_slice()[..model.rank()].to_vec();
+        let all = chosen.iter().map(|&line| columns.lines[line]).zip(sizes);
+        let all: Vec<(Line, Size)> = all.collect();
+        let gain = all.iter().find_map(|(line, size)| match *line {
+            Line::Gain(joint) if size.value.abs() > SETTLED => Some((joint, *size)),
+            _ => None,
+        });
+        let Some((joint, size)) = gain else {
+            let size = |line: &Line| {
+                let own = all.iter().find(|(one, _)| one == line);
+                own.map_or(0.0, |(_, size)| size.value)
+            };
+            let sizes: Vec<f64> = columns.lines.iter().map(size).collect();
+            if !columns.is_noise(rows, (&phi, &sizes)) {
+                return Vec::new();
+            }
+            return told(&gains, &all);
+        };
+        let factor = 1.0 + size.value;
+        if factor <= 0.0 {
+            return Vec::new();
+        }
+        for torque in pieces.iter_mut().filter_map(|piece| piece.torque[joint].as_mut()) {
+            torque.iter_mut().for_each(|torque| *torque /= factor);
+        }
+        match gains.iter_mut().find(|one| one.joint == joint) {
+            Some(one) => one.factor *= factor,
+            None => gains.push(Gain { joint, factor, of_error: size.of_error() }),
+        }
     }
-    if chosen.is_empty() {
-        return Vec::new();
-    }
-    let size = |line: usize| {
-        let at = chosen.iter().position(|&one| one == line);
-        at.map_or(0.0, |at| sizes[at].value)
-    };
-    let size: Vec<f64> = (0..lines.len()).map(size).collect();
-    let (_, solution, _) = extended.solved(&chosen);
-    let phi = &solution.phi.as_slice()[..model.rank()];
-    if !columns.is_noise((&pieces, &left_out), (phi, &size)) {
-        return Vec::new();
-    }
-    let of = |(&line, size): (&usize, &Size)| match lines[line] {
-        Line::Zero(joint) => (Misreading::Zero(joint, size.value), size.of_error()),
+    Vec::new() // no gain settles
+}
+
+/// The factor that a joint's torque seems to be too large by, and its first size in errors.
+struct Gain {
+    joint: usize,
+    factor: f64,
+    of_error: f64,
+}
+
+fn told(gains: &[Gain], constants: &[(Line, Size)]) -> Vec<(Misreading, f64)> {
+    let large = gains.iter().filter(|gain| (gain.factor - 1.0).abs() > LEAST_GAIN);
+    let gains =
+        large.map(|gain| (Misreading::TorqueGain(gain.joint, 1.0 / gain.factor), gain.of_error));
+    let of = |(line, size): &(Line, Size)| match *line {
+        Line::Zero(joint) => Some((Misreading::Zero(joint, size.value), size.of_error())),
         // what is to be added is what is too little
-        Line::Offset(joint) => (Misreading::TorqueOffset(joint, -size.value), size.of_error()),
+        Line::Offset(joint) => {
+            Some((Misreading::TorqueOffset(joint, -size.value), size.of_error()))
+        }
+        Line::Gain(_) => None,
     };
-    chosen.iter().zip(&sizes).map(of).collect()
+    gains.chain(constants.iter().filter_map(of)).collect()
 }
 
 /// Pieces all along the logs, as logs, with the rows of them that do not count, and their logs.
@@ -114,6 +147,8 @@ fn pieces(logs: &[Conditioned], left_out: &LeftOut) -> (Vec<Conditioned>, LeftOu
 enum Line {
     Zero(usize),
     Offset(usize),
+    /// A torque that is scaled.
+    Gain(usize),
 }
 
 /// A constant and its standard error.
@@ -161,10 +196,14 @@ impl<'a> Columns<'a> {
             zeros.iter().map(|&joint| [STEP, -STEP].map(|step| by(joint, step))).collect()
         };
         let of_joint = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
-        let offsets = joints.filter(is_measured).map(Line::Offset);
+        let offsets = joints.clone().filter(is_measured).map(Line::Offset);
+        // the gain of the only torque is that of all parameters
+        let measured = (0..model.joints.len()).filter(is_measured).count();
+        let gains = joints.filter(is_measured).filter(|_| measured > 1).map(Line::Gain);
+        let zeros_of = zeros.iter().map(|&joint| Line::Zero(joint));
         Self {
             model,
-            lines: zeros.iter().map(|&joint| Line::Zero(joint)).chain(offsets).collect(),
+            lines: zeros_of.chain(offsets).chain(gains).collect(),
             own: model.pattern().iter().map(of_joint).collect(),
             shifted: pieces.iter().map(shifted).collect(),
         }
@@ -186,10 +225,22 @@ impl<'a> Columns<'a> {
             columns.push(left[0].iter().zip(&left[1]).map(slope).collect());
         }
         for line in &self.lines[columns.len()..] {
-            let is_own = *line == Line::Offset(joint);
-            columns.push(vec![f64::from(u8::from(is_own)); block.samples]);
+            columns.push(match *line {
+                Line::Offset(own) if own == joint => vec![1.0; block.samples],
+                Line::Gain(own) if own == joint => self.torque(block, joint),
+                _ => vec![0.0; block.samples],
+            });
         }
         columns
+    }
+
+    /// The torque of a joint as phi makes it.
+    fn torque(&self, block: &Block, joint: usize) -> Vec<f64> {
+        let mut torque = vec![0.0; block.samples];
+        for (column, phi) in block.columns[joint].iter().zip(&self.own[joint]) {
+            torque.iter_mut().zip(column).for_each(|(sum, entry)| *sum += phi * entry);
+        }
+        torque
     }
 
     /// Whether what is left with phi and constants of these sizes is noise of all joints.
@@ -288,6 +339,30 @@ impl Extended {
             row_s: self.condensed.row_s.clone(),
             rank,
         }
+    }
+
+    /// The constants that are surely not 0, one after the other beside those before, and their
+    /// sizes.
+    fn chosen(&self, lines: &[Line]) -> (Vec<usize>, Vec<Size>) {
+        let (mut chosen, mut sizes): (Vec<usize>, Vec<Size>) = Default::default();
+        while chosen.len() < MOST {
+            let with = |line: usize| [&chosen[..], &[line]].concat();
+            let seen = |line: usize| {
+                let own = self.sizes(&with(line), Errors::Classical)?[chosen.len()];
+                let is_zero = matches!(lines[line], Line::Zero(_));
+                let is_any = is_zero && own.value.abs() > LARGEST_ZERO;
+                (!is_any).then_some((line, own.of_error().abs()))
+            };
+            let others = (0..lines.len()).filter(|line| !chosen.contains(line));
+            let surest = others.filter_map(seen).max_by(|a, b| a.1.total_cmp(&b.1));
+            let next = surest.map_or_else(Vec::new, |(line, _)| with(line));
+            let own = self.sizes(&next, Errors::Correlated).unwrap_or_default();
+            if own.last().is_none_or(|last| last.of_error().abs() < SURE) {
+                break;
+            }
+            (chosen, sizes) = (next, own);
+        }
+        (chosen, sizes)
     }
 
     /// phi with the constants that are chosen behind it, and the lengths of all columns.

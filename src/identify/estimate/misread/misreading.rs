@@ -39,6 +39,8 @@ pub enum Misreading {
     Zero(usize, f64),
     /// The torque of a joint is off by a constant: what is to be added to it [N m, N].
     TorqueOffset(usize, f64),
+    /// The torque of a joint is scaled: what it is to be multiplied with.
+    TorqueGain(usize, f64),
     /// Columns of two joints have each other's names.
     Exchanged([usize; 2], ExchangedColumns),
     /// Torques are so many samples late.
@@ -63,7 +65,8 @@ impl Misreading {
 
     /// Whether it is one of many that differ by a number.
     pub(super) fn is_by_degrees(self) -> bool {
-        self.is_late() || matches!(self, Self::Zero(..) | Self::TorqueOffset(..))
+        self.is_late()
+            || matches!(self, Self::Zero(..) | Self::TorqueOffset(..) | Self::TorqueGain(..))
     }
 
     /// Whether another is the same mistake, but for how large it is.
@@ -71,6 +74,7 @@ impl Misreading {
         match (self, other) {
             (Self::Zero(one, _), Self::Zero(other, _))
             | (Self::TorqueOffset(one, _), Self::TorqueOffset(other, _))
+            | (Self::TorqueGain(one, _), Self::TorqueGain(other, _))
             | (Self::LateTorque(one, _), Self::LateTorque(other, _))
             | (Self::LatePosition(one, _), Self::LatePosition(other, _)) => one == other,
             (Self::Late(_), Self::Late(_)) => true,
@@ -128,9 +132,10 @@ impl Misreading {
             Self::TorquesOfMotors(_) | Self::Late(_) => "torques seem".to_owned(),
             Self::Angles(factor) => of_all("positions", factor),
             Self::Lengths(_) => "positions of joints that slide seem".to_owned(),
-            Self::Torque(joint, _) | Self::LateTorque(joint, _) | Self::TorqueOffset(joint, _) => {
-                of_joint("torque", joint)
-            }
+            Self::Torque(joint, _)
+            | Self::LateTorque(joint, _)
+            | Self::TorqueOffset(joint, _)
+            | Self::TorqueGain(joint, _) => of_joint("torque", joint),
             Self::Position(joint, _) | Self::Zero(joint, _) | Self::LatePosition(joint, _) => {
                 of_joint("position", joint)
             }
@@ -179,6 +184,12 @@ impl Misreading {
                 let side = if offset < 0.0 { "above" } else { "below" };
                 let size = offset.abs();
                 return format!("be {size:.4} {unit} {side} its true value, all the time");
+            }
+            Self::TorqueGain(_, factor) => {
+                return format!(
+                    "be {:.4} times its true value, or all others to be {factor:.4} times theirs",
+                    1.0 / factor
+                );
             }
             Self::Late(samples) | Self::LateTorque(_, samples) | Self::LatePosition(_, samples) => {
                 let late_s = samples as f64 * step_s;
@@ -230,6 +241,10 @@ impl Misreading {
                 format!("`# torque_side: {side}` in the log's header, or the model's, says that")
             }
             Self::Torque(joint, factor) => scale(&of(Signal::Torque, joint), factor),
+            Self::TorqueGain(joint, factor) => {
+                let factor = (factor * 1e4).round() / 1e4;
+                scale(&of(Signal::Torque, joint), factor) + ", if it is that one"
+            }
             Self::Angles(factor) | Self::Lengths(factor) => scale("q_JOINT", factor),
             Self::Position(joint, factor) => scale(&of(Signal::Position, joint), factor),
             Self::Zero(joint, by) => {

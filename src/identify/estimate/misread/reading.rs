@@ -79,7 +79,9 @@ impl Reading {
                     new.torques[joint].scale(if is_motor { ratio } else { 1.0 / ratio });
                 }
             }
-            Misreading::Torque(joint, factor) => new.torques[joint].scale(factor),
+            Misreading::Torque(joint, factor) | Misreading::TorqueGain(joint, factor) => {
+                new.torques[joint].scale(factor);
+            }
             Misreading::Angles(factor) => {
                 let is_meant = |joint: &usize| factor == -1.0 || !joints[*joint].slides;
                 all.filter(is_meant).for_each(|joint| new.positions[joint].scale(factor));

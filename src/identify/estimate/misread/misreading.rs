@@ -214,7 +214,8 @@ impl Misreading {
             let number = factor * own.as_ref().map_or(1.0, |own| own.scale);
             let number = match number == OF_ANGLES[0] {
                 true => "0.0174532925".to_owned(),
-                false => number.to_string(),
+                // seven digits, in the shortest form
+                false => format!("{number:.6e}").parse::<f64>().unwrap_or(number).to_string(),
             };
             let hint = mends(column, "scale", number);
             let has_scale = |name: &str| given.source(name).is_some_and(|one| one.scale != 1.0);

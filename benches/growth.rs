@@ -3,7 +3,7 @@
 //! `cargo bench --bench growth` prints a table; `cargo bench --bench growth -- --svg FILE` draws
 //! it too. One thread; the median of five trees for each number of joints, each the best of three.
 
-#[path = "../tests/it/trees.rs"]
+#[path = "../codegen/tests/it/trees.rs"]
 mod trees;
 
 use denavit::model;

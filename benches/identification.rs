@@ -5,10 +5,10 @@
 use denavit::identify::condition::Conditioned;
 use denavit::identify::estimate::{Condensed, Options, Triangle, estimate};
 use denavit::model;
+use denavit::numerics::Random;
 use denavit::plants::regression::{RegressionModel, RegressionRows};
 use denavit::regressor::{RegressorOptions, Unknowns};
 use denavit::shipped;
-use denavit::simulate::Random;
 use std::hint::black_box;
 use std::time::Instant;
 

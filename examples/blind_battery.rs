@@ -7,12 +7,9 @@
 //! asked for again. `--case suite` takes the cases of the tests, `--case
 //! reported` those of the reported run. docs/blind-battery.md describes it.
 
-#[path = "../tests/blind/mod.rs"]
-mod blind;
-
-use blind::battery::{Files, answer, examine, report, reported, suite};
-use blind::case::Case;
-use blind::score::Answer;
+use denavit_blind::battery::{Files, answer, examine, report, reported, suite};
+use denavit_blind::case::Case;
+use denavit_blind::score::Answer;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -68,7 +65,7 @@ fn run(command: &Path, files: Files<'_>) -> Answer {
     if let Some(before) = std::fs::read(&said).ok().and_then(|bytes| parsed(&bytes)) {
         return before;
     }
-    let output = blind::battery::command(command, files).output();
+    let output = denavit_blind::battery::command(command, files).output();
     let failed = |why: &str| {
         eprintln!("{}: {why}", files.model.display());
         Answer { verdict: "failed".into(), ..Answer::default() }

@@ -13,19 +13,19 @@
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
 
-pub mod batch;
-pub mod diagnose;
-mod generated;
-pub mod identify;
-pub mod plants;
-pub mod report;
-pub mod shipped;
-pub mod simulate;
-pub mod trajectory;
-pub mod walk;
-
-pub use denavit_codegen::*;
-pub use generated::{planar_biped, puma560, tulip};
+pub use denavit_codegen::{
+    arena, build_script, derive, dynamics, effect, emit, expr, function, fundamental, kinematics,
+    model, number, program, regressor, regroup, spatial,
+};
+pub use denavit_diagnose as diagnose;
+pub use denavit_identify as identify;
+pub use denavit_numerics as numerics;
+pub use denavit_plants as plants;
+pub use denavit_plants::emitted::{planar_biped, puma560, tulip};
+pub use denavit_plants::{batch, shipped, trajectory};
+pub use denavit_report as report;
+pub use denavit_simulate as simulate;
+pub use denavit_walk as walk;
 
 /// The examples of the README, as tests.
 #[cfg(doctest)]

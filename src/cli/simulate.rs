@@ -9,8 +9,9 @@ use super::json::write_json;
 use clap::{Args, ValueEnum};
 use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
-use denavit::simulate::scenario::{self, RunScheme, Scenario};
+use denavit::simulate::scenario::{RunScheme, Scenario};
 use denavit::simulate::{Run, Stop};
+use denavit::walk;
 use serde_json::json as value;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -148,7 +149,7 @@ fn open(path: &Path) -> Result<Scenario, Failure> {
     let name = shown(path);
     let bytes = read_or_shipped(path, ("scenario", shipped::SCENARIOS))?;
     let load = |model: &str| load_beside(path, model);
-    scenario::read(&name, &bytes, &load).map_err(Failure::Scenario)
+    walk::read_scenario(&name, &bytes, &load).map_err(Failure::Scenario)
 }
 
 fn summary(

@@ -13,20 +13,20 @@ use std::process::Command;
 
 /// The files of a case that a diagnosis sees.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Files<'a> {
-    pub(crate) model: &'a Path,
-    pub(crate) train: &'a Path,
-    pub(crate) validate: &'a Path,
+pub struct Files<'a> {
+    pub model: &'a Path,
+    pub train: &'a Path,
+    pub validate: &'a Path,
 }
 
 /// Numbers of the reported run.
-pub(crate) fn reported() -> std::ops::Range<u64> {
+pub fn reported() -> std::ops::Range<u64> {
     10_000..10_000 + ROWS as u64
 }
 
 /// Generates a case below `folder`, has it diagnosed and scores the answer. The sealed answer is
 /// written after the diagnosis.
-pub(crate) fn examine(
+pub fn examine(
     number: u64,
     folder: &Path,
     diagnose: impl FnOnce(Files<'_>) -> Answer,
@@ -42,7 +42,7 @@ pub(crate) fn examine(
 }
 
 /// Tables of a run.
-pub(crate) fn report(scores: &[Score]) -> String {
+pub fn report(scores: &[Score]) -> String {
     let missed = scores.iter().filter(|score| !score.right).map(|score| {
         let Score { number, kind, level, truth, said, found, false_names, .. } = score;
         format!(
@@ -58,7 +58,7 @@ pub(crate) fn report(scores: &[Score]) -> String {
 }
 
 /// The command for a case.
-pub(crate) fn command(denavit: &Path, files: Files<'_>) -> Command {
+pub fn command(denavit: &Path, files: Files<'_>) -> Command {
     let mut command = Command::new(denavit);
     command.arg("diagnose").arg(files.model).arg("--json");
     command.arg("--train").arg(files.train).arg("--validate").arg(files.validate);
@@ -67,7 +67,7 @@ pub(crate) fn command(denavit: &Path, files: Files<'_>) -> Command {
 
 /// An answer from the JSON that the command prints: effects without a name of the catalogue are
 /// called `unnamed` or have none.
-pub(crate) fn answer(value: &Value) -> Answer {
+pub fn answer(value: &Value) -> Answer {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let effects = value["effects"].as_array().map_or(&[][..], Vec::as_slice);
     let gap = &value["gap"]["validate"];
@@ -125,7 +125,7 @@ const SUITE: [Law; 18] = [
 ];
 
 /// Numbers of the cases for the test suite, all for tuning: 31.
-pub(crate) fn suite() -> Vec<u64> {
+pub fn suite() -> Vec<u64> {
     let first = |fits: &dyn Fn(&Plan) -> bool| (0..1000).find(|number| fits(&plan(*number)));
     let single = |law: Law| {
         let one = move |plan: &Plan, robot: usize| {

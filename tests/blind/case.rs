@@ -13,30 +13,30 @@ use nalgebra::{Matrix3, Vector3};
 
 /// A case before anything is simulated; sizes of effects are still open.
 #[derive(Clone, Debug)]
-pub(crate) struct Case {
-    pub(crate) number: u64,
-    pub(crate) plan: Plan,
+pub struct Case {
+    pub number: u64,
+    pub plan: Plan,
     /// The robot without what is hidden.
-    pub(crate) truth: Robot,
-    pub(crate) nominal: Nominal,
-    pub(crate) control: Control,
+    pub truth: Robot,
+    pub nominal: Nominal,
+    pub control: Control,
     /// References of the two logs.
-    pub(crate) references: [Reference; 2],
+    pub references: [Reference; 2],
     /// Length of a log \[s\].
-    pub(crate) duration_s: f64,
-    pub(crate) sensors: Sensors,
+    pub duration_s: f64,
+    pub sensors: Sensors,
     /// Standard deviation of measured torques against their root mean square.
-    pub(crate) relative_noise: f64,
-    pub(crate) hidden: Vec<Hidden>,
+    pub relative_noise: f64,
+    pub hidden: Vec<Hidden>,
     /// How strong each effect shall be.
-    pub(crate) target: f64,
+    pub target: f64,
     /// Of forces that no sensor sees, for the two logs.
-    pub(crate) seeds: [f64; 2],
+    pub seeds: [f64; 2],
 }
 
 impl Case {
     /// The case of a number.
-    pub(crate) fn new(number: u64) -> Self {
+    pub fn new(number: u64) -> Self {
         let plan = plan(number);
         let mut truth = robot(plan.robot);
         let mut random = Random::new(number, "effects");
@@ -90,7 +90,7 @@ impl Case {
     }
 
     /// The plant of a log (0: training, 1: validation) with some of the effects.
-    pub(crate) fn plant(&self, hidden: &[Hidden], log: usize) -> Plant {
+    pub fn plant(&self, hidden: &[Hidden], log: usize) -> Plant {
         let truth = &self.truth;
         let mut plant = Plant { seed: self.seeds[log], ..Plant::new(truth, hidden.to_vec()) };
         let Plant { rows, fall, rotor, transmissions, .. } = &mut plant;

@@ -8,11 +8,11 @@
 use super::hidden::{Law, TABLE};
 
 /// Strengths: how many times what noise leaves at the joint.
-pub(crate) const STRENGTHS: [(&str, f64); 3] = [("strong", 20.0), ("medium", 6.0), ("weak", 2.0)];
+pub const STRENGTHS: [(&str, f64); 3] = [("strong", 20.0), ("medium", 6.0), ("weak", 2.0)];
 
 /// What is hidden in a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// One effect of the catalogue's physics.
     Single,
     /// Two at once.
@@ -29,19 +29,19 @@ pub(crate) enum Kind {
 
 /// A row of the matrix.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Plan {
-    pub(crate) kind: Kind,
-    pub(crate) laws: Vec<Law>,
+pub struct Plan {
+    pub kind: Kind,
+    pub laws: Vec<Law>,
     /// Which law of the physics, for each.
-    pub(crate) variants: Vec<usize>,
+    pub variants: Vec<usize>,
     /// Number of the robot.
-    pub(crate) robot: usize,
+    pub robot: usize,
     /// Index in [`STRENGTHS`].
-    pub(crate) strength: usize,
+    pub strength: usize,
     /// Whether the nominal model has the true numbers.
-    pub(crate) exact: bool,
+    pub exact: bool,
     /// Whether the robot hardly moves.
-    pub(crate) still: bool,
+    pub still: bool,
 }
 
 /// Two effects at once: different joints or different shapes.
@@ -80,8 +80,7 @@ const COUNTS: [usize; 6] = [
 ];
 
 /// Cases in a full run.
-pub(crate) const ROWS: usize =
-    COUNTS[0] + COUNTS[1] + COUNTS[2] + COUNTS[3] + COUNTS[4] + COUNTS[5];
+pub const ROWS: usize = COUNTS[0] + COUNTS[1] + COUNTS[2] + COUNTS[3] + COUNTS[4] + COUNTS[5];
 
 /// Has no factor in common with [`ROWS`].
 const STRIDE: usize = 197;
@@ -107,7 +106,7 @@ fn variant(law: Law, count: usize) -> usize {
 }
 
 /// The plan of a case.
-pub(crate) fn plan(number: u64) -> Plan {
+pub fn plan(number: u64) -> Plan {
     let rows = ROWS as u64;
     let row = ((number % rows) * STRIDE as u64 % rows) as usize;
     row_plan(row)

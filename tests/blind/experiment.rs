@@ -9,7 +9,7 @@ use super::rigid::{MOST, Posture};
 use nalgebra::DMatrix;
 
 /// Step of the plant \[s\].
-pub(crate) const STEP_S: f64 = 2.5e-4;
+pub const STEP_S: f64 = 2.5e-4;
 /// Run before the log begins, so that it begins in the middle of a motion \[s\].
 const BEFORE_S: f64 = 1.5;
 /// Run after the log's end \[s\].
@@ -17,20 +17,20 @@ const AFTER_S: f64 = 0.1;
 
 /// A sampled controller, built on the nominal model by somebody who does not know better.
 #[derive(Clone, Debug)]
-pub(crate) struct Control {
+pub struct Control {
     /// Plant steps per sample of the controller.
-    pub(crate) steps: usize,
+    pub steps: usize,
     /// Frequency of the loop [rad/s] and its damping.
-    pub(crate) loop_rate: f64,
-    pub(crate) damping: f64,
+    pub loop_rate: f64,
+    pub damping: f64,
     /// Feed-forward of gravity and of Coulomb friction along the reference.
-    pub(crate) gravity: bool,
-    pub(crate) friction: bool,
+    pub gravity: bool,
+    pub friction: bool,
 }
 
 impl Control {
     /// Draws a controller.
-    pub(crate) fn draw(random: &mut Random) -> Self {
+    pub fn draw(random: &mut Random) -> Self {
         Self {
             steps: [2, 4, 4][random.below(3)],
             loop_rate: random.between(32.0, 50.0),
@@ -68,17 +68,17 @@ impl Control {
 
 /// A run, at every step of the plant.
 #[derive(Clone, Debug)]
-pub(crate) struct Run {
+pub struct Run {
     /// Steps before t = 0.
     before: usize,
-    pub(crate) q: Vec<Vec<f64>>,
-    pub(crate) qd: Vec<Vec<f64>>,
-    pub(crate) motor: Vec<Vec<f64>>,
-    pub(crate) command: Vec<Vec<f64>>,
+    pub q: Vec<Vec<f64>>,
+    pub qd: Vec<Vec<f64>>,
+    pub motor: Vec<Vec<f64>>,
+    pub command: Vec<Vec<f64>>,
 }
 
 /// Runs the closed loop for a duration \[s\]; none if it comes apart.
-pub(crate) fn run(
+pub fn run(
     plant: &Plant,
     nominal: &Nominal,
     control: &Control,
@@ -143,29 +143,29 @@ fn inertias(nominal: &Nominal, control: &Control) -> Vec<f64> {
 
 /// Sensors.
 #[derive(Clone, Debug)]
-pub(crate) struct Sensors {
+pub struct Sensors {
     /// Plant steps per row of the log.
-    pub(crate) steps: usize,
+    pub steps: usize,
     /// Resolution of all encoders \[rad\].
-    pub(crate) resolution: f64,
+    pub resolution: f64,
     /// Standard deviation of each measured torque [N m].
-    pub(crate) torque_noise: Vec<f64>,
+    pub torque_noise: Vec<f64>,
     /// Standard deviation of each measured rate [rad/s], if there are any.
-    pub(crate) rate_noise: Option<f64>,
+    pub rate_noise: Option<f64>,
 }
 
 /// What was measured: a column per joint, a row per sample.
 #[derive(Clone, Debug)]
-pub(crate) struct Log {
-    pub(crate) step_s: f64,
-    pub(crate) q: Vec<Vec<f64>>,
-    pub(crate) qd: Option<Vec<Vec<f64>>>,
-    pub(crate) motor: Vec<Vec<f64>>,
-    pub(crate) tau: Vec<Vec<f64>>,
+pub struct Log {
+    pub step_s: f64,
+    pub q: Vec<Vec<f64>>,
+    pub qd: Option<Vec<Vec<f64>>>,
+    pub motor: Vec<Vec<f64>>,
+    pub tau: Vec<Vec<f64>>,
 }
 
 /// Measures a run, with the effects that are in sensors.
-pub(crate) fn measure(run: &Run, sensors: &Sensors, hidden: &[Hidden], random: &mut Random) -> Log {
+pub fn measure(run: &Run, sensors: &Sensors, hidden: &[Hidden], random: &mut Random) -> Log {
     let total = run.q[0].len();
     let after = (AFTER_S / STEP_S).round() as usize;
     let rows: Vec<usize> = (run.before..total - after).step_by(sensors.steps).collect();

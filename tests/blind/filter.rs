@@ -4,13 +4,13 @@ use std::f64::consts::PI;
 
 /// Butterworth low pass of fourth order, forwards and backwards: no phase, eighth order in gain.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LowPass {
+pub struct LowPass {
     sections: [[f64; 5]; 2],
 }
 
 impl LowPass {
     /// Half the power per pass at `cutoff_hz`, by the bilinear transform with prewarping.
-    pub(crate) fn new(cutoff_hz: f64, step_s: f64) -> Self {
+    pub fn new(cutoff_hz: f64, step_s: f64) -> Self {
         let warped = (PI * cutoff_hz * step_s).tan();
         let section = |pole: f64| {
             let damping = 2.0 * (PI * pole / 8.0).cos();
@@ -41,7 +41,7 @@ impl LowPass {
     }
 
     /// The filtered signal.
-    pub(crate) fn apply(&self, signal: &[f64]) -> Vec<f64> {
+    pub fn apply(&self, signal: &[f64]) -> Vec<f64> {
         let mut filtered = signal.to_vec();
         for _ in 0..2 {
             self.pass(&mut filtered);
@@ -52,7 +52,7 @@ impl LowPass {
 }
 
 /// Central differences of fourth order; at the ends, of the nearest sample that has one.
-pub(crate) fn rate(signal: &[f64], step_s: f64) -> Vec<f64> {
+pub fn rate(signal: &[f64], step_s: f64) -> Vec<f64> {
     let count = signal.len();
     if count < 5 {
         return vec![0.0; count];

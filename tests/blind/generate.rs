@@ -15,15 +15,15 @@ use std::{fs, io};
 
 /// A case with its logs.
 #[derive(Clone, Debug)]
-pub(crate) struct Generated {
-    pub(crate) case: Case,
-    pub(crate) train: Log,
-    pub(crate) validate: Log,
+pub struct Generated {
+    pub case: Case,
+    pub train: Log,
+    pub validate: Log,
     /// What each effect alone leaves, against what noise leaves; largest over joints for effects
     /// that are not of one joint.
-    pub(crate) strengths: Vec<f64>,
+    pub strengths: Vec<f64>,
     /// What noise leaves at each joint, then at each spring [N m].
-    pub(crate) floor: Vec<f64>,
+    pub floor: Vec<f64>,
 }
 
 /// Sizes within this factor of the strength are good enough.
@@ -134,7 +134,7 @@ impl Case {
     }
 
     /// Simulates the case.
-    pub(crate) fn generate(mut self) -> Generated {
+    pub fn generate(mut self) -> Generated {
         let plain = self.run(&[], 0).expect("the plain robot follows its reference");
         self.fill_shapes(&plain);
         let mut strengths = Vec::new();
@@ -233,7 +233,7 @@ impl Hidden {
 
 impl Generated {
     /// Writes what a diagnosis sees: `model.json`, `train.csv`, `validate.csv`.
-    pub(crate) fn write_files(&self, folder: &Path) -> io::Result<()> {
+    pub fn write_files(&self, folder: &Path) -> io::Result<()> {
         fs::create_dir_all(folder)?;
         fs::write(folder.join("model.json"), format!("{:#}\n", self.case.nominal.file()))?;
         fs::write(folder.join("train.csv"), self.table(&self.train))?;
@@ -241,7 +241,7 @@ impl Generated {
     }
 
     /// Writes `answer.json`, for nobody to look at before the diagnosis has answered.
-    pub(crate) fn write_answer(&self, folder: &Path) -> io::Result<()> {
+    pub fn write_answer(&self, folder: &Path) -> io::Result<()> {
         fs::write(folder.join("answer.json"), format!("{:#}\n", self.answer()))
     }
 
@@ -278,7 +278,7 @@ impl Generated {
     }
 
     /// What was hidden.
-    pub(crate) fn answer(&self) -> Value {
+    pub fn answer(&self) -> Value {
         let case = &self.case;
         let expected = match case.plan.kind {
             Kind::Nothing => "nothing",

@@ -4,7 +4,7 @@ use super::robots::Robot;
 
 /// A law that may be hidden in a plant, its sensors or its drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Law {
+pub enum Law {
     Coulomb,
     Viscous,
     SmoothedCoulomb,
@@ -55,7 +55,7 @@ pub(crate) enum Law {
 
 /// Where an effect acts, for the answer's joint to be right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Site {
+pub enum Site {
     /// One joint.
     Joint,
     /// A joint and another that it is coupled with: either is right.
@@ -68,20 +68,20 @@ pub(crate) enum Site {
 
 /// What the battery knows of a law.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry {
-    pub(crate) law: Law,
+pub struct Entry {
+    pub law: Law,
     /// The catalogue's name; empty for what no catalogue has.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Other names of the same physics, or names that no data can tell from it, at some joints
     /// alone ([`Hidden::is_called`]).
-    pub(crate) same: &'static [&'static str],
-    pub(crate) site: Site,
+    pub same: &'static [&'static str],
+    pub site: Site,
     /// Name of the parameter that is the size, if law 0 has it in the catalogue's form; with a
     /// minus where the catalogue counts the other way, two with a comma where the size is the
     /// amplitude of a cosine and a sine. An answer with one parameter need not know it.
-    pub(crate) parameter: &'static str,
+    pub parameter: &'static str,
     /// How many laws of this physics are implemented.
-    pub(crate) variants: usize,
+    pub variants: usize,
 }
 
 const fn entry(
@@ -104,7 +104,7 @@ const fn entry(
 /// friction of load and of a cable (equal where the wrap does not change). Aliases: offset and
 /// asymmetric Coulomb while a joint moves; the inertia of a rotor and of the first link; a payload
 /// and the link that carries it; a zero error and a tilt or a displaced mass.
-pub(crate) const TABLE: [Entry; 45] = [
+pub const TABLE: [Entry; 45] = [
     entry(
         Law::Coulomb,
         "coulomb",
@@ -217,17 +217,17 @@ pub(crate) const TABLE: [Entry; 45] = [
 
 impl Law {
     /// Its entry in the table.
-    pub(crate) fn entry(self) -> &'static Entry {
+    pub fn entry(self) -> &'static Entry {
         TABLE.iter().find(|entry| entry.law == self).expect("the table has every law")
     }
 
     /// Whether it is a term that the nominal model lacks: it has no size to scale.
-    pub(crate) fn is_lacking(self) -> bool {
+    pub fn is_lacking(self) -> bool {
         matches!(self, Self::Coriolis | Self::RotorInertia)
     }
 
     /// Whether the nominal model keeps its Coulomb friction at the joint.
-    pub(crate) fn keeps_coulomb(self) -> bool {
+    pub fn keeps_coulomb(self) -> bool {
         !matches!(
             self,
             Self::Coulomb | Self::SmoothedCoulomb | Self::Dahl | Self::LuGre | Self::MaxwellSlip
@@ -237,23 +237,23 @@ impl Law {
 
 /// An effect in a plant.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Hidden {
-    pub(crate) law: Law,
+pub struct Hidden {
+    pub law: Law,
     /// Which law of its physics: 0 is the one that the catalogue prints.
-    pub(crate) variant: usize,
-    pub(crate) joint: usize,
+    pub variant: usize,
+    pub joint: usize,
     /// The other joint of a coupling.
-    pub(crate) other: usize,
+    pub other: usize,
     /// What is scaled to reach a strength, in the unit of the law.
-    pub(crate) size: f64,
+    pub size: f64,
     /// Widths, places and phases, drawn once.
-    pub(crate) shape: Shape,
+    pub shape: Shape,
 }
 
 impl Hidden {
     /// Whether a name is its own or one of the same physics, for this effect on this robot: some
     /// aliases hold at some joints alone.
-    pub(crate) fn is_called(&self, name: &str, robot: &Robot) -> bool {
+    pub fn is_called(&self, name: &str, robot: &Robot) -> bool {
         let entry = self.law.entry();
         if name == entry.name {
             return !name.is_empty();
@@ -275,22 +275,22 @@ impl Hidden {
 
 /// What a law needs beside its size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Shape {
+pub struct Shape {
     /// Middle of the joint's motion \[rad\] and its reach \[rad\].
-    pub(crate) middle: f64,
-    pub(crate) reach: f64,
+    pub middle: f64,
+    pub reach: f64,
     /// The same of the other joint.
-    pub(crate) other_middle: f64,
-    pub(crate) other_reach: f64,
+    pub other_middle: f64,
+    pub other_reach: f64,
     /// Typical rate [rad/s] and torque [N m] of the joint.
-    pub(crate) rate: f64,
-    pub(crate) torque: f64,
+    pub rate: f64,
+    pub torque: f64,
     /// Largest torque [N m].
-    pub(crate) peak: f64,
+    pub peak: f64,
     /// Numbers in [0, 1) and a phase \[rad\], drawn.
-    pub(crate) first: f64,
-    pub(crate) second: f64,
-    pub(crate) phase: f64,
+    pub first: f64,
+    pub second: f64,
+    pub phase: f64,
     /// One lap of the reference \[s\].
-    pub(crate) lap_s: f64,
+    pub lap_s: f64,
 }

@@ -10,16 +10,16 @@ use std::f64::consts::{FRAC_2_PI, TAU};
 /// What a law sees at one instant. Angles, rates and loads are those of joints; motors are the
 /// drive's side of a transmission in the joint's units.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a> {
-    pub(crate) t: f64,
-    pub(crate) q: &'a [f64],
-    pub(crate) qd: &'a [f64],
-    pub(crate) motor_rate: &'a [f64],
+pub struct Moment<'a> {
+    pub t: f64,
+    pub q: &'a [f64],
+    pub qd: &'a [f64],
+    pub motor_rate: &'a [f64],
     /// Rigid-body torque of each joint without friction and rotor [N m].
-    pub(crate) load: &'a [f64],
+    pub load: &'a [f64],
     /// Coulomb and viscous friction of the plain drive at the joint.
-    pub(crate) coulomb: &'a [f64],
-    pub(crate) viscous: &'a [f64],
+    pub coulomb: &'a [f64],
+    pub viscous: &'a [f64],
 }
 
 impl Shape {
@@ -33,17 +33,17 @@ impl Shape {
     }
 
     /// Angle beyond which a one-sided law acts \[rad\], `share` of the reach from the middle.
-    pub(crate) fn edge(&self, share: f64) -> f64 {
+    pub fn edge(&self, share: f64) -> f64 {
         self.middle + share * self.reach
     }
 
     /// Stribeck's rate [rad/s].
-    pub(crate) fn stribeck_rate(&self) -> f64 {
+    pub fn stribeck_rate(&self) -> f64 {
         (0.1 + 0.15 * self.first) * self.rate
     }
 
     /// Displacement before slip \[rad\].
-    pub(crate) fn presliding(&self) -> f64 {
+    pub fn presliding(&self) -> f64 {
         (0.03 + 0.07 * self.first) * self.reach
     }
 
@@ -55,7 +55,7 @@ impl Shape {
 
 impl Hidden {
     /// Kinetic and breakaway friction that the law adds for a direction of sliding [N m].
-    pub(crate) fn dry(&self, at: &Moment<'_>, direction: f64, z: &[f64]) -> [f64; 2] {
+    pub fn dry(&self, at: &Moment<'_>, direction: f64, z: &[f64]) -> [f64; 2] {
         let (size, shape, joint) = (self.size, &self.shape, self.joint);
         let rate = at.motor_rate[joint].abs();
         let load = at.load[joint];
@@ -106,7 +106,7 @@ impl Hidden {
     }
 
     /// Torque without a jump at rest [N m].
-    pub(crate) fn smooth(&self, at: &Moment<'_>, z: &[f64], dz: &[f64]) -> f64 {
+    pub fn smooth(&self, at: &Moment<'_>, z: &[f64], dz: &[f64]) -> f64 {
         let (size, shape, joint) = (self.size, &self.shape, self.joint);
         let (v, q) = (at.motor_rate[joint], at.q[joint]);
         let place = shape.place(q);
@@ -179,7 +179,7 @@ impl Hidden {
     }
 
     /// Number of states of the law.
-    pub(crate) fn states(&self) -> usize {
+    pub fn states(&self) -> usize {
         match (self.law, self.variant) {
             (Law::Dahl, 1) | (Law::MaxwellSlip, 0) => SLIPS.len(),
             (Law::HystereticSpring, 1) => SLIPS.len(),
@@ -192,7 +192,7 @@ impl Hidden {
     }
 
     /// Rates of the states; lags of actuators are the plant's.
-    pub(crate) fn rates(&self, at: &Moment<'_>, z: &[f64], dz: &mut [f64]) {
+    pub fn rates(&self, at: &Moment<'_>, z: &[f64], dz: &mut [f64]) {
         let (shape, joint) = (&self.shape, self.joint);
         let v = at.motor_rate[joint];
         let width = shape.presliding();
@@ -237,7 +237,7 @@ impl Hidden {
     }
 
     /// States at the start.
-    pub(crate) fn start(&self, z: &mut [f64], seed: f64) {
+    pub fn start(&self, z: &mut [f64], seed: f64) {
         if self.law == Law::Chaos {
             z.copy_from_slice(&[1.0 + seed, 1.0 - seed, 20.0 + 5.0 * seed]);
         }
@@ -261,7 +261,7 @@ impl Hidden {
     }
 
     /// Whether the torque acts on the drive's side of a transmission.
-    pub(crate) fn is_on_drive(&self) -> bool {
+    pub fn is_on_drive(&self) -> bool {
         !matches!(
             self.law,
             Law::HystereticSpring

@@ -8,28 +8,28 @@ use serde_json::{Map, Value, json};
 
 /// A robot as its file has it.
 #[derive(Clone, Debug)]
-pub(crate) struct Nominal {
-    pub(crate) robot: Robot,
+pub struct Nominal {
+    pub robot: Robot,
     /// Standard deviation that the file states for every number, relative.
-    pub(crate) relative_std: f64,
+    pub relative_std: f64,
     /// Whether the model has Coriolis and centrifugal terms.
-    pub(crate) coriolis: bool,
+    pub coriolis: bool,
 }
 
 /// Motion of one sample: joint angles and their derivatives, those of the drives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<'a> {
-    pub(crate) q: &'a [f64],
-    pub(crate) qd: &'a [f64],
-    pub(crate) qdd: &'a [f64],
-    pub(crate) motor: &'a [f64],
-    pub(crate) motor_rate: &'a [f64],
-    pub(crate) motor_acceleration: &'a [f64],
+pub struct Motion<'a> {
+    pub q: &'a [f64],
+    pub qd: &'a [f64],
+    pub qdd: &'a [f64],
+    pub motor: &'a [f64],
+    pub motor_rate: &'a [f64],
+    pub motor_acceleration: &'a [f64],
 }
 
 impl Robot {
     /// Rotor inertia, viscous and Coulomb friction of a drive on the side of its joint.
-    pub(crate) fn joint_side(&self, joint: usize) -> [f64; 3] {
+    pub fn joint_side(&self, joint: usize) -> [f64; 3] {
         let drive = &self.joints[joint].drive;
         let squared = drive.gear * drive.gear;
         [drive.rotor * squared, drive.viscous * squared, drive.coulomb * drive.gear.abs()]
@@ -42,7 +42,7 @@ impl Nominal {
     ///
     /// Masses, centres of mass and tensors are off by 5 % exactly, up or down; a tensor as a whole,
     /// so that it stays that of a body. Friction is off by anything up to that.
-    pub(crate) fn draw(robot: &Robot, exact: bool, random: &mut Random) -> Self {
+    pub fn draw(robot: &Robot, exact: bool, random: &mut Random) -> Self {
         let mut robot = robot.clone();
         if exact {
             return Self { robot, relative_std: 0.01, coriolis: true };
@@ -60,19 +60,19 @@ impl Nominal {
     }
 
     /// Number of equations: one for each joint's torque, one for each spring.
-    pub(crate) fn equations(&self) -> usize {
+    pub fn equations(&self) -> usize {
         self.robot.joints.len() + self.elastic_joints().count()
     }
 
     /// Joints with springs, in order.
-    pub(crate) fn elastic_joints(&self) -> impl Iterator<Item = usize> {
+    pub fn elastic_joints(&self) -> impl Iterator<Item = usize> {
         let joints = self.robot.joints.iter().enumerate();
         joints.filter(|(_, joint)| joint.drive.spring.is_some()).map(|(index, _)| index)
     }
 
     /// Torques that the model says a motion needs, Coulomb friction left out; then, for each
     /// spring, what its joint needs less what it gives, which is 0 if the model is right \[N m\].
-    pub(crate) fn smooth_torques(&self, motion: &Motion<'_>, equations: &mut [f64]) {
+    pub fn smooth_torques(&self, motion: &Motion<'_>, equations: &mut [f64]) {
         let joints = self.robot.joints.len();
         let (torques, springs) = equations.split_at_mut(joints);
         let posture = Posture::new(&self.robot.rows(), motion.q);
@@ -93,7 +93,7 @@ impl Nominal {
     }
 
     /// Every number that the file states a standard deviation for, as a change of the robot by it.
-    pub(crate) fn deviations(&self) -> Vec<Robot> {
+    pub fn deviations(&self) -> Vec<Robot> {
         let mut changed = Vec::new();
         let std = self.relative_std;
         let mut push = |change: &dyn Fn(&mut Joint) -> &mut f64, joint: usize| {
@@ -124,7 +124,7 @@ impl Nominal {
     }
 
     /// The model file.
-    pub(crate) fn file(&self) -> Value {
+    pub fn file(&self) -> Value {
         let robot = &self.robot;
         let mut drives = Map::new();
         for joint in &robot.joints {
@@ -230,7 +230,7 @@ fn breaks_triangle(inertia: &Matrix3<f64>) -> bool {
 }
 
 /// A vector turned by an angle about an axis of length 1 (Rodrigues).
-pub(crate) fn turned(vector: &Vector3<f64>, axis: &Vector3<f64>, angle: f64) -> Vector3<f64> {
+pub fn turned(vector: &Vector3<f64>, axis: &Vector3<f64>, angle: f64) -> Vector3<f64> {
     let (sin, cos) = angle.sin_cos();
     vector * cos + axis.cross(vector) * sin + axis * (axis.dot(vector) * (1.0 - cos))
 }

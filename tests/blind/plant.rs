@@ -13,16 +13,16 @@ use nalgebra::Vector3;
 
 /// What joins a drive to its joint where that is not rigid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Transmission {
-    pub(crate) joint: usize,
+pub struct Transmission {
+    pub joint: usize,
     /// [N m/rad]
-    pub(crate) stiffness: f64,
+    pub stiffness: f64,
     /// [N m s/rad]
-    pub(crate) damping: f64,
+    pub damping: f64,
     /// Width of play \[rad\].
-    pub(crate) play: f64,
+    pub play: f64,
     /// Whether the play has soft edges.
-    pub(crate) soft: bool,
+    pub soft: bool,
 }
 
 impl Transmission {
@@ -41,25 +41,25 @@ impl Transmission {
 
 /// A robot with drives, as it really is.
 #[derive(Clone, Debug)]
-pub(crate) struct Plant {
-    pub(crate) rows: Vec<Row>,
-    pub(crate) fall: Vector3<f64>,
+pub struct Plant {
+    pub rows: Vec<Row>,
+    pub fall: Vector3<f64>,
     /// Of each drive, on the joint's side.
-    pub(crate) rotor: Vec<f64>,
-    pub(crate) viscous: Vec<f64>,
-    pub(crate) coulomb: Vec<f64>,
-    pub(crate) transmissions: Vec<Transmission>,
-    pub(crate) hidden: Vec<Hidden>,
+    pub rotor: Vec<f64>,
+    pub viscous: Vec<f64>,
+    pub coulomb: Vec<f64>,
+    pub transmissions: Vec<Transmission>,
+    pub hidden: Vec<Hidden>,
     /// Random numbers of forces that are not recorded.
-    pub(crate) seed: f64,
+    pub seed: f64,
 }
 
 /// A state: angles and rates of joints, then of the drives behind transmissions, then states of
 /// effects; which drives stick, and how others slide; loads of the joints.
 #[derive(Clone, Debug)]
-pub(crate) struct State {
-    pub(crate) t: f64,
-    pub(crate) y: Vec<f64>,
+pub struct State {
+    pub t: f64,
+    pub y: Vec<f64>,
     slide: Vec<f64>,
     load: Vec<f64>,
 }
@@ -68,7 +68,7 @@ type Matrix = [[f64; MOST]; MOST];
 
 impl Plant {
     /// A robot with its drives and springs, and laws that act on its coordinates.
-    pub(crate) fn new(robot: &Robot, hidden: Vec<Hidden>) -> Self {
+    pub fn new(robot: &Robot, hidden: Vec<Hidden>) -> Self {
         let joints = 0..robot.joints.len();
         let [rotor, viscous, coulomb] =
             [0, 1, 2].map(|k| joints.clone().map(|joint| robot.joint_side(joint)[k]).collect());
@@ -96,7 +96,7 @@ impl Plant {
     }
 
     /// A start at angles and rates, transmissions relaxed.
-    pub(crate) fn start(&self, t: f64, q: &[f64], qd: &[f64]) -> State {
+    pub fn start(&self, t: f64, q: &[f64], qd: &[f64]) -> State {
         let mut y = q.to_vec();
         y.extend(self.transmissions.iter().map(|one| q[one.joint]));
         y.extend_from_slice(qd);
@@ -112,7 +112,7 @@ impl Plant {
     }
 
     /// Angles of the drives in the joints' units.
-    pub(crate) fn motors(&self, y: &[f64]) -> [f64; MOST] {
+    pub fn motors(&self, y: &[f64]) -> [f64; MOST] {
         let mut motors = [0.0; MOST];
         for (joint, motor) in motors[..self.joints()].iter_mut().enumerate() {
             *motor = y[self.drive(joint)];
@@ -271,7 +271,7 @@ impl Plant {
     }
 
     /// One step of the classical method of Runge and Kutta.
-    pub(crate) fn step(&self, state: &mut State, command: &[f64], step_s: f64) {
+    pub fn step(&self, state: &mut State, command: &[f64], step_s: f64) {
         let count = state.y.len();
         let freedoms = self.freedoms();
         let mut slopes = [vec![0.0; count], vec![0.0; count], vec![0.0; count], vec![0.0; count]];
@@ -330,7 +330,7 @@ impl Plant {
     }
 
     /// Kinetic and potential energy \[J\], with that of the springs.
-    pub(crate) fn energy(&self, state: &State) -> f64 {
+    pub fn energy(&self, state: &State) -> f64 {
         let (joints, freedoms) = (self.joints(), self.freedoms());
         let (q, v) = state.y.split_at(freedoms);
         let posture = Posture::new(&self.rows, &q[..joints]);

@@ -12,9 +12,9 @@ const SAMPLES: usize = 400;
 
 /// A periodic motion of all joints.
 #[derive(Clone, Debug)]
-pub(crate) struct Reference {
+pub struct Reference {
     /// Of one lap \[s\].
-    pub(crate) lap_s: f64,
+    pub lap_s: f64,
     joints: Vec<Series>,
 }
 
@@ -66,12 +66,7 @@ impl Series {
 
 impl Reference {
     /// Draws a motion that keeps to the ranges of the robot, times `reach` and `rate`.
-    pub(crate) fn draw(
-        robot: &Robot,
-        lap_s: f64,
-        [reach, rate]: [f64; 2],
-        random: &mut Random,
-    ) -> Self {
+    pub fn draw(robot: &Robot, lap_s: f64, [reach, rate]: [f64; 2], random: &mut Random) -> Self {
         let frequency = std::f64::consts::TAU / lap_s;
         // the springs of an elastic robot resonate above 1.5 Hz
         let harmonics = if robot.elastic().is_some() { 3 } else { HARMONICS };
@@ -94,7 +89,7 @@ impl Reference {
 
     /// A motion of so many waves as a lap may have: for each joint its middle, and amplitude and
     /// phase of each harmonic.
-    pub(crate) fn of_waves(lap_s: f64, joints: impl Iterator<Item = (f64, Vec<[f64; 2]>)>) -> Self {
+    pub fn of_waves(lap_s: f64, joints: impl Iterator<Item = (f64, Vec<[f64; 2]>)>) -> Self {
         let series = |(middle, given): (f64, Vec<[f64; 2]>)| {
             assert!(given.len() <= HARMONICS, "more harmonics than a reference has");
             let mut waves = [[0.0; 2]; HARMONICS];
@@ -105,7 +100,7 @@ impl Reference {
     }
 
     /// Position and rate of a joint at time t \[s\].
-    pub(crate) fn at(&self, joint: usize, t: f64) -> [f64; 2] {
+    pub fn at(&self, joint: usize, t: f64) -> [f64; 2] {
         let frequency = std::f64::consts::TAU / self.lap_s;
         self.joints[joint].at(frequency * t, frequency)
     }

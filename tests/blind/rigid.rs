@@ -9,22 +9,22 @@
 use nalgebra::{Matrix3, Vector3};
 
 /// More joints than any robot here has.
-pub(crate) const MOST: usize = 9;
+pub const MOST: usize = 9;
 
 /// A rigid body in the frame of its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Body {
+pub struct Body {
     /// Mass \[kg\].
-    pub(crate) mass: f64,
+    pub mass: f64,
     /// Centre of mass \[m\].
-    pub(crate) com: Vector3<f64>,
+    pub com: Vector3<f64>,
     /// Tensor about the centre of mass [kg m^2].
-    pub(crate) inertia: Matrix3<f64>,
+    pub inertia: Matrix3<f64>,
 }
 
 impl Body {
     /// Two bodies as one.
-    pub(crate) fn with(&self, other: &Self) -> Self {
+    pub fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         if mass == 0.0 {
             return Self { inertia: self.inertia + other.inertia, ..*self };
@@ -42,17 +42,17 @@ fn parallel_axes(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
 
 /// A row of the table with its body. Angles of the row are quarter turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Row {
+pub struct Row {
     /// Length along x \[m\].
-    pub(crate) a: f64,
+    pub a: f64,
     /// Quarter turns about x.
-    pub(crate) alpha: i32,
+    pub alpha: i32,
     /// Length along z \[m\].
-    pub(crate) d: f64,
+    pub d: f64,
     /// Quarter turns about z at q = 0.
-    pub(crate) theta: i32,
+    pub theta: i32,
     /// The body.
-    pub(crate) body: Body,
+    pub body: Body,
 }
 
 /// Sine and cosine of a number of quarter turns, exactly.
@@ -72,14 +72,14 @@ struct Placed {
 
 /// Links as they stand in one posture.
 #[derive(Clone, Debug)]
-pub(crate) struct Posture {
+pub struct Posture {
     placed: Vec<Placed>,
     tip: Vector3<f64>,
 }
 
 impl Posture {
     /// Forward kinematics of a chain at joint angles q \[rad\].
-    pub(crate) fn new(rows: &[Row], q: &[f64]) -> Self {
+    pub fn new(rows: &[Row], q: &[f64]) -> Self {
         let (mut turn, mut origin) = (Matrix3::identity(), Vector3::zeros());
         let mut placed = Vec::with_capacity(rows.len());
         for (row, angle) in rows.iter().zip(q) {
@@ -104,13 +104,7 @@ impl Posture {
     }
 
     /// Joint torques of motion [N m]; `fall` is the acceleration of free fall [m/s^2].
-    pub(crate) fn torques(
-        &self,
-        qd: &[f64],
-        qdd: &[f64],
-        fall: &Vector3<f64>,
-        torques: &mut [f64],
-    ) {
+    pub fn torques(&self, qd: &[f64], qdd: &[f64], fall: &Vector3<f64>, torques: &mut [f64]) {
         let zero = Vector3::zeros();
         let (mut w, mut wd, mut linear, mut at) = (zero, zero, -fall, zero);
         let mut loads = [(zero, zero); MOST];
@@ -135,7 +129,7 @@ impl Posture {
     }
 
     /// The mass matrix, row by row in `matrix[joint][joint]` [kg m^2].
-    pub(crate) fn mass_matrix(&self, matrix: &mut [[f64; MOST]; MOST]) {
+    pub fn mass_matrix(&self, matrix: &mut [[f64; MOST]; MOST]) {
         let (mut mass, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
         for (outer, body) in self.placed.iter().enumerate().rev() {
             mass += body.mass;
@@ -154,14 +148,14 @@ impl Posture {
     }
 
     /// Joint torques that a force on the end of the chain makes [N m].
-    pub(crate) fn of_tip_force(&self, force: &Vector3<f64>, torques: &mut [f64]) {
+    pub fn of_tip_force(&self, force: &Vector3<f64>, torques: &mut [f64]) {
         for (joint, body) in self.placed.iter().enumerate() {
             torques[joint] = body.axis.dot(&(self.tip - body.origin).cross(force));
         }
     }
 
     /// Potential energy \[J\].
-    pub(crate) fn potential(&self, fall: &Vector3<f64>) -> f64 {
+    pub fn potential(&self, fall: &Vector3<f64>) -> f64 {
         self.placed.iter().map(|body| -body.mass * fall.dot(&body.com)).sum()
     }
 }

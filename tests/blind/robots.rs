@@ -9,80 +9,80 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Spring between motor and joint, over pulleys of one radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Spring {
+pub struct Spring {
     /// Of the cable [N/m].
-    pub(crate) stiffness: f64,
+    pub stiffness: f64,
     /// Of both pulleys \[m\].
-    pub(crate) radius: f64,
+    pub radius: f64,
 }
 
 /// A drive, on the side of the motor's shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Drive {
+pub struct Drive {
     /// Turns of the motor per turn of the joint.
-    pub(crate) gear: f64,
+    pub gear: f64,
     /// Inertia [kg m^2].
-    pub(crate) rotor: f64,
+    pub rotor: f64,
     /// Friction [N m s/rad].
-    pub(crate) viscous: f64,
+    pub viscous: f64,
     /// Friction [N m].
-    pub(crate) coulomb: f64,
+    pub coulomb: f64,
     /// Series elasticity.
-    pub(crate) spring: Option<Spring>,
+    pub spring: Option<Spring>,
 }
 
 /// How far and fast a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Range {
+pub struct Range {
     /// Middle of the motion \[rad\].
-    pub(crate) middle: f64,
+    pub middle: f64,
     /// Farthest from the middle \[rad\].
-    pub(crate) reach: f64,
+    pub reach: f64,
     /// Fastest [rad/s].
-    pub(crate) rate: f64,
+    pub rate: f64,
 }
 
 /// A joint with its link and drive.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Joint {
-    pub(crate) name: &'static str,
-    pub(crate) row: Row,
-    pub(crate) drive: Drive,
-    pub(crate) range: Range,
+pub struct Joint {
+    pub name: &'static str,
+    pub row: Row,
+    pub drive: Drive,
+    pub range: Range,
 }
 
 /// A chain of revolute joints.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Robot {
-    pub(crate) name: &'static str,
+pub struct Robot {
+    pub name: &'static str,
     /// Acceleration of free fall [m/s^2].
-    pub(crate) fall: Vector3<f64>,
-    pub(crate) joints: Vec<Joint>,
+    pub fall: Vector3<f64>,
+    pub joints: Vec<Joint>,
 }
 
 impl Robot {
     /// Rows of the chain.
-    pub(crate) fn rows(&self) -> Vec<Row> {
+    pub fn rows(&self) -> Vec<Row> {
         self.joints.iter().map(|joint| joint.row).collect()
     }
 
     /// Whether all axes are parallel.
-    pub(crate) fn is_planar(&self) -> bool {
+    pub fn is_planar(&self) -> bool {
         self.joints.iter().all(|joint| joint.row.alpha == 0)
     }
 
     /// Number of the first series elastic joint.
-    pub(crate) fn elastic(&self) -> Option<usize> {
+    pub fn elastic(&self) -> Option<usize> {
         self.joints.iter().position(|joint| joint.drive.spring.is_some())
     }
 }
 
 /// The robots, by name.
-pub(crate) const ROBOTS: [&str; 6] =
+pub const ROBOTS: [&str; 6] =
     ["pendulum", "double_pendulum", "spatial_3r", "puma560", "tulip_leg", "tulip_leg_elastic"];
 
 /// A robot by its number in [`ROBOTS`].
-pub(crate) fn robot(number: usize) -> Robot {
+pub fn robot(number: usize) -> Robot {
     match number {
         0 => pendulum(),
         1 => double_pendulum(),

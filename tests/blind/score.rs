@@ -9,50 +9,50 @@ use std::collections::BTreeMap;
 
 /// One effect that a diagnosis names.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Named {
+pub struct Named {
     /// Name in the catalogue; empty for a structure that was left unnamed.
-    pub(crate) name: String,
+    pub name: String,
     /// Joint, or none for an effect of the whole model.
-    pub(crate) joint: Option<String>,
+    pub joint: Option<String>,
     /// Names with their joints that the data cannot tell from this one; empty for an unambiguous
     /// answer.
-    pub(crate) others: Vec<(String, Option<String>)>,
+    pub others: Vec<(String, Option<String>)>,
     /// Parameters with their standard deviations.
-    pub(crate) parameters: BTreeMap<String, [f64; 2]>,
+    pub parameters: BTreeMap<String, [f64; 2]>,
 }
 
 /// What a diagnosis says.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Answer {
+pub struct Answer {
     /// As in the command's JSON: `nothing_missing`, `explained`, ...
-    pub(crate) verdict: String,
-    pub(crate) effects: Vec<Named>,
+    pub verdict: String,
+    pub effects: Vec<Named>,
     /// Held-out gap before and after, and its floor.
-    pub(crate) gap: Option<[f64; 3]>,
+    pub gap: Option<[f64; 3]>,
 }
 
 /// How a case went.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Score {
-    pub(crate) number: u64,
-    pub(crate) kind: Kind,
+pub struct Score {
+    pub number: u64,
+    pub kind: Kind,
     /// `strong`, `medium`, `weak`, or `hidden` below what can be seen.
-    pub(crate) level: &'static str,
+    pub level: &'static str,
     /// What was hidden, by catalogue name (or law, outside the catalogue).
-    pub(crate) truth: Vec<String>,
-    pub(crate) said: Vec<String>,
+    pub truth: Vec<String>,
+    pub said: Vec<String>,
     /// Effects whose name and joint were found, counting stated families of at most three.
-    pub(crate) found: usize,
+    pub found: usize,
     /// The same, by unambiguous answers alone.
-    pub(crate) unambiguous: usize,
+    pub unambiguous: usize,
     /// Effects that were named and were not there.
-    pub(crate) false_names: usize,
+    pub false_names: usize,
     /// Whether the answer is what was expected.
-    pub(crate) right: bool,
+    pub right: bool,
     /// Share of the explainable held-out gap that was closed.
-    pub(crate) closed: Option<f64>,
+    pub closed: Option<f64>,
     /// Parameters within two standard deviations, of those that can be compared.
-    pub(crate) within: [usize; 2],
+    pub within: [usize; 2],
 }
 
 const LARGEST_FAMILY: usize = 3;
@@ -104,7 +104,7 @@ fn is_there(hidden: &Hidden, robot: &Robot, joint: Option<&str>) -> bool {
 }
 
 /// Compares an answer with what was hidden.
-pub(crate) fn score(generated: &Generated, answer: &Answer) -> Score {
+pub fn score(generated: &Generated, answer: &Answer) -> Score {
     let case: &Case = &generated.case;
     let robot = &case.truth;
     let named: Vec<&Named> = answer.effects.iter().filter(|one| !one.name.is_empty()).collect();
@@ -180,7 +180,7 @@ const TAIL: f64 = 0.025;
 
 /// Exact interval of 95 % of a probability, after `hits` of `count` (Clopper, Pearson 1934): at its
 /// ends the tails of the binomial distribution have 2.5 % each.
-pub(crate) fn binomial_interval(hits: usize, count: usize) -> [f64; 2] {
+pub fn binomial_interval(hits: usize, count: usize) -> [f64; 2] {
     let bisect = |is_low: &dyn Fn(f64) -> bool| {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
@@ -204,7 +204,7 @@ fn median(mut values: Vec<f64>) -> Option<[f64; 3]> {
 }
 
 /// Figures of many cases, as lines of a table.
-pub(crate) fn table(scores: &[Score]) -> String {
+pub fn table(scores: &[Score]) -> String {
     let mut text =
         String::from("| | right | of | share | 95 % interval |\n|---|---:|---:|---:|---|\n");
     let mut line = |name: &str, hits: usize, count: usize| {
@@ -259,7 +259,7 @@ pub(crate) fn table(scores: &[Score]) -> String {
 }
 
 /// What was said for what was hidden, in single cases: `hidden`, `said`, how often.
-pub(crate) fn confusion(scores: &[Score]) -> String {
+pub fn confusion(scores: &[Score]) -> String {
     let mut counts: BTreeMap<(String, String), usize> = BTreeMap::new();
     for score in scores.iter().filter(|score| {
         score.truth.len() <= 1 && score.level != "hidden" || score.kind == Kind::Nothing

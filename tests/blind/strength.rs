@@ -13,7 +13,7 @@ use super::nominal::{Motion, Nominal};
 use nalgebra::DMatrix;
 
 /// Filter of residuals \[Hz\].
-pub(crate) const CUTOFF_HZ: f64 = 20.0;
+pub const CUTOFF_HZ: f64 = 20.0;
 const POSITIONS_HZ: f64 = 100.0;
 /// Within their stated uncertainty: this many standard deviations.
 const MOST_STDS: f64 = 2.0;
@@ -34,7 +34,7 @@ fn by_sample(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// Root mean square of what is left of each equation of the model [N m]; `noise` is that of the
 /// measured torques.
-pub(crate) fn left(log: &Log, nominal: &Nominal, noise: &[f64]) -> Vec<f64> {
+pub fn left(log: &Log, nominal: &Nominal, noise: &[f64]) -> Vec<f64> {
     let (joints, equations) = (log.q.len(), nominal.equations());
     let smooth = LowPass::new(POSITIONS_HZ, log.step_s);
     let low = LowPass::new(CUTOFF_HZ, log.step_s);

@@ -1,20 +1,20 @@
 //! The blind battery's own physics, against another engine's numbers and laws of mechanics; its
 //! files, against the program that reads them.
 
-use crate::blind::battery::{answer, examine, report, reported, suite};
-use crate::blind::case::Case;
-use crate::blind::design::{Kind, ROWS, plan};
-use crate::blind::filter::LowPass;
-use crate::blind::hidden::{Hidden, Law, Shape, TABLE};
-use crate::blind::laws::Moment;
-use crate::blind::nominal::{Motion, Nominal};
-use crate::blind::plant::{Plant, Transmission};
-use crate::blind::random::Random;
-use crate::blind::rigid::{Body, MOST, Posture, Row};
-use crate::blind::robots::{ROBOTS, robot};
-use crate::blind::score::{Answer, Named, binomial_interval, score};
 use denavit::model;
 use denavit::plants::{LoadedPlant, Plant as _};
+use denavit_blind::battery::{answer, examine, report, reported, suite};
+use denavit_blind::case::Case;
+use denavit_blind::design::{Kind, ROWS, plan};
+use denavit_blind::filter::LowPass;
+use denavit_blind::hidden::{Hidden, Law, Shape, TABLE};
+use denavit_blind::laws::Moment;
+use denavit_blind::nominal::{Motion, Nominal};
+use denavit_blind::plant::{Plant, Transmission};
+use denavit_blind::random::Random;
+use denavit_blind::rigid::{Body, MOST, Posture, Row};
+use denavit_blind::robots::{ROBOTS, robot};
+use denavit_blind::score::{Answer, Named, binomial_interval, score};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -240,7 +240,7 @@ fn the_design_is_what_it_says() {
         let singles = plans.iter().filter(|plan| plan.kind == Kind::Single && plan.robot == robot);
         assert!(singles.count() >= 40, "{}", ROBOTS[robot]);
     }
-    let choice = |plan: &&crate::blind::design::Plan| {
+    let choice = |plan: &&denavit_blind::design::Plan| {
         plan.kind == Kind::Single && plan.laws[0].entry().variants > 1
     };
     let other = plans.iter().filter(choice).filter(|plan| plan.variants[0] > 0).count();

@@ -12,4 +12,6 @@ mod model;
 mod program;
 mod regressor;
 mod robots;
+mod singular_values;
 mod thesis;
+mod trees;

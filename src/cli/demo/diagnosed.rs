@@ -7,9 +7,10 @@ use super::super::files::load_beside;
 use super::super::progress::Progress;
 use super::{Written, write};
 use denavit::identify::{NewEffect, NewPlace, with_effects};
+use denavit::numerics::Random;
 use denavit::report::{paragraph, short};
 use denavit::shipped;
-use denavit::simulate::{Random, scenario};
+use denavit::walk;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -190,7 +191,7 @@ fn simulated(robot: &str, seed: u64, motion: usize) -> Result<String, Failure> {
         TRAJECTORY if motion > 0 => Ok(backwards()),
         _ => load_beside(Path::new(""), name),
     };
-    let read = scenario::read(SCENARIO, shipped.text.as_bytes(), &load);
+    let read = walk::read_scenario(SCENARIO, shipped.text.as_bytes(), &load);
     let mut scenario = read.map_err(Failure::Scenario)?;
     scenario.simulation.seed = seed.wrapping_mul(2).wrapping_add(motion as u64);
     Ok(scenario.run().map_err(Failure::Scenario)?.log.to_csv())

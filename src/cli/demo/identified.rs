@@ -7,7 +7,7 @@ use super::super::identify;
 use super::super::progress::Progress;
 use super::{Written, write};
 use denavit::shipped;
-use denavit::simulate::scenario;
+use denavit::walk;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -41,7 +41,7 @@ impl Identified {
         progress.show("simulating an experiment");
         let shipped = shipped::find_scenario(SCENARIO).expect("it is shipped");
         let load = |model: &str| load_beside(Path::new(""), model);
-        let read = scenario::read(SCENARIO, shipped.text.as_bytes(), &load);
+        let read = walk::read_scenario(SCENARIO, shipped.text.as_bytes(), &load);
         let mut scenario = read.map_err(Failure::Scenario)?;
         scenario.simulation.seed = seed;
         let run = scenario.run().map_err(Failure::Scenario)?;

@@ -7,7 +7,8 @@ use super::{Written, write};
 use denavit::report::{Align, Table};
 use denavit::shipped;
 use denavit::simulate::Stop;
-use denavit::simulate::scenario::{self, RunScheme};
+use denavit::simulate::scenario::RunScheme;
+use denavit::walk;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -51,7 +52,7 @@ impl Simulated {
     ) -> Result<Self, Failure> {
         let shipped = shipped::find_scenario(name).expect("it is shipped");
         let load = |model: &str| load_beside(Path::new(""), model);
-        let read = scenario::read(name, shipped.text.as_bytes(), &load);
+        let read = walk::read_scenario(name, shipped.text.as_bytes(), &load);
         let mut scenario = read.map_err(Failure::Scenario)?;
         scenario.scheme = scheme;
         scenario.simulation.end_s = scenario.initial.t_s + duration_s;

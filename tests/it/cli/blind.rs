@@ -1,8 +1,8 @@
 //! Cases of the blind battery, through the command: it gets files alone.
 
 use super::Directory;
-use crate::blind::battery::{Files, answer, command, examine};
-use crate::blind::score::{Answer, Score};
+use denavit_blind::battery::{Files, answer, command, examine};
+use denavit_blind::score::{Answer, Score};
 use std::path::Path;
 
 /// Small robots, quick to diagnose: nothing hidden in four of them, a leg behind springs among

@@ -42,7 +42,7 @@ fn model(has_tip: bool) -> Value {
 
 /// 16 s at 500 Hz around 0.4 rad with so many times the usual reach; `more` is torque by rate.
 fn log(reach: f64, seed: u64, more: impl Fn(f64) -> f64) -> String {
-    let mut random = denavit::simulate::Random::new(seed);
+    let mut random = denavit::numerics::Random::new(seed);
     let mut text = String::from("t,q_rod,tau_rod,q_tip,tau_tip\n");
     for k in 0..8000 {
         let t = f64::from(k) * 0.002;

@@ -4,7 +4,7 @@
 use super::Directory;
 use super::identify_told::{FRICTION, GOOD, Made, Motion, deviations, motions, round_positions};
 use super::identify_told::{said, torques, write_arm, write_log};
-use denavit::simulate::Random;
+use denavit::numerics::Random;
 use serde_json::Value;
 use std::f64::consts::TAU;
 

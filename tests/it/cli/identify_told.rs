@@ -2,7 +2,7 @@
 //! by hand: the planar arm, whose torques are written out here.
 
 use super::{Directory, run_in};
-use denavit::simulate::Random;
+use denavit::numerics::Random;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 

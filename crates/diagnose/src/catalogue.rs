@@ -1,0 +1,133 @@
+//! The catalogue in all places of a robot.
+
+use super::candidate::Candidate;
+use super::drive_law::DriveLaw;
+use super::elastic::SeriesSpring;
+use super::joint_law::{DelayLaw, DemandLaw, JointLaw, ReadingLaw, RobotLaw, SpringLaw};
+use super::law::Law;
+use denavit_codegen::effect::{
+    Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, with_term,
+};
+use denavit_codegen::model::{EffectPlace, JointKind, Robot};
+use denavit_plants::effect::{EffectLaw, RobotEffect};
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
+
+/// Every effect in every place of a robot where it can act.
+pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) -> Vec<Candidate> {
+    let joints = &model.joints;
+    let mut all = Vec::new();
+    for effect in effects {
+        if matches!(effect.law, EffectKindLaw::Moves(_) | EffectKindLaw::Term(_)) {
+            all.extend(on_robot(effect, robot, model));
+            continue;
+        }
+        for (joint, described) in joints.iter().enumerate().filter(|(_, joint)| !joint.is_base) {
+            match effect.at {
+                EffectSite::Joint => all.extend(on_joint(effect, described, joint, None)),
+                EffectSite::JointPair => {
+                    // What couples joints is in the wrist or belt between neighbours.
+                    let before = joint.checked_sub(1).filter(|_| !effect.has_no_order());
+                    let beside = [before, Some(joint + 1)].into_iter().flatten();
+                    let beside = beside.filter(|&other| other < joints.len());
+                    all.extend(beside.filter_map(|other| {
+                        on_joint(effect, described, joint, Some((other, &joints[other])))
+                    }));
+                }
+                // springs are not the model's any more: they have candidates of their own
+                EffectSite::Spring => {}
+                EffectSite::Link | EffectSite::Contact | EffectSite::Model => {}
+            }
+        }
+    }
+    all
+}
+
+/// Every effect on a series spring in every spring whose balance is measured.
+pub fn spring_candidates(
+    effects: &[Effect],
+    springs: &[SeriesSpring],
+    model: &RegressionModel,
+) -> Vec<Candidate> {
+    let of_effect = |effect| springs.iter().map(move |spring| (effect, spring.joint));
+    let effects = effects.iter().filter(|effect| effect.at == EffectSite::Spring);
+    let all = effects.flat_map(of_effect);
+    all.filter_map(|(effect, joint)| on_joint(effect, &model.joints[joint], joint, None)).collect()
+}
+
+/// An effect that changes the model: on each moving link, or on the whole.
+fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Candidate> {
+    let joints = &model.joints;
+    let numbers: Vec<String> = model.parameters.iter().map(|one| one.name.clone()).collect();
+    let places: Vec<(EffectPlace, String, Option<usize>)> = match effect.at {
+        EffectSite::Model => vec![(EffectPlace::Model, "model".to_owned(), None)],
+        EffectSite::Joint | EffectSite::Link => {
+            let moving = robot.joints().map(|(link, _)| {
+                let name = robot.links[link].name.clone();
+                let joint = joints.iter().position(|joint| joint.name == name);
+                (EffectPlace::Link(link), name, joint)
+            });
+            moving.collect()
+        }
+        EffectSite::Spring | EffectSite::JointPair | EffectSite::Contact => Vec::new(),
+    };
+    // A term that the model has is not missing; a place without what is moved has no such effect.
+    let has_term = |term| with_term(robot.terms, term, true) == robot.terms;
+    if matches!(effect.law, EffectKindLaw::Term(term) if has_term(term)) {
+        return Vec::new();
+    }
+    let is_of_drives =
+        matches!(effect.law, EffectKindLaw::Term(ModelTerm::Rotor | ModelTerm::Friction));
+    let of = |(at, name, joint): (EffectPlace, String, Option<usize>)| {
+        let law = RobotEffect::new(robot, effect, at, &numbers).ok()?;
+        Some(Candidate {
+            effect: effect.name.clone(),
+            title: effect.title.clone(),
+            at: name,
+            joint,
+            is_body: effect.at == EffectSite::Link && matches!(effect.law, EffectKindLaw::Moves(_)),
+            law: Box::new(RobotLaw { effect: law, is_of_drives }),
+        })
+    };
+    places.into_iter().filter_map(of).collect()
+}
+
+/// A law of one joint, as it acts on the torques of a log.
+pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<dyn Law> {
+    match law.channel() {
+        None if law.at == EffectSite::Spring => Box::new(SpringLaw { law, joint }),
+        Some(Channel::Torque) if law.is_transmission() => Box::new(DriveLaw { law, joint }),
+        Some(Channel::Torque) if law.is_inverse() => Box::new(DemandLaw { law, joint }),
+        Some(Channel::Torque) if law.is_delay() => {
+            Box::new(DelayLaw { law: JointLaw { law, joint, other } })
+        }
+        None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
+        Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw { law, joint }),
+    }
+}
+
+fn on_joint(
+    effect: &Effect,
+    described: &RegressionJoint,
+    joint: usize,
+    other: Option<(usize, &RegressionJoint)>,
+) -> Option<Candidate> {
+    let kind = if described.slides { JointKind::Prismatic } else { JointKind::Revolute };
+    let law = EffectLaw::new(effect, kind).ok()?;
+    // Rates are derivatives of positions here, never those of the log.
+    if law.channel() == Some(Channel::Rate) {
+        return None;
+    }
+    let law = law_of(law, joint, other.map(|(other, _)| other));
+    let at = match other {
+        Some((_, other)) => format!("{} with {}", described.name, other.name),
+        None => described.name.clone(),
+    };
+    Some(Candidate {
+        effect: effect.name.clone(),
+        title: effect.title.clone(),
+        at,
+        joint: Some(joint),
+        is_body: false,
+        law,
+    })
+}

@@ -1,0 +1,284 @@
+//! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
+
+use super::law::{Motion, Response, derivative};
+use super::nominal::{Nominal, Phi};
+use super::rows::{LogRows, PerJoint, behind_springs, torques};
+use super::signals::Signals;
+use super::turning::{late_friction, settle};
+use denavit_plants::effect::Drive;
+
+/// A stretch of rows: those of one equation in one log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// The log.
+    pub log: usize,
+    /// The joint.
+    pub joint: usize,
+    /// The equation: of the torque of that joint, or after all joints that of its spring.
+    pub equation: usize,
+    /// The first of its rows.
+    pub first: usize,
+    /// Their number.
+    pub rows: usize,
+}
+
+/// Logs with the columns of everything that the nominal model is not sure of.
+#[derive(Clone, Debug)]
+pub struct Data<'a> {
+    /// The nominal model.
+    pub nominal: &'a Nominal<'a>,
+    /// The logs.
+    pub signals: Vec<Signals>,
+    /// All rows: joint by joint, then spring by spring, log by log.
+    pub stretches: Vec<Stretch>,
+    /// Torque less what the model gives with z = 0, per row; of a spring what it passes on less
+    /// what its joint takes [N m, N].
+    pub residual: Vec<f64>,
+    /// For each entry of z its column: the numbers of the model, the time between torque and
+    /// motion, for each joint friction that keeps its sign behind a reversal, and for each spring
+    /// its stiffness and the zero of its deflection.
+    pub columns: Vec<Vec<f64>>,
+    /// The torque of every row, filtered: measured, or by the deflection of a spring [N m, N].
+    pub torque: Vec<f64>,
+}
+
+/// How far the zero of a spring's deflection may be off: where none is stated the logs say it
+/// [rad, m].
+pub(super) const SPRING_ZERO: f64 = 1.0;
+
+/// Torques of the model at the samples of one log.
+#[derive(Clone, Debug)]
+pub struct ModelTorques {
+    /// phi of the model's parameters.
+    pub phi: Phi,
+    /// The numbers of the model file.
+    pub numbers: Vec<f64>,
+    /// Rigid bodies alone.
+    pub load: PerJoint,
+    /// Their rates.
+    pub load_rate: PerJoint,
+    /// Everything; then, for each spring, what its joint takes less what it passes on.
+    pub total: PerJoint,
+    /// The numbers of each joint's drive.
+    pub drives: Vec<Drive>,
+}
+
+impl<'a> Data<'a> {
+    /// The rows of logs.
+    pub fn new(nominal: &'a Nominal<'a>, mut signals: Vec<Signals>) -> Self {
+        let joints = nominal.model.joints.len();
+        let (given, directions) = (nominal.phi(&vec![0.0; nominal.len()]), nominal.directions());
+        signals.iter_mut().for_each(|signals| settle(nominal, signals, &given));
+        let rows: Vec<LogRows> = signals.iter().map(|log| LogRows::new(nominal, log)).collect();
+        let mut data = Self {
+            nominal,
+            stretches: Vec::new(),
+            residual: Vec::new(),
+            columns: vec![Vec::new(); nominal.place_of_spring(nominal.springs.len())],
+            torque: Vec::new(),
+            signals,
+        };
+        // Channels of a log are sampled and held: when is known to half a sample.
+        let of_time = |signals: &Signals| -> PerJoint {
+            let shift_s = -0.5 * signals.log_step_s;
+            let shifted = |torque: &Vec<f64>| -> Vec<f64> {
+                let rate = derivative(torque, signals.step_s);
+                signals.rows_of(&rate.iter().map(|rate| shift_s * rate).collect::<Vec<f64>>())
+            };
+            torques(nominal, signals, &given).iter().map(shifted).collect()
+        };
+        let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
+        let late: Vec<PerJoint> =
+            data.signals.iter().map(|signals| late_friction(nominal, signals, &given)).collect();
+        for joint in 0..joints {
+            for (log, rows) in rows.iter().enumerate() {
+                let Some(target) = &rows.target[joint] else { continue };
+                let (first, count) = (data.residual.len(), target.len());
+                let equation = joint;
+                data.stretches.push(Stretch { log, joint, equation, first, rows: count });
+                let computed = rows.torque(nominal, joint, &given.axes);
+                data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
+                data.torque.extend(data.signals[log].torque[joint].iter().flatten());
+                for (column, direction) in data.columns.iter_mut().zip(&directions) {
+                    column.extend(rows.torque(nominal, joint, &direction.axes));
+                }
+                data.columns[directions.len()].extend(&time[log][joint]);
+                let late = data.signals[log].rows_of(&late[log][joint]);
+                for (other, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
+                    let own = late.iter().map(|late| if other == joint { *late } else { 0.0 });
+                    column.extend(own);
+                }
+            }
+        }
+        data.move_drives(&given, &directions);
+        data.add_springs(&rows, &given, &directions);
+        data
+    }
+
+    /// The balance of springs: what they pass on is what their joints take, without friction and
+    /// rotors of the drives.
+    fn add_springs(&mut self, rows: &[LogRows], given: &Phi, directions: &[Phi]) {
+        let nominal = self.nominal;
+        for (place, spring) in nominal.springs.iter().enumerate() {
+            let (joint, equation) = (spring.joint, nominal.model.joints.len() + place);
+            for (log, rows) in rows.iter().enumerate() {
+                let Some([deflection, _]) = self.signals[log].deflection(joint) else { continue };
+                let deflection = self.signals[log].rows_of(&deflection);
+                let (first, count) = (self.residual.len(), deflection.len());
+                self.stretches.push(Stretch { log, joint, equation, first, rows: count });
+                let passed: Vec<f64> = deflection.iter().map(|d| spring.stiffness * d).collect();
+                let computed = rows.torque(nominal, joint, &given.loads);
+                let left = rows.unknown(joint, passed.clone());
+                self.residual.extend(left.iter().zip(computed).map(|(a, b)| a - b));
+                self.torque.extend(passed);
+                for (column, direction) in self.columns.iter_mut().zip(directions) {
+                    column.extend(rows.torque(nominal, joint, &direction.loads));
+                }
+                let whole = first + count;
+                let own = nominal.place_of_spring(place);
+                self.columns[own].resize(first, 0.0);
+                self.columns[own].extend(deflection.iter().map(|d| -spring.std * d));
+                self.columns[own + 1].resize(first, 0.0);
+                self.columns[own + 1].resize(whole, SPRING_ZERO * spring.stiffness);
+                self.columns.iter_mut().for_each(|column| column.resize(whole, 0.0));
+            }
+        }
+    }
+
+    /// Lets drives before springs move with their motors.
+    fn move_drives(&mut self, given: &Phi, directions: &[Phi]) {
+        for stretch in self.stretches.clone() {
+            let signals = &self.signals[stretch.log];
+            if signals.motor[stretch.joint].is_none() {
+                continue;
+            }
+            let more = |phi: &Phi| -> Option<Vec<f64>> {
+                let all = behind_springs(self.nominal, signals, phi);
+                let (_, own) = all.iter().find(|(joint, _)| *joint == stretch.joint)?;
+                Some(signals.rows_of(own))
+            };
+            let rows = stretch.first..stretch.first + stretch.rows;
+            if let Some(more) = more(given) {
+                self.residual[rows.clone()].iter_mut().zip(more).for_each(|(row, m)| *row -= m);
+            }
+            for (column, direction) in self.columns.iter_mut().zip(directions) {
+                if let Some(more) = more(direction) {
+                    column[rows.clone()].iter_mut().zip(more).for_each(|(row, m)| *row += m);
+                }
+            }
+        }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.residual.len()
+    }
+
+    /// Torque less what the model gives with z, per row.
+    pub fn residual_of(&self, z: &[f64]) -> Vec<f64> {
+        self.without(None, z)
+    }
+
+    /// Rows, or those of the residual, less what z adds to what the model gives with z = 0.
+    pub(super) fn without(&self, rows: Option<&Vec<f64>>, z: &[f64]) -> Vec<f64> {
+        let mut residual = rows.unwrap_or(&self.residual).clone();
+        for (column, factor) in self.columns.iter().zip(z).filter(|(_, factor)| **factor != 0.0) {
+            residual.iter_mut().zip(column).for_each(|(sum, entry)| *sum -= factor * entry);
+        }
+        residual
+    }
+
+    /// The torques that the model gives the motion of each log with z.
+    pub fn model_torques(&self, z: &[f64]) -> Vec<ModelTorques> {
+        self.signals.iter().map(|signals| ModelTorques::new(self.nominal, signals, z)).collect()
+    }
+
+    /// What a response to the motion of one log is in the rows: of the equations that have rows.
+    /// `signals` are the log's, or a coarse view of them.
+    pub fn in_rows(&self, log: usize, signals: &Signals, response: &Response) -> RowResponse {
+        let mut found = RowResponse::default();
+        for (place, &equation) in response.equations.iter().enumerate() {
+            let is_own = |stretch: &&Stretch| stretch.log == log && stretch.equation == equation;
+            let Some(&stretch) = self.stretches.iter().find(is_own) else { continue };
+            let gradient = response.gradient.iter().map(|all| signals.rows_of(&all[place]));
+            found.stretches.push(stretch);
+            found.gradient.push(gradient.collect());
+            found.torque.push(signals.rows_of(&response.torque[place]));
+        }
+        found
+    }
+}
+
+/// A response in the rows: for each stretch the torque, and its derivatives by each parameter.
+#[derive(Clone, Debug, Default)]
+pub struct RowResponse {
+    /// The rows it acts on.
+    pub stretches: Vec<Stretch>,
+    /// For each stretch the torque.
+    pub torque: Vec<Vec<f64>>,
+    /// For each stretch and parameter the derivative.
+    pub gradient: Vec<Vec<Vec<f64>>>,
+    /// For each parameter one over the deviation that the model states: 0 of one that is free,
+    /// infinite of one that is certain.
+    pub stiffness: Vec<f64>,
+}
+
+impl RowResponse {
+    /// Appends the response of another log.
+    pub fn append(&mut self, mut other: Self) {
+        self.stretches.append(&mut other.stretches);
+        self.torque.append(&mut other.torque);
+        self.gradient.append(&mut other.gradient);
+    }
+
+    /// The response with its rows turned by a share of each stretch.
+    pub fn turned(&self, turn: f64) -> Self {
+        let mut turned = self.clone();
+        let columns = turned.torque.iter_mut().chain(turned.gradient.iter_mut().flatten());
+        for column in columns {
+            let by = (turn * column.len() as f64) as usize % column.len().max(1);
+            column.rotate_right(by);
+        }
+        turned
+    }
+
+    /// Takes the torque away from rows.
+    pub fn subtract_from(&self, rows: &mut [f64]) {
+        for (stretch, torque) in self.stretches.iter().zip(&self.torque) {
+            let rows = &mut rows[stretch.first..stretch.first + stretch.rows];
+            rows.iter_mut().zip(torque).for_each(|(row, torque)| *row -= torque);
+        }
+    }
+}
+
+impl ModelTorques {
+    /// The torques that the model gives a motion with z.
+    pub(super) fn new(nominal: &Nominal<'_>, signals: &Signals, z: &[f64]) -> Self {
+        let (phi, numbers) = (nominal.phi(z), nominal.numbers(z));
+        let drives = Drive::all(nominal.model, &phi.drives);
+        let load = torques(nominal, signals, &nominal.load_phi(z));
+        let rate = |load: &Vec<f64>| derivative(load, signals.step_s);
+        let load_rate = load.iter().map(rate).collect();
+        let total = torques(nominal, signals, &phi);
+        Self { phi, numbers, load, load_rate, total, drives }
+    }
+
+    /// The torques at the samples of a coarse view.
+    pub fn thinned(&self, fine: &Signals, coarse: &Signals) -> Self {
+        let thin = |all: &PerJoint| all.iter().map(|one| coarse.thinned(fine, one)).collect();
+        Self {
+            phi: self.phi.clone(),
+            numbers: self.numbers.clone(),
+            load: thin(&self.load),
+            load_rate: thin(&self.load_rate),
+            total: thin(&self.total),
+            drives: self.drives.clone(),
+        }
+    }
+
+    /// The motion of a log with these torques.
+    pub fn motion<'m>(&'m self, nominal: &'m Nominal<'m>, signals: &'m Signals) -> Motion<'m> {
+        let Self { phi, numbers, load, load_rate, total, drives } = self;
+        Motion { model: (nominal, phi), numbers, signals, load, load_rate, total, drives }
+    }
+}

@@ -1,0 +1,65 @@
+//! What is between a drive, whose torque is logged, and its joint, whose position is.
+
+use super::floor::rms;
+use super::law::{Law, Motion, Response};
+use denavit_plants::effect::{EffectLaw, JointSamples, LawParameter};
+
+/// The share that must be passed on of what a transmission that hardly gives way would: one that
+/// passes nothing on leaves nothing to compare, which explains nothing. How long drive and joint
+/// touch says less, since a drive that bounces is pressed for short times, and the harder.
+const LEAST_PASSED: f64 = 0.7;
+
+/// The share of a drive's torque that must be load: what a drive takes for itself a rotor that
+/// moves otherwise would explain, and noise that it does not pass on.
+const LEAST_LOAD: f64 = 0.2;
+
+/// A transmission that gives way.
+///
+/// The rotor is moved along the log by the torque that was measured, at the full rate; what reaches
+/// the joint then is compared with what the joint takes. So what was measured is changed and not
+/// what is computed, and the law has no torque where nothing was measured. It has two or three
+/// numbers and no amplitude: it explains nothing but by moving the rotor as it really moved.
+pub(super) struct DriveLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+}
+
+impl Law for DriveLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let (joint, whole) = (self.joint, motion.signals.whole());
+        let nothing = || vec![vec![0.0; motion.signals.samples()]];
+        let mut response = Response {
+            equations: vec![joint],
+            torque: nothing(),
+            gradient: values.iter().map(|_| nothing()).collect(),
+        };
+        // a motor that is measured is where it is
+        let is_loaded = rms(&motion.load[joint]) >= LEAST_LOAD * rms(&motion.total[joint]);
+        let is_seen = is_loaded && whole.motor[joint].is_none();
+        let measured = whole.measured_within(joint).filter(|_| is_seen);
+        let Some(measured) = measured else { return response };
+        let samples = JointSamples {
+            t: &whole.t,
+            q: &whole.q[joint],
+            qd: &whole.qd[joint],
+            qdd: &whole.qdd[joint],
+            tau: &measured,
+            drive: motion.drives[joint],
+            ..JointSamples::default()
+        };
+        let through = self.law.through(&samples, values);
+        if let Some(through) = through.filter(|through| through.share >= LEAST_PASSED) {
+            let all = std::iter::once(through.torque).chain(through.gradient);
+            let mut all = all.map(|signal| vec![motion.signals.of_whole(signal)]);
+            response.torque = all.next().unwrap_or_default();
+            response.gradient = all.collect();
+        }
+        response
+    }
+}

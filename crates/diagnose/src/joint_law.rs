@@ -1,0 +1,268 @@
+//! Effects of the catalogue as laws on the torques of a robot's joints.
+
+use super::law::{Law, Motion, Response};
+use super::rows::PerJoint;
+use super::signals::Signals;
+use denavit_codegen::effect::{Channel, SpringSide};
+use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
+
+/// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
+pub(super) struct JointLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+    /// The other joint, for laws of a pair.
+    pub(super) other: Option<usize>,
+}
+
+/// The samples of a joint in a motion: of its drive, which may be before a spring.
+fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> JointSamples<'m> {
+    let signals = motion.signals;
+    let [qd, qdd] = signals.of_drive(joint);
+    let mut samples = JointSamples {
+        t: &signals.t,
+        q: &signals.q[joint],
+        qd,
+        qdd,
+        tau_load: &motion.load[joint],
+        tau_load_rate: &motion.load_rate[joint],
+        tau: &motion.total[joint],
+        ..JointSamples::default()
+    };
+    if let Some(other) = other {
+        samples.q_2 = &signals.q[other];
+        [samples.qd_2, samples.qdd_2] = signals.of_drive(other).map(Vec::as_slice);
+        samples.tau_load_2 = &motion.load[other];
+        samples.tau_load_rate_2 = &motion.load_rate[other];
+    }
+    samples
+}
+
+impl Law for JointLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let mut response = Response::default();
+        let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
+            let mut samples = samples(&motion, joint, other);
+            let creep = motion.signals.creeping(joint);
+            samples.creep = &creep;
+            let mut equations = vec![joint];
+            if let Some(spring) = motion.model.0.spring_equation(joint)
+                && law.channel().is_none()
+                && law.side == SpringSide::Link
+            {
+                let signals = motion.signals;
+                (samples.qd, samples.qdd) = (&signals.qd[joint], &signals.qdd[joint]);
+                samples.creep = samples.qd;
+                if let Some(other) = other {
+                    (samples.qd_2, samples.qdd_2) = (&signals.qd[other], &signals.qdd[other]);
+                }
+                // What the link feels the spring passes on.
+                equations.push(spring);
+            }
+            let (torque, gradient) = (law.torque(&samples, values), law.gradient(&samples, values));
+            response.gradient.resize(gradient.len(), Vec::new());
+            for equation in equations {
+                response.equations.push(equation);
+                response.torque.push(torque.clone());
+                let all = response.gradient.iter_mut().zip(&gradient);
+                all.for_each(|(of_parameter, column)| of_parameter.push(column.clone()));
+            }
+        };
+        add(&self.law, self.joint, self.other);
+        if let (Some(law), Some(other)) = (self.law.on_second(), self.other) {
+            add(law, other, Some(self.joint));
+        }
+        response
+    }
+}
+
+/// An effect beside a series spring: what it passes on the spring need not.
+pub(super) struct SpringLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// The joint of the spring.
+    pub(super) joint: usize,
+}
+
+impl Law for SpringLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let Motion { model: (nominal, _), signals, .. } = motion;
+        let both = nominal.spring_equation(self.joint).zip(signals.deflection(self.joint));
+        let Some((equation, [q, qd])) = both else {
+            return Response { gradient: vec![Vec::new(); values.len()], ..Response::default() };
+        };
+        let samples = JointSamples { t: &signals.t, q: &q, qd: &qd, ..JointSamples::default() };
+        let less = |column: Vec<f64>| vec![column.iter().map(|torque| -torque).collect()];
+        Response {
+            equations: vec![equation],
+            torque: less(self.law.torque(&samples, values)),
+            gradient: self.law.gradient(&samples, values).into_iter().map(less).collect(),
+        }
+    }
+}
+
+/// The share of the time in which a drive gives what was demanded, at least, and what may lack
+/// then.
+const LEAST_GIVEN: f64 = 0.25;
+const ALL_GIVEN: f64 = 0.02;
+
+/// An effect that makes a drive give another torque than is logged: what was demanded of it.
+///
+/// It changes what was measured and not what is computed, so that the law has no torque where
+/// nothing was measured. A clip of what was measured has what the model lacks in it only as far as
+/// that is beyond the clip, and what is left is then that of the model at the clip. A law that
+/// leaves too little of what was measured leaves nothing to compare, which explains nothing.
+pub(super) struct DemandLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+}
+
+impl Law for DemandLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let measured = motion.signals.measured_within(self.joint);
+        let measured = measured.unwrap_or_else(|| vec![0.0; motion.signals.samples()]);
+        let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
+        let mut torque = self.law.torque(&samples, values);
+        let mut gradient = self.law.gradient(&samples, values);
+        let is_given = |(all, less): &(&f64, &f64)| less.abs() <= ALL_GIVEN * all.abs();
+        let given = measured.iter().zip(&torque).filter(is_given).count();
+        if (given as f64) < LEAST_GIVEN * measured.len() as f64 {
+            torque.fill(0.0);
+            gradient.iter_mut().for_each(|column| column.fill(0.0));
+        }
+        Response {
+            equations: vec![self.joint],
+            torque: vec![torque],
+            gradient: gradient.into_iter().map(|column| vec![column]).collect(),
+        }
+    }
+}
+
+/// A delay of the torque that is logged.
+///
+/// What was measured is moved back to its time, and not what is computed: all that the model is
+/// not sure of would have to be late as well.
+pub(super) struct DelayLaw {
+    /// The law.
+    pub(super) law: JointLaw,
+}
+
+impl Law for DelayLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        self.law.parameters()
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let joint = self.law.joint;
+        let delay = self.law.law.delay(values);
+        let undone = delay.and_then(|(delay_s, gradient)| {
+            let [added, rate] = motion.signals.undelayed_within(joint, delay_s)?;
+            let by = |slope: &f64| vec![rate.iter().map(|rate| -slope * rate).collect()];
+            let gradient = gradient.iter().map(by).collect();
+            Some(Response { equations: vec![joint], torque: vec![added], gradient })
+        });
+        undone.unwrap_or_else(|| self.law.response(motion, values))
+    }
+}
+
+/// An effect that moves what the model says, or a term that it lacks: it acts on all joints.
+pub(super) struct RobotLaw {
+    /// What it adds.
+    pub(super) effect: RobotEffect,
+    /// Whether that is before springs: rotors and friction.
+    pub(super) is_of_drives: bool,
+}
+
+impl Law for RobotLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.effect.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let signals = motion.signals;
+        let [q, qd, qdd] = [&signals.q, &signals.qd, &signals.qdd]
+            .map(|all| all.iter().map(Vec::as_slice).collect::<Vec<&[f64]>>());
+        let AddedTorques { mut torque, mut gradient } =
+            self.effect.torques([&q, &qd, &qdd], values, motion.numbers);
+        // What moves the bodies is passed on by the springs.
+        if !self.is_of_drives {
+            for spring in &motion.model.0.springs {
+                let all = gradient.iter_mut().chain([&mut torque]);
+                all.for_each(|joints| joints.push(joints[spring.joint].clone()));
+            }
+        }
+        Response { equations: (0..torque.len()).collect(), torque, gradient }
+    }
+}
+
+/// An effect that stands between a position or rate and its log: the model was given what is
+/// logged, and gives other torques for what is true.
+pub(super) struct ReadingLaw {
+    /// The law.
+    pub(super) law: EffectLaw,
+    /// Its joint.
+    pub(super) joint: usize,
+}
+
+/// By which share of a parameter's size it is moved for a difference.
+const DIFFERENCE: f64 = 1e-4;
+
+impl ReadingLaw {
+    /// What the torques of the true motion have more than those of the logged one.
+    fn torques(&self, motion: &Motion<'_>, values: &[f64]) -> PerJoint {
+        let (joint, logged) = (self.joint, motion.signals);
+        let samples = samples(motion, joint, None);
+        let truth = self.law.corrected(&samples, values);
+        let mut signals: Signals = logged.clone();
+        match self.law.channel() {
+            Some(Channel::Position) => signals.move_joint(joint, &truth),
+            _ => signals.qd[joint] = truth,
+        }
+        let mut torques = motion.torques_of(&signals);
+        for (torque, own) in torques.iter_mut().flatten().zip(motion.total.iter().flatten()) {
+            *torque -= own;
+        }
+        torques
+    }
+}
+
+impl Law for ReadingLaw {
+    fn parameters(&self) -> &[LawParameter] {
+        &self.law.parameters
+    }
+
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
+        let torque = self.torques(&motion, values);
+        let by = |place: usize| -> PerJoint {
+            let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
+            let size = sizes.fold(values[place].abs(), f64::max);
+            let step = DIFFERENCE * if size > 0.0 { size } else { 1.0 };
+            let mut moved = values.to_vec();
+            moved[place] += step;
+            let slope = |(a, b): (&f64, &f64)| (a - b) / step;
+            let of_joint =
+                |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(slope).collect::<Vec<f64>>();
+            self.torques(&motion, &moved).iter().zip(&torque).map(of_joint).collect()
+        };
+        Response {
+            equations: (0..torque.len()).collect(),
+            gradient: (0..values.len()).map(by).collect(),
+            torque,
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What an effect does to the torques of a log: its law on numbers.
+
+use super::given::Belief;
+use super::nominal::{Nominal, Phi};
+use super::rows::{PerJoint, torques};
+use super::signals::Signals;
+use denavit_plants::effect::{Drive, LawParameter};
+
+/// What a law may depend on: the motion of a log and the torques that the model gives it; those
+/// that were measured only where a law cuts them.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    /// The nominal model, and phi of its present parameters.
+    pub model: (&'a Nominal<'a>, &'a Phi),
+    /// The present values of the numbers of the model file, in the order of the regression's.
+    pub numbers: &'a [f64],
+    /// Positions, rates and accelerations at the full rate.
+    pub signals: &'a Signals,
+    /// Torques of rigid bodies, without friction [N m, N].
+    pub load: &'a PerJoint,
+    /// Their derivatives by time [N m/s, N/s].
+    pub load_rate: &'a PerJoint,
+    /// All torques of the model without effects [N m, N].
+    pub total: &'a PerJoint,
+    /// The numbers of each joint's drive.
+    pub drives: &'a [Drive],
+}
+
+impl Motion<'_> {
+    /// The torques that the model without effects gives another motion [N m, N].
+    pub fn torques_of(&self, signals: &Signals) -> PerJoint {
+        torques(self.model.0, signals, self.model.1)
+    }
+}
+
+/// Torques that a law adds at the samples of a motion, and their derivatives by its parameters.
+#[derive(Clone, Debug, Default)]
+pub struct Response {
+    /// The equations that the law acts on: those of joints, then those of springs.
+    pub equations: Vec<usize>,
+    /// For each of them the torque [N m, N].
+    pub torque: PerJoint,
+    /// For each parameter and each of the equations the derivative.
+    pub gradient: Vec<PerJoint>,
+}
+
+/// A law: torques as a function of motion and parameters.
+pub trait Law {
+    /// Its parameters.
+    fn parameters(&self) -> &[LawParameter];
+
+    /// What it adds to the torques of a motion.
+    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response;
+
+    /// What the model says of its parameters; nothing of laws that the model does not have.
+    fn beliefs(&self) -> &[Belief] {
+        &[]
+    }
+}
+
+/// The central difference of a signal, one-sided at its ends.
+pub(super) fn derivative(signal: &[f64], step_s: f64) -> Vec<f64> {
+    let last = signal.len().saturating_sub(1);
+    let at = |k: usize| {
+        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+        (signal[after] - signal[before]) / (step_s * (after - before).max(1) as f64)
+    };
+    (0..signal.len()).map(at).collect()
+}

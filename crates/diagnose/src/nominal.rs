@@ -1,0 +1,254 @@
+//! What the model says, and how sure it is of it.
+//!
+//! Torques are linear in theta0 (docs/base-parameters.md). The numbers of the model file move
+//! theta0 each within its standard deviation; a unit of z moves one of them by one deviation, so
+//! that z has the prior N(0, 1) in all its entries.
+
+use super::data::SPRING_ZERO;
+use super::elastic::SeriesSpring;
+use denavit_plants::regression::{ModelParameter, RegressionModel, StandardParameter};
+
+/// How far numbers of a model may be off that say nothing of it, as a share of their value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Of bodies.
+    pub body: f64,
+    /// Of friction, rotors and offsets, which are known from measurements alone.
+    pub joint: f64,
+}
+
+impl Default for Uncertainty {
+    fn default() -> Self {
+        Self { body: 0.05, joint: 1.0 }
+    }
+}
+
+/// A number of the model that may be off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertain {
+    /// Its name in the model.
+    pub name: String,
+    /// The value that the model gives.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Whether the model states the deviation.
+    pub is_stated: bool,
+    /// Whether it cannot be negative.
+    pub is_positive: bool,
+}
+
+/// The nominal model: phi of its values and the directions in which they may be off.
+#[derive(Clone, Debug)]
+pub struct Nominal<'a> {
+    /// Base parameters and their columns.
+    pub model: &'a RegressionModel,
+    /// The numbers that may be off, one for each entry of z.
+    pub uncertain: Vec<Uncertain>,
+    /// For each of them its place among the parameters of the regression.
+    places: Vec<usize>,
+    /// theta0 of the model's values.
+    theta: Vec<f64>,
+    /// What a unit of each entry of z adds to theta0.
+    directions: Vec<Vec<f64>>,
+    /// Springs whose balance is measured: an equation each, after those of the joints' torques.
+    pub springs: Vec<Spring>,
+}
+
+/// A spring between a motor and its joint, on the side of the joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// Its joint.
+    pub joint: usize,
+    /// The name of its stiffness.
+    pub name: String,
+    /// Its stiffness [N m/rad, N/m].
+    pub stiffness: f64,
+    /// The standard deviation of that.
+    pub std: f64,
+}
+
+/// What the torques are linear in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Phi {
+    /// On the joint axes, as the model has it.
+    pub axes: Vec<f64>,
+    /// The same of rotors and friction alone, which move with the motor where a spring is between
+    /// it and the joint.
+    pub drives: Vec<f64>,
+    /// The same of everything behind springs.
+    pub loads: Vec<f64>,
+    /// The stiffness of each spring.
+    pub springs: Vec<f64>,
+}
+
+/// What begins the names of parameters that no rigid body has.
+const OF_JOINT: [&str; 4] = ["fv", "fc", "off", "Ia"];
+
+impl<'a> Nominal<'a> {
+    /// The nominal model with the deviations that it states, others by `uncertainty`.
+    pub fn new(model: &'a RegressionModel, uncertainty: Uncertainty) -> Self {
+        let values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+        let theta = model.standard_values(&values);
+        let (mut uncertain, mut places, mut directions) = (Vec::new(), Vec::new(), Vec::new());
+        for (place, parameter) in model.parameters.iter().enumerate() {
+            let Some(std) = deviation(model, parameter, uncertainty) else { continue };
+            // theta0 is a polynomial of the numbers: products of mass and distances.
+            let at = |sign: f64| {
+                let mut moved = values.clone();
+                moved[place] += 0.5 * sign * std;
+                model.standard_values(&moved)
+            };
+            let (above, below) = (at(1.0), at(-1.0));
+            directions.push(above.iter().zip(&below).map(|(a, b)| a - b).collect());
+            places.push(place);
+            uncertain.push(Uncertain {
+                name: parameter.name.clone(),
+                value: parameter.value,
+                std,
+                is_stated: parameter.std.is_some(),
+                is_positive: parameter.is_positive,
+            });
+        }
+        Self { model, uncertain, places, theta, directions, springs: Vec::new() }
+    }
+
+    /// With springs whose balance is measured; deviations that are not stated as for joints.
+    pub fn with_springs(mut self, springs: &[SeriesSpring], uncertainty: Uncertainty) -> Self {
+        let of = |SeriesSpring { joint, stiffness }: &SeriesSpring| Spring {
+            joint: *joint,
+            name: stiffness.name.clone(),
+            stiffness: stiffness.value,
+            std: stiffness.std.unwrap_or(uncertainty.joint * stiffness.value),
+        };
+        self.springs = springs.iter().map(of).collect();
+        self
+    }
+
+    /// Number of equations: one for the torque of each joint, one for each spring.
+    pub fn equations(&self) -> usize {
+        self.model.joints.len() + self.springs.len()
+    }
+
+    /// The joint of an equation.
+    pub fn joint_of(&self, equation: usize) -> usize {
+        let spring = equation.checked_sub(self.model.joints.len());
+        spring.map_or(equation, |spring| self.springs[spring].joint)
+    }
+
+    /// The equation of the spring of a joint.
+    pub fn spring_equation(&self, joint: usize) -> Option<usize> {
+        let place = self.springs.iter().position(|spring| spring.joint == joint)?;
+        Some(self.model.joints.len() + place)
+    }
+
+    /// What an equation is of, in words: a joint, or the spring of one.
+    pub fn equation_name(&self, equation: usize) -> String {
+        let joint = &self.model.joints[self.joint_of(equation)].name;
+        match equation < self.model.joints.len() {
+            true => joint.clone(),
+            false => format!("spring of {joint}"),
+        }
+    }
+
+    /// The place in z of the first entry of a spring: of its stiffness; its zero follows.
+    pub(super) fn place_of_spring(&self, spring: usize) -> usize {
+        self.len() + 1 + self.model.joints.len() + 2 * spring
+    }
+
+    /// What the motor of each spring reads more than its joint where the spring is relaxed, with z
+    /// [rad, m].
+    pub(super) fn zeros_of_springs(&self, z: &[f64]) -> Vec<f64> {
+        let of = |place| z.get(self.place_of_spring(place) + 1).copied().unwrap_or(0.0);
+        (0..self.springs.len()).map(|place| SPRING_ZERO * of(place)).collect()
+    }
+
+    /// Number of entries of z.
+    pub fn len(&self) -> usize {
+        self.uncertain.len()
+    }
+
+    /// Whether the model is certain of everything.
+    pub fn is_empty(&self) -> bool {
+        self.uncertain.is_empty()
+    }
+
+    /// theta0 of z.
+    pub fn theta(&self, z: &[f64]) -> Vec<f64> {
+        let mut theta = self.theta.clone();
+        for (direction, factor) in self.directions.iter().zip(z) {
+            for (sum, entry) in theta.iter_mut().zip(direction) {
+                *sum += factor * entry;
+            }
+        }
+        theta
+    }
+
+    /// The numbers of the model file with z, in the order of the regression's parameters.
+    pub fn numbers(&self, z: &[f64]) -> Vec<f64> {
+        let mut numbers = self.model.parameters.iter().map(|one| one.value).collect::<Vec<f64>>();
+        for ((one, place), factor) in self.uncertain.iter().zip(&self.places).zip(z) {
+            numbers[*place] += factor * one.std;
+        }
+        numbers
+    }
+
+    /// phi of z.
+    pub fn phi(&self, z: &[f64]) -> Phi {
+        let of = |(place, spring): (usize, &Spring)| {
+            let own = z.get(self.place_of_spring(place)).copied().unwrap_or(0.0);
+            spring.stiffness + own * spring.std
+        };
+        let springs = self.springs.iter().enumerate().map(of).collect();
+        Phi { springs, ..self.phi_of(&self.theta(z)) }
+    }
+
+    fn phi_of(&self, theta: &[f64]) -> Phi {
+        let drives = self.only(theta, |prefix| OF_JOINT.contains(&prefix));
+        let loads: Vec<f64> = theta.iter().zip(&drives).map(|(all, own)| all - own).collect();
+        Phi {
+            axes: self.model.axes_of_standard(theta),
+            drives: self.model.axes_of_standard(&drives),
+            loads: self.model.axes_of_standard(&loads),
+            springs: vec![0.0; self.springs.len()],
+        }
+    }
+
+    /// theta0 with 0 for what does not belong to a joint by a prefix that is asked for.
+    fn only(&self, theta: &[f64], asked: impl Fn(&str) -> bool) -> Vec<f64> {
+        let of = |(value, standard): (&f64, &StandardParameter)| {
+            let is_asked = standard.owner.as_ref().is_some_and(|(_, prefix)| asked(prefix));
+            if is_asked { *value } else { 0.0 }
+        };
+        theta.iter().zip(&self.model.standard).map(of).collect()
+    }
+
+    /// phi of z without friction, offsets and rotors: what moves and carries the bodies, and what a
+    /// transmission passes on.
+    pub fn load_phi(&self, z: &[f64]) -> Phi {
+        let Phi { loads, mut drives, mut springs, .. } = self.phi(z);
+        drives.fill(0.0);
+        springs.fill(0.0);
+        Phi { axes: loads.clone(), drives, loads, springs }
+    }
+
+    /// What a unit of each entry of z adds to phi.
+    pub fn directions(&self) -> Vec<Phi> {
+        self.directions.iter().map(|direction| self.phi_of(direction)).collect()
+    }
+}
+
+/// The deviation of a number; none where it is certain: stated as 0, or 0 without a statement.
+fn deviation(
+    model: &RegressionModel,
+    parameter: &ModelParameter,
+    uncertainty: Uncertainty,
+) -> Option<f64> {
+    let is_of_joint = model.standard.iter().any(|standard| {
+        standard.name == parameter.name
+            && standard.owner.as_ref().is_some_and(|(_, prefix)| OF_JOINT.contains(prefix))
+    });
+    let share = if is_of_joint { uncertainty.joint } else { uncertainty.body };
+    let std = parameter.std.unwrap_or(share * parameter.value.abs());
+    Some(std).filter(|std| *std > 0.0)
+}

@@ -1,0 +1,497 @@
+//! Logs as the diagnosis looks at them: motion at the full rate, torques through one filter.
+//!
+//! Positions pass a wide zero-phase filter, so that they can be differentiated. Torques pass a
+//! narrower one, and so does everything that is compared with them: columns of the regressor,
+//! torques of effects. A law with a step at a reversal then has the same edge on both sides of the
+//! equation, which is what tells a step from a slope.
+
+use super::between::{between, cubic};
+use super::floor::white_noise;
+use super::law::derivative;
+use super::standstill::{self, Rest};
+use denavit_identify::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
+use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_numerics::Random;
+use std::ops::Range;
+use std::rc::Rc;
+
+/// The filters of a diagnosis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filters {
+    /// Cutoff of the filter of positions \[Hz\].
+    pub motion_hz: f64,
+    /// Cutoff of the filter of torques and of all that is compared with them \[Hz\].
+    pub torque_hz: f64,
+}
+
+impl Filters {
+    /// The filters of logs of a step whose positions may vary up to a share of the rate of
+    /// sampling. Torques have half of it, which keeps what the filter of positions takes away out
+    /// of the comparison.
+    pub fn new(step_s: f64, share: f64) -> Self {
+        Self { motion_hz: share / step_s, torque_hz: 0.5 * share / step_s }
+    }
+}
+
+/// Order of one pass of both filters.
+const ORDER: usize = 4;
+
+/// Motion and torque of one log.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    /// The name of the log.
+    pub file: String,
+    /// Cutoff of the filter of torques \[Hz\].
+    pub torque_hz: f64,
+    /// Distance of samples of the log \[s\].
+    pub log_step_s: f64,
+    /// Distance of samples of the motion, which has more of them \[s\].
+    pub step_s: f64,
+    /// The time of each sample of the motion \[s\].
+    pub t: Vec<f64>,
+    /// Positions, filtered [rad, m], joint by joint.
+    pub q: Vec<Vec<f64>>,
+    /// Rates [rad/s, m/s].
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations [rad/s^2, m/s^2].
+    pub qdd: Vec<Vec<f64>>,
+    /// Position, rate and acceleration of the motor of a joint behind a spring, on the joint's
+    /// side.
+    pub motor: Vec<Option<[Vec<f64>; 3]>>,
+    /// Where the drive of a joint rests.
+    pub(super) rests: Vec<Vec<Rest>>,
+    /// Torques of the rows, through the filter [N m, N]; none where none was measured.
+    pub torque: Vec<Option<Vec<f64>>>,
+    /// What the steps of the encoders are of the positions after their filter, drawn at random
+    /// [rad, m]: joint by joint, as long as the positions.
+    pub position_noise: Vec<Vec<f64>>,
+    /// The same of the motors before springs; without entries where there is none.
+    pub motor_noise: Vec<Vec<f64>>,
+    /// Torques as they were measured, at the samples of the log.
+    pub measured: Vec<Option<Vec<f64>>>,
+    /// What a coarse view is of.
+    whole: Option<Rc<Signals>>,
+    /// Where the rows are among the samples of the motion.
+    rows: Rows,
+    filter: Butterworth,
+}
+
+/// Where rows and cells are: a cell is the time of a sample of the log, a row one in so many.
+#[derive(Clone, Debug)]
+struct Rows {
+    range: Range<usize>,
+    stride: usize,
+    /// Samples of the motion in each cell.
+    within: usize,
+}
+
+/// Samples of the motion to a sample of the log. A step of friction is not at a sample, and the
+/// mean of a cell knows where it is.
+const WITHIN: usize = 3;
+
+impl Signals {
+    /// Filters a log.
+    pub fn new(log: MeasuredLog, filters: Filters) -> Result<Self, ConditionError> {
+        let MeasuredLog { file, start_s, step_s, joints, .. } = log;
+        let filter_of = |cutoff_hz: f64| {
+            let nyquist_hz = 0.5 / step_s;
+            let found = Butterworth::new(ORDER, cutoff_hz, step_s);
+            found.ok_or(ConditionError::Cutoff { cutoff_hz, nyquist_hz })
+        };
+        let (wide, filter) = (filter_of(filters.motion_hz)?, filter_of(filters.torque_hz)?);
+        let samples = joints.first().map_or(0, |joint| joint.q.len());
+        let edge = STENCIL + wide.settling();
+        // Even, so that a coarse view can have two samples to a row.
+        let stride = ((0.2 / (filters.torque_hz * step_s)) as usize * 2).max(1);
+        let cut = edge + filter.settling();
+        if samples < 2 * cut + 64 * stride {
+            return Err(ConditionError::TooShort { samples, needed: 2 * cut + 64 * stride });
+        }
+        let kept = edge..samples - edge;
+        // Rows are where a coarse view of the motion has samples.
+        let first = filter.settling().next_multiple_of(stride);
+        let rows = Rows { range: first..kept.len() - filter.settling(), stride, within: WITHIN };
+        let fine = step_s / WITHIN as f64;
+        // The cell of a sample is around it.
+        let offset = 0.5 * (WITHIN - 1) as f64 * fine;
+        let t = (0..kept.len() * WITHIN)
+            .map(|k| start_s + step_s * kept.start as f64 + fine * k as f64 - offset)
+            .collect();
+        let [q, qd, qdd, position_noise, motor_noise] = [const { Vec::new() }; 5];
+        let (torque, measured, motor, rests) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut signals = Self {
+            file,
+            torque_hz: filters.torque_hz,
+            log_step_s: step_s,
+            step_s: fine,
+            t,
+            q,
+            qd,
+            qdd,
+            motor,
+            rests,
+            position_noise,
+            motor_noise,
+            torque,
+            measured,
+            whole: None,
+            rows,
+            filter,
+        };
+        let mut randoms = [Random::new(1), Random::new(2)];
+        for joint in joints {
+            // An encoder's error is anywhere within its step. A spring is stiff: where its angles
+            // do not tell their steps, their noise counts as such.
+            let of_spring = |angle: &Vec<f64>| 12.0_f64.sqrt() * white_noise(angle);
+            let both = joint.motor.as_ref().map(|motor| {
+                let steps = [(joint.step, &joint.q), (joint.motor_step, motor)];
+                steps.map(|(step, angle)| step.unwrap_or_else(|| of_spring(angle)))
+            });
+            let [step, motor_step] = both.unwrap_or([joint.step.unwrap_or(0.0), 0.0]);
+            let mut noise = |random: usize, samples: usize, step: f64| {
+                let uniform = |_| step * (randoms[random].uniform() - 0.5);
+                let mut noise: Vec<f64> = (0..samples).map(uniform).collect();
+                wide.zero_phase(&mut noise);
+                noise
+            };
+            signals.position_noise.push(noise(0, samples, step));
+            let of_motor = if joint.motor.is_some() { samples } else { 0 };
+            signals.motor_noise.push(noise(1, of_motor, motor_step));
+            signals.push(joint, &wide, kept.clone());
+        }
+        Ok(signals)
+    }
+
+    fn push(&mut self, joint: JointSignals, wide: &Butterworth, kept: Range<usize>) {
+        let JointSignals { mut q, tau, motor, step, motor_step, .. } = joint;
+        let h = self.log_step_s;
+        let within = self.rows.within;
+        let (drive, step) = motor.as_ref().map_or((&q, step), |motor| (motor, motor_step));
+        // The time of the first sample of the log, in whose cell the motion begins.
+        let start_s = self.t[within / 2] - h * kept.start as f64;
+        let mut rests =
+            step.map_or_else(Vec::new, |step| standstill::rests(drive, step, [start_s, h]));
+        let whole_s = self.t[0]..self.t[self.t.len() - 1];
+        rests.retain(|Rest { time_s: Range { start, end }, .. }| {
+            whole_s.contains(start) && whole_s.contains(end)
+        });
+        self.rests.push(rests);
+        wide.zero_phase(&mut q);
+        let fine = |signal: Vec<f64>| between(&signal, within);
+        let rates = |q: &[f64]| fine(kept.clone().map(|k| rate(q, k) / h).collect());
+        let accelerations =
+            |q: &[f64]| fine(kept.clone().map(|k| acceleration(q, k) / (h * h)).collect());
+        self.qd.push(rates(&q));
+        self.qdd.push(accelerations(&q));
+        self.motor.push(motor.map(|mut motor| {
+            wide.zero_phase(&mut motor);
+            let (rates, accelerations) = (rates(&motor), accelerations(&motor));
+            [fine(motor[kept.clone()].to_vec()), rates, accelerations]
+        }));
+        self.q.push(fine(q[kept.clone()].to_vec()));
+        self.rest(self.rests.len() - 1);
+        let measured = tau.map(|tau| tau[kept].to_vec());
+        let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
+        self.torque.push(rows);
+        self.measured.push(measured);
+    }
+
+    /// Rate and acceleration of a joint's drive, on the joint's side.
+    pub(super) fn drive_mut(&mut self, joint: usize) -> [&mut Vec<f64>; 2] {
+        match &mut self.motor[joint] {
+            Some([_, rates, accelerations]) => [rates, accelerations],
+            None => [&mut self.qd[joint], &mut self.qdd[joint]],
+        }
+    }
+
+    /// The motion with another error of its encoders.
+    pub fn disturbed(&self) -> Self {
+        let mut other = self.clone();
+        let cells = self.samples() / self.rows.within;
+        let h = self.log_step_s;
+        let added = |noise: &[f64]| {
+            let edge = (noise.len() - cells) / 2;
+            let of = |of: &dyn Fn(usize) -> f64| {
+                between(&(edge..edge + cells).map(of).collect::<Vec<f64>>(), self.rows.within)
+            };
+            let rates = of(&|k| rate(noise, k) / h);
+            [of(&|k| noise[k]), rates, of(&|k| acceleration(noise, k) / (h * h))]
+        };
+        for (joint, noise) in self.position_noise.iter().enumerate() {
+            let [position, rates, accelerations] = added(noise);
+            add(&mut other.q[joint], &position);
+            add(&mut other.qd[joint], &rates);
+            add(&mut other.qdd[joint], &accelerations);
+            let motor = other.motor[joint].iter_mut().flatten();
+            let noise = Some(&self.motor_noise[joint]).filter(|noise| !noise.is_empty());
+            let noise = noise.into_iter().flat_map(|noise| added(noise));
+            motor.zip(noise).for_each(|(signal, noise)| add(signal, &noise));
+            other.rest(joint);
+        }
+        other
+    }
+
+    /// Gives a joint other positions, with the rates and accelerations that the difference adds.
+    pub fn move_joint(&mut self, joint: usize, positions: &[f64]) {
+        let h = self.log_step_s;
+        let cells: Vec<f64> = positions.iter().zip(&self.q[joint]).map(|(a, b)| a - b).collect();
+        let cells = self.cell_means(&cells);
+        let count = cells.len();
+        // At the ends, which the rows leave out, the difference rests.
+        let inner = STENCIL..count.saturating_sub(STENCIL);
+        let of = |value: &dyn Fn(usize) -> f64| {
+            let all = (0..count).map(|k| if inner.contains(&k) { value(k) } else { 0.0 });
+            between(&all.collect::<Vec<f64>>(), self.rows.within)
+        };
+        add(&mut self.qd[joint], &of(&|k| rate(&cells, k) / h));
+        add(&mut self.qdd[joint], &of(&|k| acceleration(&cells, k) / (h * h)));
+        self.q[joint] = positions.to_vec();
+        self.rest(joint);
+    }
+
+    /// The motion at one cell in so many, for a first look: laws cost less there. Rows are the
+    /// same.
+    pub fn coarse(&self) -> Option<Self> {
+        let Rows { range, stride, within } = &self.rows;
+        let thin = (stride / 2).max(1);
+        let coarse = self.log_step_s * thin as f64;
+        let thinned = |signal: &Vec<f64>| -> Vec<f64> {
+            signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
+        };
+        let all = |signals: &[Vec<f64>]| signals.iter().map(thinned).collect();
+        let filter = Butterworth::new(ORDER, self.torque_hz, coarse)?;
+        let rows = Rows {
+            range: range.start / thin..range.end.div_ceil(thin),
+            stride: stride / thin,
+            within: 1,
+        };
+        let mut found = Self {
+            file: self.file.clone(),
+            log_step_s: coarse,
+            step_s: coarse,
+            torque_hz: self.torque_hz,
+            t: thinned(&self.t),
+            q: all(&self.q),
+            qd: all(&self.qd),
+            qdd: all(&self.qdd),
+            motor: self
+                .motor
+                .iter()
+                .map(|m| m.as_ref().map(|m| m.each_ref().map(thinned)))
+                .collect(),
+            rests: self.rests.clone(),
+            position_noise: Vec::new(),
+            motor_noise: Vec::new(),
+            torque: Vec::new(),
+            measured: self
+                .measured
+                .iter()
+                .map(|m| m.as_ref().map(|m| m.iter().step_by(thin).copied().collect()))
+                .collect(),
+            whole: Some(Rc::new(self.clone())),
+            rows,
+            filter,
+        };
+        (0..found.joints()).for_each(|joint| found.rest(joint));
+        (stride % thin == 0 && found.rows() == self.rows()).then_some(found)
+    }
+
+    /// The motion at a few of its samples, of which there are no rows.
+    pub(super) fn at(&self, samples: &[usize]) -> Self {
+        let at = |signal: &Vec<f64>| samples.iter().map(|&k| signal[k]).collect::<Vec<f64>>();
+        let all = |signals: &[Vec<f64>]| signals.iter().map(at).collect();
+        Self {
+            t: at(&self.t),
+            q: all(&self.q),
+            qd: all(&self.qd),
+            qdd: all(&self.qdd),
+            motor: self.motor.iter().map(|m| m.as_ref().map(|m| m.each_ref().map(at))).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The motion at the full rate, of which this is a coarse view or all.
+    pub(super) fn whole(&self) -> &Self {
+        self.whole.as_deref().unwrap_or(self)
+    }
+
+    /// What a signal of the whole motion is at the samples of this one: means, since a coarse view
+    /// must not mistake fast changes for slow ones.
+    pub(super) fn of_whole(&self, signal: Vec<f64>) -> Vec<f64> {
+        let Some(whole) = &self.whole else { return signal };
+        let within = whole.rows.within;
+        let by = within * (self.step_s / whole.log_step_s).round() as usize;
+        let mean = |k: usize| {
+            let middle = within / 2 + k * by;
+            let from = middle.saturating_sub(by / 2);
+            let own = &signal[from..(middle + by.div_ceil(2)).min(signal.len())];
+            own.iter().sum::<f64>() / own.len() as f64
+        };
+        (0..self.samples()).map(mean).collect()
+    }
+
+    /// What a signal of the fine motion is in this coarse one.
+    pub fn thinned(&self, fine: &Self, signal: &[f64]) -> Vec<f64> {
+        let within = fine.rows.within;
+        let thin = (self.step_s / fine.log_step_s).round() as usize;
+        signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
+    }
+
+    /// Rate and acceleration of a joint's drive, on the joint's side: those of the joint, unless a
+    /// spring is between them.
+    pub fn of_drive(&self, joint: usize) -> [&Vec<f64>; 2] {
+        match &self.motor[joint] {
+            Some([_, rates, accelerations]) => [rates, accelerations],
+            None => [&self.qd[joint], &self.qdd[joint]],
+        }
+    }
+
+    /// How far the motor of a joint behind a spring is ahead of it, and the rate of that.
+    pub fn deflection(&self, joint: usize) -> Option<[Vec<f64>; 2]> {
+        let [position, rates, _] = self.motor[joint].as_ref()?;
+        let less = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        Some([less((position, &self.q[joint])), less((rates, &self.qd[joint]))])
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.q.len()
+    }
+
+    /// Number of samples of the motion.
+    pub fn samples(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Number of rows of a joint.
+    pub fn rows(&self) -> usize {
+        self.rows.range.len().div_ceil(self.rows.stride)
+    }
+
+    /// The time between rows \[s\].
+    pub fn row_step_s(&self) -> f64 {
+        self.log_step_s * self.rows.stride as f64
+    }
+
+    /// What a signal of the motion's samples is in the rows: filtered, and fewer.
+    pub fn rows_of(&self, signal: &[f64]) -> Vec<f64> {
+        self.row_samples(&self.filtered(self.cell_means(signal)))
+    }
+
+    /// White noise at the log's samples, through the filter, in the rows.
+    pub(super) fn white_rows(&self, mut draw: impl FnMut() -> f64) -> Vec<f64> {
+        let noise = (0..self.samples() / self.rows.within).map(|_| draw()).collect();
+        self.row_samples(&self.filtered(noise))
+    }
+
+    /// A signal of the log's samples through the filter of torques.
+    pub fn filtered(&self, mut signal: Vec<f64>) -> Vec<f64> {
+        self.filter.zero_phase(&mut signal);
+        signal
+    }
+
+    /// The torque of a joint as it was measured, at the samples of the motion.
+    pub(super) fn measured_within(&self, joint: usize) -> Option<Vec<f64>> {
+        Some(self.in_cells(self.measured.get(joint)?.as_ref()?))
+    }
+
+    /// What the measured torque of a joint has more than before a delay \[s\], and the rate of the
+    /// torque without it, at the samples of the motion; none where none was measured.
+    pub(super) fn undelayed_within(&self, joint: usize, delay_s: f64) -> Option<[Vec<f64>; 2]> {
+        let measured = self.measured.get(joint)?.as_ref()?;
+        let (late, last) = (delay_s / self.log_step_s, measured.len() as f64 - 1.0);
+        let at = |k: f64| {
+            let place = (k + late).clamp(0.0, last);
+            let from = place.floor() as isize;
+            let ends = |offset: isize| measured[(from + offset).clamp(0, last as isize) as usize];
+            cubic([-1, 0, 1, 2].map(ends), place - from as f64)
+        };
+        let ahead: Vec<f64> = (0..measured.len()).map(|k| at(k as f64)).collect();
+        let added = measured.iter().zip(&ahead).map(|(late, ahead)| late - ahead).collect();
+        let rate = derivative(&ahead, self.log_step_s);
+        Some([added, rate].map(|signal: Vec<f64>| self.in_cells(&signal)))
+    }
+
+    /// A signal of the log's samples at those of the motion, each in its cell.
+    fn in_cells(&self, signal: &[f64]) -> Vec<f64> {
+        let cell = |value: &f64| std::iter::repeat_n(*value, self.rows.within);
+        signal.iter().flat_map(cell).collect()
+    }
+
+    /// The mean of a signal of the motion in each cell.
+    pub fn cell_means(&self, signal: &[f64]) -> Vec<f64> {
+        let within = self.rows.within;
+        signal.chunks_exact(within).map(|cell| cell.iter().sum::<f64>() / within as f64).collect()
+    }
+
+    /// A signal of the motion at the rows, as it is.
+    pub fn at_rows(&self, signal: &[f64]) -> Vec<f64> {
+        self.row_samples(&self.cell_means(signal))
+    }
+
+    fn row_samples(&self, signal: &[f64]) -> Vec<f64> {
+        signal[self.rows.range.clone()].iter().copied().step_by(self.rows.stride).collect()
+    }
+
+    /// The share of the deviation of white noise that passes the filter.
+    pub fn noise_gain(&self) -> f64 {
+        let reach = 2 * self.filter.settling();
+        let mut impulse = vec![0.0; 2 * reach + 1];
+        impulse[reach] = 1.0;
+        self.filter.zero_phase(&mut impulse);
+        impulse.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+}
+
+fn add(signal: &mut [f64], other: &[f64]) {
+    signal.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_delay_that_is_undone_leaves_the_torque_before_it() {
+        let (step_s, delay_s, rate) = (0.002, 0.0173, TAU * 1.3);
+        let q: Vec<f64> = (0..6000).map(|k| (rate * step_s * f64::from(k)).sin()).collect();
+        let late = (0..6000).map(|k| (rate * (step_s * f64::from(k) - delay_s)).sin());
+        let joint = JointSignals { tau: Some(late.collect()), q, ..JointSignals::default() };
+        let (file, joints) = ("made".to_owned(), vec![joint]);
+        let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
+        let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
+        let [added, slope] = signals.undelayed_within(0, delay_s).expect("measured");
+        let [q, added, slope] = [&signals.q[0], &added, &slope].map(|all| signals.at_rows(all));
+        let t = signals.at_rows(&signals.t);
+        for (k, t) in t.iter().enumerate() {
+            let late = (rate * (t - delay_s)).sin();
+            assert!((late - added[k] - q[k]).abs() < 2e-5, "{t}: {} {}", late - added[k], q[k]);
+            assert!((slope[k] - rate * (rate * t).cos()).abs() < 2e-3 * rate, "{t}");
+        }
+    }
+
+    /// A torque that a signal of the motion explains whole, seen from all sides: rows of the log,
+    /// of the motion, and of a coarse view of it.
+    #[test]
+    fn rows_of_log_motion_and_coarse_view_agree() {
+        let step_s = 0.002;
+        let at = |k: usize| (TAU * 1.3 * step_s * k as f64).sin();
+        let q: Vec<f64> = (0..6000).map(at).collect();
+        let joint = JointSignals { tau: Some(q.clone()), q, ..JointSignals::default() };
+        let (file, joints) = ("made".to_owned(), vec![joint]);
+        let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
+        let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
+        let coarse = signals.coarse().expect("there is something to save");
+        let measured = signals.torque[0].as_ref().expect("measured");
+        let rows = signals.rows_of(&signals.q[0]);
+        let seen = coarse.rows_of(&coarse.q[0]);
+        assert_eq!((rows.len(), seen.len()), (measured.len(), measured.len()));
+        for ((a, b), c) in measured.iter().zip(&rows).zip(&seen) {
+            assert!((a - b).abs() < 1e-4 && (a - c).abs() < 1e-3, "{a} {b} {c}");
+        }
+        let rate = TAU * 1.3;
+        let steepest = signals.qd[0].iter().fold(0.0_f64, |most, qd| most.max(qd.abs()));
+        assert!((steepest - rate).abs() < 1e-3 * rate, "{steepest} {rate}");
+    }
+}

@@ -1,0 +1,22 @@
+//! What a model lacks.
+
+mod alias;
+mod elastic;
+mod held;
+mod laws;
+mod motion;
+mod one_joint;
+mod saturation;
+mod search;
+mod separate;
+mod separate_elastic;
+mod transmission;
+
+use denavit_codegen::model::{self, Robot};
+use denavit_plants::shipped;
+
+/// A shipped robot.
+fn robot(name: &str) -> Robot {
+    let shipped = shipped::find(name).expect("a shipped model");
+    model::read(name, shipped.text.as_bytes()).expect("shipped models are sound")
+}

@@ -1,0 +1,178 @@
+//! The search alone: laws by hand, hidden in motion that is given.
+
+use super::laws::{Handwritten, Sample, kinds};
+use denavit_codegen::regressor::{RegressorOptions, Unknowns};
+use denavit_diagnose::{
+    Candidate, Data, Filters, Gap, NoiseFloor, Nominal, SearchOptions, Setting, Signals, State,
+    Uncertainty, search, share_closed,
+};
+use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_numerics::Random;
+use denavit_plants::regression::RegressionModel;
+use std::f64::consts::TAU;
+
+const STEP_S: f64 = 0.002;
+
+pub(super) fn puma() -> RegressionModel {
+    let robot = super::robot("puma560");
+    let options = RegressorOptions {
+        friction: true,
+        rotor: true,
+        offset: false,
+        only_modelled: true,
+        unknowns: Unknowns::default(),
+    };
+    RegressionModel::new(&robot, options, &[]).expect("a regression")
+}
+
+/// A log of periodic motion, whose torques are those of the rows with phi, and more.
+fn log(
+    model: &RegressionModel,
+    (seed, samples): (u64, usize),
+    phi: &[f64],
+    hidden: impl Fn(usize, Sample) -> f64,
+) -> MeasuredLog {
+    let mut random = Random::new(seed);
+    let n = model.joints.len();
+    let waves: Vec<Vec<[f64; 3]>> = (0..n)
+        .map(|_| {
+            (1..=5)
+                .map(|k| {
+                    let w = TAU * f64::from(k) / 5.0;
+                    [0.5 / f64::from(k) * random.normal(), w, TAU * random.uniform()]
+                })
+                .collect()
+        })
+        .collect();
+    let mut motion = vec![Vec::new(); 3 * n];
+    for k in 0..samples {
+        let t = STEP_S * k as f64;
+        for (joint, waves) in waves.iter().enumerate() {
+            let sum = |f: &dyn Fn(&[f64; 3]) -> f64| waves.iter().map(f).sum::<f64>();
+            motion[joint].push(sum(&|[a, w, p]| a * (w * t + p).sin()));
+            motion[n + joint].push(sum(&|[a, w, p]| a * w * (w * t + p).cos()));
+            motion[2 * n + joint].push(sum(&|[a, w, p]| -a * w * w * (w * t + p).sin()));
+        }
+    }
+    let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+    let mut rows = denavit_plants::regression::RegressionRows::default();
+    model.evaluator().evaluate(&columns, &mut rows).expect("columns");
+    let mut joints = Vec::new();
+    for joint in 0..n {
+        let own: Vec<f64> = model.pattern()[joint].iter().map(|&place| phi[place]).collect();
+        let mut torque = vec![0.0; samples];
+        rows.torque(joint, &own, &mut torque);
+        let noise = 0.01 * denavit_diagnose::rms(&torque);
+        for (k, torque) in torque.iter_mut().enumerate() {
+            let at = |part: usize| motion[part * n + joint][k];
+            let load = *torque;
+            let sample = Sample { q: at(0), qd: at(1), qdd: at(2), load, load_rate: 0.0 };
+            *torque += hidden(joint, sample) + noise * random.normal();
+        }
+        let q = motion[joint].iter().map(|q| (q * 20_000.0).round() / 20_000.0).collect();
+        joints.push(JointSignals {
+            q,
+            tau: Some(torque),
+            step: Some(1.0 / 20_000.0),
+            ..JointSignals::default()
+        });
+    }
+    MeasuredLog { file: "made".to_owned(), step_s: STEP_S, joints, ..MeasuredLog::default() }
+}
+
+pub(super) fn puma_log(model: &RegressionModel, phi: &[f64]) -> MeasuredLog {
+    log(model, (3, 3000), phi, |_, _| 0.0)
+}
+
+fn candidates(model: &RegressionModel) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    for (joint, described) in model.joints.iter().enumerate() {
+        for (name, parameters, at) in kinds() {
+            all.push(Candidate {
+                effect: name.to_owned(),
+                title: name.to_owned(),
+                at: described.name.clone(),
+                joint: Some(joint),
+                is_body: false,
+                law: Box::new(Handwritten { parameters, joint, at }),
+            });
+        }
+    }
+    all
+}
+
+/// The names that are found where `hidden` is in the data, and the share of a joint's gap that is
+/// closed.
+fn found(
+    hidden: impl Fn(usize, Sample) -> f64,
+    (seed, joint): (u64, usize),
+) -> (Vec<String>, Option<f64>) {
+    let model = puma();
+    let nominal = Nominal::new(&model, Uncertainty::default());
+    let mut random = Random::new(seed);
+    let truth: Vec<f64> = (0..nominal.len()).map(|_| random.normal().clamp(-0.9, 2.0)).collect();
+    let phi = nominal.phi(&truth);
+    let filters = Filters::new(STEP_S, 0.03);
+    let read =
+        |seed| Signals::new(log(&model, (seed, 7500), &phi.axes, &hidden), filters).expect("long");
+    let (train, held_out) = (read(seed + 1), read(seed + 2));
+    let [train, held_out] = [train, held_out].map(|log| Data::new(&nominal, vec![log]));
+    let candidates = candidates(&model);
+    let floors = |data: &Data<'_>| NoiseFloor::of_logs(&nominal, &data.signals);
+    let (train_floor, held_out_floor) = (floors(&train), floors(&held_out));
+    let setting = Setting {
+        train: &train,
+        held_out: &held_out,
+        candidates: &candidates,
+        given: Vec::new(),
+        moved: None,
+        coarse: train.signals.iter().map(Signals::coarse).collect(),
+        train_floor: &train_floor,
+        held_out_floor: &held_out_floor,
+    };
+    let outcome = search(&setting, &SearchOptions::default(), &mut |_| ());
+    for step in &outcome.steps {
+        eprintln!("{} {step:?}", candidates[step.added].name());
+    }
+    let taken = outcome.after.taken.iter();
+    let names = taken.map(|one| candidates[one.candidate].name()).collect();
+    let [_, trust] = outcome.after.trust();
+    let floor = Gap::of_floor(&held_out, &held_out_floor, &trust);
+    let gap = |state: &State| Gap::new(&held_out, &state.held_out_residual, &trust);
+    let (before, after) = (gap(&outcome.before), gap(&outcome.after));
+    let at = |gap: &Gap| gap.per_joint[joint].expect("measured");
+    (names, share_closed(at(&before), at(&after), at(&floor)))
+}
+
+#[test]
+fn a_hidden_law_is_named() {
+    let (names, share) = found(
+        |joint, s| {
+            if joint == 2 { 1.5 * (-(s.qd / 0.1).powi(2)).exp() * s.qd.signum() } else { 0.0 }
+        },
+        (7, 2),
+    );
+    assert_eq!(names, ["stribeck at elbow"]);
+    assert!(share.is_some_and(|share| share > 0.9), "{share:?}");
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is_hidden() {
+    let (names, _) = found(|_, _| 0.0, (21, 2));
+    assert_eq!(names, [""; 0]);
+}
+
+#[test]
+fn two_laws_are_named() {
+    let (mut names, share) = found(
+        |joint, s| match joint {
+            2 => 1.5 * (-(s.qd / 0.1).powi(2)).exp() * s.qd.signum(),
+            4 => 0.8 * s.qd * s.qd.abs(),
+            _ => 0.0,
+        },
+        (40, 4),
+    );
+    names.sort();
+    assert_eq!(names, ["quadratic_drag at wrist_pitch", "stribeck at elbow"]);
+    assert!(share.is_some_and(|share| share > 0.9), "{share:?}");
+}

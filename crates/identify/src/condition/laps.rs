@@ -1,0 +1,357 @@
+//! Motion that repeats: its period, the mean of its laps, and the noise that laps show.
+
+use super::ConditionError;
+
+/// Samples that a search for the period looks at, at most.
+const SEARCHED: usize = 4000;
+
+/// The share of a signal's variance by which laps may differ.
+const REPEATS: f64 = 0.02;
+
+/// The fewest samples of a lap.
+const FEWEST: f64 = 8.0;
+
+/// Times that a period is put right.
+const ROUNDS: usize = 20;
+
+/// Change of a period, in samples, that is none.
+const SETTLED: f64 = 1e-9;
+
+/// Samples that a period may lack in digits.
+const DIGITS: f64 = 0.99;
+
+/// Laps of a log. A period is hardly ever a whole number of samples: were it rounded, laps would
+/// drift apart by up to half a sample each, and the seam of the mean lap would be a jump. A mean
+/// lap therefore has its samples at a distance of its own, of which a lap holds a whole number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Laps {
+    /// The first sample of the first lap.
+    pub start: usize,
+    /// Samples of the log in a lap, with their fraction.
+    pub period: f64,
+    /// Samples of the mean lap.
+    pub samples: usize,
+    /// Number of laps.
+    pub count: usize,
+}
+
+/// Joints whose variance is a smaller share of the largest one do not say whether laps repeat.
+const MOVES: f64 = 1e-4;
+
+/// Samples on either side that a value between two samples is found from.
+const REACH: usize = 3;
+
+/// A signal between its samples: the polynomial of fifth degree through the six next to a place,
+/// of which at least three must be on either side. Below a tenth of the rate of sampling, where the
+/// filter cuts, it is off by less than 0.1 %.
+fn between(signal: &[f64], place: f64) -> f64 {
+    let first = place.floor();
+    let (at, x) = (first as usize, place - first);
+    if x == 0.0 {
+        return signal[at];
+    }
+    let nodes = [-2.0, -1.0, 0.0, 1.0, 2.0, 3.0];
+    let weight = |own: f64| {
+        let others = nodes.iter().filter(|other| **other != own);
+        others.map(|other| (x - other) / (own - other)).product::<f64>()
+    };
+    nodes.iter().enumerate().map(|(k, &own)| weight(own) * signal[at + k - 2]).sum()
+}
+
+/// Places at which a motion is compared with itself a lag later: the range and the stride.
+#[derive(Clone, Copy)]
+struct Compared<'a> {
+    /// Positions of the joints that move, with their variances.
+    moving: &'a [(&'a [f64], f64)],
+    start: usize,
+    end: usize,
+    stride: usize,
+}
+
+impl<'a> Compared<'a> {
+    /// Places within a range, of which values between samples need some on either side.
+    fn new(moving: &'a [(&'a [f64], f64)], (start, end): (usize, usize), stride: usize) -> Self {
+        let length = moving.first().map_or(0, |(q, _)| q.len());
+        let inner = (start.max(REACH), end.min(length.saturating_sub(REACH)));
+        Self { moving, start: inner.0, end: inner.1, stride }
+    }
+
+    /// The places whose counterpart is between samples that there are.
+    fn places(&self, lag: f64) -> impl Iterator<Item = usize> + use<> {
+        let last = self.end.saturating_sub(lag.ceil() as usize);
+        (self.start..last).step_by(self.stride)
+    }
+
+    /// The largest share of a joint's variance by which its position differs from itself a lag
+    /// later.
+    fn misfit(&self, lag: f64) -> f64 {
+        let of_joint = |(q, variance): &(&[f64], f64)| {
+            let (mut sum, mut count) = (0.0, 0);
+            for k in self.places(lag) {
+                sum += (between(q, k as f64 + lag) - q[k]).powi(2);
+                count += 1;
+            }
+            sum / (2.0 * f64::from(count.max(1)) * variance)
+        };
+        self.moving.iter().map(of_joint).fold(0.0, f64::max)
+    }
+
+    /// The lag near a given one with which the motion fits itself best, by Gauss and Newton: at
+    /// most a sample away.
+    fn refined(&self, lag: f64) -> f64 {
+        let mut best = lag;
+        for _ in 0..ROUNDS {
+            let (mut product, mut squares) = (0.0, 0.0);
+            for (q, variance) in self.moving {
+                for k in self.places(best) {
+                    let place = k as f64 + best;
+                    let miss = q[k] - between(q, place);
+                    let at = place.floor() as usize;
+                    let slope = q[at + 1] - q[at];
+                    product += slope * miss / variance;
+                    squares += slope * slope / variance;
+                }
+            }
+            if squares <= 0.0 {
+                return lag;
+            }
+            let next = (best + product / squares).clamp(lag - 1.0, lag + 1.0);
+            let change = (next - best).abs();
+            best = next;
+            if change < SETTLED {
+                break;
+            }
+        }
+        if self.misfit(best) < self.misfit(lag) { best } else { lag }
+    }
+}
+
+/// Positions of joints that move, with their variances between two samples.
+fn moving(positions: &[Vec<f64>], (start, end): (usize, usize)) -> Vec<(&[f64], f64)> {
+    let all = positions.iter().map(|q| (q.as_slice(), variance(&q[start..end])));
+    let all: Vec<(&[f64], f64)> = all.collect();
+    let most = all.iter().map(|(_, variance)| *variance).fold(0.0, f64::max);
+    all.into_iter().filter(|(_, variance)| *variance > MOVES * most).collect()
+}
+
+impl Laps {
+    /// Laps of a given period, with which the positions must repeat. What it lacks in digits is
+    /// found, as long as that is less than a sample in a lap.
+    pub fn given(
+        positions: &[Vec<f64>],
+        (period_s, step_s): (f64, f64),
+        (start, end): (usize, usize),
+    ) -> Result<Self, ConditionError> {
+        let period = period_s / step_s;
+        let laps = Self::of_period(period, step_s, (start, end))?;
+        let moving = moving(positions, (start, end));
+        let stride = (end - start).div_ceil(SEARCHED).max(1);
+        let compared = Compared::new(&moving, (start, end), stride);
+        // the best one may be further away than what digits leave open
+        let away = compared.refined(laps.period) - laps.period;
+        let period = refined(&compared, laps.period, laps.count);
+        let misfit = compared.misfit(period);
+        match misfit < REPEATS {
+            true if away.abs() >= DIGITS => {
+                Err(ConditionError::OtherPeriod { period_s, longer: away > 0.0 })
+            }
+            true => Self::of_period(period, step_s, (start, end)),
+            false => Err(ConditionError::NotRepeated { period_s, misfit }),
+        }
+    }
+
+    /// Laps of a period in samples from sample `start` on.
+    fn of_period(
+        period: f64,
+        step_s: f64,
+        (start, end): (usize, usize),
+    ) -> Result<Self, ConditionError> {
+        let period_s = period * step_s;
+        if !(period >= FEWEST && period.is_finite()) {
+            return Err(ConditionError::ShortPeriod { period_s, step_s });
+        }
+        match ((end - start) as f64 / period + 1e-9).floor() as usize {
+            count @ 2.. => Ok(Self { start, period, samples: period.round() as usize, count }),
+            _ => Err(ConditionError::OneLap { period_s }),
+        }
+    }
+
+    /// The shortest period with which all joints repeat, found by comparing the positions with
+    /// themselves.
+    pub fn find(
+        positions: &[Vec<f64>],
+        step_s: f64,
+        (start, end): (usize, usize),
+    ) -> Result<Self, ConditionError> {
+        let samples = end - start;
+        let stride = samples.div_ceil(SEARCHED).max(1);
+        let moving = moving(positions, (start, end));
+        if moving.is_empty() {
+            return Err(ConditionError::NoPeriod);
+        }
+        let compared = Compared::new(&moving, (start, end), stride);
+        // From the first lag at which the motion has become another one.
+        let lags = (1..samples / 2 / stride).map(|lag| lag * stride);
+        let mut left = false;
+        let mut best: Option<(usize, f64)> = None;
+        for lag in lags {
+            let here = compared.misfit(lag as f64);
+            left |= here > 0.2;
+            if left && here < REPEATS && best.is_none_or(|(_, least)| here < least) {
+                best = Some((lag, here));
+            } else if best.is_some_and(|(found, _)| lag > found + found / 10) {
+                break;
+            }
+        }
+        let (near, _) = best.ok_or(ConditionError::NoPeriod)?;
+        let nearby = near.saturating_sub(2 * stride).max(1)..=near + 2 * stride;
+        let lag = nearby
+            .filter(|&lag| 2 * lag <= samples)
+            .map(|lag| (lag, compared.misfit(lag as f64)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or(near, |(lag, _)| lag);
+        let count = samples / lag;
+        let period = refined(&compared, lag as f64, count);
+        Self::of_period(period, step_s, (start, end))
+    }
+
+    /// The distance of the mean lap's samples, in those of the log.
+    pub fn distance(&self) -> f64 {
+        self.period / self.samples as f64
+    }
+
+    /// The mean lap of a signal, which must have three more samples on either side, and the
+    /// standard deviation of one sample about it.
+    pub fn mean(&self, signal: &[f64]) -> (Vec<f64>, f64) {
+        let Self { start, period, samples, count } = *self;
+        let distance = self.distance();
+        let at = |lap: usize, k: usize| {
+            let place = start as f64 + lap as f64 * period + k as f64 * distance;
+            // what is whole but for rounding needs no neighbours
+            let near = place.round();
+            let place = if (place - near).abs() < 1e-6 { near } else { place };
+            between(signal, place)
+        };
+        let mean: Vec<f64> = (0..samples)
+            .map(|k| (0..count).map(|lap| at(lap, k)).sum::<f64>() / count as f64)
+            .collect();
+        let squares: f64 = (0..count)
+            .flat_map(|lap| (0..samples).map(move |k| (lap, k)))
+            .map(|(lap, k)| (at(lap, k) - mean[k]).powi(2))
+            .sum();
+        (mean, (squares / ((count - 1) * samples) as f64).sqrt())
+    }
+}
+
+/// A period to more digits: over two laps, four and so on what it lacks adds up.
+fn refined(compared: &Compared<'_>, period: f64, count: usize) -> f64 {
+    let mut period = period;
+    let mut laps = 1;
+    while laps < count.max(2) {
+        let lag = period * laps as f64;
+        if lag + (4 * REACH) as f64 > 0.9 * (compared.end - compared.start) as f64 {
+            break;
+        }
+        period = compared.refined(lag) / laps as f64;
+        laps *= 2;
+    }
+    period
+}
+
+fn variance(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn two_harmonics(period: f64, samples: usize) -> Vec<f64> {
+        let at = |k: usize| {
+            let angle = TAU * k as f64 / period;
+            angle.sin() + 0.4 * (3.0 * angle).cos()
+        };
+        (0..samples).map(at).collect()
+    }
+
+    #[test]
+    fn the_period_of_two_harmonics_is_found() {
+        let signal = two_harmonics(640.0, 2700);
+        let laps = Laps::find(&[signal], 1e-3, (20, 2680)).expect("it repeats");
+        assert_eq!((laps.samples, laps.count), (640, 4));
+        assert!((laps.period - 640.0).abs() < 1e-6, "{}", laps.period);
+    }
+
+    /// Neither a period that is found nor one that is given to few digits is rounded to samples.
+    #[test]
+    fn periods_have_fractions_of_samples() {
+        for period in [628.318, 62.831_853, 40.5] {
+            let positions = [two_harmonics(period, 6000)];
+            let span = (20, 5980);
+            let rounded = (period * 10.0_f64).round() / 10.0;
+            let found = Laps::find(&positions, 1e-3, span).expect("it repeats");
+            let given = Laps::given(&positions, (1e-3 * rounded, 1e-3), span).expect("it repeats");
+            for laps in [found, given] {
+                assert!((laps.period - period).abs() < 1e-4, "{} {period}", laps.period);
+                let (mean, noise) = laps.mean(&positions[0]);
+                assert!(noise < 1e-3, "{period}: {noise}");
+                // the seam is none
+                let bend = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs();
+                let inside = mean.windows(3).map(|one| bend(one[0], one[1], one[2]));
+                let most = inside.fold(0.0, f64::max);
+                let n = laps.samples;
+                for seam in
+                    [bend(mean[n - 2], mean[n - 1], mean[0]), bend(mean[n - 1], mean[0], mean[1])]
+                {
+                    assert!(seam < 1.1 * most, "{period}: {seam} {most}");
+                }
+            }
+        }
+    }
+
+    /// Laps of 640 samples are none of 600; a joint that rests but for noise has no say.
+    #[test]
+    fn a_period_with_which_nothing_repeats_is_refused() {
+        let mut random = denavit_numerics::Random::new(3);
+        let noise: Vec<f64> = (0..2700).map(|_| 1e-4 * random.normal()).collect();
+        let positions = [two_harmonics(640.0, 2700), noise];
+        let given = |period_s: f64| Laps::given(&positions, (period_s, 1e-3), (20, 2680));
+        assert_eq!(given(0.64).map(|laps| laps.count), Ok(4));
+        for wrong in [0.6, 0.32, 0.7] {
+            let refused = matches!(given(wrong), Err(ConditionError::NotRepeated { .. }));
+            assert!(refused, "{wrong}: {:?}", given(wrong));
+        }
+    }
+
+    /// Laps that are 0.3 to 0.6 % off repeat to 2 % of the variance, but have a seam.
+    #[test]
+    fn a_period_that_is_off_by_samples_is_refused() {
+        let positions = [two_harmonics(640.0, 2700)];
+        let given = |period_s: f64| Laps::given(&positions, (period_s, 1e-3), (20, 2680));
+        for (wrong, is_longer) in [(0.638, true), (0.6425, false), (0.644, false)] {
+            let expected = ConditionError::OtherPeriod { period_s: wrong, longer: is_longer };
+            assert_eq!(given(wrong), Err(expected));
+        }
+        assert!(given(0.6405).is_ok());
+    }
+
+    #[test]
+    fn what_never_repeats_has_no_period() {
+        let slope: Vec<f64> = (0..1000).map(f64::from).collect();
+        assert_eq!(Laps::find(&[slope], 1e-3, (0, 1000)), Err(ConditionError::NoPeriod));
+    }
+
+    #[test]
+    fn laps_show_the_noise_of_a_sample() {
+        let mut random = denavit_numerics::Random::new(3);
+        let noisy: Vec<f64> =
+            two_harmonics(500.0, 5000).into_iter().map(|x| x + 0.1 * random.normal()).collect();
+        let laps = Laps { start: 0, period: 500.0, samples: 500, count: 10 };
+        let (mean, noise) = laps.mean(&noisy);
+        assert!((noise - 0.1).abs() < 0.005, "{noise}");
+        let clean = two_harmonics(500.0, 500);
+        assert!(mean.iter().zip(&clean).all(|(a, b)| (a - b).abs() < 0.2));
+    }
+}

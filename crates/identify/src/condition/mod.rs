@@ -1,0 +1,474 @@
+//! From what was measured to what is regressed: filtered, differentiated, decimated.
+//!
+//! Both sides of tau = Y(q, qd, qdd) phi go through the same filters. Positions and torques pass
+//! one zero-phase low-pass filter, which makes derivatives possible; the torques and the columns
+//! of Y then pass the same decimator, which is linear and so keeps the equation.
+
+mod butterworth;
+mod decimate;
+mod derivatives;
+mod laps;
+mod noise;
+mod overlap;
+mod pieces;
+mod reversals;
+
+pub use butterworth::Butterworth;
+pub use decimate::Decimator;
+pub use laps::Laps;
+pub use noise::Encoder;
+pub(crate) use pieces::Piece;
+
+use super::log::{JointSignals, MeasuredLog};
+use denavit_numerics::short;
+use std::fmt;
+use std::ops::Range;
+
+/// Where rates and accelerations come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Derivatives {
+    /// Central differences of sixth order of the filtered positions.
+    #[default]
+    Central,
+    /// Those of the log.
+    Logged,
+}
+
+/// A low-pass filter, applied forwards and backwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filter {
+    /// Of one pass.
+    pub order: usize,
+    /// Where one pass halves the power \[Hz\].
+    pub cutoff_hz: f64,
+}
+
+/// Which laps are averaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Averaging {
+    /// None.
+    #[default]
+    No,
+    /// Laps of this period \[s\].
+    Period(f64),
+    /// Laps of the period that is found.
+    Found,
+}
+
+/// How a log is conditioned.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Conditioning {
+    /// The filter of positions and torques; none leaves them as they are.
+    pub filter: Option<Filter>,
+    /// Where rates and accelerations come from.
+    pub derivatives: Derivatives,
+    /// One sample in so many is left; 0 and 1 leave all.
+    pub decimation: usize,
+    /// Whether laps are averaged.
+    pub averaging: Averaging,
+    /// The step of encoders whose steps cannot be seen in the log [rad, m].
+    pub resolution: Option<f64>,
+}
+
+/// Why a log cannot be conditioned.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConditionError {
+    /// The cutoff is not below half the rate of sampling, or the order not from 1 to 10.
+    Cutoff {
+        /// The cutoff \[Hz\].
+        cutoff_hz: f64,
+        /// Half the rate of sampling \[Hz\].
+        nyquist_hz: f64,
+    },
+    /// Too few samples for this filter and decimation, whose edges are cut.
+    TooShort {
+        /// Samples of the log.
+        samples: usize,
+        /// The fewest that leave something.
+        needed: usize,
+    },
+    /// The rates or accelerations of this joint were not logged.
+    NoRates(String),
+    /// A period has too few samples.
+    ShortPeriod {
+        /// The period \[s\].
+        period_s: f64,
+        /// The distance of samples \[s\].
+        step_s: f64,
+    },
+    /// There is no second lap to average with.
+    OneLap {
+        /// The period \[s\].
+        period_s: f64,
+    },
+    /// No joint moves further than its noise.
+    NothingMoves,
+    /// The motion does not repeat.
+    NoPeriod,
+    /// The motion does not repeat with this period.
+    NotRepeated {
+        /// The period \[s\].
+        period_s: f64,
+        /// The share of a joint's variance by which laps differ.
+        misfit: f64,
+    },
+    /// The motion repeats better with a period that is samples away from this one.
+    OtherPeriod {
+        /// The period \[s\].
+        period_s: f64,
+        /// Whether the better one is longer.
+        longer: bool,
+    },
+    /// A logged column is not the derivative of the positions that it is named after.
+    NotTheDerivative {
+        /// The column.
+        column: String,
+        /// What it is times the derivative, by least squares.
+        factor: f64,
+        /// How late it is \[s\].
+        late_s: f64,
+    },
+}
+
+impl fmt::Display for ConditionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cutoff { cutoff_hz, nyquist_hz } => write!(
+                f,
+                "no filter of order 1 to 10 has its cutoff at {} Hz: half the rate of \
+                 sampling is {} Hz",
+                short(*cutoff_hz),
+                short(*nyquist_hz)
+            ),
+            Self::TooShort { samples, needed } => write!(
+                f,
+                "{samples} rows: this filter cuts the edges off, and at least {needed} rows are \
+                 needed\n  hint: --filter with a higher cutoff, or a lower --decimate, needs fewer"
+            ),
+            Self::NoRates(joint) => {
+                write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
+            }
+            Self::ShortPeriod { period_s, step_s } => {
+                let [period, step] = [*period_s, *step_s].map(short);
+                write!(f, "a period of {period} s has too few samples of {step} s for a lap")
+            }
+            Self::OneLap { period_s } => {
+                write!(f, "the log has no two whole laps of {} s", short(*period_s))
+            }
+            Self::NotRepeated { period_s, misfit } => write!(
+                f,
+                "laps of {} s do not repeat: they differ by {:.0} % of the variance of a joint\n  \
+                 hint: `found` looks for the period; or do not average",
+                short(*period_s),
+                100.0 * misfit
+            ),
+            Self::OtherPeriod { period_s, longer } => write!(
+                f,
+                "laps of {} s do not repeat: the motion repeats with a period that is {} by a \
+                 sample or more\n  hint: `found` looks for the period; or do not average",
+                short(*period_s),
+                if *longer { "longer" } else { "shorter" }
+            ),
+            Self::NotTheDerivative { column, factor, late_s } => write!(
+                f,
+                "`{column}` is not the derivative of the position: it is {factor:.3} times that, \
+                 {late_s:.4} s late\n  hint: --columns scales columns; --rates differences takes \
+                 the derivatives of the positions"
+            ),
+            Self::NothingMoves => write!(
+                f,
+                "no joint moves further than its noise\n  hint: noise is that of the steps of its \
+                 encoder: --resolution in rad or m, if it was given"
+            ),
+            Self::NoPeriod => {
+                write!(f, "the motion does not repeat\n  hint: give its period, or do not average")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ConditionError {}
+
+/// What is regressed: motion and torque, sample by sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conditioned {
+    /// The name of the log.
+    pub file: String,
+    /// The time of sample 0 \[s\].
+    pub start_s: f64,
+    /// The distance of samples, before decimation \[s\].
+    pub step_s: f64,
+    /// Positions of every joint.
+    pub q: Vec<Vec<f64>>,
+    /// Rates and accelerations of every joint; none where they are differences of `q`.
+    pub rates: Option<[Vec<Vec<f64>>; 2]>,
+    /// Required torque of every joint; none where it was not measured.
+    pub torque: Vec<Option<Vec<f64>>>,
+    /// The samples that count: those at the edges depend on what was not measured.
+    pub range: Range<usize>,
+    /// One sample in so many is left.
+    pub decimation: usize,
+    /// The filter that positions and torques went through.
+    pub filter: Option<Butterworth>,
+    /// Standard deviation of the torque of each joint about the mean lap, where there are laps.
+    pub lap_noise: Option<Vec<Option<f64>>>,
+    /// The laps that were found in the log.
+    pub laps: Option<Laps>,
+    /// Deviation of each measured position before the filter, from steps of its encoder or from
+    /// what the log shows; 0 of a joint that rests [rad, m].
+    pub position_noise: Vec<f64>,
+    /// Encoders whose steps make this noise; none where it is white.
+    pub encoders: Vec<Option<Encoder>>,
+    /// Whether each joint moves no further than its noise: its position is taken for constant.
+    pub resting: Vec<bool>,
+}
+
+/// Samples on either side that a derivative looks at.
+pub const STENCIL: usize = 3;
+
+impl Conditioned {
+    /// Conditions a log. It is consumed, since nothing of it is held twice: 16 bytes a joint and
+    /// sample.
+    pub fn new(
+        log: MeasuredLog,
+        names: &[String],
+        how: &Conditioning,
+    ) -> Result<Self, ConditionError> {
+        let MeasuredLog { file, start_s, step_s, joints, .. } = log;
+        let filter = how.filter.map(|filter| lawful(filter, step_s)).transpose()?;
+        let samples = joints.first().map_or(0, |joint| joint.q.len());
+        let logged = how.derivatives == Derivatives::Logged;
+        let mut edge = if logged { 0 } else { STENCIL };
+        edge += filter.as_ref().map_or(0, Butterworth::settling);
+        let decimation = how.decimation.max(1);
+        // before anything of the size of a decimator is made
+        if decimation >= samples {
+            return Err(ConditionError::TooShort { samples, needed: decimation + 1 });
+        }
+        let reach = Decimator::reach_of(decimation);
+        let needed = 2 * (edge + reach) + 8 * decimation;
+        if samples < needed {
+            return Err(ConditionError::TooShort { samples, needed });
+        }
+        let mut found = Self {
+            file,
+            start_s,
+            step_s,
+            range: edge..samples - edge,
+            decimation,
+            ..Self::default()
+        };
+        let mut rates = [Vec::new(), Vec::new()];
+        let of_joint = |joint: &JointSignals| noise::position_noise(joint, how.resolution);
+        (found.position_noise, found.encoders) = joints.iter().map(of_joint).unzip();
+        for (joint, name) in joints.into_iter().zip(names) {
+            let JointSignals { mut q, qd, qdd, mut tau, .. } = joint;
+            if let Some(filter) = &filter {
+                filter.zero_phase(&mut q);
+                if let Some(tau) = &mut tau {
+                    filter.zero_phase(tau);
+                }
+            }
+            if logged {
+                let no_rates = || ConditionError::NoRates(name.clone());
+                for (column, all) in [qd, qdd].into_iter().zip(&mut rates) {
+                    let mut column = column.ok_or_else(no_rates)?;
+                    if let Some(filter) = &filter {
+                        filter.zero_phase(&mut column);
+                    }
+                    all.push(column);
+                }
+            }
+            found.q.push(q);
+            found.torque.push(tau);
+        }
+        found.rates = logged.then_some(rates);
+        found.filter = filter;
+        found.rest();
+        if !found.resting.contains(&false) {
+            return Err(ConditionError::NothingMoves);
+        }
+        found.compare_rates(names)?;
+        found.average(how.averaging)?;
+        Ok(found)
+    }
+
+    /// Replaces laps by their mean: everything once, with the noise that the laps show.
+    fn average(&mut self, averaging: Averaging) -> Result<(), ConditionError> {
+        // values between samples need some on either side
+        let samples = self.q.first().map_or(0, Vec::len);
+        let span = (self.range.start.max(STENCIL), self.range.end.min(samples - STENCIL));
+        let laps = match averaging {
+            Averaging::No => return Ok(()),
+            Averaging::Period(period_s) => Laps::given(&self.q, (period_s, self.step_s), span)?,
+            Averaging::Found => Laps::find(&self.q, self.step_s, span)?,
+        };
+        // A lap goes on as it began, so that its edges can be filtered and differentiated.
+        let edge = STENCIL + self.filter.as_ref().map_or(0, Butterworth::settling);
+        let wrap = edge + Decimator::reach_of(self.decimation);
+        let around = |mean: &[f64]| -> Vec<f64> {
+            let n = mean.len();
+            (0..n + 2 * wrap).map(|k| mean[(k + n * wrap.div_ceil(n) - wrap) % n]).collect()
+        };
+        for q in &mut self.q {
+            *q = around(&laps.mean(q).0);
+        }
+        for column in self.rates.iter_mut().flatten().flatten() {
+            *column = around(&laps.mean(column).0);
+        }
+        let mut noise = Vec::new();
+        for torque in &mut self.torque {
+            let mean = torque.as_ref().map(|torque| laps.mean(torque));
+            noise.push(mean.as_ref().map(|(_, noise)| *noise));
+            *torque = mean.map(|(mean, _)| around(&mean));
+        }
+        self.start_s += laps.start as f64 * self.step_s;
+        // the filter's cutoff, in samples, is as good as the same
+        self.step_s *= laps.distance();
+        self.start_s -= wrap as f64 * self.step_s;
+        self.range = edge..laps.samples + 2 * wrap - edge;
+        self.lap_noise = Some(noise);
+        self.laps = Some(laps);
+        Ok(())
+    }
+
+    /// What torques and columns pass alike. Of motion near its cutoff the first filter leaves less
+    /// than the torque that it goes with, where that is not linear in it: products of rates,
+    /// functions of positions. Below half of it they agree to less than a percent.
+    pub(crate) fn decimator(&self) -> Decimator {
+        let edge = self.filter.as_ref().map_or(0.5, |filter| 0.5 * filter.cutoff());
+        Decimator::new(self.decimation, edge)
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.q.len()
+    }
+
+    /// Samples that are left after decimation.
+    pub fn samples(&self) -> usize {
+        let reach = Decimator::reach_of(self.decimation);
+        let inner = self.range.len().saturating_sub(2 * reach);
+        inner.div_ceil(self.decimation)
+    }
+
+    /// Samples that are left and independent of each other: as many as the band that filter and
+    /// decimator pass has of white noise, about 1.4 in a period of the cutoff.
+    pub(crate) fn independent(&self) -> f64 {
+        (self.noise_gains()[0][0] * self.range.len() as f64).min(self.samples() as f64)
+    }
+
+    /// Periods of the filter's cutoff; pairs of samples without a filter.
+    pub(crate) fn periods(&self) -> f64 {
+        self.range.len() as f64 * self.filter.as_ref().map_or(0.5, Butterworth::cutoff)
+    }
+
+    /// The time of a sample that is left \[s\].
+    pub fn time_s(&self, sample: usize) -> f64 {
+        let reach = Decimator::reach_of(self.decimation);
+        let at = self.range.start + reach + sample * self.decimation;
+        self.start_s + self.step_s * at as f64
+    }
+
+    /// q, qd and qdd of every joint at samples of the log, 3 n columns; `range` must lie within
+    /// [`Conditioned::range`].
+    pub fn motion(&self, range: Range<usize>, columns: &mut Vec<Vec<f64>>) {
+        let n = self.joints();
+        columns.resize(3 * n, Vec::new());
+        for (place, column) in columns.iter_mut().enumerate() {
+            column.clear();
+            column.extend(range.clone().map(|at| self.moved(place % n, place / n, at)));
+        }
+    }
+}
+
+impl Conditioned {
+    /// The position of a joint (order 0), its rate or its acceleration at a place within
+    /// [`Conditioned::range`].
+    pub(crate) fn moved(&self, joint: usize, order: usize, place: usize) -> f64 {
+        let q = &self.q[joint];
+        match (order, &self.rates) {
+            (0, _) => q[place],
+            (_, Some(rates)) => rates[order - 1][joint][place],
+            (1, None) => rate(q, place) / self.step_s,
+            (_, None) => acceleration(q, place) / (self.step_s * self.step_s),
+        }
+    }
+
+    /// q, qd and qdd at so many samples that are left, from `first` on.
+    pub fn motion_at(&self, first: usize, samples: usize, columns: &mut Vec<Vec<f64>>) {
+        let from = self.first_place(first);
+        self.motion(from..from + (samples - 1) * self.decimation + 1, columns);
+        if self.decimation > 1 {
+            for column in columns {
+                *column = column.iter().copied().step_by(self.decimation).collect();
+            }
+        }
+    }
+
+    /// Where a sample that is left stands among all.
+    fn first_place(&self, sample: usize) -> usize {
+        self.range.start + Decimator::reach_of(self.decimation) + sample * self.decimation
+    }
+
+    /// Where so many samples that are left stand among all, from `first` on.
+    pub fn places(&self, first: usize, samples: usize) -> impl Iterator<Item = usize> + Clone {
+        let from = self.first_place(first);
+        let decimation = self.decimation;
+        (0..samples).map(move |sample| from + sample * decimation)
+    }
+
+    /// The covariance of position, rate and acceleration that white noise of variance 1 of the
+    /// measured position makes, after both filters.
+    pub fn noise_gains(&self) -> [[f64; 3]; 3] {
+        self.gains_after(&self.decimator())
+    }
+
+    /// The same after the filter alone.
+    pub(crate) fn filter_gains(&self) -> [[f64; 3]; 3] {
+        self.gains_after(&Decimator::new(1, 0.5))
+    }
+
+    fn gains_after(&self, decimator: &Decimator) -> [[f64; 3]; 3] {
+        let settling = self.filter.as_ref().map_or(0, Butterworth::settling);
+        let margin = 2 * settling + decimator.reach() + STENCIL;
+        let mut impulse = vec![0.0; 2 * margin + 1 + 2 * decimator.reach()];
+        let middle = impulse.len() / 2;
+        impulse[middle] = 1.0;
+        if let Some(filter) = &self.filter {
+            filter.zero_phase(&mut impulse);
+        }
+        let mut smooth = vec![0.0; impulse.len() - 2 * decimator.reach()];
+        decimator.smooth(&impulse, &mut smooth);
+        let h = self.step_s;
+        let mut gains = [[0.0; 3]; 3];
+        for k in STENCIL..smooth.len() - STENCIL {
+            let q = [smooth[k], rate(&smooth, k) / h, acceleration(&smooth, k) / (h * h)];
+            for (row, gains) in gains.iter_mut().enumerate() {
+                for (column, gain) in gains.iter_mut().enumerate() {
+                    *gain += q[row] * q[column];
+                }
+            }
+        }
+        gains
+    }
+}
+
+fn lawful(filter: Filter, step_s: f64) -> Result<Butterworth, ConditionError> {
+    let Filter { order, cutoff_hz } = filter;
+    let nyquist_hz = 0.5 / step_s;
+    let found = Butterworth::new(order, cutoff_hz, step_s);
+    found.ok_or(ConditionError::Cutoff { cutoff_hz, nyquist_hz })
+}
+
+/// The first difference of sixth order, per sample.
+pub fn rate(q: &[f64], k: usize) -> f64 {
+    let odd = |d: usize| q[k + d] - q[k - d];
+    (45.0 * odd(1) - 9.0 * odd(2) + odd(3)) / 60.0
+}
+
+/// The second difference of sixth order, per sample squared.
+pub fn acceleration(q: &[f64], k: usize) -> f64 {
+    let even = |d: usize| q[k + d] - q[k] + (q[k - d] - q[k]);
+    (270.0 * even(1) - 27.0 * even(2) + 2.0 * even(3)) / 180.0
+}

@@ -1,0 +1,500 @@
+//! Bodies that exist: the parameters nearest to an estimate with positive definite pseudo-inertias,
+//! and friction and rotor inertia that are not negative.
+//!
+//! The pseudo-inertia of a body is J = L L^T with L lower triangular and of positive diagonal
+//! (log-Cholesky; Rucker, Wensing 2022), so that no step can leave the bodies that exist. What the
+//! estimate says nothing about stays near where it started.
+
+use super::bounds::Bounds;
+use super::least_squares::Estimate;
+use denavit_plants::regression::RegressionModel;
+use nalgebra::{DMatrix, DVector, Matrix4};
+
+/// Steps of the search.
+const MAX_STEPS: usize = 200;
+
+/// What a unit of change of a body's coordinates costs, in squared standard errors of the estimate:
+/// little, so that it decides only what the data leave open.
+const STAY: f64 = 1e-8;
+
+/// Weights of what entries of bodies fall short of, one after the other until nothing does.
+const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
+
+/// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
+const LEAST_SHARE: f64 = 1e-4;
+
+/// The least share of its value in the file that a positive number of it keeps.
+const LEAST_OF: f64 = 1e-6;
+
+/// From so many standard errors on the search goes along the way from the model's values to the
+/// estimate, in so many stages: where columns are products, what fits lies in valleys that are
+/// narrow and bent, and each stage begins at the bottom of one.
+const FAR: f64 = 2.0;
+const STAGES: usize = 20;
+
+/// Bodies and joints near an estimate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Consistent {
+    /// theta0, in the order of [`RegressionModel::standard`].
+    pub standard: Vec<f64>,
+    /// phi of it.
+    pub phi: Vec<f64>,
+    /// How far phi is from the estimate, in standard errors: the root of their mean square over
+    /// the parameters. Far below 1, the estimate itself belongs to bodies that exist.
+    pub distance: f64,
+    /// Values of the model's own numbers, where columns are products of them: their places in
+    /// [`RegressionModel::parameters`].
+    pub own: Vec<(usize, f64)>,
+    /// Steps that were made.
+    pub steps: usize,
+}
+
+/// What coordinates stand for.
+enum Piece {
+    /// Ten coordinates of the body whose parameters begin at this place.
+    Body(usize),
+    /// The square root of a parameter that is not negative.
+    NotNegative(usize),
+    /// The parameter itself.
+    Free(usize),
+    /// A number of the model's file that columns without an owner are made of, or, of one that is
+    /// positive, the square root of what it is above the least: its place in
+    /// [`RegressionModel::parameters`].
+    Own(usize),
+}
+
+impl Piece {
+    fn len(&self) -> usize {
+        if let Self::Body(_) = self { 10 } else { 1 }
+    }
+}
+
+/// The nearest parameters of bodies that exist; `start` is theta0 of the model before.
+pub fn consistent(model: &RegressionModel, found: &Estimate, start: &[f64]) -> Consistent {
+    let triangles = found.condensed.whole();
+    let rank = found.condensed.rank;
+    let r = found.condensed.system(&triangles, &found.weights, &[]);
+    let w = r.view((0, 0), (rank, rank)).into_owned();
+    let b = members(model);
+    let target = &w * &found.solution.phi;
+    // Weights are 1 over noise, or 1 where there is none: what counts is the residual's own size.
+    let scale = noise_scale(&r, &target, rank);
+    let mut problem = Problem {
+        model,
+        jacobian: (&w * b) / scale,
+        target: target / scale,
+        bounds: Bounds::new(model),
+        weight: 0.0,
+    };
+    let pieces = pieces(model);
+    let first = coordinates(model, &pieces, start);
+    let (mut eta, mut steps) = problem.search(&pieces, &first, &first);
+    let cost = problem.cost(&pieces, &eta, &first);
+    if cost > FAR.powi(2) * rank as f64 {
+        let (next, more) = problem.search_in_stages(&pieces, &first);
+        steps += more;
+        eta = if problem.cost(&pieces, &next, &first) < cost { next } else { eta };
+    }
+    for weight in BOUND_WEIGHTS {
+        if problem.bounds.hold(&file_values(model, &pieces, &eta)) {
+            break;
+        }
+        problem.weight = weight;
+        let (next, more) = problem.search(&pieces, &eta, &first);
+        (eta, steps) = (next, steps + more);
+    }
+    let (theta, _) = standard(model, &pieces, &eta);
+    let residual = &problem.target - &problem.jacobian * &theta;
+    let standard = theta.as_slice().to_vec();
+    let phi = model.axes_of_standard(&standard);
+    let own = own_values(model, &pieces, &eta);
+    let distance = (residual.norm_squared() / rank.max(1) as f64).sqrt();
+    Consistent { standard, phi, distance, own, steps }
+}
+
+struct Problem<'a> {
+    model: &'a RegressionModel,
+    /// Of theta0.
+    jacobian: DMatrix<f64>,
+    target: DVector<f64>,
+    bounds: Bounds<'a>,
+    /// Of what entries of bodies fall short of.
+    weight: f64,
+}
+
+impl Problem<'_> {
+    fn cost(&self, pieces: &[Piece], eta: &DVector<f64>, first: &DVector<f64>) -> f64 {
+        let (theta, _) = standard(self.model, pieces, eta);
+        let residual = &self.target - &self.jacobian * theta;
+        let short = self.short(pieces, eta).norm_squared();
+        residual.norm_squared() + short + STAY * (eta - first).norm_squared()
+    }
+
+    /// What entries of bodies fall short of, weighted.
+    fn short(&self, pieces: &[Piece], eta: &DVector<f64>) -> DVector<f64> {
+        if self.weight == 0.0 {
+            return DVector::zeros(0);
+        }
+        let short = self.bounds.short(&file_values(self.model, pieces, eta));
+        DVector::from_vec(short) * self.weight
+    }
+
+    /// All residuals, and how they fall with the coordinates.
+    fn rows(&self, pieces: &[Piece], eta: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let (theta, slope) = standard(self.model, pieces, eta);
+        let j = &self.jacobian * slope;
+        let residual = &self.target - &self.jacobian * &theta;
+        if self.weight == 0.0 {
+            return (residual, j);
+        }
+        let (rows, bounded) = (residual.len(), self.bounds.count());
+        let mut all = residual.resize_vertically(rows + bounded, 0.0);
+        all.rows_mut(rows, bounded).copy_from(&self.short(pieces, eta));
+        let mut j = j.resize_vertically(rows + bounded, 0.0);
+        let mut at = 0;
+        for piece in pieces {
+            if let Piece::Own(_) = piece {
+                let step = 1e-5 * eta[at].abs().max(1e-2);
+                let moved = |by: f64| {
+                    let mut moved = eta.clone();
+                    moved[at] += by;
+                    self.short(pieces, &moved)
+                };
+                let fall = (moved(-step) - moved(step)) / (2.0 * step);
+                j.view_mut((rows, at), (bounded, 1)).copy_from(&fall);
+            }
+            at += piece.len();
+        }
+        (all, j)
+    }
+
+    /// The nearest coordinates to targets on the way from `first` to the target, one after the
+    /// other, and the steps that were made.
+    fn search_in_stages(
+        &mut self,
+        pieces: &[Piece],
+        first: &DVector<f64>,
+    ) -> (DVector<f64>, usize) {
+        let last = self.target.clone();
+        let begin = &self.jacobian * standard(self.model, pieces, first).0;
+        let (mut eta, mut steps) = (first.clone(), 0);
+        for stage in 1..=STAGES {
+            self.target = &begin + (&last - &begin) * (stage as f64 / STAGES as f64);
+            let (next, more) = self.search(pieces, &eta, first);
+            (eta, steps) = (next, steps + more);
+        }
+        self.target = last;
+        (eta, steps)
+    }
+
+    /// The nearest coordinates from `eta` on, and the steps that were made (Levenberg, Marquardt).
+    fn search(
+        &self,
+        pieces: &[Piece],
+        eta: &DVector<f64>,
+        first: &DVector<f64>,
+    ) -> (DVector<f64>, usize) {
+        let mut eta = eta.clone();
+        let mut damping = 1e-3;
+        let mut steps = 0;
+        let mut cost = self.cost(pieces, &eta, first);
+        while steps < MAX_STEPS {
+            steps += 1;
+            let (residual, j) = self.rows(pieces, &eta);
+            let next = damped(&j, &residual, &(first - &eta), damping).map(|step| {
+                let longest = step.amax();
+                let limited = if longest > 2.0 { step * (2.0 / longest) } else { step };
+                &eta + limited
+            });
+            let better = next.map(|next| (self.cost(pieces, &next, first), next));
+            match better.filter(|(there, _)| *there < cost) {
+                Some((there, next)) => {
+                    let gain = cost - there;
+                    (cost, eta) = (there, next);
+                    damping = (damping * 0.2).max(1e-14);
+                    if gain < 1e-12 * cost.max(1e-12) {
+                        break;
+                    }
+                }
+                None if damping > 1e12 => break,
+                None => damping = damping.max(1e-12) * 8.0,
+            }
+        }
+        (eta, steps)
+    }
+}
+
+/// The step that makes residuals smallest, damped, and drawn `home` a little.
+fn damped(
+    j: &DMatrix<f64>,
+    residual: &DVector<f64>,
+    home: &DVector<f64>,
+    damping: f64,
+) -> Option<DVector<f64>> {
+    let (rows, columns) = j.shape();
+    let mut matrix = DMatrix::zeros(rows + columns, columns);
+    let mut right = DVector::zeros(rows + columns);
+    matrix.rows_mut(0, rows).copy_from(j);
+    right.rows_mut(0, rows).copy_from(residual);
+    let stay = (STAY + damping).sqrt();
+    for place in 0..columns {
+        matrix[(rows + place, place)] = stay;
+        right[rows + place] = STAY / stay * home[place];
+    }
+    let qr = matrix.qr();
+    let right = qr.q().tr_mul(&right);
+    qr.r().solve_upper_triangular(&right)
+}
+
+/// The numbers of the file: those that coordinates stand for, and the others as they were.
+fn file_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = model.parameters.iter().map(|one| one.value).collect();
+    for (place, value) in own_values(model, pieces, eta) {
+        values[place] = value;
+    }
+    values
+}
+
+/// The deviation of a weighted row: from the residual, or from rounding where there is none.
+fn noise_scale(r: &DMatrix<f64>, target: &DVector<f64>, rank: usize) -> f64 {
+    let left = if r.nrows() > rank { r[(rank, rank)].abs() } else { 0.0 };
+    let floor = 1e-9 * target.norm();
+    // Weighted rows have a deviation near 1, whatever their number is.
+    if left > floor { 1.0 } else { floor.max(f64::MIN_POSITIVE) }
+}
+
+/// phi = B theta0.
+fn members(model: &RegressionModel) -> DMatrix<f64> {
+    let mut b = DMatrix::zeros(model.axes.len(), model.standard.len());
+    for (row, parameter) in model.axes.iter().enumerate() {
+        for &(column, factor) in &parameter.members {
+            b[(row, column)] += factor;
+        }
+    }
+    b
+}
+
+fn pieces(model: &RegressionModel) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut place = 0;
+    while let Some(parameter) = model.standard.get(place) {
+        match &parameter.owner {
+            // The ten parameters of a body stand beside each other.
+            Some((_, "m")) => {
+                pieces.push(Piece::Body(place));
+                place += 9;
+            }
+            Some((_, "fv" | "fc" | "Ia")) => pieces.push(Piece::NotNegative(place)),
+            Some(_) => pieces.push(Piece::Free(place)),
+            None => {}
+        }
+        place += 1;
+    }
+    let has_own = model.standard.iter().any(|one| one.owner.is_none());
+    let is_own = |place: &usize| has_own && !is_owned(model, *place);
+    pieces.extend((0..model.parameters.len()).filter(is_own).map(Piece::Own));
+    pieces
+}
+
+/// Whether a number of the file has columns of its own, or goes into those of its link.
+fn is_owned(model: &RegressionModel, place: usize) -> bool {
+    let parameter = &model.parameters[place];
+    let prefix = parameter.name.split('_').next().unwrap_or_default();
+    let body = matches!(parameter.role, Some(denavit_codegen::model::Role::Body(..)));
+    model.standard.iter().any(|one| {
+        let Some((link, own)) = &one.owner else { return false };
+        let is_of_link = parameter.link.as_ref() == Some(link);
+        is_of_link && (body && *own == "m" || *own == prefix)
+    })
+}
+
+/// The numbers of the file that coordinates stand for.
+fn own_values(model: &RegressionModel, pieces: &[Piece], eta: &DVector<f64>) -> Vec<(usize, f64)> {
+    let mut at = 0;
+    let mut values = Vec::new();
+    for piece in pieces {
+        if let Piece::Own(place) = *piece {
+            let is_positive = model.parameters[place].is_positive;
+            let least = LEAST_OF * model.parameters[place].value.abs();
+            values.push((place, if is_positive { eta[at] * eta[at] + least } else { eta[at] }));
+        }
+        at += piece.len();
+    }
+    values
+}
+
+/// The pseudo-inertia [[integral of x x^T dm, integral of x dm], [.., m]] of ten parameters.
+pub(super) fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
+    let &[m, x, y, z, xx, yy, zz, xy, xz, yz] = ten else {
+        unreachable!("a body has ten parameters")
+    };
+    let half = 0.5 * (xx + yy + zz);
+    Matrix4::new(
+        half - xx,
+        -xy,
+        -xz,
+        x, //
+        -xy,
+        half - yy,
+        -yz,
+        y, //
+        -xz,
+        -yz,
+        half - zz,
+        z, //
+        x,
+        y,
+        z,
+        m,
+    )
+}
+
+fn ten_parameters(j: &Matrix4<f64>) -> [f64; 10] {
+    let trace = j[(0, 0)] + j[(1, 1)] + j[(2, 2)];
+    let moment = |axis: usize| trace - j[(axis, axis)];
+    let (m, h) = (j[(3, 3)], [j[(0, 3)], j[(1, 3)], j[(2, 3)]]);
+    let products = [-j[(0, 1)], -j[(0, 2)], -j[(1, 2)]];
+    let [x, y, z] = h;
+    let [xy, xz, yz] = products;
+    [m, x, y, z, moment(0), moment(1), moment(2), xy, xz, yz]
+}
+
+/// L of coordinates: the logarithms of its diagonal, then what is below, row by row.
+fn lower(eta: &[f64]) -> Matrix4<f64> {
+    let mut l = Matrix4::zeros();
+    let mut next = 4;
+    for row in 0..4 {
+        l[(row, row)] = eta[row].exp();
+        for column in 0..row {
+            l[(row, column)] = eta[next];
+            next += 1;
+        }
+    }
+    l
+}
+
+/// Coordinates of given parameters, moved into the bodies that exist.
+fn coordinates(model: &RegressionModel, pieces: &[Piece], start: &[f64]) -> DVector<f64> {
+    let mut eta = Vec::new();
+    for piece in pieces {
+        match *piece {
+            Piece::NotNegative(place) => eta.push(start[place].max(1e-8).sqrt()),
+            Piece::Free(place) => eta.push(start[place]),
+            Piece::Own(place) => {
+                let own = &model.parameters[place];
+                let start = own.value;
+                let above = (1.0 - LEAST_OF) * start;
+                eta.push(if own.is_positive { above.max(1e-5).sqrt() } else { start });
+            }
+            Piece::Body(place) => {
+                let l = cholesky_of_near(&pseudo_inertia(&start[place..place + 10]));
+                eta.extend((0..4).map(|row| l[(row, row)].ln()));
+                for row in 0..4 {
+                    eta.extend((0..row).map(|column| l[(row, column)]));
+                }
+            }
+        }
+    }
+    DVector::from_vec(eta)
+}
+
+/// The Cholesky factor of a pseudo-inertia, its eigenvalues raised where they are too small.
+fn cholesky_of_near(j: &Matrix4<f64>) -> Matrix4<f64> {
+    // A body that is nothing yet: 10 g of the size of a fist.
+    let nothing = Matrix4::from_diagonal(&nalgebra::Vector4::new(1e-5, 1e-5, 1e-5, 1e-2));
+    let trace = j.trace();
+    let j = if trace > 1e-9 { *j } else { nothing };
+    let least = LEAST_SHARE * j.trace().abs();
+    // Masses and moments have sizes of their own: the block of moments is measured by itself.
+    let mut eigen = j.symmetric_eigen();
+    let moments = 1e-3 * (j[(0, 0)] + j[(1, 1)] + j[(2, 2)]).abs().max(1e-6);
+    let floor = least.min(moments).max(1e-9);
+    eigen.eigenvalues.iter_mut().for_each(|value| *value = value.max(floor));
+    let raised = eigen.recompose();
+    let raised = (raised + raised.transpose()) * 0.5;
+    raised.cholesky().map_or_else(|| cholesky_of_near(&nothing), |cholesky| cholesky.l())
+}
+
+/// theta0 of coordinates, and its derivative.
+fn standard(
+    model: &RegressionModel,
+    pieces: &[Piece],
+    eta: &DVector<f64>,
+) -> (DVector<f64>, DMatrix<f64>) {
+    let size = model.standard.len();
+    let mut theta = DVector::zeros(size);
+    let mut slope = DMatrix::zeros(size, eta.len());
+    products(model, pieces, eta, (&mut theta, &mut slope));
+    let mut at = 0;
+    for piece in pieces {
+        match *piece {
+            Piece::Own(_) => {}
+            Piece::Free(place) => {
+                theta[place] = eta[at];
+                slope[(place, at)] = 1.0;
+            }
+            Piece::NotNegative(place) => {
+                theta[place] = eta[at] * eta[at];
+                slope[(place, at)] = 2.0 * eta[at];
+            }
+            Piece::Body(place) => {
+                let l = lower(&eta.as_slice()[at..at + 10]);
+                let own = ten_parameters(&(l * l.transpose()));
+                theta.rows_mut(place, 10).copy_from_slice(&own);
+                let mut next = 4;
+                for row in 0..4 {
+                    for column in 0..=row {
+                        // d(L L^T) = dL L^T + L dL^T
+                        let mut change = Matrix4::zeros();
+                        let is_diagonal = row == column;
+                        change[(row, column)] = if is_diagonal { l[(row, row)] } else { 1.0 };
+                        let moved = change * l.transpose() + l * change.transpose();
+                        let coordinate = if is_diagonal { row } else { next };
+                        next += usize::from(!is_diagonal);
+                        let moved = ten_parameters(&moved);
+                        slope.view_mut((place, at + coordinate), (10, 1)).copy_from_slice(&moved);
+                    }
+                }
+            }
+        }
+        at += piece.len();
+    }
+    (theta, slope)
+}
+
+/// Columns that are products of the model's own numbers, with their derivatives: polynomials of low
+/// degree, whose central differences are nearly exact.
+fn products(
+    model: &RegressionModel,
+    pieces: &[Piece],
+    eta: &DVector<f64>,
+    (theta, slope): (&mut DVector<f64>, &mut DMatrix<f64>),
+) {
+    let own = own_values(model, pieces, eta);
+    if own.is_empty() {
+        return;
+    }
+    let mut values = file_values(model, pieces, eta);
+    let is_product: Vec<bool> = model.standard.iter().map(|one| one.owner.is_none()).collect();
+    let here = model.standard_values(&values);
+    for (row, value) in here.iter().enumerate().filter(|(row, _)| is_product[*row]) {
+        theta[row] = *value;
+    }
+    let mut at = 0;
+    for piece in pieces {
+        if let Piece::Own(place) = *piece {
+            let value = values[place];
+            let step = 1e-4 * value.abs().max(1e-2);
+            values[place] = value + step;
+            let above = model.standard_values(&values);
+            values[place] = value - step;
+            let below = model.standard_values(&values);
+            values[place] = value;
+            let inner = if model.parameters[place].is_positive { 2.0 * eta[at] } else { 1.0 };
+            for row in (0..is_product.len()).filter(|&row| is_product[row]) {
+                slope[(row, at)] = inner * (above[row] - below[row]) / (2.0 * step);
+            }
+        }
+        at += piece.len();
+    }
+}

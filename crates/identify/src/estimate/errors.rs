@@ -1,0 +1,319 @@
+//! Standard errors that hold where residuals are alike from one sample to the next.
+
+use super::condensed::Condensed;
+use super::solve::{PriorRow, Solution, solve};
+use denavit_numerics::Random;
+use nalgebra::{DMatrix, DVector};
+
+/// How standard errors are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Errors {
+    /// As if residuals were independent of each other.
+    Classical,
+    /// From the sums of scores over parts of the log, neighbours counted half (Newey, West 1987,
+    /// with one lag of parts): residuals may be correlated over less than a part.
+    #[default]
+    Correlated,
+    /// From estimates of logs put together of parts drawn at random (Kuensch 1989).
+    Bootstrap {
+        /// Number of drawings.
+        draws: usize,
+        /// What the drawings begin with.
+        seed: u64,
+    },
+}
+
+/// An estimate's problem, as its errors need it.
+pub(super) struct Problem<'a> {
+    pub(super) condensed: &'a Condensed,
+    pub(super) weights: &'a [Vec<f64>],
+    pub(super) prior: &'a [PriorRow],
+    pub(super) solution: &'a Solution,
+}
+
+/// Fewer parts say nothing of how residuals are correlated.
+pub(super) const FEWEST_PARTS: usize = 8;
+
+/// Sums of scores with neighbours counted half say as much as so many times fewer that are
+/// independent: 1 + 2 (1/2)^2.
+const NEIGHBOURS: f64 = 1.5;
+
+/// A larger share of what is known of a direction is taken for this one.
+const MOST_LEVERAGE: f64 = 0.95;
+
+/// The normal deviate below which one of twenty lies.
+const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
+
+/// Neighbouring parts are taken to be no more alike than this.
+const MOST_ALIKE: f64 = 0.8;
+
+impl Problem<'_> {
+    /// The covariance of phi.
+    pub(super) fn covariance(&self, errors: Errors) -> DMatrix<f64> {
+        match errors {
+            _ if self.condensed.parts.len() < FEWEST_PARTS => self.solution.covariance(),
+            Errors::Classical => self.solution.covariance(),
+            Errors::Correlated => self.correlated(),
+            Errors::Bootstrap { draws, seed } => self.bootstrap(draws.max(2), seed),
+        }
+    }
+
+    /// Rows beyond those that the estimate takes.
+    pub(super) fn free_rows(&self) -> f64 {
+        let rows: usize =
+            self.condensed.parts.iter().flatten().map(super::triangle::Triangle::rows).sum();
+        (rows as f64 - self.solution.excited() as f64).max(1.0)
+    }
+
+    /// Degrees of freedom of the variances of sums of phi, the rows of a matrix. A variance that is
+    /// found from parts of the logs has as many as parts that decide alike would leave
+    /// (Satterthwaite 1946, with what residuals that are independent make of each part as Bell and
+    /// McCaffrey 2002): of a parameter that few parts decide they say little.
+    pub(super) fn degrees_of_freedom(&self, errors: Errors, sums: &DMatrix<f64>) -> DVector<f64> {
+        let neighbours = match errors {
+            Errors::Correlated => NEIGHBOURS,
+            Errors::Bootstrap { .. } => 1.0,
+            Errors::Classical => return DVector::from_element(sums.nrows(), self.free_rows()),
+        };
+        if self.condensed.parts.len() < FEWEST_PARTS {
+            return DVector::from_element(sums.nrows(), self.free_rows());
+        }
+        let follows = &self.solution.factor * (sums * &self.solution.factor).transpose();
+        let mut moments = vec![[0.0; 2]; sums.nrows()];
+        for (part, triangles) in self.condensed.parts.iter().enumerate() {
+            let weights = &self.weights[self.condensed.log_of_part[part]];
+            let mut decides = vec![0.0; sums.nrows()];
+            for (joint, triangle) in triangles.iter().enumerate() {
+                let pattern = &self.condensed.pattern[joint];
+                let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+                let rows = weights[joint] * (r * follows.select_rows(pattern));
+                for (decides, column) in decides.iter_mut().zip(rows.column_iter()) {
+                    *decides += column.norm_squared();
+                }
+            }
+            for ([sum, squares], decides) in moments.iter_mut().zip(decides) {
+                *sum += decides;
+                *squares += decides * decides;
+            }
+        }
+        let parts_alike =
+            |[sum, squares]: [f64; 2]| if squares > 0.0 { sum * sum / squares } else { 0.0 };
+        let degrees = moments.into_iter().map(|both| (parts_alike(both) / neighbours).max(1.0));
+        DVector::from_iterator(sums.nrows(), degrees)
+    }
+
+    /// F F^T S F F^T with S the long-run covariance of the scores.
+    fn correlated(&self) -> DMatrix<f64> {
+        // Half of one lag may leave a variance below 0 where there are few parts.
+        let floor = self.solution.covariance() * 1e-4;
+        let mut covariance = long_run(&self.influences(), &self.condensed.log_of_part);
+        for place in 0..covariance.nrows() {
+            covariance[(place, place)] = covariance[(place, place)].max(floor[(place, place)]);
+        }
+        covariance
+    }
+
+    /// What each part does to phi: F F^T g, with the score g as it is without the part.
+    pub(super) fn influences(&self) -> Vec<DVector<f64>> {
+        let factor = &self.solution.factor;
+        // F^T g has the squares of the excited directions alone.
+        let of = |part| factor * self.left_out(part, factor.tr_mul(&self.score(part)));
+        (0..self.condensed.parts.len()).map(of).collect()
+    }
+
+    /// A score in the excited directions as it is for the estimate without its part: the change of
+    /// phi when the part is left out is (I - H)^-1 g with H = F^T W^T W F of the part (the
+    /// jackknife of parts). The estimate adapts to a part that says much about the parameters,
+    /// whose residuals are too small therefore; this puts it right, and errs to the safe side.
+    fn left_out(&self, part: usize, score: DVector<f64>) -> DVector<f64> {
+        let factor = &self.solution.factor;
+        let size = factor.ncols();
+        if size == 0 {
+            // a log without torques determines nothing
+            return score;
+        }
+        let mut leverage = DMatrix::zeros(size, size);
+        let weights = &self.weights[self.condensed.log_of_part[part]];
+        for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
+            let pattern = &self.condensed.pattern[joint];
+            let own = DMatrix::from_fn(pattern.len(), size, |at, c| factor[(pattern[at], c)]);
+            let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
+            let rows = weights[joint] * (r * own);
+            leverage += rows.tr_mul(&rows);
+        }
+        let eigen = leverage.symmetric_eigen();
+        let mut turned = eigen.eigenvectors.tr_mul(&score);
+        for (entry, share) in turned.iter_mut().zip(eigen.eigenvalues.iter()) {
+            // what one part alone determines cannot be compared with the others
+            *entry /= 1.0 - share.clamp(0.0, MOST_LEVERAGE);
+        }
+        eigen.eigenvectors * turned
+    }
+
+    /// sum over joints of w^2 W^T (y - W phi) of a part.
+    fn score(&self, part: usize) -> DVector<f64> {
+        let mut score = DVector::zeros(self.condensed.rank);
+        let phi = self.solution.phi.as_slice();
+        let weights = &self.weights[self.condensed.log_of_part[part]];
+        for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
+            let weight = weights[joint] * weights[joint];
+            if triangle.rows() == 0 || weight == 0.0 {
+                continue;
+            }
+            let own = triangle.score(&self.condensed.of_joint(joint, phi));
+            for (&place, entry) in self.condensed.pattern[joint].iter().zip(own) {
+                score[place] += weight * entry;
+            }
+        }
+        score
+    }
+
+    fn bootstrap(&self, draws: usize, seed: u64) -> DMatrix<f64> {
+        let Self { condensed, weights, prior, solution } = self;
+        let mut random = Random::new(seed);
+        let count = condensed.parts.len();
+        let estimates: Vec<DVector<f64>> = (0..draws)
+            .map(|_| {
+                let drawn: Vec<usize> =
+                    (0..count).map(|_| (random.bits() % count as u64) as usize).collect();
+                let triangles = condensed.merged(drawn.into_iter());
+                let r = condensed.system(&triangles, weights, prior);
+                solve(&r, solution.phi.as_slice()).phi
+            })
+            .collect();
+        let mean = estimates.iter().fold(DVector::zeros(condensed.rank), |sum, one| sum + one)
+            / draws as f64;
+        let mut covariance = DMatrix::zeros(condensed.rank, condensed.rank);
+        for one in &estimates {
+            let apart = one - &mean;
+            covariance += &apart * apart.transpose();
+        }
+        covariance / (draws - 1) as f64
+    }
+}
+
+/// The covariance of a sum over parts, of which neighbours of the same log are correlated: counted
+/// half where they are hardly, and where they are more, as much again as a process of first order
+/// has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
+pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[usize]) -> DMatrix<f64> {
+    let size = parts.first().map_or(0, DVector::len);
+    let (mut sum, mut beside) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
+    for (at, part) in parts.iter().enumerate() {
+        sum += part * part.transpose();
+        if let Some(next) = parts.get(at + 1).filter(|_| log_of_part[at + 1] == log_of_part[at]) {
+            let cross = part * next.transpose();
+            beside += (&cross + cross.transpose()) * 0.5;
+        }
+    }
+    let alike = (0..size).filter(|&at| sum[(at, at)] > 0.0);
+    let alike: Vec<f64> = alike.map(|at| beside[(at, at)] / sum[(at, at)]).collect();
+    let alike = alike.iter().sum::<f64>() / alike.len().max(1) as f64;
+    (sum + beside) / (1.0 - alike.clamp(0.0, MOST_ALIKE))
+}
+
+/// What chance leaves of a variance with so many degrees of freedom, less in one of twenty cases
+/// (Wilson and Hilferty 1931).
+pub(super) fn least_by_chance(degrees_of_freedom: f64) -> f64 {
+    let spread = 2.0 / (9.0 * degrees_of_freedom.max(1.0));
+    (1.0 - spread + ONE_OF_TWENTY * spread.sqrt()).max(0.0).powi(3)
+}
+
+/// The factor of a standard error that makes a 95 % interval, by Student's distribution (Cornish
+/// and Fisher's series; better than 1 % from 2 degrees of freedom on).
+pub fn interval_factor(degrees_of_freedom: f64) -> f64 {
+    let z: f64 = 1.959_963_984_540_054;
+    let nu = degrees_of_freedom.max(2.0);
+    let first = (z.powi(3) + z) / (4.0 * nu);
+    let second = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * nu * nu);
+    let third =
+        (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / (384.0 * nu.powi(3));
+    let fourth = (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5)
+        - 1920.0 * z.powi(3)
+        - 945.0 * z)
+        / (92160.0 * nu.powi(4));
+    z + first + second + third + fourth
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::triangle::Triangle;
+    use super::*;
+
+    /// Sums over 64 parts of a process of first order, whose variance is known: white, and one
+    /// whose neighbours are correlated by a half, of which neighbours alone would show half.
+    #[test]
+    fn sums_of_parts_that_are_alike_have_their_variance() {
+        const PARTS: usize = 64;
+        let log_of_part = [0; PARTS];
+        let mut random = Random::new(3);
+        for alike in [0.0_f64, 0.5] {
+            let fresh = (1.0 - alike * alike).sqrt();
+            let mut mean = 0.0;
+            for _ in 0..400 {
+                let mut last = random.normal();
+                let parts: Vec<DVector<f64>> = (0..PARTS)
+                    .map(|_| {
+                        last = alike * last + fresh * random.normal();
+                        DVector::from_element(1, last)
+                    })
+                    .collect();
+                mean += long_run(&parts, &log_of_part)[(0, 0)] / 400.0;
+            }
+            let distances = (1..PARTS).map(|d| (PARTS - d) as f64 * alike.powi(d as i32));
+            let variance = PARTS as f64 + 2.0 * distances.sum::<f64>();
+            assert!((mean / variance - 1.0).abs() < 0.12, "{alike}: {mean} {variance}");
+        }
+    }
+
+    /// Of 24 parts six decide a parameter alike, and all another one: their variances have as many
+    /// degrees of freedom as sums with neighbours counted half, of so many.
+    #[test]
+    fn what_few_parts_decide_has_few_degrees_of_freedom() {
+        let part = |at: usize| {
+            let shows = if at < 6 { 1.0 } else { 0.0 };
+            let mut triangle = Triangle::new(2);
+            triangle.push(&[&[shows, 0.0], &[0.0, 1.0], &[0.1, -0.1]]);
+            vec![triangle]
+        };
+        let condensed = Condensed {
+            pattern: vec![vec![0, 1]],
+            parts: (0..24).map(part).collect(),
+            log_of_part: vec![0; 24],
+            end_s: (1..25).map(f64::from).collect(),
+            independent: vec![1.0],
+            row_s: vec![1.0],
+            rank: 2,
+        };
+        let weights = [vec![1.0]];
+        let system = condensed.system(&condensed.whole(), &weights, &[]);
+        let solution = solve(&system, &[0.0, 0.0]);
+        let problem =
+            Problem { condensed: &condensed, weights: &weights, prior: &[], solution: &solution };
+        // each by itself, and a sum that the first decides
+        let sums = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 0.0, 1.0, 1.0, 1e-6]);
+        let degrees = problem.degrees_of_freedom(Errors::Correlated, &sums);
+        for (degrees, expected) in degrees.iter().zip([4.0, 16.0, 4.0]) {
+            assert!((degrees - expected).abs() < 1e-6, "{degrees} {expected}");
+        }
+        let degrees = problem.degrees_of_freedom(Errors::Classical, &sums);
+        assert_eq!(degrees[0], 46.0);
+    }
+
+    /// Tables of the distribution of squares, 5 %.
+    #[test]
+    fn what_chance_leaves_is_that_of_tables() {
+        for (nu, printed) in [(5.0, 1.145), (10.0, 3.940), (30.0, 18.493)] {
+            assert!((least_by_chance(nu) * nu / printed - 1.0).abs() < 0.02, "{nu}");
+        }
+    }
+
+    /// Tables of Student's distribution, 97.5 %.
+    #[test]
+    fn interval_factors_are_those_of_tables() {
+        for (nu, printed) in
+            [(2.0, 4.303), (4.0, 2.776), (10.0, 2.228), (30.0, 2.042), (1e6, 1.960)]
+        {
+            assert!((interval_factor(nu) - printed).abs() < 0.01 * printed, "{nu}");
+        }
+    }
+}

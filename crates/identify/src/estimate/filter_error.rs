@@ -1,0 +1,102 @@
+//! What the filter does to a motion that is too fast for it, or whose samples are too far apart.
+//!
+//! Torques are no linear function of the motion: those of a filtered motion are not the filtered
+//! ones. How much that matters is seen by doing it once more: torques are computed of the motion
+//! that the filter left, both go through the filter again, and are compared.
+
+use super::validate::validate;
+use crate::condition::{Butterworth, Conditioned, STENCIL};
+use denavit_plants::regression::{RegressionModel, RegressionRows};
+
+/// Samples that are looked at in all, and computed at once.
+const SAMPLES: usize = 20_000;
+const BLOCK: usize = 512;
+
+/// The error that the filter makes of each joint's torque by itself, root of mean square over root
+/// of mean square, with phi; 0 where none was measured. Coulomb friction, whose rows near reversals
+/// are left out, has no part in it.
+pub(crate) fn filter_errors(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    phi: &[f64],
+) -> Vec<f64> {
+    let mut smooth = phi.to_vec();
+    for &(joint, place) in model.coulomb() {
+        smooth[model.pattern()[joint][place]] = 0.0;
+    }
+    let longest = SAMPLES / logs.len().max(1);
+    let again: Vec<Conditioned> =
+        logs.iter().filter_map(|log| filtered_again(model, (log, longest), &smooth)).collect();
+    let left = validate(model, &smooth, &again);
+    let of_joint = |joint: &denavit_plants::regression::RegressionJoint| {
+        let found = left.joints.iter().find(|one| one.name == joint.name);
+        found.map_or(0.0, |one| one.relative)
+    };
+    model.joints.iter().map(of_joint).collect()
+}
+
+/// The middle of a log, its filtered motion filtered once more, with the torques that phi makes of
+/// it; none if the filter leaves nothing of it.
+fn filtered_again(
+    model: &RegressionModel,
+    (log, longest): (&Conditioned, usize),
+    phi: &[f64],
+) -> Option<Conditioned> {
+    let filter = log.filter.as_ref()?;
+    let edge = filter.settling() + STENCIL;
+    let length = log.range.len().min(longest.max(4 * edge));
+    let start = log.range.start + (log.range.len() - length) / 2;
+    let range = edge..length.checked_sub(edge).filter(|end| *end > edge)?;
+    let again = |column: &[f64]| {
+        let mut column = column[start..start + length].to_vec();
+        filter.zero_phase(&mut column);
+        column
+    };
+    let found = Conditioned {
+        file: log.file.clone(),
+        step_s: log.step_s,
+        q: log.q.iter().map(|q| again(q)).collect(),
+        rates: log.rates.as_ref().map(|both| {
+            both.each_ref().map(|columns| columns.iter().map(|column| again(column)).collect())
+        }),
+        torque: torques(model, (log, start, length), phi, filter),
+        range,
+        decimation: log.decimation,
+        filter: log.filter.clone(),
+        ..Conditioned::default()
+    };
+    (found.samples() > 0).then_some(found)
+}
+
+/// The filtered torques of phi, of joints whose torque was measured.
+fn torques(
+    model: &RegressionModel,
+    (log, start, length): (&Conditioned, usize, usize),
+    phi: &[f64],
+    filter: &Butterworth,
+) -> Vec<Option<Vec<f64>>> {
+    let n = model.joints.len();
+    let mut computed = vec![Vec::new(); n];
+    let (mut evaluator, mut rows) = (model.evaluator(), RegressionRows::default());
+    let mut motion = Vec::new();
+    for first in (start..start + length).step_by(BLOCK) {
+        let end = (first + BLOCK).min(start + length);
+        log.motion(first..end, &mut motion);
+        let columns: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
+        evaluator.evaluate(&columns, &mut rows).expect("every joint has its columns");
+        for (joint, computed) in computed.iter_mut().enumerate() {
+            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+            let mut torque = vec![0.0; end - first];
+            rows.torque(joint, &own, &mut torque);
+            computed.extend(torque);
+        }
+    }
+    let measured = log.torque.iter().zip(computed);
+    measured
+        .map(|(measured, mut torque)| {
+            measured.as_ref()?;
+            filter.zero_phase(&mut torque);
+            Some(torque)
+        })
+        .collect()
+}

@@ -1,0 +1,106 @@
+//! What changes with half the cutoff of the filter: more than chance where noise of the positions
+//! biases parameters in a way that it does not by itself.
+//!
+//! A loop that is closed over the encoder of the log answers its steps, so that motion and noise
+//! are no longer independent of each other; steps that the filter follows are no white noise.
+//! Whatever the mechanism, a lower filter leaves less of it. Both estimates are of the same
+//! samples, so that the error of their difference is known much better than their own: from the
+//! difference of what each part of the logs does to them (Hausman 1978).
+
+use super::condensed::{Condensed, Rows};
+use super::errors::{FEWEST_PARTS, Problem, long_run};
+use super::least_squares::{Estimate, Fit};
+use crate::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
+use nalgebra::{DMatrix, DVector};
+
+/// Samples of all logs that are looked at, before decimation.
+const SAMPLES: usize = 200_000;
+
+/// What a bias is, at most, of its change with half the cutoff: it grows with the 1.5th power of
+/// the cutoff or faster, 1 / (1 - 2^-1.5).
+const OF_CHANGE: f64 = 1.5;
+
+/// A change of listed parameters with half the cutoff.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The changes.
+    pub change: DVector<f64>,
+    /// Their standard deviations by chance.
+    pub deviation: DVector<f64>,
+    /// Standard errors of the listed parameters without what the change adds.
+    pub own_errors: DVector<f64>,
+}
+
+impl Change {
+    /// Adds what is more than chance to a covariance of phi: an unknown bias.
+    pub(super) fn widen(&mut self, model: &RegressionModel, covariance: &mut DMatrix<f64>) {
+        self.own_errors = deviations(model, covariance);
+        let both = self.change.iter().zip(&self.deviation);
+        let beyond = |(change, deviation): (&f64, &f64)| {
+            let squared = change * change - deviation * deviation;
+            OF_CHANGE * squared.max(0.0).sqrt() * change.signum()
+        };
+        let listed = DVector::from_iterator(self.change.len(), both.map(beyond));
+        if let Some(bias) = model.to_listed().clone().lu().solve(&listed) {
+            *covariance += &bias * bias.transpose();
+        }
+    }
+}
+
+impl Fit<'_> {
+    /// How listed parameters change with half the cutoff, rows weighted as they are; none where no
+    /// position has noise, or logs are too short for it.
+    pub(super) fn change(
+        &self,
+        model: &RegressionModel,
+        (logs, left_out): Rows<'_>,
+        found: &Estimate,
+    ) -> Option<Change> {
+        let noisy = |log: &&Conditioned| log.position_noise.iter().any(|noise| *noise > 0.0);
+        let (mut own, mut halved, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, log) in logs.iter().enumerate().filter(|(_, log)| noisy(log)) {
+            for piece in log.pieces(SAMPLES / logs.len()) {
+                let Some([plain, lower]) = log.halved(piece) else { continue };
+                let first = piece.first * log.decimation + plain.range.start - log.range.start;
+                places.push((number, first..first + plain.range.len()));
+                own.push(plain);
+                halved.push(lower);
+            }
+        }
+        if own.is_empty() {
+            return None;
+        }
+        let left_out = left_out.of_halved(logs, &places);
+        let weights: Vec<Vec<f64>> =
+            places.iter().map(|(number, _)| found.weights[*number].clone()).collect();
+        let both = [own, halved].map(|logs| {
+            let condensed = Condensed::counted(model, (&logs, &left_out));
+            let solution = self.solved(&condensed, &condensed.whole(), &weights);
+            (condensed, solution)
+        });
+        let [(condensed, _), _] = &both;
+        let parts = condensed.parts.len();
+        let used = found.solution.excited();
+        if parts < FEWEST_PARTS || both.iter().any(|(_, solution)| solution.excited() < used) {
+            return None;
+        }
+        let [before, after] = both.each_ref().map(|(condensed, solution)| {
+            let (weights, prior) = (&weights[..], &self.options.prior[..]);
+            Problem { condensed, weights, prior, solution }.influences()
+        });
+        let apart: Vec<DVector<f64>> =
+            before.into_iter().zip(after).map(|(one, other)| other - one).collect();
+        let [before, after] = both.each_ref().map(|(_, solution)| &solution.phi);
+        let change = model.to_listed() * (after - before);
+        let deviation = deviations(model, &long_run(&apart, &condensed.log_of_part));
+        let own_errors = DVector::zeros(change.len());
+        Some(Change { change, deviation, own_errors })
+    }
+}
+
+/// Standard deviations of the listed parameters.
+fn deviations(model: &RegressionModel, covariance: &DMatrix<f64>) -> DVector<f64> {
+    let listed = model.to_listed() * covariance * model.to_listed().transpose();
+    listed.diagonal().map(|variance| variance.max(0.0).sqrt())
+}

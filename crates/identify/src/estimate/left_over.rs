@@ -1,0 +1,147 @@
+//! What is left of torques: how much, and whether it is noise.
+
+use super::least_squares::Estimate;
+use super::left_out::LeftOut;
+use super::rows::BlockMaker;
+use super::unexplained::samples_of;
+use crate::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
+use std::collections::VecDeque;
+
+/// Noise is another one after half a period of the filter's cutoff: what is left is still
+/// correlated with itself by so much if it is none.
+const NO_NOISE: f64 = 0.5;
+
+/// What is left of the torque of a joint in a log.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Left {
+    pub(super) rows: f64,
+    pub(super) squares: f64,
+    /// Of rows half a period of the filter's cutoff apart their products, and mean squares.
+    pub(super) alike: f64,
+    pub(super) both: f64,
+    /// Rows in that time.
+    pub(super) apart: f64,
+    /// Coulomb friction of the joint [N m, N].
+    pub(super) friction: f64,
+}
+
+impl Left {
+    /// Adds a row, or one that does not count; `recent` are those before, the last one first.
+    pub(super) fn add(&mut self, one: Option<f64>, recent: &mut VecDeque<Option<f64>>) {
+        if let Some(one) = one {
+            self.rows += 1.0;
+            self.squares += one * one;
+            if let Some(Some(other)) = recent.get(self.apart as usize - 1) {
+                self.alike += one * other;
+                self.both += 0.5 * (one * one + other * other);
+            }
+        }
+        recent.push_front(one);
+        recent.truncate(self.apart as usize);
+    }
+
+    /// The same of another log, too.
+    fn with(self, other: &Self) -> Self {
+        Self {
+            rows: self.rows + other.rows,
+            squares: self.squares + other.squares,
+            alike: self.alike + other.alike,
+            both: self.both + other.both,
+            apart: self.apart.max(other.apart),
+            friction: self.friction,
+        }
+    }
+
+    pub(super) fn mean_square(&self) -> f64 {
+        self.squares / self.rows.max(1.0)
+    }
+
+    /// How much it is like itself half a period later, and how much of that is chance.
+    fn alike(&self) -> [f64; 2] {
+        let alike = if self.both > 0.0 { self.alike / self.both } else { 0.0 };
+        [alike, (2.0 * self.apart / self.rows.max(1.0)).sqrt()]
+    }
+
+    /// The mean square of what is surely no noise.
+    pub(super) fn without_noise(&self) -> f64 {
+        let [alike, by_chance] = self.alike();
+        self.mean_square() * (alike - by_chance).max(0.0)
+    }
+
+    /// Whether it is no noise, by more than chance.
+    pub(super) fn is_no_noise(&self) -> bool {
+        let [alike, by_chance] = self.alike();
+        alike > NO_NOISE + by_chance
+    }
+}
+
+impl LeftOut {
+    /// What phi leaves of the rows that count, by log and joint.
+    pub(super) fn left(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        phi: &[f64],
+    ) -> Vec<Vec<Left>> {
+        let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+        let own: Vec<Vec<f64>> = (0..model.joints.len()).map(of_joint).collect();
+        let of_log = |(number, log): (usize, &Conditioned)| {
+            let apart = samples_of(log, 0.5);
+            let rests = self.all_rests((number, log));
+            let mut maker = BlockMaker::resting(model, log, &rests);
+            let mut left: Vec<Left> = (0..own.len())
+                .map(|joint| Left {
+                    apart: apart as f64,
+                    friction: maker.coulomb_friction(joint, phi),
+                    ..Left::default()
+                })
+                .collect();
+            let mut recent = vec![VecDeque::new(); left.len()];
+            maker.for_each(|block| {
+                for (joint, (left, recent)) in left.iter_mut().zip(&mut recent).enumerate() {
+                    let Some(all) = block.residual(joint, &own[joint]) else { continue };
+                    let counts = self.counts((number, log), joint, (block.first, block.samples));
+                    for (k, one) in all.into_iter().enumerate() {
+                        let one = counts.as_ref().is_none_or(|counts| counts[k]).then_some(one);
+                        left.add(one, recent);
+                    }
+                }
+            });
+            left
+        };
+        logs.iter().enumerate().map(of_log).collect()
+    }
+}
+
+/// The root of the mean square of what an estimate leaves of each joint's torque in logs, of rows
+/// that count, where that is no noise [N m, N].
+pub(crate) fn no_noise(
+    model: &RegressionModel,
+    (logs, shown): (&[Conditioned], &[usize]),
+    found: &Estimate,
+) -> Vec<(usize, f64)> {
+    let left = found.left_out.left(model, logs, found.solution.phi.as_slice());
+    let of_joint = |joint: usize| {
+        let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log][joint]));
+        all.is_no_noise().then(|| (joint, all.mean_square().sqrt()))
+    };
+    (0..model.joints.len()).filter_map(of_joint).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows are compared with those half a period before, none that does not count between.
+    #[test]
+    fn rows_are_compared_over_half_a_period() {
+        let mut left = Left { apart: 2.0, ..Left::default() };
+        let mut recent = VecDeque::new();
+        for one in [Some(1.0), None, Some(3.0), Some(5.0), None, Some(7.0)] {
+            left.add(one, &mut recent);
+        }
+        assert_eq!((left.rows, left.squares), (4.0, 84.0));
+        assert_eq!((left.alike, left.both), (3.0 + 35.0, 5.0 + 37.0));
+    }
+}

@@ -1,0 +1,93 @@
+//! Samples of a log under a reading of its columns.
+
+use super::reading::Source;
+use crate::condition::Conditioned;
+use denavit_plants::regression::CoulombLaw;
+use std::ops::Range;
+
+/// Samples of a log.
+pub(super) struct Window<'a> {
+    log: &'a Conditioned,
+    first: usize,
+    count: usize,
+    /// q, qd and qdd of every joint.
+    motion: Vec<Vec<f64>>,
+    /// The places that are read, with those that are late.
+    span: Range<usize>,
+    /// Coulomb friction of size 1 of some joints.
+    laws: Vec<Law>,
+}
+
+/// Coulomb friction of size 1, at the places that are read.
+struct Law {
+    /// The column of the position.
+    column: usize,
+    /// By which its rate is multiplied.
+    scale: f64,
+    values: Vec<f64>,
+}
+
+impl<'a> Window<'a> {
+    /// So many samples of a log, from one on, that are read up to `latest` samples late.
+    pub(super) fn new(log: &'a Conditioned, [first, count]: [usize; 2], latest: isize) -> Self {
+        let mut motion = Vec::new();
+        log.motion_at(first, count, &mut motion);
+        let mut window = Self { log, first, count, motion, span: 0..0, laws: Vec::new() };
+        let last = window.places(latest).last().unwrap_or(log.range.start);
+        let first = window.places(-latest).next().unwrap_or(last);
+        window.span = first..last + 1;
+        window
+    }
+
+    pub(super) fn log(&self) -> &'a Conditioned {
+        self.log
+    }
+
+    /// Samples that are independent of each other.
+    pub(super) fn independent(&self) -> f64 {
+        self.log.independent() * self.count as f64 / self.log.samples() as f64
+    }
+
+    /// Its places, so many samples later.
+    fn places(&self, late: isize) -> impl Iterator<Item = usize> {
+        let (first, last) = (self.log.range.start, self.log.range.end - 1);
+        let places = self.log.places(self.first, self.count);
+        places.map(move |place| place.saturating_add_signed(late).clamp(first, last))
+    }
+
+    pub(super) fn torque(&self, source: &Source) -> Option<Vec<f64>> {
+        let torque = self.log.torque[source.column].as_ref()?;
+        let at = |place: usize| source.factor * torque[place] + source.offset;
+        Some(self.places(source.late).map(at).collect())
+    }
+
+    /// A position, its rate or its acceleration.
+    pub(super) fn motion(&self, source: &Source, order: usize, time: f64) -> Vec<f64> {
+        let scale = source.factor * time.powi(-(order as i32));
+        let offset = if order == 0 { source.offset } else { 0.0 };
+        if source.late == 0 {
+            let column = &self.motion[order * self.log.joints() + source.column];
+            return column.iter().map(|value| scale * value + offset).collect();
+        }
+        let at = |place: usize| scale * self.log.moved(source.column, order, place) + offset;
+        self.places(source.late).map(at).collect()
+    }
+
+    /// Coulomb friction of size 1, as the filter of the torque leaves it: where joints turn round,
+    /// what it smears over is more of a torque than a mistake leaves that is to be told.
+    pub(super) fn law(&mut self, source: &Source, time: f64, law: CoulombLaw) -> Vec<f64> {
+        let (column, factor) = (source.column, source.factor / time);
+        // of signs the size of the rate says nothing
+        let scale = if law == CoulombLaw::Sign { 1.0 } else { factor.abs() };
+        let is_known = |one: &Law| one.column == column && one.scale == scale;
+        let known = self.laws.iter().position(is_known).unwrap_or_else(|| {
+            let of_rate = |rate: f64| law.of(scale * rate);
+            let values = self.log.of_rate(column, self.span.clone(), of_rate);
+            self.laws.push(Law { column, scale, values });
+            self.laws.len() - 1
+        });
+        let values = &self.laws[known].values;
+        let places = self.places(source.late);
+        places.map(|place| factor.signum() * values[place - self.span.start]).collect()
+    }
+}

@@ -1,0 +1,297 @@
+//! The bias that noise of the positions makes of least squares, whose columns have it (errors in
+//! variables).
+//!
+//! Of W = Y(x + n) and y = Y(x) phi the estimate is C W^T y, with C = (W^T W)^+, and in the mean
+//! phi - C N phi, with N = E[W^T (W - Y(x))]. The noise is made once more, as it comes out of
+//! encoders, filter and differences, added to the motion and taken from it: the mean of both has
+//! what is of second order in it, which is N, and nothing of first order, which standard errors
+//! show.
+
+use super::condensed::Rows;
+use super::least_squares::Estimate;
+use super::left_out::LeftOut;
+use super::rows::{Block, BlockMaker};
+use super::solve::{Solution, solve};
+use super::validate::validate;
+use crate::condition::{Conditioned, Piece};
+use denavit_numerics::Random;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Samples of all logs that are looked at, before decimation.
+const SAMPLES: usize = 60_000;
+
+/// Samples in a block.
+const BLOCK: usize = 512;
+
+/// What the noise begins with: the same log has the same answer.
+const SEED: u64 = 1;
+
+/// The factors of a block's rows of a joint, beside the joint's weight: log, block, joint.
+pub(super) type RowFactors<'a> = &'a dyn Fn(usize, &Block, usize) -> Vec<f64>;
+
+/// What noise of the positions makes.
+pub(super) struct NoiseBias {
+    /// The bias of phi.
+    pub(super) bias: DVector<f64>,
+    /// The largest share of noise in what W says of a direction of phi, from 0 to 1.
+    pub(super) share: f64,
+    /// What each log does by itself.
+    pub(super) of_logs: Vec<NoiseOfLog>,
+}
+
+/// What noise of the positions of one log does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseOfLog {
+    /// Its part of the bias of phi.
+    pub bias: DVector<f64>,
+    /// The largest share of noise in what this log alone says of a direction of phi, from 0 to 1.
+    pub share: f64,
+    /// The largest bias of what this log alone says of an entry of phi, in standard errors of
+    /// residuals that are independent.
+    pub alone: f64,
+    /// What it adds to W^T [W | y] of each joint, as it was weighted.
+    pub(super) of_joints: Vec<DMatrix<f64>>,
+}
+
+/// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
+/// phi of the model's values.
+pub(super) fn noise_bias(
+    (model, given): (&RegressionModel, &[f64]),
+    (logs, left_out): Rows<'_>,
+    found: &Estimate,
+    factors: Option<RowFactors<'_>>,
+) -> NoiseBias {
+    let mut random = Random::new(SEED);
+    let longest = SAMPLES / logs.len();
+    let of_log = |(number, log): (usize, &Conditioned)| {
+        let of = (&found.weights[number][..], longest, factors);
+        Noise::of_log(model, ((number, log), left_out), of, &mut random)
+    };
+    let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
+    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise::of_joints(one)).collect();
+    let mut all = Noise::new(model.rank());
+    of_logs.iter().for_each(|one| all.0 += &one.0);
+    let solution = &found.solution;
+    let (bias, phi) = all.bias(solution, given);
+    let triangles = found.condensed.whole();
+    let of_log = |((log, noise), of_joints): ((usize, &Noise), Vec<DMatrix<f64>>)| {
+        let (own, weights) = (&triangles[log..=log], &found.weights[log..=log]);
+        let bias = noise.lost(solution, &phi);
+        if noise.0.amax() == 0.0 {
+            // a log whose rows are all left out shows nothing
+            let is_empty = triangles[log].iter().all(|one| one.rows() == 0);
+            let share = f64::from(u8::from(is_empty));
+            return NoiseOfLog { bias, share, alone: 0.0, of_joints };
+        }
+        let own = solve(&found.condensed.system(own, weights, &[]), given);
+        let alone = in_errors(&own, &noise.bias(&own, given).0);
+        let share = noise.share(&own);
+        let alone = alone * found.condensed.independent[log].sqrt();
+        NoiseOfLog { bias, share, alone, of_joints }
+    };
+    let of_logs = of_logs.iter().enumerate().zip(of_joints).map(of_log).collect();
+    NoiseBias { bias, share: all.share(solution), of_logs }
+}
+
+/// What noise of some logs adds to an estimate of theirs, whose rows count so many times as much as
+/// when it was found, by log and joint.
+pub(super) fn bias_of_some<'a>(
+    noise: impl Iterator<Item = (&'a NoiseOfLog, Vec<f64>)>,
+    solution: &Solution,
+    given: &[f64],
+) -> DVector<f64> {
+    let mut all = Noise::new(solution.phi.len());
+    for (one, times) in noise {
+        one.of_joints.iter().zip(times).for_each(|(own, times)| all.0 += own * times);
+    }
+    all.bias(solution, given).0
+}
+
+/// The squares that noise of the positions of a log makes of what phi leaves of each joint's
+/// torque, of the rows that count.
+pub(super) fn noise_squares(
+    model: &RegressionModel,
+    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+    phi: &DVector<f64>,
+) -> Vec<f64> {
+    let mut squares = vec![0.0; model.joints.len()];
+    if log.position_noise.iter().all(|noise| *noise == 0.0) {
+        return squares;
+    }
+    let own = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let phi: Vec<Vec<f64>> = (0..squares.len()).map(own).collect();
+    let rests = &left_out.all_rests((number, log));
+    let mut random = Random::new(SEED);
+    with_noise(model, (log, SAMPLES, rests), &mut random, |first, block, noisy, of_all| {
+        for (joint, sum) in squares.iter_mut().enumerate() {
+            let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
+            let counts = left_out.counts((number, log), joint, (first, block.samples));
+            let counts = counts.unwrap_or_else(|| vec![true; clean.len()]);
+            for noisy in noisy.iter().filter_map(|block| block.residual(joint, &phi[joint])) {
+                let both = noisy.iter().zip(&clean).zip(&counts).filter(|(_, counts)| **counts);
+                *sum += 0.5 * of_all * both.map(|((a, b), _)| (a - b).powi(2)).sum::<f64>();
+            }
+        }
+    });
+    squares
+}
+
+/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
+/// square over root of mean square; 0 where none was measured.
+pub(crate) fn noise_in_torques(
+    model: &RegressionModel,
+    log: &Conditioned,
+    phi: &[f64],
+) -> Vec<f64> {
+    let all = LeftOut::none(std::slice::from_ref(log));
+    let noise = noise_squares(model, ((0, log), &all), &DVector::from_column_slice(phi));
+    let left = validate(model, phi, &[log]);
+    let share = |(joint, noise): (&RegressionJoint, f64)| {
+        let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
+        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
+    };
+    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
+}
+
+/// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:
+/// the number of the first sample, the block as it is and with noise of its positions added and
+/// subtracted, and how many blocks it stands for.
+fn with_noise(
+    model: &RegressionModel,
+    (log, longest, rests): (&Conditioned, usize, &[Vec<Range<usize>>]),
+    random: &mut Random,
+    mut visit: impl FnMut(usize, &Block, [&Block; 2], f64),
+) {
+    let pieces = log.pieces(longest);
+    let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
+    let of_all = log.samples() as f64 / seen.max(1) as f64;
+    for piece in pieces {
+        let Piece { first, samples } = piece;
+        let both = log.piece_with_noise(piece, random);
+        // means of rests of the piece alone, so that they differ by nothing but noise
+        let within = |from: usize| -> Vec<Vec<Range<usize>>> {
+            let clamp = |at: usize| at.clamp(first, first + samples) - first + from;
+            let of = |rest: &Range<usize>| clamp(rest.start)..clamp(rest.end);
+            let of_joint = |rests: &Vec<Range<usize>>| {
+                rests.iter().map(of).filter(|rest| !rest.is_empty()).collect()
+            };
+            rests.iter().map(of_joint).collect()
+        };
+        let mut straight = BlockMaker::resting(model, log, &within(first));
+        let mut makers = both.each_ref().map(|piece| BlockMaker::resting(model, piece, &within(0)));
+        for from in (0..samples).step_by(BLOCK) {
+            let count = BLOCK.min(samples - from);
+            let block = straight.at(first + from, count);
+            let noisy = makers.each_mut().map(|maker| maker.at(from, count));
+            visit(first + from, block, noisy, of_all);
+        }
+    }
+}
+
+/// E[W^T (noise of [W | y])]: N, and beside it what noise does to what is known, which makes less
+/// of the target.
+struct Noise(DMatrix<f64>);
+
+impl Noise {
+    fn new(rank: usize) -> Self {
+        Self(DMatrix::zeros(rank, rank + 1))
+    }
+
+    fn of_joints(of_joints: &[DMatrix<f64>]) -> Self {
+        Self(of_joints.iter().sum())
+    }
+
+    /// That of each joint of a log, of which so many samples are looked at before decimation.
+    fn of_log(
+        model: &RegressionModel,
+        ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+        (weights, longest, factors): (&[f64], usize, Option<RowFactors<'_>>),
+        random: &mut Random,
+    ) -> Vec<DMatrix<f64>> {
+        let mut noise = vec![Self::new(model.rank()).0; model.joints.len()];
+        if log.position_noise.iter().all(|noise| *noise == 0.0) {
+            return noise;
+        }
+        let rests = &left_out.all_rests((number, log));
+        with_noise(model, (log, longest, rests), random, |first, block, noisy, of_all| {
+            let count = block.samples;
+            for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
+                let mut squares = vec![weight * weight * of_all; count];
+                if let Some(factors) = factors {
+                    let factors = factors(number, block, joint);
+                    squares.iter_mut().zip(factors).for_each(|(sq, by)| *sq *= by * by);
+                }
+                let counts = left_out.counts((number, log), joint, (first, count));
+                let all = squares.iter_mut().zip(counts.unwrap_or_default());
+                all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
+                add(&mut noise[joint], (model, joint), (block, noisy), &squares);
+            }
+        });
+        noise
+    }
+
+    /// The largest eigenvalue of F^T N F.
+    fn share(&self, solution: &Solution) -> f64 {
+        let factor = &solution.factor;
+        let own = factor.tr_mul(&self.0.columns(0, factor.nrows())) * factor;
+        let symmetric = (&own + own.transpose()) * 0.5;
+        symmetric.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max).min(1.0)
+    }
+
+    /// C (known - N phi).
+    fn lost(&self, solution: &Solution, phi: &DVector<f64>) -> DVector<f64> {
+        let rank = self.0.nrows();
+        let score = self.0.column(rank) - self.0.columns(0, rank) * phi;
+        &solution.factor * solution.factor.tr_mul(&score)
+    }
+
+    /// phi^ - phi of phi^ = phi - C (N phi + known): where noise makes most of W, phi^ is a small
+    /// part of phi. Where it makes nearly all of W the rest of it hangs on the last digits of N: of
+    /// that and of what the model's values would lose, the larger one, with the phi it is of.
+    fn bias(&self, solution: &Solution, given: &[f64]) -> (DVector<f64>, DVector<f64>) {
+        let rank = self.0.nrows();
+        let share = &solution.factor * solution.factor.tr_mul(&self.0.columns(0, rank));
+        let left = DMatrix::identity(rank, rank) - share;
+        let off = self.lost(solution, &solution.phi);
+        let by_estimate = left.lu().solve(&off).unwrap_or(off);
+        let given = DVector::from_column_slice(given);
+        let by_model = self.lost(solution, &given);
+        match in_errors(solution, &by_model) > in_errors(solution, &by_estimate) {
+            true => (by_model, given),
+            false => (by_estimate.clone(), &solution.phi - by_estimate),
+        }
+    }
+}
+
+/// Adds the rows of a joint without the noise and with it, added and subtracted, which count as
+/// these squares of weights.
+fn add(
+    sum: &mut DMatrix<f64>,
+    (model, joint): (&RegressionModel, usize),
+    (straight, both): (&Block, [&Block; 2]),
+    squares: &[f64],
+) {
+    let Some(clean) = straight.with_target(joint) else { return };
+    let places = &model.pattern()[joint];
+    for noisy in both.into_iter().filter_map(|block| block.with_target(joint)) {
+        for (at, (noise, clean)) in noisy.iter().zip(&clean).enumerate() {
+            let place = places.get(at).copied().unwrap_or(model.rank());
+            let rows = noise.iter().zip(*clean).zip(squares);
+            let change: Vec<f64> =
+                rows.map(|((noisy, clean), square)| 0.5 * square * (noisy - clean)).collect();
+            for (&row, column) in places.iter().zip(&noisy) {
+                let along = column.iter().zip(&change).map(|(a, b)| a * b);
+                sum[(row, place)] += along.sum::<f64>();
+            }
+        }
+    }
+}
+
+/// The largest bias, in standard errors of residuals that are independent.
+fn in_errors(solution: &Solution, bias: &DVector<f64>) -> f64 {
+    let own = solution.factor.row_iter().map(|row| row.norm());
+    let ratios = bias.iter().zip(own).filter(|(_, error)| *error > 0.0);
+    ratios.map(|(bias, error)| bias.abs() / error).fold(0.0, f64::max)
+}

@@ -1,0 +1,208 @@
+//! Rests of joints that move in between: their rows count beside a constant.
+//!
+//! While a joint rests its friction is anything that holds it, and not the sign of its rate. Where
+//! its motor carries the load of the motion of the others, which shows parameters that nothing else
+//! may show, friction is a constant of the rest, and the rows count beside it. Where stiction or a
+//! brake carries it, the torque does not follow the load, or an estimate leaves more of it than
+//! while the joint moves: such rows are left out.
+
+use super::left_out::LeftOut;
+use super::left_over::Left;
+use super::misread::nominal_values;
+use super::rows::BlockMaker;
+use crate::condition::Conditioned;
+use denavit_plants::regression::{CoulombLaw, RegressionModel};
+use std::ops::Range;
+
+/// How much the torque of a joint at rest must be like the load that the model's own values make of
+/// the motion of the others, as a correlation.
+const ALIKE: f64 = 0.7;
+
+/// The variance of what is left at rest over that of what an estimate from motion alone leaves of
+/// motion, above which something else than the motor holds the joint.
+const HELD: f64 = 4.0;
+
+/// What stiction holds is a share of Coulomb friction; of less an estimate that is not the last
+/// one, with more noise of positions, may be wrong.
+const OF_FRICTION: f64 = 0.1;
+
+/// Of rests in which something holds the joint those are left out first of which at least this
+/// share of the most is left.
+const WORST: f64 = 0.25;
+
+impl LeftOut {
+    /// Counts rests in which the torque of a joint follows the load that the model's values make.
+    pub(super) fn add_rests(&mut self, model: &RegressionModel, logs: &[Conditioned]) {
+        let values = nominal_values(model).filter(|_| model.law == CoulombLaw::Sign);
+        let Some(values) = values else { return };
+        for (number, log) in logs.iter().enumerate() {
+            let awake = |joint: usize| {
+                self.rows[number][joint].as_ref().filter(|_| log.torque[joint].is_some())?;
+                let rests = log.counted_rests(joint)?;
+                Some(rests.into_iter().map(|rests| !rests).collect())
+            };
+            self.awake[number] = (0..log.joints()).map(awake).collect();
+            let follows = self.follows(model, (number, log), &values);
+            for (awake, follows) in self.awake[number].iter_mut().zip(follows) {
+                awake.take_if(|_| !follows);
+            }
+        }
+    }
+
+    /// Whether the torque of each joint follows the load while it rests.
+    fn follows(
+        &self,
+        model: &RegressionModel,
+        (number, log): (usize, &Conditioned),
+        values: &[f64],
+    ) -> Vec<bool> {
+        let rests = self.all_rests((number, log));
+        // the squares of torque and load, and their product
+        let mut sums = vec![[0.0; 3]; rests.len()];
+        let mut maker = BlockMaker::resting(model, log, &rests);
+        for (joint, (rests, sums)) in rests.iter().zip(&mut sums).enumerate() {
+            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
+            for rest in rests {
+                maker.for_each_of(rest.clone(), |block| {
+                    let Some(left) = block.residual(joint, &own) else { return };
+                    let Some([_, torque]) = &block.torque[joint] else { return };
+                    for (left, torque) in left.iter().zip(torque) {
+                        let load = torque - left;
+                        let squares = [torque * torque, load * load, torque * load];
+                        sums.iter_mut().zip(squares).for_each(|(sum, one)| *sum += one);
+                    }
+                });
+            }
+        }
+        let follows = |[torque, load, both]: [f64; 3]| {
+            both > 0.0 && both * both > ALIKE.powi(2) * torque * load
+        };
+        sums.into_iter().map(follows).collect()
+    }
+
+    /// The samples in which a joint rests and counts, of those that are left after decimation.
+    pub(super) fn rests(
+        &self,
+        (number, log): (usize, &Conditioned),
+        joint: usize,
+    ) -> Vec<Range<usize>> {
+        let Some(awake) = &self.awake[number][joint] else { return Vec::new() };
+        let mut rests: Vec<Range<usize>> = Vec::new();
+        let counts = log.counts(awake, 0, log.samples());
+        for at in (0..counts.len()).filter(|&at| counts[at]) {
+            match rests.last_mut().filter(|last| last.end == at) {
+                Some(last) => last.end = at + 1,
+                None => rests.push(at..at + 1),
+            }
+        }
+        rests
+    }
+
+    /// The same of all joints.
+    pub(super) fn all_rests(&self, log: (usize, &Conditioned)) -> Vec<Vec<Range<usize>>> {
+        (0..self.awake[log.0].len()).map(|joint| self.rests(log, joint)).collect()
+    }
+
+    /// The same with rests left out.
+    pub(super) fn without_rests(mut self) -> Self {
+        self.awake.iter_mut().flatten().for_each(|awake| *awake = None);
+        self
+    }
+
+    /// Whether there are rests that count.
+    pub(super) fn has_rests(&self) -> bool {
+        self.awake.iter().flatten().any(Option::is_some)
+    }
+
+    /// Nothing counts but rests; none without any.
+    fn of_rests_alone(&self) -> Option<Self> {
+        if !self.has_rests() {
+            return None;
+        }
+        let mut alone = self.clone();
+        let all = |awake: &Option<Vec<bool>>| awake.as_ref().map(|awake| vec![true; awake.len()]);
+        alone.rows = self.awake.iter().map(|of_log| of_log.iter().map(all).collect()).collect();
+        Some(alone)
+    }
+
+    /// The same without the worst of rests in which something else than its motor holds a joint:
+    /// phi leaves more of their torques there than an estimate from motion alone does of that;
+    /// `moving` is what that leaves, by log and joint. None if there are none.
+    pub(super) fn without_held(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        (phi, moving): (&[f64], &[Vec<Left>]),
+    ) -> Option<Self> {
+        let left = self.of_rests_alone()?.left(model, logs, phi);
+        let held = |log: usize, joint: usize| {
+            self.awake[log][joint].as_ref()?;
+            left[log][joint].held(&moving[log][joint])
+        };
+        let all =
+            (0..logs.len()).flat_map(|log| (0..left[log].len()).map(move |joint| (log, joint)));
+        // what holds one joint may be taken for parameters of others
+        let most = all.clone().filter_map(|(log, joint)| held(log, joint)).fold(0.0, f64::max);
+        let mut fewer = self.clone();
+        for (log, joint) in all {
+            if held(log, joint).is_some_and(|held| held >= WORST * most) {
+                fewer.awake[log][joint] = None;
+            }
+        }
+        (0..logs.len()).for_each(|log| fewer.keep_enough((log, logs)));
+        (fewer != *self).then_some(fewer)
+    }
+}
+
+impl Left {
+    /// How much more is left of a joint at rest than of motion, if something else than its motor
+    /// holds it: so much of its friction, and more than noise, or, where noise of positions is
+    /// larger in motion, more of what is none.
+    fn held(&self, moving: &Self) -> Option<f64> {
+        let left = self.mean_square();
+        let is_more = left > HELD * moving.mean_square()
+            || self.is_no_noise() && left > HELD * moving.without_noise();
+        let is_held = is_more && left > (OF_FRICTION * moving.friction).powi(2);
+        is_held.then(|| left / moving.mean_square().max(f64::MIN_POSITIVE))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use denavit_numerics::Random;
+    use std::collections::VecDeque;
+
+    const ROWS: usize = 600;
+    const APART: usize = 4;
+
+    /// What is left: a slow wave and white noise.
+    fn left(seed: u64, [wave, noise]: [f64; 2]) -> Left {
+        let mut random = Random::new(seed);
+        let mut left = Left { apart: APART as f64, friction: 1.0, ..Left::default() };
+        let mut recent = VecDeque::new();
+        for k in 0..ROWS {
+            let slow = wave * (0.05 * k as f64).sin();
+            left.add(Some(slow + noise * random.normal()), &mut recent);
+        }
+        left
+    }
+
+    /// Stiction is told beside motion in which noise of the positions is ten times as large, by
+    /// being slow, and beside motion without noise by its size; noise is none, however large it is,
+    /// nor is what is little beside friction.
+    #[test]
+    fn what_holds_a_joint_is_told_from_noise() {
+        for seed in [1, 2, 3] {
+            let told = |rest: [f64; 2], moving: [f64; 2]| {
+                left(seed, rest).held(&left(seed + 10, moving)).is_some()
+            };
+            assert!(told([0.4, 0.1], [0.0, 1.0]));
+            assert!(told([0.4, 0.4], [0.0, 0.02]));
+            assert!(!told([0.0, 0.5], [0.0, 0.4]));
+            assert!(!told([0.0, 0.5], [0.0, 1.0]));
+            assert!(!told([0.1, 0.02], [0.0, 0.01]));
+            assert!(!told([0.4, 0.1], [0.4, 0.1]));
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The rows of a regression, block by block, after both sides went through the same decimator.
+
+use crate::condition::{Conditioned, Decimator};
+use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
+use std::ops::Range;
+
+/// Samples in a block.
+const BLOCK: usize = 512;
+
+/// Rows of samples that follow each other.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// The number of the first sample among those that are left after decimation.
+    pub first: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// For each joint its columns, as its pattern lists them, one entry for each sample.
+    pub columns: Vec<Vec<Vec<f64>>>,
+    /// For each joint the torque that was measured, and that less what is known; none where none
+    /// was measured.
+    pub torque: Vec<Option<[Vec<f64>; 2]>>,
+}
+
+impl Block {
+    /// The columns of a joint and what they are to give.
+    pub fn with_target(&self, joint: usize) -> Option<Vec<&[f64]>> {
+        let [_, target] = self.torque[joint].as_ref()?;
+        let columns = self.columns[joint].iter().map(Vec::as_slice);
+        Some(columns.chain([target.as_slice()]).collect())
+    }
+
+    /// Target - Y phi of a joint, one for each sample; none where no torque was measured.
+    pub fn residual(&self, joint: usize, phi: &[f64]) -> Option<Vec<f64>> {
+        let [_, target] = self.torque[joint].as_ref()?;
+        let mut residual = target.clone();
+        for (column, factor) in self.columns[joint].iter().zip(phi) {
+            for (sum, entry) in residual.iter_mut().zip(column) {
+                *sum -= factor * entry;
+            }
+        }
+        Some(residual)
+    }
+}
+
+/// Makes blocks of rows.
+pub struct BlockMaker<'a> {
+    model: &'a RegressionModel,
+    evaluator: RegressionEvaluator,
+    decimator: Decimator,
+    data: &'a Conditioned,
+    motion: Vec<Vec<f64>>,
+    rows: RegressionRows,
+    /// Columns that jump with the rate: they pass the filter of the torque.
+    coulomb: Vec<Coulomb>,
+    /// For each joint the times in which it rests.
+    rests: Vec<Vec<Rest>>,
+    block: Block,
+}
+
+/// Samples in which a joint rests: its friction is a constant there, whatever it is.
+struct Rest {
+    samples: Range<usize>,
+    /// The mean of each column, and of what they are to give.
+    means: Vec<f64>,
+}
+
+/// A column of Coulomb friction.
+pub(super) struct Coulomb {
+    pub(super) joint: usize,
+    pub(super) place: usize,
+    /// Times the law of the rate.
+    pub(super) factor: f64,
+}
+
+/// The columns of Coulomb friction, as they are at rates of 1.
+pub(super) fn coulomb(
+    model: &RegressionModel,
+    evaluator: &mut RegressionEvaluator,
+) -> Vec<Coulomb> {
+    let n = model.joints.len();
+    let motion: Vec<[f64; 1]> =
+        (0..3 * n).map(|at| [if at / n == 1 { 1.0 } else { 0.0 }]).collect();
+    let motion: Vec<&[f64]> = motion.iter().map(<[f64; 1]>::as_slice).collect();
+    let mut rows = RegressionRows::default();
+    evaluator.evaluate(&motion, &mut rows).expect("there is a column for each joint");
+    let at_one = model.law.of(1.0);
+    let of = |&(joint, place): &(usize, usize)| Coulomb {
+        joint,
+        place,
+        factor: rows.column(joint, place)[0] / at_one,
+    };
+    model.coulomb().iter().map(of).collect()
+}
+
+impl<'a> BlockMaker<'a> {
+    /// Blocks of conditioned data of the model's robot.
+    pub fn new(model: &'a RegressionModel, data: &'a Conditioned) -> Self {
+        let mut evaluator = model.evaluator();
+        Self {
+            model,
+            coulomb: coulomb(model, &mut evaluator),
+            evaluator,
+            decimator: data.decimator(),
+            data,
+            motion: Vec::new(),
+            rows: RegressionRows::default(),
+            rests: Vec::new(),
+            block: Block::default(),
+        }
+    }
+
+    /// The same with rows of joints that rest beside a constant of each rest: what holds them there
+    /// is not known, but that it does not change. `rests` are samples, joint by joint.
+    pub(super) fn resting(
+        model: &'a RegressionModel,
+        data: &'a Conditioned,
+        rests: &[Vec<Range<usize>>],
+    ) -> Self {
+        let mut maker = Self::new(model, data);
+        let mut all = Vec::new();
+        for (joint, rests) in rests.iter().enumerate() {
+            let of = |samples: &Range<usize>| maker.rest(joint, samples.clone());
+            all.push(rests.iter().filter_map(of).collect());
+        }
+        maker.rests = all;
+        maker
+    }
+
+    /// A rest of a joint, with the means of its rows; none of a joint without rows.
+    fn rest(&mut self, joint: usize, samples: Range<usize>) -> Option<Rest> {
+        let mut means: Vec<f64> = Vec::new();
+        let count = samples.len() as f64;
+        self.for_each_of(samples.clone(), |block| {
+            let columns = block.with_target(joint).unwrap_or_default();
+            means.resize(columns.len(), 0.0);
+            for (mean, column) in means.iter_mut().zip(columns) {
+                *mean += column.iter().sum::<f64>() / count;
+            }
+        });
+        (!means.is_empty()).then_some(Rest { samples, means })
+    }
+
+    /// Takes what rests have in common from the rows of the block.
+    fn center(&mut self) {
+        let block = &mut self.block;
+        for (joint, rests) in self.rests.iter().enumerate() {
+            for Rest { samples, means } in rests {
+                let last = block.first + block.samples;
+                let [from, to] = [samples.start, samples.end]
+                    .map(|at| at.clamp(block.first, last) - block.first);
+                let target = block.torque[joint].iter_mut().map(|[_, target]| target);
+                let columns = block.columns[joint].iter_mut().chain(target);
+                for (column, mean) in columns.zip(means) {
+                    column[from..to].iter_mut().for_each(|entry| *entry -= mean);
+                }
+                for friction in self.coulomb.iter().filter(|one| one.joint == joint) {
+                    block.columns[joint][friction.place][from..to].fill(0.0);
+                }
+            }
+        }
+    }
+
+    /// The Coulomb friction of a joint by phi \[N m, N\].
+    pub(super) fn coulomb_friction(&self, joint: usize, phi: &[f64]) -> f64 {
+        let of_joint = self.coulomb.iter().filter(|one| one.joint == joint);
+        let at = |one: &Coulomb| phi[self.model.pattern()[joint][one.place]];
+        of_joint.map(|one| (one.factor * at(one)).abs()).sum()
+    }
+
+    /// Calls `visit` with every block, in order.
+    pub fn for_each(&mut self, visit: impl FnMut(&Block)) {
+        self.for_each_of(0..self.data.samples(), visit);
+    }
+
+    /// The same with those of given samples alone.
+    pub(super) fn for_each_of(&mut self, samples: Range<usize>, mut visit: impl FnMut(&Block)) {
+        for first in samples.clone().step_by(BLOCK) {
+            visit(self.at(first, BLOCK.min(samples.end - first)));
+        }
+    }
+
+    /// The block of given samples.
+    pub(super) fn at(&mut self, first: usize, samples: usize) -> &Block {
+        self.fill(first, samples);
+        &self.block
+    }
+
+    fn fill(&mut self, first: usize, samples: usize) {
+        let (factor, reach) = (self.decimator.factor(), self.decimator.reach());
+        let start = self.data.range.start + first * factor;
+        let range = start..start + (samples - 1) * factor + 2 * reach + 1;
+        self.data.motion(range.clone(), &mut self.motion);
+        let motion: Vec<&[f64]> = self.motion.iter().map(Vec::as_slice).collect();
+        self.evaluator
+            .evaluate(&motion, &mut self.rows)
+            .expect("conditioned data have a column for each joint of the model");
+        let (block, decimator, rows) = (&mut self.block, &self.decimator, &self.rows);
+        (block.first, block.samples) = (first, samples);
+        block.columns.resize(self.model.joints.len(), Vec::new());
+        block.torque.resize(self.model.joints.len(), None);
+        for joint in 0..self.model.joints.len() {
+            block.columns[joint].resize(rows.width(joint), Vec::new());
+            for (place, column) in block.columns[joint].iter_mut().enumerate() {
+                column.resize(samples, 0.0);
+                let friction =
+                    self.coulomb.iter().find(|one| (one.joint, one.place) == (joint, place));
+                match friction {
+                    None => decimator.apply(rows.column(joint, place), column),
+                    Some(one) => {
+                        let law = |rate: f64| one.factor * self.model.law.of(rate);
+                        decimator.apply(&self.data.of_rate(joint, range.clone(), law), column);
+                    }
+                }
+            }
+            let Some(measured) = &self.data.torque[joint] else { continue };
+            let [torque, target] = block.torque[joint].get_or_insert_default();
+            torque.resize(samples, 0.0);
+            decimator.apply(&measured[range.clone()], torque);
+            target.clone_from(torque);
+            if let Some(known) = rows.known(joint) {
+                let mut decimated = vec![0.0; samples];
+                decimator.apply(known, &mut decimated);
+                target.iter_mut().zip(decimated).for_each(|(target, known)| *target -= known);
+            }
+        }
+        self.center();
+    }
+}

@@ -1,0 +1,120 @@
+//! What a model leaves unexplained, joint by joint.
+
+use super::rows::BlockMaker;
+use crate::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
+use std::borrow::Borrow;
+use std::collections::VecDeque;
+
+/// Distances at which residuals are compared with themselves, in samples.
+pub const LAGS: usize = 20;
+
+/// Samples that a picture shows, at most.
+const DRAWN: usize = 1500;
+
+/// What is left of a joint's torque.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointResidual {
+    /// The joint.
+    pub name: String,
+    /// Root of the mean square of the torque [N m, N].
+    pub torque_rms: f64,
+    /// That of the residual [N m, N].
+    pub residual_rms: f64,
+    /// Residual over torque.
+    pub relative: f64,
+    /// Correlation of the residual with itself 1, 2, ... samples later.
+    pub autocorrelation: Vec<f64>,
+    /// The largest residual [N m, N].
+    pub largest: f64,
+    /// Time, measured and computed torque of some samples, for pictures [s, N m, N].
+    pub drawn: Vec<[f64; 3]>,
+}
+
+/// What is left of all torques of some logs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Validation {
+    /// The joints whose torque was measured.
+    pub joints: Vec<JointResidual>,
+    /// sqrt(mean over joints of (residual / torque)^2).
+    pub relative: f64,
+    /// Samples, after decimation.
+    pub samples: usize,
+}
+
+#[derive(Clone, Default)]
+struct Sums {
+    torque: f64,
+    residual: f64,
+    rows: usize,
+    largest: f64,
+    recent: VecDeque<f64>,
+    lagged: [f64; LAGS],
+    drawn: Vec<[f64; 3]>,
+}
+
+impl Sums {
+    fn add(&mut self, residual: f64, torque: f64) {
+        for (sum, before) in self.lagged.iter_mut().zip(&self.recent) {
+            *sum += residual * before;
+        }
+        self.recent.push_front(residual);
+        self.recent.truncate(LAGS);
+        self.torque += torque * torque;
+        self.residual += residual * residual;
+        self.largest = self.largest.max(residual.abs());
+        self.rows += 1;
+    }
+}
+
+/// Compares the torques of logs with those of phi.
+pub fn validate(
+    model: &RegressionModel,
+    phi: &[f64],
+    logs: &[impl Borrow<Conditioned>],
+) -> Validation {
+    let mut sums = vec![Sums::default(); model.joints.len()];
+    let logs = logs.iter().map(Borrow::borrow);
+    let samples: usize = logs.clone().map(Conditioned::samples).sum();
+    let stride = samples.div_ceil(DRAWN).max(1);
+    for log in logs {
+        sums.iter_mut().for_each(|sums| sums.recent.clear());
+        BlockMaker::new(model, log).for_each(|block| {
+            for (joint, sums) in sums.iter_mut().enumerate() {
+                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+                let Some(residual) = block.residual(joint, &own) else { continue };
+                let Some([torque, _]) = &block.torque[joint] else { continue };
+                for (k, (residual, torque)) in residual.into_iter().zip(torque).enumerate() {
+                    sums.add(residual, *torque);
+                    if (block.first + k) % stride == 0 {
+                        let time = log.time_s(block.first + k);
+                        sums.drawn.push([time, *torque, torque - residual]);
+                    }
+                }
+            }
+        });
+    }
+    let measured = sums.into_iter().zip(&model.joints).filter(|(sums, _)| sums.rows > 0);
+    let joints: Vec<JointResidual> = measured
+        .map(|(sums, joint)| {
+            let rms = |squares: f64| (squares / sums.rows as f64).sqrt();
+            let (torque_rms, residual_rms) = (rms(sums.torque), rms(sums.residual));
+            let relative = if torque_rms > 0.0 { residual_rms / torque_rms } else { 0.0 };
+            let all = sums.residual;
+            let correlation = |sum: &f64| if all > 0.0 { sum / all } else { 0.0 };
+            JointResidual {
+                name: joint.name.clone(),
+                torque_rms,
+                residual_rms,
+                relative,
+                autocorrelation: sums.lagged.iter().map(correlation).collect(),
+                largest: sums.largest,
+                drawn: sums.drawn,
+            }
+        })
+        .collect();
+    // a sum of nothing is -0, which would be shown
+    let squares = joints.iter().map(|joint| joint.relative.powi(2)).fold(0.0, |a, b| a + b);
+    let relative = (squares / joints.len().max(1) as f64).sqrt();
+    Validation { joints, relative, samples }
+}

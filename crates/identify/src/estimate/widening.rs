@@ -1,0 +1,151 @@
+//! How many rows near reversals are left out: more and more, until friction does not change.
+//!
+//! How wide the range of rates is in which friction is not its sign depends on the robot: a steep
+//! line, stiction, creeping. Where the range that is left out is too small, friction changes with
+//! the range by more than chance; the smallest that agrees with one of twice the rate is taken
+//! (after Lepski 1990).
+
+use super::errors::Errors;
+use super::least_squares::{Estimate, EstimateError, Fit};
+use super::left_out::{LeftOut, SlowRows, biased_frictions};
+use crate::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
+use nalgebra::DMatrix;
+
+/// Doublings of the rate below which rows are left out.
+const MOST_DOUBLINGS: u32 = 5;
+
+/// Standard errors of a change that are no chance.
+const SURE: f64 = 2.0;
+
+/// The least share of its variance that a friction's change is taken to have.
+const LEAST: f64 = 1.0 / 16.0;
+
+/// An estimate with the covariance that is compared.
+struct Fitted {
+    found: Estimate,
+    covariance: DMatrix<f64>,
+    left_out: LeftOut,
+}
+
+impl Fit<'_> {
+    /// Least squares of the rows that count, with those that do not.
+    pub(super) fn counted(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+    ) -> Result<(Estimate, LeftOut), EstimateError> {
+        let mut fitted = self.fitted(model, logs, LeftOut::asked(model, logs, self.options))?;
+        if fitted.left_out.has_rests() {
+            fitted = self.without_held(model, logs, fitted)?;
+        }
+        let mut tried = vec![false; model.joints.len()];
+        if self.options.slow != SlowRows::Biasing {
+            return Ok((fitted.found, fitted.left_out));
+        }
+        // without the bias of one friction errors are smaller, which may show that of another
+        loop {
+            let of = (&fitted.found.solution.phi, &fitted.covariance);
+            let biased = biased_frictions(model, logs, of).into_iter().map(|(joint, _)| joint);
+            let joints: Vec<usize> = biased.filter(|&joint| !tried[joint]).collect();
+            if joints.is_empty() {
+                return Ok((fitted.found, fitted.left_out));
+            }
+            joints.iter().for_each(|&joint| tried[joint] = true);
+            fitted = self.widened(model, logs, (fitted, joints));
+        }
+    }
+
+    /// Without rests in which something else than its motor holds a joint. What that leaves may be
+    /// taken for parameters, and leave much of motion, too; so does the wrong sign of friction near
+    /// reversals, where nothing is asked therefore.
+    fn without_held(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        fitted: Fitted,
+    ) -> Result<Fitted, EstimateError> {
+        let mut asked = fitted.left_out.clone();
+        for &(joint, _) in model.coulomb() {
+            asked.widen(logs, joint, 1.0);
+        }
+        let of_motion = |asked: &LeftOut| {
+            let motion = asked.clone().without_rests();
+            let found = self.plain(model, (logs, &motion))?;
+            Ok::<_, EstimateError>(motion.left(model, logs, found.solution.phi.as_slice()))
+        };
+        let moving = match of_motion(&asked) {
+            Ok(moving) => moving,
+            Err(_) => {
+                // too little is left of the motion
+                asked = fitted.left_out.clone();
+                of_motion(&asked)?
+            }
+        };
+        loop {
+            let found = self.plain(model, (logs, &asked))?;
+            let phi = found.solution.phi.as_slice();
+            let Some(fewer) = asked.without_held(model, logs, (phi, &moving)) else { break };
+            asked = fewer;
+        }
+        if asked.awake == fitted.left_out.awake {
+            return Ok(fitted);
+        }
+        let mut left_out = fitted.left_out;
+        left_out.awake = asked.awake;
+        (0..logs.len()).for_each(|log| left_out.keep_enough((log, logs)));
+        self.fitted(model, logs, left_out)
+    }
+
+    fn fitted(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        left_out: LeftOut,
+    ) -> Result<Fitted, EstimateError> {
+        let found = self.plain(model, (logs, &left_out))?;
+        let covariance = self.problem(&found).covariance(Errors::Correlated);
+        Ok(Fitted { found, covariance, left_out })
+    }
+
+    /// Without rows near reversals of joints, as many as it takes.
+    fn widened(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        (mut fitted, mut joints): (Fitted, Vec<usize>),
+    ) -> Fitted {
+        for doublings in 0..=MOST_DOUBLINGS {
+            let times = f64::from(1 << doublings);
+            let mut left_out = fitted.left_out.clone();
+            joints.retain(|&joint| left_out.widen(logs, joint, times));
+            if joints.is_empty() {
+                break;
+            }
+            let Ok(next) = self.fitted(model, logs, left_out) else { break };
+            if next.found.solution.excited() < fitted.found.solution.excited() {
+                break;
+            }
+            if doublings > 0 {
+                joints.retain(|&joint| has_moved(model, joint, [&fitted, &next]));
+                if joints.is_empty() {
+                    break;
+                }
+            }
+            fitted = next;
+        }
+        fitted
+    }
+}
+
+/// Whether Coulomb friction of a joint changes by more than chance as more rows are left out.
+fn has_moved(model: &RegressionModel, joint: usize, [before, after]: [&Fitted; 2]) -> bool {
+    let friction = model.coulomb().iter().find(|(of, _)| *of == joint);
+    friction.is_some_and(|&(_, place)| {
+        let at = model.pattern()[joint][place];
+        let of = |one: &Fitted| (one.found.solution.phi[at], one.covariance[(at, at)].max(0.0));
+        let ((value, variance), (other, larger)) = (of(before), of(after));
+        let of_change = (larger - variance).max(LEAST * variance);
+        (other - value).abs() > SURE * of_change.sqrt()
+    })
+}

@@ -1,0 +1,131 @@
+//! The whole log again, under the controller that the robot had.
+
+use super::{
+    Compared, Controller, Forward, ForwardError, ForwardJoint, ForwardKind, LONGEST_S, MotionLog,
+    column, names, rms, simulation,
+};
+use crate::log::{JointSignals, MeasuredLog};
+use denavit_plants::Plant;
+use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
+use denavit_simulate::{Control, DriveModelling, Log, Stop, simulate_believing};
+
+/// Simulates a log again under a controller and compares, for its first minute at most. What is
+/// simulated passes the filter of the log. A controller that compensates does so with `believed`,
+/// the model that it had, else with the plant's own.
+pub fn closed_loop(
+    plant: &mut dyn Plant,
+    believed: Option<&mut (dyn Plant + 'static)>,
+    controller: &Controller,
+    log: &MotionLog,
+) -> Result<Forward, ForwardError> {
+    let settling = log.filter.as_ref().map_or(0, |filter| filter.settling());
+    let most = (LONGEST_S / log.step_s) as usize;
+    let from = log.range.start;
+    let rows = (log.range.end - from).min(most.max(1));
+    if rows <= 2 * settling + 1 {
+        return Err(ForwardError::TooShort((2 * settling + 1) as f64 * log.step_s));
+    }
+    let run = run(plant, believed, controller, (log, from, rows))?;
+    let kept = settling..rows - settling;
+    let filtered = |prefix: &str, name: &str| {
+        let mut values = column(&run, prefix, name, rows);
+        if let Some(filter) = &log.filter {
+            filter.zero_phase(&mut values);
+        }
+        values[kept.clone()].to_vec()
+    };
+    let measured = |values: &[f64]| values[from..][kept.clone()].to_vec();
+    let mut joints = Vec::new();
+    for (index, joint) in plant.model().joints.iter().enumerate() {
+        let (q, qd) = (measured(&log.q[index]), measured(&log.qd[index]));
+        let mean = q.iter().sum::<f64>() / q.len() as f64;
+        let travel = rms(q.iter().map(|q| q - mean));
+        if travel == 0.0 {
+            continue;
+        }
+        let [turning, torque_rms] =
+            [&qd[..], &log.torque[index].as_deref().map_or(Vec::new(), &measured)]
+                .map(|values| rms(values.iter().copied()));
+        let torque = log.torque[index].as_deref().map(|torque| {
+            Compared::new(measured(torque), filtered("tau", &joint.name), torque_rms)
+        });
+        joints.push(ForwardJoint {
+            name: joint.name.clone(),
+            position: Compared::new(q, filtered("q", &joint.name), travel),
+            rate: Compared::new(qd, filtered("qd", &joint.name), turning),
+            torque,
+        });
+    }
+    let (file, kind) = (log.file.clone(), ForwardKind::ClosedLoop);
+    let t_s = kept.map(|sample| log.time_s(from + sample)).collect();
+    Ok(Forward { file, kind, t_s, joints })
+}
+
+/// The log that a model would have given under a controller: its samples, without noise.
+pub fn simulated_log(
+    plant: &mut dyn Plant,
+    believed: Option<&mut (dyn Plant + 'static)>,
+    controller: &Controller,
+    log: &MotionLog,
+) -> Result<MeasuredLog, ForwardError> {
+    let rows = log.samples();
+    let run = run(plant, believed, controller, (log, 0, rows))?;
+    let signals = |name: &str| JointSignals {
+        q: column(&run, "q", name, rows),
+        qd: Some(column(&run, "qd", name, rows)),
+        tau: Some(column(&run, "tau", name, rows)),
+        ..JointSignals::default()
+    };
+    Ok(MeasuredLog {
+        file: format!("{}, simulated", log.file),
+        start_s: log.start_s,
+        step_s: log.step_s,
+        joints: plant.model().joints.iter().map(|joint| signals(&joint.name)).collect(),
+        ..MeasuredLog::default()
+    })
+}
+
+/// So many samples of a log from one of them on, simulated.
+fn run(
+    plant: &mut dyn Plant,
+    believed: Option<&mut (dyn Plant + 'static)>,
+    controller: &Controller,
+    (log, from, rows): (&MotionLog, usize, usize),
+) -> Result<Log, ForwardError> {
+    names(plant.model())?;
+    let control = following(plant, controller, log)?;
+    let initial = log.state(plant.model(), from, true);
+    let end_s = log.time_s(from + rows - 1);
+    let how = simulation(DriveModelling::Model, end_s, log);
+    let run = simulate_believing(plant, believed, &control, &initial, &how);
+    let run = run.map_err(ForwardError::Start)?;
+    match run.stop {
+        Stop::End => Ok(run.log),
+        stop => Err(ForwardError::Stopped { t_s: run.end.t_s, stop }),
+    }
+}
+
+/// The controller with the references of a log where it has none of its own.
+fn following(
+    plant: &dyn Plant,
+    controller: &Controller,
+    log: &MotionLog,
+) -> Result<Control, ForwardError> {
+    let mut control = controller.control.clone();
+    let joints = control.joints.iter_mut().zip(&plant.model().joints).enumerate();
+    for (index, (own, joint)) in joints {
+        let needs = controller.controlled[index]
+            && own.reference.is_none()
+            && (own.stiffness > 0.0 || own.damping > 0.0);
+        if !needs {
+            continue;
+        }
+        let missing = || ForwardError::NoReference(joint.name.clone());
+        let logged = log.reference[index].clone().ok_or_else(missing)?;
+        let times = (0..logged.len()).map(|sample| log.time_s(sample)).collect();
+        let spline = CubicSpline::new(times, logged, [EndCondition::Natural; 2]);
+        let spline = spline.map_err(|_| ForwardError::BadReference(joint.name.clone()))?;
+        own.reference = Some(Reference::Cubic(spline));
+    }
+    Ok(control)
+}

@@ -1,0 +1,495 @@
+//! All that identification says: data alone, for tables, files and reports to show.
+
+use super::condition::Conditioned;
+use super::estimate::{
+    CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
+    IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Standing, Status,
+    Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_held_out,
+    contradicting_logs, convergence, estimate, exceeding_joints, filter_errors, long_enough,
+    misread_apart, misread_columns, noise_in_torques, parameters, unexplained_joints, validate,
+};
+use super::lacking::{lacking, other_robot, said};
+use super::no_bodies::no_bodies;
+use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
+use super::odd_log::odd_log;
+use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
+
+/// What is to be identified, from what.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// Base parameters and their columns.
+    pub model: &'a RegressionModel,
+    /// Logs to estimate from.
+    pub train: &'a [Conditioned],
+    /// Logs to judge the estimate with.
+    pub validate: &'a [Conditioned],
+    /// Logs of the same motion without its noise, for instrumental variables.
+    pub instruments: &'a [Conditioned],
+    /// How.
+    pub options: &'a Options,
+}
+
+/// What was identified.
+#[derive(Clone, Debug)]
+pub struct Identification {
+    /// The base parameters that are listed.
+    pub parameters: Vec<IdentifiedParameter>,
+    /// What is left of the torques of the logs that the estimate is from.
+    pub train: Validation,
+    /// What is left of those of other logs; none without any.
+    pub validate: Option<Validation>,
+    /// What is left with the values that the model had of the logs that were not used, or, without
+    /// any, of those that were; none if the model lacks a value.
+    pub before: Option<f64>,
+    /// Columns that seem to be other ones than they are taken for, one after the other: each with
+    /// those before it mended; those of the logs for validation at last.
+    pub misread: Vec<MisreadColumns>,
+    /// Logs for the estimate that contradict the others, and those for validation that contradict
+    /// the logs for the estimate.
+    pub contradicting_logs: Vec<ContradictingLog>,
+    /// Logs of several for the estimate of which noise of the positions makes most.
+    pub noisy_logs: Vec<NoisyLog>,
+    /// The joint of whose torque the filter makes most by itself, since the motion is too fast for
+    /// it, and how much: a share of its root of mean square.
+    pub filter_error: Option<(String, f64)>,
+    /// Rows that were left out, joint by joint.
+    pub left_out: Vec<LeftOutRows>,
+    /// Joints whose Coulomb friction was estimated by the sign of a rate that is near 0 in so much
+    /// of the logs that it is biased, each with the share of samples.
+    pub reversals: Vec<(String, f64)>,
+    /// Joints of whose torque nearly all is left, or much that is no noise, in the logs for
+    /// validation or, if there are none, those of the estimate.
+    pub unexplained: Vec<Unexplained>,
+    /// Joints of whose torque something is left that is no noise, with its share.
+    pub lacking: Vec<(String, f64)>,
+    /// Periods of the filter's cutoff that all logs for the estimate have.
+    pub periods: f64,
+    /// The estimate came about so.
+    pub convergence: Vec<Convergence>,
+    /// The nearest bodies that exist.
+    pub consistent: Consistent,
+    /// The estimate on the joint axes.
+    pub estimate: Estimate,
+}
+
+/// Rows of a joint that do not count, since it turns round or is slow there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOutRows {
+    /// The joint.
+    pub joint: String,
+    /// Samples that are left out, after decimation.
+    pub samples: usize,
+    /// Of so many.
+    pub of: usize,
+    /// The share of the joint's torque that is left of the others, as roots of mean squares.
+    pub left: f64,
+}
+
+/// Periods of the filter's cutoff below which logs are short.
+const SHORT: f64 = 80.0;
+
+/// Parameters that are named, at most.
+const LISTED: usize = 6;
+
+/// The share of a joint's torque in a log for validation that noise of its positions makes, from
+/// which on it needs a lower filter: more would hide a contradiction, or pass for one.
+const NOISY: f64 = 0.01;
+
+/// The share of a torque from which on it is said what the filter makes of a motion that is too
+/// fast for it, if it is also this share of what is left.
+const SMEARED: [f64; 2] = [0.01, 0.3];
+
+impl Identification {
+    /// Whether noise makes most of what the motion shows of some parameters: what is found says
+    /// neither how far they are off nor whether columns are what they are taken for.
+    pub fn is_noise(&self) -> bool {
+        self.estimate.noise_share > MOST
+    }
+
+    /// What is to be said if noise of the positions biases the parameters.
+    fn bias(&self) -> Option<String> {
+        if self.is_noise() {
+            let short = match self.periods < SHORT {
+                true => "The logs are too short for it: ",
+                false => "",
+            };
+            return Some(format!(
+                "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
+                 parameters. How far they are off cannot be told, nor whether columns are other \
+                 ones than they are taken for. A filter with a lower cutoff (--filter) has less \
+                 of it; so has a longer or faster motion, or one of all joints at once.",
+                100.0 * self.estimate.noise_share
+            ));
+        }
+        let own = |one: &IdentifiedParameter| Some((one.name.clone(), one.noise_bias?));
+        let all = self.parameters.iter().filter(|one| one.is_biased());
+        let biased =
+            listed(all.filter_map(own).collect(), |(name, bias)| format!("{name} by {bias:.1}"));
+        biased.map(|biased| {
+            format!(
+                "Noise of the positions biases parameters, in standard errors: {biased}. Their \
+                 intervals hold less often than they say. A filter with a lower cutoff (--filter) \
+                 has less of it, or --method iv none."
+            )
+        })
+    }
+
+    /// What is to be said if parameters change with half the cutoff by more than chance.
+    fn changed(&self) -> Option<String> {
+        if self.is_noise() {
+            return None; // it has been said, and errors count too little of it
+        }
+        let times = |one: &IdentifiedParameter| {
+            let by = one.std? / one.half_cutoff?.own_std;
+            Some((one.name.clone(), by))
+        };
+        let all = self.parameters.iter().filter(|one| one.is_changed());
+        let wider = listed(all.filter_map(times).collect(), |(name, by)| format!("{name} {by:.1}"));
+        wider.map(|wider| {
+            format!(
+                "Parameters change with half the cutoff of the filter by more than chance. That is \
+                 in their errors, which are wider than chance alone makes them, so many times: \
+                 {wider}. A loop closed over the encoder of the log makes such a change, since its \
+                 motion answers the noise (--method iv is for that), and so may what the model \
+                 lacks. --filter with a lower cutoff has less of it."
+            )
+        })
+    }
+
+    /// What is to be said if the filter itself makes a part of the torques.
+    fn smeared(&self) -> Option<String> {
+        let (joint, share) = self.filter_error.as_ref()?;
+        Some(format!(
+            "The filter by itself makes an error of {:.1} % of the torque of {joint}: the motion \
+             is too fast for it, or has too few samples a second. Parameters are biased, and their \
+             intervals too narrow. --filter with a higher cutoff makes less of it.",
+            100.0 * share
+        ))
+    }
+
+    /// What is to be said of rows that do not count, and of what is left of the others.
+    pub fn notes(&self) -> Vec<String> {
+        let lacking = said(&self.lacking).filter(|_| !self.is_noise());
+        self.rows_left_out().into_iter().chain(lacking).collect()
+    }
+
+    fn rows_left_out(&self) -> Option<String> {
+        let of = |one: &LeftOutRows| {
+            let left = 100.0 * one.left;
+            format!("{} of {} samples of {} ({left:.2} %)", one.samples, one.of, one.joint)
+        };
+        let listed: Vec<String> = self.left_out.iter().map(of).collect();
+        (!listed.is_empty()).then(|| {
+            format!(
+                "Left out of the estimate, since the joint turns round or is slow there, where \
+                 friction is not the sign of its rate: {} (--skip-slow off keeps them). What is \
+                 left of torques above is that of all samples; in brackets, that of the others.",
+                listed.join(", ")
+            )
+        })
+    }
+
+    /// All that is to be said before anybody believes the parameters.
+    pub fn warnings(&self) -> Vec<String> {
+        let misread = self.misread.iter().map(|one| {
+            let accepted = if one.is_sure { "Accepted: " } else { "Perhaps " };
+            let hint = one.hint();
+            format!("{accepted}{} ({hint}).", one.summary())
+        });
+        let reversals = self.reversals.iter().map(|(joint, share)| {
+            format!(
+                "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
+                 samples are within the filter's time of a reversal, or as slow, and count. \
+                 --skip-slow leaves them out, as far as other samples are there; --friction tanh \
+                 has another law there.",
+                100.0 * share
+            )
+        });
+        // where noise makes most, that is why
+        let unexplained = self.unexplained.iter().filter(|_| !self.is_noise());
+        let unexplained = unexplained.map(Unexplained::to_string);
+        let noisy_logs = self.noisy_logs.iter().filter(|_| !self.is_noise());
+        let noisy_logs = noisy_logs.map(NoisyLog::to_string);
+        let contradicting = self.contradicting_logs.iter().filter(|_| !self.is_noise());
+        misread
+            .chain(contradicting.map(ContradictingLog::to_string))
+            .chain(unexplained)
+            .chain(self.bias())
+            .chain(noisy_logs)
+            .chain(self.changed())
+            .chain(self.smeared())
+            .chain(reversals)
+            .chain(other_robot(self.before))
+            .chain(self.no_bodies())
+            .collect()
+    }
+
+    /// Whether the model's own values leave far more than there is.
+    pub fn is_of_other_robot(&self) -> bool {
+        other_robot(self.before).is_some()
+    }
+
+    /// That the nearest bodies are far from the estimate; none if noise makes most of it.
+    pub fn no_bodies(&self) -> Option<String> {
+        no_bodies(self.consistent.distance).filter(|_| !self.is_noise())
+    }
+
+    /// The names of parameters that the motion does not show.
+    pub fn not_excited(&self) -> Vec<&str> {
+        let hidden = self.parameters.iter().filter(|one| one.status == Status::NotExcited);
+        hidden.map(|one| one.name.as_str()).collect()
+    }
+}
+
+/// The largest of some numbers with names, and how many others there are; none without any.
+fn listed(mut all: Vec<(String, f64)>, text: impl Fn(&(String, f64)) -> String) -> Option<String> {
+    all.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let named: Vec<String> = all.iter().take(LISTED).map(text).collect();
+    let more = all.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!(" and {more} others") } else { String::new() };
+    (!all.is_empty()).then(|| format!("{}{more}", named.join(", ")))
+}
+
+/// An estimate before anything is judged by it but its filters.
+#[derive(Clone, Debug)]
+pub struct Estimated {
+    /// The base parameters that are listed.
+    pub parameters: Vec<IdentifiedParameter>,
+    /// The joint of whose torque the filter makes most by itself, and how much.
+    pub filter_error: Option<(String, f64)>,
+    /// For each log for the estimate whether its noise of positions biases parameters, so that it
+    /// needs a lower filter.
+    pub biasing_logs: Vec<bool>,
+    /// For each of them whether it would need one if it were alone.
+    pub biased_alone: Vec<bool>,
+    left: Validation,
+    found: Estimate,
+}
+
+/// Estimates, judges, and finds the nearest bodies that exist.
+pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
+    Ok(estimated(request)?.judged(request))
+}
+
+/// Estimates alone: what filters are chosen by.
+pub fn estimated(request: Request<'_>) -> Result<Estimated, EstimateError> {
+    let Request { model, train, instruments, options, .. } = request;
+    let start = model.model_axes().unwrap_or_else(|| vec![0.0; model.rank()]);
+    let found = estimate(model, train, instruments, options, &start)?;
+    if options.prior.is_empty() {
+        long_enough(train, &found)?;
+    }
+    let phi = found.solution.phi.as_slice();
+    let left = validate(model, phi, train);
+    let listed = parameters(model, &found);
+    Ok(Estimated {
+        filter_error: filter_error(model, train, (phi, &left)),
+        biasing_logs: biasing_logs(model, &listed, &found),
+        biased_alone: biased_alone(&found),
+        parameters: listed,
+        left,
+        found,
+    })
+}
+
+impl Estimated {
+    /// Whether a log for validation needs a lower filter, if it is not the motion that is too fast
+    /// for the one that it has.
+    pub fn is_noisy(&self, model: &RegressionModel, log: &Conditioned) -> bool {
+        let noise = noise_in_torques(model, log, self.found.solution.phi.as_slice());
+        noise.into_iter().any(|share| share > NOISY)
+    }
+
+    /// Whether the filter of a log for validation itself makes a part of what is left.
+    pub fn is_smeared(&self, model: &RegressionModel, log: &Conditioned) -> bool {
+        let phi = self.found.solution.phi.as_slice();
+        let log = std::slice::from_ref(log);
+        filter_error(model, log, (phi, &validate(model, phi, log))).is_some()
+    }
+
+    /// All that there is to say of it and of the logs that it is from.
+    pub fn judged(self, request: Request<'_>) -> Identification {
+        let Self { parameters: listed, filter_error, left, found, .. } = self;
+        let Request { model, train, validate: held_out, options, .. } = request;
+        let given = model.model_axes();
+        let phi = found.solution.phi.as_slice();
+        let judged = |phi: &[f64]| (!held_out.is_empty()).then(|| validate(model, phi, held_out));
+        let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
+        let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
+        let held_out_left = judged(phi);
+        let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
+        let torques = torques(model, &left);
+        let noise = found.noise_of_joints().into_iter();
+        let counted: Vec<f64> = noise.zip(torques.iter().copied()).map(share).collect();
+        // of a log that is noise, much is left
+        let shown = shown_logs(train.len(), &found);
+        let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
+        let misread = misread(request, (&found, &listed, &counted), &contradicting_logs);
+        let (judges, judging) = match held_out.is_empty() {
+            true => (train, shown.clone()),
+            false => (held_out, (0..held_out.len()).collect()),
+        };
+        let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
+        let left_together = validate(model, phi, &together);
+        contradicting_logs.extend(contradicting_held_out(
+            model,
+            (train, held_out),
+            (&found, options),
+        ));
+        let exceeding = exceeding_joints(model, held_out, (&found, options, &counted));
+        let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
+        let mut unexplained = unexplained_joints(model, (judges, &judging), judgement);
+        let is_told = |one: &Unexplained| {
+            let contradicts = |log: &ContradictingLog| one.file.as_ref() == Some(&log.file);
+            contradicting_logs.iter().any(contradicts)
+                || unexplained.iter().any(|other| other.joint == one.joint)
+        };
+        let exceeding: Vec<Unexplained> =
+            exceeding.into_iter().filter(|one| !is_told(one)).collect();
+        unexplained.extend(exceeding);
+        Identification {
+            unexplained,
+            misread,
+            reversals: reversals(model, train, (&found, options)),
+            left_out: left_out(model, train, (&found, &counted)),
+            contradicting_logs,
+            noisy_logs: noisy_logs(model, train, &found),
+            lacking: lacking(model, (train, &shown), (&found, &torques)),
+            periods: train.iter().map(Conditioned::periods).sum(),
+            parameters: listed,
+            filter_error,
+            train: left,
+            validate: held_out_left,
+            before: given.map(|phi| {
+                let logs = if held_out.is_empty() { train } else { held_out };
+                validate(model, &phi, logs).relative
+            }),
+            convergence: convergence(model, &found),
+            consistent: consistent(model, &found, &standard),
+            estimate: found,
+        }
+    }
+}
+
+/// Root of mean square of each joint's torque; 0 where none was measured.
+fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
+    let of_joint = |joint: &RegressionJoint| {
+        let found = left.joints.iter().find(|one| one.name == joint.name);
+        found.map_or(0.0, |one| one.torque_rms)
+    };
+    model.joints.iter().map(of_joint).collect()
+}
+
+/// Columns that seem to be other ones than they are taken for. Logs of which noise makes most show
+/// nothing of that.
+fn misread(
+    request: Request<'_>,
+    (found, listed, counted): (&Estimate, &[IdentifiedParameter], &[f64]),
+    contradicting: &[ContradictingLog],
+) -> Vec<MisreadColumns> {
+    let Request { model, train, validate: held_out, .. } = request;
+    if found.noise_share > MOST {
+        return Vec::new();
+    }
+    let phi = found.solution.phi.as_slice();
+    let shown = shown_logs(train.len(), found);
+    let logs: Vec<&Conditioned> = shown.iter().map(|&log| &train[log]).collect();
+    let mut misread = misread_columns(model, &logs, Evidence { values: None, listed });
+    let measured = counted.iter().filter(|share| **share > 0.0).count().max(1) as f64;
+    let squares: f64 = counted.iter().map(|share| share * share).sum();
+    if (squares / measured).sqrt() < CLEAN {
+        misread.retain(|one| !one.is_guess());
+    }
+    misread.retain(|one| !one.is_of_reversals(counted));
+    // values that a log gives which contradicts the others would accuse a good one
+    let is_told = |&log: &usize| contradicting.iter().any(|one| one.file == train[log].file);
+    let told: Vec<usize> = shown.iter().copied().filter(is_told).collect();
+    let asked = if told.is_empty() { &shown } else { &told };
+    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, (asked, &shown), found)) {
+        misread = held_out_misread(model, &train[log..=log], &phi);
+        if contradicting.iter().any(|one| one.standing == Standing::Undecided) {
+            misread.iter_mut().for_each(|one| one.is_sure = false);
+        }
+    }
+    // noise of the positions makes constants, too
+    if misread.is_empty() && !listed.iter().any(IdentifiedParameter::is_biased) {
+        misread = constants_off(model, train, found);
+    }
+    let others = held_out_misread(model, held_out, phi);
+    let is_told = |one: &MisreadColumns| {
+        let is_same = |told: &MisreadColumns| told.misreading.is_like(one.misreading);
+        misread.iter().any(|told| told.file.is_none() && is_same(told))
+    };
+    let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
+    misread.extend(others);
+    misread
+}
+
+/// Columns that seem to be other ones in each of the logs for validation: by what was found in the
+/// others, and by estimates of their own.
+fn held_out_misread(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    phi: &[f64],
+) -> Vec<MisreadColumns> {
+    let of_log = |log: &Conditioned| {
+        let mut misread = misread_apart(model, &[log], Evidence { values: Some(phi), listed: &[] });
+        if validate(model, phi, std::slice::from_ref(log)).relative < CLEAN {
+            misread.retain(|one| !one.is_guess());
+        }
+        misread
+    };
+    logs.iter().flat_map(of_log).collect()
+}
+
+/// The joint of whose torque the filter makes most by itself, if that is a part of what is left.
+fn filter_error(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (phi, left): (&[f64], &Validation),
+) -> Option<(String, f64)> {
+    let names = model.joints.iter().map(|joint| joint.name.clone());
+    let is_large = |(name, share): &(String, f64)| {
+        let left = left.joints.iter().find(|one| one.name == *name);
+        *share > SMEARED[0] && left.is_some_and(|left| *share > SMEARED[1] * left.relative)
+    };
+    let all = names.zip(filter_errors(model, logs, phi)).filter(is_large);
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The joints whose Coulomb friction is biased by samples that were not left out.
+fn reversals(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (found, options): (&Estimate, &Options),
+) -> Vec<(String, f64)> {
+    if !matches!(options.slow, SlowRows::Biasing | SlowRows::Kept) {
+        return Vec::new();
+    }
+    let without = left_out(model, logs, (found, &[]));
+    let of = |(joint, share): (usize, f64)| (model.joints[joint].name.clone(), share);
+    let biased = biased_frictions(model, logs, (&found.solution.phi, &found.covariance));
+    let counted = biased.into_iter().map(of);
+    counted.filter(|(name, _)| without.iter().all(|one| one.joint != *name)).collect()
+}
+
+/// The rows of each joint that do not count, with the shares that are left of the others.
+fn left_out(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    (found, counted): (&Estimate, &[f64]),
+) -> Vec<LeftOutRows> {
+    let parts = &found.condensed.parts;
+    let rows = |joint: usize| parts.iter().map(|part| part[joint].rows()).sum::<usize>();
+    let of = |joint: usize| -> usize {
+        let measured = logs.iter().filter(|log| log.torque[joint].is_some());
+        measured.map(Conditioned::samples).sum()
+    };
+    let one = |joint: usize| LeftOutRows {
+        joint: model.joints[joint].name.clone(),
+        samples: of(joint) - rows(joint),
+        of: of(joint),
+        left: counted.get(joint).copied().unwrap_or(0.0),
+    };
+    (0..model.joints.len()).map(one).filter(|one| one.samples > 0).collect()
+}

@@ -1,0 +1,51 @@
+//! Motors that do not carry their joints: a brake holds them, or stiction.
+
+use super::condition::Conditioned;
+use super::estimate::{BlockMaker, nominal_values};
+use denavit_plants::regression::RegressionModel;
+
+/// The deviation of a torque over that of the load, below which it does not follow it, if it is
+/// less like it than this: a torque in another unit follows all the same.
+const FOLLOWS: f64 = 0.1;
+const ALIKE: f64 = 0.7;
+
+/// The share of the squares of a torque below which its variance is rounding: a constant is like
+/// nothing.
+const ROUNDING: f64 = 1e-9;
+
+/// Takes the torques of motors that do not carry their joints out of a log, and says which: the
+/// joint rests, and its torque does not change as the load does that the model's own values make of
+/// the motion of the others. Nothing is known there but that something else holds the joint.
+pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> Vec<usize> {
+    let Some(values) = nominal_values(model) else { return Vec::new() };
+    let rests = |joint: &usize| log.resting[*joint] && !model.joints[*joint].is_base;
+    let resting: Vec<usize> = (0..model.joints.len()).filter(rests).collect();
+    if resting.is_empty() {
+        return resting;
+    }
+    // rows, torque and load, their squares and their product
+    let mut sums = vec![[0.0; 6]; resting.len()];
+    BlockMaker::new(model, log).for_each(|block| {
+        for (&joint, sums) in resting.iter().zip(&mut sums) {
+            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
+            let Some(left) = block.residual(joint, &own) else { continue };
+            let Some([_, target]) = &block.torque[joint] else { continue };
+            for (left, torque) in left.into_iter().zip(target) {
+                let load = torque - left;
+                let own = [1.0, *torque, load, torque * torque, load * load, torque * load];
+                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            }
+        }
+    });
+    let is_idle = |[rows, torque, load, torques, loads, both]: [f64; 6]| {
+        let rounding = ROUNDING * torques;
+        let [torques, loads] = [torques - torque * torque / rows, loads - load * load / rows];
+        let both = both - torque * load / rows;
+        let is_alike = torques > rounding && both * both > ALIKE.powi(2) * torques * loads;
+        torques < FOLLOWS.powi(2) * loads && !is_alike
+    };
+    let idle = resting.into_iter().zip(sums).filter(|(_, sums)| is_idle(*sums));
+    let idle: Vec<usize> = idle.map(|(joint, _)| joint).collect();
+    idle.iter().for_each(|&joint| log.torque[joint] = None);
+    idle
+}

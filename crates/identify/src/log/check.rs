@@ -1,0 +1,348 @@
+//! Whether a log says what it seems to say: units, swapped joints, signals that do not move.
+
+use super::fault::{LogFault, LogRemark, Suspicion};
+use super::{JointSignals, MeasuredLog};
+use denavit_plants::regression::RegressionJoint;
+
+/// A step of the time from which on it hardly counts seconds.
+const SLOWEST_STEP_S: f64 = 0.1;
+
+/// A turning joint without limits hardly goes further \[rad\].
+const LARGEST_ANGLE_RAD: f64 = 20.0;
+
+/// Changes of a torque below this are rounding [N m, N].
+const ROUNDING: f64 = 1e-12;
+
+/// Times its limit that a torque goes to if the limits of a trajectory are the model's.
+const FAR_BEYOND: f64 = 3.0;
+
+/// Two signals that are one.
+const SAME: f64 = 0.98;
+
+/// Two signals that are not one.
+const OTHER: f64 = 0.7;
+
+/// What looks wrong, and what is worth a remark.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub(super) faults: Vec<LogFault>,
+    pub(super) suspicions: Vec<Suspicion>,
+    pub(super) remarks: Vec<LogRemark>,
+}
+
+/// Looks at every signal.
+pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
+    let mut found = Findings::default();
+    time_unit(log, &mut found);
+    let moving: Vec<bool> = log.joints.iter().map(moves).collect();
+    let has_drives = joints.iter().any(|joint| joint.is_driven);
+    for ((signals, joint), &moves) in log.joints.iter().zip(joints).zip(&moving) {
+        position(signals, joint, &mut found);
+        if moves {
+            logged_rate((signals, log.step_s), joint, &mut found);
+        } else if !joint.is_base {
+            found.remarks.push(LogRemark::Resting { joint: joint.name.clone() });
+        }
+        torque(signals, (joint, has_drives), moves, &mut found);
+    }
+    if !moving.contains(&true) {
+        found.faults.push(LogFault::NothingMoves);
+    }
+    swapped(log, joints, &moving, &mut found);
+    found
+}
+
+fn time_unit(log: &MeasuredLog, found: &mut Findings) {
+    if log.step_s > SLOWEST_STEP_S {
+        let factor = if log.step_s >= 50.0 { 1e-6 } else { 1e-3 };
+        found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor });
+    }
+}
+
+fn range(column: &[f64]) -> [f64; 2] {
+    column.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
+/// A joint moves if it goes further than rounding and the steps of its encoder.
+fn moves(joint: &JointSignals) -> bool {
+    let [low, high] = range(&joint.q);
+    high - low > (4.0 * joint.step.unwrap_or(0.0)).max(1e-7 * high.abs().max(low.abs()).max(1e-3))
+}
+
+fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Findings) {
+    let [low, high] = range(&signals.q);
+    let column = format!("q_{}", joint.name);
+    let largest = low.abs().max(high.abs());
+    match joint.position_limits {
+        Some(limits) => {
+            let slack = 0.02 * (limits[1] - limits[0]);
+            let beyond = [low < limits[0] - slack, high > limits[1] + slack];
+            let reach = limits[0].abs().max(limits[1].abs());
+            if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
+                found.suspicions.push(Suspicion::Degrees { column, largest });
+            } else if beyond[0] || beyond[1] {
+                let value = if beyond[0] { low } else { high };
+                found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
+            }
+        }
+        None if !joint.slides && largest > LARGEST_ANGLE_RAD => {
+            found.suspicions.push(Suspicion::Degrees { column, largest });
+        }
+        None => {}
+    }
+    if let Some(step) = signals.step {
+        let own = (format!("q_{}", joint.name), step);
+        // one remark for all joints
+        let steps = found.remarks.iter_mut().find_map(|remark| match remark {
+            LogRemark::Steps { columns } => Some(columns),
+            _ => None,
+        });
+        match steps {
+            Some(columns) => columns.push(own),
+            None => found.remarks.push(LogRemark::Steps { columns: vec![own] }),
+        }
+    }
+}
+
+/// The integral of a rate against its position: neither noise nor steps of an encoder matter there,
+/// as they would in a derivative.
+fn logged_rate(
+    (signals, step_s): (&JointSignals, f64),
+    joint: &RegressionJoint,
+    found: &mut Findings,
+) {
+    let Some(logged) = &signals.qd else { return };
+    let column = format!("qd_{}", joint.name);
+    let (position, travelled) = (level(&signals.q), level(&integral(logged, step_s)));
+    let correlation = correlation(&travelled, &position);
+    // The swapped ones are found below.
+    if correlation.abs() < OTHER {
+        found.suspicions.push(Suspicion::NotTheRate { column, correlation });
+        return;
+    }
+    let ratio = slope(&position, &travelled);
+    if !(0.8..1.25).contains(&ratio) {
+        found.suspicions.push(Suspicion::RateScale { column, ratio });
+    }
+}
+
+fn torque(
+    signals: &JointSignals,
+    (joint, has_drives): (&RegressionJoint, bool),
+    moves: bool,
+    found: &mut Findings,
+) {
+    let Some(torque) = &signals.tau else { return };
+    let [low, high] = range(torque);
+    let column = format!("tau_{}", joint.name);
+    if joint.is_base {
+        return;
+    }
+    if high - low < ROUNDING {
+        // what has no drive in a model with drives has no torque either
+        let is_passive = low.abs() < ROUNDING && !joint.is_driven && has_drives;
+        if moves && !is_passive {
+            found.suspicions.push(Suspicion::ConstantTorque { column });
+        }
+        return;
+    }
+    if let Some([least, most]) = joint.torque_limits {
+        let limit = least.abs().max(most.abs());
+        let is_beyond = |value: f64| value.abs() > FAR_BEYOND * limit;
+        if limit > 0.0 && (is_beyond(low) || is_beyond(high)) {
+            let samples = torque.iter().filter(|value| is_beyond(**value)).count();
+            let (column, value) = (column.clone(), if is_beyond(low) { low } else { high });
+            found.suspicions.push(Suspicion::BeyondTorque { column, value, limit, samples });
+        }
+    }
+    for value in [low, high] {
+        // Samples that stand at the very extreme, five or more at once.
+        let mut run = 0;
+        let mut at_once = 0;
+        let mut count = 0;
+        for &one in torque {
+            run = if one == value { run + 1 } else { 0 };
+            at_once = at_once.max(run);
+            count += usize::from(one == value);
+        }
+        let share = count as f64 / torque.len() as f64;
+        if at_once >= 5 && share > 0.002 {
+            let column = column.clone();
+            found.remarks.push(LogRemark::Saturated { column, share, value });
+        }
+    }
+}
+
+/// q of one joint fits the rate, or the reference, of another, and not its own.
+fn swapped(log: &MeasuredLog, joints: &[RegressionJoint], moving: &[bool], found: &mut Findings) {
+    let fits = |a: usize, b: usize| {
+        let own = &log.joints[a].q;
+        let by_rate = log.joints[b].qd.as_ref().filter(|_| moving[a]);
+        let by_rate =
+            by_rate.map(|rate| correlation(&level(own), &level(&integral(rate, log.step_s))));
+        let by_reference = log.joints[b].reference.as_ref();
+        by_rate.or(by_reference.map(|reference| correlation(own, reference)))
+    };
+    for a in 0..joints.len() {
+        let Some(own) = fits(a, a).filter(|own| *own < OTHER) else { continue };
+        let others = (0..joints.len()).filter(|&b| b != a);
+        let best = others.filter_map(|b| Some((b, fits(a, b)?))).max_by(|x, y| x.1.total_cmp(&y.1));
+        if let Some((b, fit)) = best
+            && fit > SAME.max(own)
+        {
+            let (joint, other) = (joints[a].name.clone(), joints[b].name.clone());
+            found.suspicions.push(Suspicion::Swapped { joint, other });
+        }
+    }
+}
+
+/// The integral by trapezoids, from 0.
+fn integral(rate: &[f64], step_s: f64) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut before = rate.first().copied().unwrap_or(0.0);
+    let mut next = |&rate: &f64| {
+        sum += 0.5 * step_s * (rate + before);
+        before = rate;
+        sum
+    };
+    rate.iter().map(&mut next).collect()
+}
+
+/// A signal without the line that fits it best: what an offset of a rate adds to its integral.
+fn level(signal: &[f64]) -> Vec<f64> {
+    let middle = 0.5 * (signal.len() as f64 - 1.0);
+    let at = |index: usize| index as f64 - middle;
+    let squares: f64 = (0..signal.len()).map(|index| at(index).powi(2)).sum();
+    let products: f64 = signal.iter().enumerate().map(|(index, value)| at(index) * value).sum();
+    let (mean, slope) = (mean(signal), products / squares.max(f64::MIN_POSITIVE));
+    signal.iter().enumerate().map(|(index, value)| value - mean - slope * at(index)).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// The correlation of two signals; 0 where one of them is constant.
+pub(super) fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let (at, bt) = (mean(a), mean(b));
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        let (x, y) = (x - at, y - bt);
+        ab += x * y;
+        aa += x * x;
+        bb += y * y;
+    }
+    if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 }
+}
+
+/// The slope of `b` over `a`.
+fn slope(a: &[f64], b: &[f64]) -> f64 {
+    let (at, bt) = (mean(a), mean(b));
+    let (mut ab, mut aa) = (0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        ab += (x - at) * (y - bt);
+        aa += (x - at) * (x - at);
+    }
+    ab / aa
+}
+
+/// Changes of a position that tell the step of its encoder, at least: of one that moves from sample
+/// to sample, and of one that mostly does not.
+const FEWEST_MOVES: usize = 20;
+const FEWEST_STEPS: usize = 5;
+
+/// Steps that the smallest difference of a position that is always fast may be.
+const MOST_OF_LEAST: u32 = 5;
+
+/// The step of an encoder: what all differences of neighbouring samples are multiples of.
+pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
+    let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let size = range(q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let tiny = 1e-12 * size.max(1e-6);
+    let moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
+    // where a position rests but for some steps, few tell their size
+    let is_staircase = moved.len() >= FEWEST_STEPS && moved.len() * 10 < q.len();
+    if moved.len() < FEWEST_MOVES && !is_staircase {
+        return None;
+    }
+    let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
+    (1..=MOST_OF_LEAST).find_map(|times| of_multiples(&moved, least / f64::from(times), size))
+}
+
+/// The step near a first guess that differences are multiples of; none if they are not, or if what
+/// printed positions of this size are rounded to is no less.
+fn of_multiples(moved: &[f64], guess: f64, size: f64) -> Option<f64> {
+    // Larger multiples know the step better than the digits of one.
+    let step = (1..=3).fold(guess, |step, digits| {
+        let small = moved.iter().filter(|&&d| d < 10.0_f64.powi(digits) * step);
+        let (sum, count) = small.fold((0.0, 0.0), |(sum, count), d| {
+            let times = (d / step).round();
+            (sum + d * times, count + times * times)
+        });
+        sum / count
+    });
+    let rounding = 1e-9 * size;
+    let is_multiple = |d: &&f64| {
+        let times = **d / step;
+        (times - times.round()).abs() < 0.02 + 2.0 * rounding / step && times < 1e5
+    };
+    // Of a smooth signal hardly any difference is a multiple of its smallest one.
+    let multiples = moved.iter().filter(is_multiple).count();
+    (step >= 20.0 * rounding && multiples as f64 > 0.995 * moved.len() as f64).then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn sampled(step: f64, digits: Option<i32>) -> Vec<f64> {
+        let at = |k: usize| {
+            let t = 1e-3 * k as f64;
+            let q = 0.8 * (TAU * 0.3 * t).sin() + 0.3 * (TAU * 0.7 * t).cos();
+            let stepped = if step > 0.0 { (q / step).round() * step } else { q };
+            let scale = digits.map_or(1.0, |digits| 10.0_f64.powi(digits));
+            if digits.is_some() { (stepped * scale).round() / scale } else { stepped }
+        };
+        (0..8000).map(at).collect()
+    }
+
+    /// Steps are found to far more digits than one difference has, in full precision and printed
+    /// to 7 digits, and where hardly any difference is as small as a step.
+    #[test]
+    fn steps_of_encoders_are_found() {
+        for step in [TAU / 4000.0, TAU / 20_000.0, TAU / 200_000.0, 1e-5, 2e-6, 1e-6] {
+            let found = encoder_step(&sampled(step, None)).expect("steps");
+            assert!((found / step - 1.0).abs() < 1e-9, "{step}: {found}");
+        }
+        let printed = sampled(TAU / 20_000.0, Some(7));
+        let found = encoder_step(&printed).expect("steps");
+        assert!((found / (TAU / 20_000.0) - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    /// Ten steps in three thousand samples.
+    #[test]
+    fn steps_of_slow_motion_are_found() {
+        let at = |k: usize| 0.01 * (1e-3 * k as f64).sin();
+        let slow: Vec<f64> = (0..3000).map(|k| (at(k) / 1e-3).round() * 1e-3).collect();
+        let found = encoder_step(&slow).expect("steps");
+        assert!((found / 1e-3 - 1.0).abs() < 1e-9, "{found}");
+        // at rest, but for a smooth move of ten samples
+        let moved = |k: usize| 0.1 * (0.1 * k.clamp(1000, 1010) as f64).sin();
+        let smooth: Vec<f64> = (0..3000).map(moved).collect();
+        assert_eq!(encoder_step(&smooth), None);
+    }
+
+    #[test]
+    fn smooth_noisy_and_resting_signals_have_none() {
+        assert_eq!(encoder_step(&sampled(0.0, None)), None);
+        let mut random = denavit_numerics::Random::new(9);
+        let noisy: Vec<f64> =
+            sampled(0.0, None).into_iter().map(|q| q + 1e-4 * random.normal()).collect();
+        assert_eq!(encoder_step(&noisy), None);
+        assert_eq!(encoder_step(&[0.3; 500]), None);
+        assert_eq!(encoder_step(&[0.3]), None);
+    }
+}

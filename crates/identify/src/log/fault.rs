@@ -1,0 +1,445 @@
+//! What is wrong with a log, or looks wrong.
+
+use super::reader::LONGEST_LINE;
+use super::repair::FEWEST_ROWS;
+use denavit_numerics::short;
+use std::fmt;
+
+/// All that is wrong with a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogFaults {
+    /// The file, as it was given.
+    pub file: String,
+    /// The faults, those that keep it from being read first.
+    pub faults: Vec<LogFault>,
+}
+
+/// What keeps a log from being used.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the fields are what the messages name
+pub enum LogFault {
+    /// The file cannot be read.
+    Unreadable(String),
+    /// A line is not UTF-8 text.
+    NotUtf8 { line: usize },
+    /// A line is longer than any log's.
+    LongLine { line: usize },
+    /// There is no line with the names of the columns.
+    NoColumns,
+    /// Two columns have one name.
+    RepeatedColumn { column: String },
+    /// A column that is needed is not there.
+    MissingColumn { column: String, nearest: Option<String> },
+    /// A joint has no torque, and others have; holds its column and the one that is meant, perhaps.
+    MissingTorque { column: String, nearest: Option<String> },
+    /// A robot on a floating base lacks forces of its contacts; holds their columns.
+    MissingForces { columns: Vec<String> },
+    /// Several of our columns are taken from one of the log.
+    SharedColumn { column: String, ours: Vec<String> },
+    /// A number that nothing of a robot can be.
+    Impossible { column: String, value: f64, line: usize },
+    /// A name that is mapped is none of the model's columns.
+    UnknownName { name: String, nearest: Option<String> },
+    /// The log says that it is of another model.
+    OtherModel { log: String, model: String },
+    /// The header names a side of the gears that there is not.
+    TorqueSide { found: String },
+    /// The log has joints that the model does not have.
+    OtherJoints { joints: Vec<String> },
+    /// Fewer rows than anything can be made of.
+    TooShort { rows: usize },
+    /// A row with another number of cells than there are columns.
+    RowLength { line: usize, expected: usize, found: usize },
+    /// A cell that is no number.
+    NotANumber { line: usize, column: String, cell: String },
+    /// Cells without a number, more than are filled in.
+    Undefined { column: String, count: usize, line: usize },
+    /// A time that is before the one of the row above.
+    TimeNotIncreasing { line: usize },
+    /// A time twice, with other numbers beside it.
+    TimeRepeated { line: usize },
+    /// The distances of samples scatter too much for derivatives.
+    Jitter { relative: f64 },
+    /// Samples are missing, more than are filled in.
+    Gaps { missing: usize, samples: usize, longest: usize, line: usize },
+    /// The log says something else than it seems to.
+    Suspicion(Suspicion),
+    /// No joint moves.
+    NothingMoves,
+}
+
+/// What looks wrong: it may be accepted by whoever knows better.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the fields are what the messages name
+pub enum Suspicion {
+    /// The time seems to count milliseconds or microseconds.
+    TimeUnit { step: f64, factor: f64 },
+    /// A position seems to be in degrees.
+    Degrees { column: String, largest: f64 },
+    /// A logged rate is another multiple of the derivative of its position.
+    RateScale { column: String, ratio: f64 },
+    /// A logged rate is not the derivative of its position.
+    NotTheRate { column: String, correlation: f64 },
+    /// A joint's position fits another joint's rate or reference.
+    Swapped { joint: String, other: String },
+    /// A torque never changes while its joint moves.
+    ConstantTorque { column: String },
+    /// A torque is far beyond what the model says the joint can have.
+    BeyondTorque { column: String, value: f64, limit: f64, samples: usize },
+    /// The torque that was commanded to a motor is all that there is of a joint behind a spring.
+    CommandOfSpring { joint: String },
+    /// A position jumps from one row to the next; holds the line and how many other jumps there
+    /// are.
+    Jump { column: String, line: usize, from: f64, to: f64, others: usize },
+    /// A position is beyond its limits.
+    BeyondLimits { column: String, value: f64, limits: [f64; 2] },
+}
+
+/// What was found and needs no answer: repairs that were made, properties that matter.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the fields are what the messages name
+pub enum LogRemark {
+    /// The last line has no end, so that it may be cut: it was left out.
+    CutLine { line: usize },
+    /// Rows that said the same twice were dropped.
+    DroppedRepeats { count: usize },
+    /// Missing samples were filled in by cubic interpolation.
+    FilledGaps { missing: usize, samples: usize, longest: usize },
+    /// Cells without a number were filled in.
+    FilledCells { column: String, count: usize },
+    /// Samples were brought to equal distances.
+    Resampled { jitter: f64 },
+    /// A joint that does not move.
+    Resting { joint: String },
+    /// A joint that does not move, and whose torque does not follow its load.
+    Idle { joint: String },
+    /// The torque stands at its extreme value.
+    Saturated { column: String, share: f64, value: f64 },
+    /// Positions have steps of these sizes, as of encoders.
+    Steps { columns: Vec<(String, f64)> },
+    /// The torque that was commanded is taken for the measured one.
+    CommandedTorque { joint: String },
+    /// Torques of motors were multiplied by the gear ratios.
+    MotorTorques { joints: Vec<String> },
+    /// The default filter has a lower cutoff, since noise of positions biased parameters.
+    LoweredFilter { cutoff_hz: f64 },
+    /// Laps were replaced by their mean.
+    Averaged { laps: usize, period_s: f64 },
+    /// The log says the same as another one, which the estimate is from.
+    SameAs { other: String },
+    /// A suspicion that was accepted.
+    Accepted(Suspicion),
+}
+
+impl fmt::Display for LogFaults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, fault) in self.faults.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            match fault.line() {
+                Some(line) => write!(f, "{}:{line}: {fault}", self.file)?,
+                None => write!(f, "{}: {fault}", self.file)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for LogFaults {}
+
+impl LogFault {
+    /// The line that it is about.
+    pub fn line(&self) -> Option<usize> {
+        match *self {
+            Self::NotUtf8 { line }
+            | Self::LongLine { line }
+            | Self::RowLength { line, .. }
+            | Self::NotANumber { line, .. }
+            | Self::Undefined { line, .. }
+            | Self::TimeNotIncreasing { line }
+            | Self::TimeRepeated { line }
+            | Self::Impossible { line, .. }
+            | Self::Gaps { line, .. } => Some(line),
+            _ => None,
+        }
+    }
+}
+
+const NO_COLUMNS: &str = "no line with the names of columns\n  hint: a log begins with one, as \
+                          `t,q_knee,tau_knee`";
+
+fn not_a_number(f: &mut fmt::Formatter<'_>, column: &str, cell: &str) -> fmt::Result {
+    write!(f, "`{cell}` in column `{column}` is not a number")?;
+    match cell.replace(',', ".").parse::<f64>() {
+        Ok(_) => write!(f, "\n  hint: numbers have a decimal point, and no comma"),
+        Err(_) => Ok(()),
+    }
+}
+
+fn meant(f: &mut fmt::Formatter<'_>, nearest: &Option<String>, other: &str) -> fmt::Result {
+    match nearest {
+        Some(name) => write!(f, "\n  hint: the log has `{name}`; --columns MAP.json can name it"),
+        None => write!(f, "\n  hint: {other}"),
+    }
+}
+
+fn missing_torque(
+    f: &mut fmt::Formatter<'_>,
+    column: &str,
+    nearest: &Option<String>,
+) -> fmt::Result {
+    write!(f, "there is no column `{column}`, and other joints have torques")?;
+    meant(f, nearest, "--columns MAP.json says which column of the log it is")?;
+    write!(f, "; {{\"{column}\": null}} there leaves it out")
+}
+
+fn missing_forces(f: &mut fmt::Formatter<'_>, columns: &[String]) -> fmt::Result {
+    let (first, count) = (&columns[0], columns.len());
+    write!(f, "there is no column `{first}`")?;
+    if count > 1 {
+        write!(f, ", nor {} more with forces of contacts", count - 1)?;
+    }
+    write!(
+        f,
+        ", and the base floats: its weight would rest on nothing\n  hint: --columns MAP.json says \
+         which column of the log it is; {{\"{first}\": null}} there is for what never touches"
+    )
+}
+
+fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> fmt::Result {
+    let ours: Vec<String> = ours.iter().map(|one| format!("`{one}`")).collect();
+    write!(
+        f,
+        "column `{column}` is taken for {}\n  hint: --columns MAP.json gives each its own; null \
+         leaves one out",
+        ours.join(" and ")
+    )
+}
+
+impl fmt::Display for LogFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable(reason) => write!(f, "cannot be read: {reason}"),
+            Self::NotUtf8 { .. } => write!(f, "not UTF-8 text"),
+            Self::LongLine { .. } => write!(f, "more than {LONGEST_LINE} bytes: is it CSV?"),
+            Self::NoColumns => write!(f, "{NO_COLUMNS}"),
+            Self::RepeatedColumn { column } => write!(f, "two columns `{column}`"),
+            Self::MissingColumn { column, nearest } => {
+                write!(f, "there is no column `{column}`")?;
+                meant(f, nearest, "--columns MAP.json says which column of the log it is")
+            }
+            Self::MissingTorque { column, nearest } => missing_torque(f, column, nearest),
+            Self::MissingForces { columns } => missing_forces(f, columns),
+            Self::SharedColumn { column, ours } => shared_column(f, column, ours),
+            Self::Impossible { column, value, .. } => {
+                write!(f, "{value:e} in column `{column}`: nothing of a robot is so large")
+            }
+            Self::UnknownName { name, nearest } => {
+                write!(f, "--columns maps `{name}`, which is no column of this model")?;
+                match nearest {
+                    Some(name) => write!(f, "\n  hint: did you mean `{name}`?"),
+                    None => Ok(()),
+                }
+            }
+            Self::OtherModel { log, model } => {
+                write!(f, "is a log of `{log}`, and the model is `{model}`")
+            }
+            Self::TorqueSide { found } => write!(
+                f,
+                "`# torque_side: {found}`: there are `joint` and `motor`\n  hint: write where the \
+                 torques were measured"
+            ),
+            Self::OtherJoints { joints } => write!(
+                f,
+                "has joints that the model does not have: {}\n  hint: is it a log of this robot?",
+                joints.join(", ")
+            ),
+            Self::TooShort { rows } => {
+                let rows = if *rows == 0 { "no rows".to_owned() } else { format!("{rows} rows") };
+                write!(f, "{rows}: at least {FEWEST_ROWS} are needed")
+            }
+            Self::RowLength { expected, found, .. } => {
+                write!(f, "{found} cells, where there are {expected} columns")
+            }
+            Self::NotANumber { column, cell, .. } => not_a_number(f, column, cell),
+            Self::Undefined { column, count, .. } => write!(
+                f,
+                "{count} cells of column `{column}` have no number, more than can be filled in"
+            ),
+            Self::TimeNotIncreasing { .. } => write!(f, "the time is before that of the row above"),
+            Self::TimeRepeated { .. } => {
+                write!(f, "the time is that of the row above, with other numbers")
+            }
+            Self::Jitter { relative } => write!(
+                f,
+                "the distances of samples scatter by {:.0} %, too much for derivatives",
+                100.0 * relative
+            ),
+            Self::Gaps { missing, samples, longest, .. } => write!(
+                f,
+                "{missing} of {samples} samples are missing, up to {longest} at once: more than \
+                 can be filled in\n  hint: cut the log at its gaps"
+            ),
+            Self::Suspicion(suspicion) => write!(f, "{suspicion}"),
+            Self::NothingMoves => write!(f, "no joint moves"),
+        }
+    }
+}
+
+/// The step of a time below which it may count longer parts of a second than milliseconds.
+const LONGER_PARTS: f64 = 1.0;
+
+impl fmt::Display for Suspicion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TimeUnit { step, factor } => write!(
+                f,
+                "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
+                 {{\"scale\": {factor}}}}}{}",
+                short(*step),
+                match *step < LONGER_PARTS {
+                    true => {
+                        ", or {\"t\": {\"scale\": 0.01}} if it counts hundredths of a second, \
+                         {\"t\": {\"scale\": 0.016666666666666666}} if sixtieths"
+                    }
+                    false => "",
+                }
+            )?,
+            Self::Degrees { column, largest } => write!(
+                f,
+                "`{column}` goes to {largest:.4}, as if it were in degrees\n  hint: map it: \
+                 {{\"{column}\": {{\"scale\": {}}}}}",
+                1.0_f64.to_radians()
+            )?,
+            Self::RateScale { column, ratio } => write!(
+                f,
+                "`{column}` is {ratio:.4} times the derivative of its position\n  hint: time, \
+                 position or rate is in another unit; --columns can scale each"
+            )?,
+            Self::NotTheRate { column, correlation } => write!(
+                f,
+                "`{column}` does not follow the derivative of its position (correlation \
+                 {correlation:.2})"
+            )?,
+            Self::Swapped { joint, other } => write!(
+                f,
+                "the position of `{joint}` fits the rate of `{other}`: are the two swapped?\n  \
+                 hint: --columns can name them the other way round"
+            )?,
+            Self::ConstantTorque { column } => {
+                write!(f, "`{column}` never changes while its joint moves")?;
+            }
+            Self::CommandOfSpring { joint } => write!(
+                f,
+                "`{joint}` has a spring behind its motor, and the log has the torque of the motor, \
+                 `tau_cmd_{joint}`, alone: the joint gets another one\n  hint: --two-stage finds \
+                 the springs first; or give the joint's own torque as `tau_{joint}`"
+            )?,
+            Self::BeyondTorque { column, value, limit, samples } => write!(
+                f,
+                "`{column}` goes to {value:.4} in {samples} samples, and the model's limit is \
+                 {limit:.4}"
+            )?,
+            Self::Jump { column, line, from, to, others } => {
+                write!(f, "`{column}` jumps from {from:.6} to {to:.6} in line {line}")?;
+                if *others > 0 {
+                    write!(f, ", and in {others} other places")?;
+                }
+                write!(
+                    f,
+                    "\n  hint: did its encoder slip, or were logs joined end to end? cut it"
+                )?;
+            }
+            Self::BeyondLimits { column, value, limits: [low, high] } => write!(
+                f,
+                "`{column}` goes to {value:.4}, and the model's limits are {low:.4} to {high:.4}"
+            )?,
+        }
+        write!(f, "\n  hint: --accept-suspicious takes the log as it is")
+    }
+}
+
+/// Names the positions that have steps, and how large these are.
+fn write_steps(f: &mut fmt::Formatter<'_>, columns: &[(String, f64)]) -> fmt::Result {
+    const NAMED: usize = 4;
+    let names: Vec<String> =
+        columns.iter().take(NAMED).map(|(column, _)| format!("`{column}`")).collect();
+    write!(f, "{}", names.join(", "))?;
+    if columns.len() > NAMED {
+        write!(f, " and {} other positions", columns.len() - NAMED)?;
+    }
+    let steps = columns.iter().map(|(_, step)| *step);
+    let least = steps.clone().fold(f64::INFINITY, f64::min);
+    let largest = steps.fold(0.0, f64::max);
+    let verb = if columns.len() > 1 { "have" } else { "has" };
+    write!(f, " {verb} steps of {least:.3e}")?;
+    if largest > 1.01 * least {
+        write!(f, " to {largest:.3e}")?;
+    }
+    write!(f, ", as of an encoder")
+}
+
+impl fmt::Display for LogRemark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::CutLine { line } => {
+                write!(f, "line {line}, the last one, has no end and may be cut: left out")
+            }
+            Self::DroppedRepeats { count } => write!(f, "{count} repeated rows dropped"),
+            Self::FilledGaps { missing, samples, longest } => write!(
+                f,
+                "{missing} of {samples} samples were missing, up to {longest} at once: filled in \
+                 by cubic interpolation"
+            ),
+            Self::FilledCells { column, count } => {
+                write!(f, "{count} cells of `{column}` without a number: filled in")
+            }
+            Self::Resampled { jitter } => write!(
+                f,
+                "distances of samples scatter by {:.1} %: interpolated at equal distances",
+                100.0 * jitter
+            ),
+            Self::Resting { joint } => {
+                write!(
+                    f,
+                    "`{joint}` never moves, or no further than its noise: what only its motion \
+                     shows is not identified, and stiction may hide in its torque"
+                )
+            }
+            Self::Idle { joint } => write!(
+                f,
+                "`{joint}` rests, and its torque does not follow the load that the motion of the \
+                 others makes: a brake holds it, or stiction. Its torque was left out"
+            ),
+            Self::Saturated { column, share, value } => write!(
+                f,
+                "`{column}` stands at {value:.6} in {:.1} % of the samples: saturated?",
+                100.0 * share
+            ),
+            Self::Steps { columns } => write_steps(f, columns),
+            Self::CommandedTorque { joint } => {
+                write!(f, "`{joint}`: the commanded torque stands for the measured one")
+            }
+            Self::MotorTorques { joints } => {
+                write!(f, "torques of motors, multiplied by the gear ratios: {}", joints.join(", "))
+            }
+            Self::LoweredFilter { cutoff_hz } => write!(
+                f,
+                "noise of positions would bias parameters or residuals: filtered below {} Hz \
+                 (--filter says otherwise)",
+                short(*cutoff_hz)
+            ),
+            Self::Averaged { laps, period_s } => {
+                write!(f, "{laps} laps of {period_s:.6} s are replaced by their mean")
+            }
+            Self::SameAs { other } => {
+                write!(f, "says the same as {other}: it validates nothing")
+            }
+            Self::Accepted(suspicion) => {
+                let text = suspicion.to_string();
+                write!(f, "accepted: {}", text.lines().next().unwrap_or_default())
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Values for the numbers of a model file that give identified base parameters.
+//!
+//! Base parameters are fewer than the numbers of a file. What the nearest bodies that exist have is
+//! written: where the data leave numbers open, those stay near what they were.
+
+use super::estimate::Consistent;
+use denavit_codegen::model::{BodyEntry, Role};
+use denavit_plants::regression::{ModelParameter, RegressionModel};
+
+/// Values in the order of [`RegressionModel::parameters`]. `is_about_com` says of a link's name
+/// whether its file gives inertias about the centre of mass.
+pub fn model_values(
+    model: &RegressionModel,
+    found: &Consistent,
+    is_about_com: &dyn Fn(&str) -> bool,
+) -> Vec<f64> {
+    let value = |(place, parameter): (usize, &ModelParameter)| {
+        let own = found.own.iter().find(|(own, _)| *own == place).map(|&(_, value)| value);
+        let value = own.or_else(|| direct(model, &found.standard, parameter, is_about_com));
+        value.unwrap_or(parameter.value)
+    };
+    model.parameters.iter().enumerate().map(value).collect()
+}
+
+/// The value of a number that follows from theta0 by itself.
+fn direct(
+    model: &RegressionModel,
+    standard: &[f64],
+    parameter: &ModelParameter,
+    is_about_com: &dyn Fn(&str) -> bool,
+) -> Option<f64> {
+    let link = parameter.link.as_deref()?;
+    let of = |prefix: &str| {
+        let owner = |one: &denavit_plants::regression::StandardParameter| {
+            one.owner.as_ref().is_some_and(|(name, own)| name == link && *own == prefix)
+        };
+        model.standard.iter().position(owner).map(|place| standard[place])
+    };
+    let Some(Role::Body(_, entry)) = parameter.role else {
+        return of(parameter.name.split('_').next()?);
+    };
+    let m = of("m")?;
+    let com = [of("mx")?, of("my")?, of("mz")?].map(|moment| moment / m);
+    let [x, y, z] = com;
+    let about = if is_about_com(link) { m } else { 0.0 };
+    Some(match entry {
+        BodyEntry::Mass => m,
+        BodyEntry::ComX => x,
+        BodyEntry::ComY => y,
+        BodyEntry::ComZ => z,
+        BodyEntry::InertiaXx => of("Ixx")? - about * (y * y + z * z),
+        BodyEntry::InertiaYy => of("Iyy")? - about * (x * x + z * z),
+        BodyEntry::InertiaZz => of("Izz")? - about * (x * x + y * y),
+        BodyEntry::InertiaXy => of("Ixy")? + about * x * y,
+        BodyEntry::InertiaXz => of("Ixz")? + about * x * z,
+        BodyEntry::InertiaYz => of("Iyz")? + about * y * z,
+    })
+}
+
+/// Which numbers of the file any base parameter depends on, near given values of all of them.
+pub fn with_effect(model: &RegressionModel, values: &[f64]) -> Vec<bool> {
+    let of = |values: &[f64]| model.axes_of_standard(&model.standard_values(values));
+    let here = of(values);
+    let mut moved = values.to_vec();
+    let mut depends = |place: usize| {
+        let value = values[place];
+        moved[place] = value + 0.1 * value.abs() + 0.01;
+        let there = of(&moved);
+        moved[place] = value;
+        let is_other = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-12 * a.abs().max(1e-9);
+        here.iter().zip(&there).any(is_other)
+    };
+    (0..values.len()).map(&mut depends).collect()
+}

@@ -1,0 +1,122 @@
+//! Logs of which noise of the positions makes most, and those that bias parameters by it.
+
+use super::condition::Conditioned;
+use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog, Solution, solve};
+use denavit_plants::regression::RegressionModel;
+use std::fmt;
+
+/// The share of noise in what the motion shows of a direction of the parameters, from which on
+/// nothing is believed.
+pub(super) const MOST: f64 = 0.5;
+
+/// What a log makes of a bias, of its part if all made the same, to be asked for a lower filter.
+const SHARE: f64 = 0.99;
+
+/// A log of which noise makes most, beside others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoisyLog {
+    /// Its name.
+    pub file: String,
+    /// The largest share of noise in what it shows of a direction of the parameters by itself.
+    pub share: f64,
+    /// What it adds.
+    pub adds: Added,
+}
+
+/// What a log adds to the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Added {
+    /// Without it the standard error of some parameter would be larger by this share, no other one
+    /// by more.
+    Certainty(f64),
+    /// Without it so many sums of parameters would not be shown.
+    Sums(usize),
+}
+
+impl fmt::Display for NoisyLog {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, share, adds } = self;
+        write!(
+            f,
+            "Noise of the positions makes up to {:.0} % of what {file} shows of the parameters by \
+             itself. Its rows count as little as that noise says: without it ",
+            100.0 * share
+        )?;
+        match adds {
+            Added::Certainty(share) => {
+                let times = 1.0 + share;
+                write!(f, "no standard error would be more than {times:.2} times as large.")
+            }
+            Added::Sums(1) => write!(f, "one sum of parameters would not be shown."),
+            Added::Sums(sums) => write!(f, "{sums} sums of parameters would not be shown."),
+        }
+    }
+}
+
+/// Of several logs those of which noise makes most.
+pub(super) fn noisy_logs(
+    model: &RegressionModel,
+    logs: &[Conditioned],
+    found: &Estimate,
+) -> Vec<NoisyLog> {
+    let noisy = |(_, one): &(usize, &NoiseOfLog)| logs.len() > 1 && one.share > MOST;
+    let of = |(log, one): (usize, &NoiseOfLog)| NoisyLog {
+        file: logs[log].file.clone(),
+        share: one.share,
+        adds: added(model, log, found),
+    };
+    found.noise_of_logs.iter().enumerate().filter(noisy).map(of).collect()
+}
+
+/// The logs for an estimate of which noise does not make most; all if it does of all.
+pub(super) fn shown_logs(logs: usize, found: &Estimate) -> Vec<usize> {
+    let share = |log: usize| found.noise_of_logs.get(log).map_or(0.0, |one| one.share);
+    let shown: Vec<usize> = (0..logs).filter(|&log| share(log) <= MOST).collect();
+    if shown.is_empty() { (0..logs).collect() } else { shown }
+}
+
+/// What a log adds to the others, as if residuals were independent.
+fn added(model: &RegressionModel, log: usize, found: &Estimate) -> Added {
+    let mut weights = found.weights.clone();
+    weights[log].fill(0.0);
+    let condensed = &found.condensed;
+    let others = condensed.system(&condensed.whole(), &weights, &[]);
+    let without = solve(&others, found.solution.phi.as_slice());
+    if without.excited() < found.solution.excited() {
+        return Added::Sums(found.solution.excited() - without.excited());
+    }
+    let deviations = |solution: &Solution| -> Vec<f64> {
+        let listed = model.to_listed() * &solution.factor;
+        listed.row_iter().map(|row| row.norm()).collect()
+    };
+    let both = deviations(&without).into_iter().zip(deviations(&found.solution));
+    let larger = both.filter(|(_, with)| *with > 0.0).map(|(without, with)| without / with - 1.0);
+    Added::Certainty(larger.fold(0.0, f64::max))
+}
+
+/// For each log beside others whether it would need a lower filter if it were alone: noise makes
+/// most of it, or biases what it says.
+pub(super) fn biased_alone(found: &Estimate) -> Vec<bool> {
+    let is_beside = found.noise_of_logs.len() > 1;
+    let is_biased = |one: &NoiseOfLog| is_beside && (one.share > MOST || one.alone > BIASING);
+    found.noise_of_logs.iter().map(is_biased).collect()
+}
+
+/// For each log whether it has its share of a bias, so that it needs a lower filter; all if noise
+/// makes most of all.
+pub(super) fn biasing_logs(
+    model: &RegressionModel,
+    listed: &[IdentifiedParameter],
+    found: &Estimate,
+) -> Vec<bool> {
+    let biased = |at: &usize| listed[*at].is_biased_without_change();
+    let biased: Vec<usize> = (0..listed.len()).filter(biased).collect();
+    let all = model.to_listed() * &found.noise_bias;
+    let noisy = found.noise_of_logs.iter().filter(|one| one.share > 0.0).count().max(1) as f64;
+    let has_part = |one: &NoiseOfLog| {
+        let own = model.to_listed() * &one.bias;
+        let is_part = |&at: &usize| own[at] * all[at].signum() * noisy >= SHARE * all[at].abs();
+        found.noise_share > MOST || (one.share > 0.0 && biased.iter().any(is_part))
+    };
+    found.noise_of_logs.iter().map(has_part).collect()
+}

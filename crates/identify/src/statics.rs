@@ -1,0 +1,333 @@
+//! Static identification (thesis 3.2.1): what follows from weighings and from gravity torques of
+//! held postures, without any motion.
+//!
+//! A weighing gives the sum of the masses of the links that lie on the scale. A posture that is
+//! held gives the row tau = Y(q, 0, 0) phi of every joint whose torque was measured: first moments
+//! across the axes. Where links are held one after the other, differences of postures give them
+//! link by link; least squares in all rows does the subtraction.
+
+use super::knowledge::Knowledge;
+use denavit_codegen::expr::text::nearest;
+use denavit_plants::regression::{RegressionJoint, RegressionModel, RegressionRows};
+use std::fmt;
+
+/// Something that was measured at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StaticMeasurement {
+    /// The mass of links on a scale.
+    Weighing {
+        /// Their names.
+        links: Vec<String>,
+        /// Their mass together \[kg\].
+        mass_kg: f64,
+        /// Its standard deviation \[kg\].
+        std_kg: f64,
+    },
+    /// Torques that hold a posture.
+    Posture {
+        /// Positions of all joints, in the order of q [rad, m].
+        q: Vec<f64>,
+        /// The torques that were measured.
+        torques: Vec<HoldingTorque>,
+    },
+}
+
+/// A torque that holds a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HoldingTorque {
+    /// The joint's name.
+    pub joint: String,
+    /// The torque along the joint axis [N m, N].
+    pub torque: f64,
+    /// Its standard deviation, with half of the stiction that hides in it [N m, N].
+    pub std: f64,
+}
+
+/// Why a measurement is no knowledge; each holds the measurement's number, from 0.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StaticFault {
+    /// The model has no such link or joint; holds it and the one that is meant, perhaps.
+    UnknownName(usize, String, Option<String>),
+    /// A link has no mass among the unknowns: it is known, or written in symbols of its own.
+    NoMass(usize, String),
+    /// A link stands on the scale twice.
+    Repeated(usize, String),
+    /// Nothing is on the scale.
+    NothingWeighed(usize),
+    /// Links weigh so many times what the model says, as if in another unit: mass \[kg\], that of
+    /// the model \[kg\].
+    Unit(usize, f64, f64),
+    /// Torques or positions of all postures seem to be in another unit, or of the other sign.
+    Postures(MisreadPostures),
+    /// A posture has not one position for each joint: expected, found.
+    WrongPosture(usize, usize, usize),
+    /// A standard deviation is not positive, or a number not finite.
+    BadNumber(usize),
+}
+
+impl fmt::Display for StaticFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownName(at, name, near) => {
+                write!(f, "measurement {}: nothing is called `{name}`", at + 1)?;
+                match near {
+                    Some(near) => write!(f, "\n  hint: `{near}` is meant, perhaps"),
+                    None => Ok(()),
+                }
+            }
+            Self::NoMass(at, link) => write!(
+                f,
+                "measurement {}: the mass of `{link}` is not among the unknown parameters",
+                at + 1
+            ),
+            Self::Repeated(at, link) => {
+                write!(f, "measurement {}: `{link}` is named twice", at + 1)
+            }
+            Self::NothingWeighed(at) => write!(
+                f,
+                "measurement {}: `links` is empty\n  hint: name the links on the scale",
+                at + 1
+            ),
+            Self::Unit(at, mass, expected) => write!(
+                f,
+                "measurement {}: {mass} kg, and the model says {expected} kg: is it in {}?\n  \
+                 hint: --accept-suspicious takes it as it is",
+                at + 1,
+                if mass > expected { "grams" } else { "tonnes" }
+            ),
+            Self::Postures(one) => write!(f, "{one}"),
+            Self::WrongPosture(at, expected, found) => write!(
+                f,
+                "measurement {}: a posture has {expected} positions, {found} are given",
+                at + 1
+            ),
+            Self::BadNumber(at) => write!(
+                f,
+                "measurement {}: numbers must be finite, and standard deviations positive",
+                at + 1
+            ),
+        }
+    }
+}
+
+impl std::error::Error for StaticFault {}
+
+/// Torques or positions of all postures that seem to be in another unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MisreadPostures {
+    /// Whether it is the torques, or the positions of joints that turn.
+    pub of_torques: bool,
+    /// What they are to be multiplied with.
+    pub factor: f64,
+    /// The share of the torques (roots of mean squares) that the model's own values leave, as they
+    /// are and with the factor.
+    pub left: [f64; 2],
+}
+
+impl fmt::Display for MisreadPostures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { of_torques, factor, left: [before, after] } = self;
+        let what = if *of_torques { "torques" } else { "positions" };
+        let how = match *factor == -1.0 {
+            true => "to have the wrong sign".to_owned(),
+            false => "to be in another unit".to_owned(),
+        };
+        write!(
+            f,
+            "{what} of the postures seem {how}: the model's own values leave {:.0} % of the \
+             torques, and {:.0} % with {factor} times the {what}\n  hint: --accept-suspicious \
+             takes them as they are",
+            100.0 * before,
+            100.0 * after
+        )
+    }
+}
+
+/// Factors of torques and of angles that are tried.
+const OF_TORQUES: [f64; 7] = [-1.0, 1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3];
+const OF_ANGLES: [f64; 3] = [-1.0, std::f64::consts::PI / 180.0, 180.0 / std::f64::consts::PI];
+
+/// What the model's own values leave of the torques must be more than this share, and fall to this
+/// share of it and to less than this.
+const FAR: f64 = 0.2;
+const BETTER: f64 = 0.5;
+const NEAR: f64 = 0.32;
+
+/// Times the model's mass that no mistake of a model is.
+const OTHER_UNIT: f64 = 100.0;
+
+/// Weighings that seem to be in another unit, by the masses of the model.
+pub fn suspicious_units(
+    model: &RegressionModel,
+    measurements: &[StaticMeasurement],
+) -> Vec<StaticFault> {
+    let mass = |link: &String| {
+        let name = format!("m_{link}");
+        model.standard.iter().find(|one| one.name == name)?.value
+    };
+    let suspicious = |(at, measurement): (usize, &StaticMeasurement)| {
+        let StaticMeasurement::Weighing { links, mass_kg, .. } = measurement else { return None };
+        let expected: f64 = links.iter().map(mass).sum::<Option<f64>>()?;
+        let is_other = expected > 0.0
+            && *mass_kg > 0.0
+            && (*mass_kg > OTHER_UNIT * expected || *mass_kg * OTHER_UNIT < expected);
+        is_other.then_some(StaticFault::Unit(at, *mass_kg, expected))
+    };
+    let weighed = measurements.iter().enumerate().filter_map(suspicious);
+    weighed.chain(misread_postures(model, measurements).map(StaticFault::Postures)).collect()
+}
+
+/// The unit of torques or positions with which the model's own values make far more of what holds
+/// the postures; none if the model lacks one, or there are no two torques.
+fn misread_postures(
+    model: &RegressionModel,
+    measurements: &[StaticMeasurement],
+) -> Option<MisreadPostures> {
+    let phi = model.model_axes()?;
+    let n = model.joints.len();
+    let mut evaluator = model.evaluator();
+    let mut left = |of_angles: f64, of_torques: f64| -> Option<f64> {
+        let (mut sums, mut count) = ([0.0; 2], 0);
+        for measurement in measurements {
+            let StaticMeasurement::Posture { q, torques } = measurement else { continue };
+            if q.len() != n {
+                return None;
+            }
+            let of_joint = |(q, joint): (&f64, &RegressionJoint)| {
+                if joint.slides { *q } else { of_angles * q }
+            };
+            let q = q.iter().zip(&model.joints).map(of_joint);
+            let resting: Vec<f64> = q.chain(std::iter::repeat_n(0.0, 2 * n)).collect();
+            let columns: Vec<&[f64]> = resting.iter().map(std::slice::from_ref).collect();
+            let mut rows = RegressionRows::default();
+            evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");
+            for torque in torques {
+                let joint = model.joints.iter().position(|joint| joint.name == torque.joint)?;
+                let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+                let mut computed = [0.0];
+                rows.torque(joint, &own, &mut computed);
+                let measured = of_torques * torque.torque;
+                sums[0] += (measured - computed[0]).powi(2);
+                sums[1] += measured * measured;
+                count += 1;
+            }
+        }
+        (count > 1 && sums[1] > 0.0).then(|| (sums[0] / sums[1]).sqrt())
+    };
+    let before = left(1.0, 1.0).filter(|before| *before > FAR)?;
+    let torques = OF_TORQUES.into_iter().map(|factor| (true, factor));
+    let tried = torques.chain(OF_ANGLES.into_iter().map(|factor| (false, factor)));
+    let judged = tried.filter_map(|(of_torques, factor)| {
+        let after = if of_torques { left(1.0, factor) } else { left(factor, 1.0) };
+        let left = [before, after.filter(|left| *left < NEAR.min(BETTER * before))?];
+        Some(MisreadPostures { of_torques, factor, left })
+    });
+    judged.min_by(|a, b| a.left[1].total_cmp(&b.left[1]))
+}
+
+/// What measurements at rest say of the standard parameters, or all that is wrong with them.
+///
+/// Coulomb friction and viscous friction have no part in it: a joint at rest has no rate.
+pub fn static_knowledge(
+    model: &RegressionModel,
+    measurements: &[StaticMeasurement],
+) -> Result<Knowledge, Vec<StaticFault>> {
+    let mut knowledge = Knowledge::none(model.standard.len());
+    let mut faults = Vec::new();
+    let mut evaluator = model.evaluator();
+    for (at, measurement) in measurements.iter().enumerate() {
+        match measurement {
+            StaticMeasurement::Weighing { links, mass_kg, std_kg } => {
+                let members = masses(model, at, links, &mut faults);
+                if !(mass_kg.is_finite() && *std_kg > 0.0 && std_kg.is_finite()) {
+                    faults.push(StaticFault::BadNumber(at));
+                } else {
+                    knowledge.add(&members, *mass_kg, *std_kg);
+                }
+            }
+            StaticMeasurement::Posture { q, torques } => {
+                let n = model.joints.len();
+                if q.len() != n {
+                    faults.push(StaticFault::WrongPosture(at, n, q.len()));
+                    continue;
+                }
+                let numbers = torques
+                    .iter()
+                    .all(|t| t.torque.is_finite() && t.std > 0.0 && t.std.is_finite());
+                if !numbers || q.iter().any(|position| !position.is_finite()) {
+                    faults.push(StaticFault::BadNumber(at));
+                    continue;
+                }
+                let resting: Vec<f64> =
+                    q.iter().copied().chain(std::iter::repeat_n(0.0, 2 * n)).collect();
+                let columns: Vec<&[f64]> = resting.iter().map(std::slice::from_ref).collect();
+                let mut rows = RegressionRows::default();
+                evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");
+                for torque in torques {
+                    hold(model, &rows, (at, torque), &mut knowledge, &mut faults);
+                }
+            }
+        }
+    }
+    if faults.is_empty() { Ok(knowledge) } else { Err(faults) }
+}
+
+/// The masses of links, with factor 1.
+fn masses(
+    model: &RegressionModel,
+    at: usize,
+    links: &[String],
+    faults: &mut Vec<StaticFault>,
+) -> Vec<(usize, f64)> {
+    let owners = || model.standard.iter().filter_map(|one| one.owner.as_ref());
+    let mut members = Vec::new();
+    if links.is_empty() {
+        faults.push(StaticFault::NothingWeighed(at));
+    }
+    for (place, link) in links.iter().enumerate() {
+        if links[..place].contains(link) {
+            faults.push(StaticFault::Repeated(at, link.clone()));
+            continue;
+        }
+        let is_mass = |owner: &Option<(String, &'static str)>| {
+            owner.as_ref().is_some_and(|(name, prefix)| name == link && *prefix == "m")
+        };
+        if let Some(mass) = model.standard.iter().position(|one| is_mass(&one.owner)) {
+            members.push((mass, 1.0));
+        } else if owners().any(|(name, _)| name == link)
+            || model.joints.iter().any(|joint| joint.name == *link)
+        {
+            faults.push(StaticFault::NoMass(at, link.clone()));
+        } else {
+            let near = nearest(link, owners().map(|(name, _)| name.as_str())).map(str::to_owned);
+            faults.push(StaticFault::UnknownName(at, link.clone(), near));
+        }
+    }
+    members
+}
+
+/// One torque of a posture: a row of Y at rest, in standard parameters.
+fn hold(
+    model: &RegressionModel,
+    rows: &RegressionRows,
+    (at, torque): (usize, &HoldingTorque),
+    knowledge: &mut Knowledge,
+    faults: &mut Vec<StaticFault>,
+) {
+    let names = || model.joints.iter().map(|joint| joint.name.as_str());
+    let Some(joint) = names().position(|name| name == torque.joint) else {
+        let near = nearest(&torque.joint, names()).map(str::to_owned);
+        faults.push(StaticFault::UnknownName(at, torque.joint.clone(), near));
+        return;
+    };
+    let mut members = Vec::new();
+    for (place, &phi) in model.pattern()[joint].iter().enumerate() {
+        let entry = rows.column(joint, place)[0];
+        if entry != 0.0 {
+            let own = model.axes[phi].members.iter();
+            members.extend(own.map(|&(parameter, factor)| (parameter, entry * factor)));
+        }
+    }
+    let known = rows.known(joint).map_or(0.0, |known| known[0]);
+    knowledge.add(&members, torque.torque - known, torque.std);
+}

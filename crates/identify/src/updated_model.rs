@@ -1,0 +1,116 @@
+//! The model with the identified values, as text that every command reads and as a robot.
+
+use super::estimate::{Consistent, IdentifiedParameter};
+use super::model_text::{NewValue, updated};
+use super::model_values::{model_values, with_effect};
+use denavit_codegen::model::{self, About, BodyEntry, ModelError, Robot, Role};
+use denavit_plants::regression::{ModelParameter, RegressionModel};
+use std::fmt;
+
+/// A model with new values.
+#[derive(Clone, Debug)]
+pub struct UpdatedModel {
+    /// The file, which is as it was but for the values.
+    pub text: String,
+    /// What it says.
+    pub robot: Robot,
+}
+
+/// Why identified values make no model.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UpdateError {
+    /// A value has no place in the file; holds the model's name.
+    NoPlace(String),
+    /// The file with the values is not that of a model.
+    Unsound(ModelError),
+}
+
+impl fmt::Display for UpdateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoPlace(model) => {
+                write!(f, "{model}: the identified values have no place in its file")
+            }
+            Self::Unsound(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for UpdateError {}
+
+/// Writes the bodies nearest to an estimate into a model's file, `source`, and reads it again.
+/// Parameters that stand alone get their standard error, if `listed` has it and the file means the
+/// same by them: a moment of inertia about the centre of mass is not the one about the origin of
+/// the link that was estimated.
+pub fn updated_model(
+    robot: &Robot,
+    model: &RegressionModel,
+    (found, listed): (&Consistent, &[IdentifiedParameter]),
+    source: &str,
+) -> Result<UpdatedModel, UpdateError> {
+    let is_about_com = |link: &str| {
+        let body = robot.find_link(link).and_then(|link| robot.links[link].body);
+        body.is_some_and(|body| body.about == About::Com)
+    };
+    let values = model_values(model, found, &is_about_com);
+    let estimate_of = |parameter: &ModelParameter| {
+        if is_moved(parameter, &is_about_com) {
+            return None;
+        }
+        let is_it = |one: &denavit_plants::regression::RegressionParameter| {
+            one.is_alone && one.name == parameter.name
+        };
+        let place = model.listed.iter().position(is_it)?;
+        let own = &listed[place];
+        own.std.filter(|std| *std > 0.0 && std.is_finite()).map(|std| (own.value, std))
+    };
+    // a deviation is that of the estimate: what was moved further to exist has none
+    let std_of = |parameter: &ModelParameter, value: f64| {
+        let (estimate, std) = estimate_of(parameter)?;
+        ((value - estimate).abs() <= std).then_some(std)
+    };
+    let effects = with_effect(model, &values);
+    let text = |is_written: &dyn Fn(usize) -> bool| {
+        let all = model.parameters.iter().zip(&values).enumerate();
+        let new: Vec<NewValue<'_>> = all
+            .filter(|(place, (parameter, value))| {
+                is_written(*place)
+                    && (moved(parameter.value, **value) || std_of(parameter, **value).is_some())
+            })
+            .map(|(_, (parameter, &value))| NewValue {
+                parameter,
+                value: snapped(value, std_of(parameter, value)),
+                std: std_of(parameter, value),
+            })
+            .collect();
+        updated(source, &new).ok_or_else(|| UpdateError::NoPlace(model.model.clone()))
+    };
+    let read = |text: String| {
+        let robot = model::read("the identified model", text.as_bytes());
+        robot.map(|robot| UpdatedModel { text, robot })
+    };
+    // What moves nothing stays as it is written, unless no body has it beside the rest.
+    match read(text(&|place| effects[place])?) {
+        Ok(updated) => Ok(updated),
+        Err(_) => read(text(&|_| true)?).map_err(UpdateError::Unsound),
+    }
+}
+
+/// A value without what is far below its error, or below what any number of a robot has.
+fn snapped(value: f64, std: Option<f64>) -> f64 {
+    let nothing = std.map_or(0.0, |std| 1e-6 * std).max(1e-15);
+    if value.abs() < nothing { 0.0 } else { value }
+}
+
+/// Whether a value is another one, and not the same after some rounding.
+fn moved(before: f64, after: f64) -> bool {
+    (after - before).abs() > 1e-12 * before.abs().max(after.abs()).max(1e-3)
+}
+
+/// Whether the file has a moment of inertia about another point than the estimate.
+fn is_moved(parameter: &ModelParameter, is_about_com: &dyn Fn(&str) -> bool) -> bool {
+    use BodyEntry::{ComX, ComY, ComZ, Mass};
+    let Some(Role::Body(_, entry)) = parameter.role else { return false };
+    let is_moment = !matches!(entry, Mass | ComX | ComY | ComZ);
+    is_moment && parameter.link.as_deref().is_some_and(is_about_com)
+}

@@ -1,0 +1,13 @@
+//! What numbers need that belong to no robot.
+//!
+//! - [`Random`]: numbers from a seed, the same on every machine
+//! - [`MinimumNorm`]: square systems of any rank
+//! - [`short`], [`percent`]: numbers as a person writes them
+
+mod minimum_norm;
+mod random;
+mod text;
+
+pub use minimum_norm::MinimumNorm;
+pub use random::Random;
+pub use text::{percent, short};

@@ -1,0 +1,203 @@
+//! A drive behind a transmission that gives way: what of its torque reaches the joint.
+//!
+//! The log has the torque of the drive and the position of the joint. So the rotor is moved along
+//! the log, by that torque, by its friction, and by what the transmission passes on where it is
+//! pressed:
+//!
+//! ```text
+//! I th'' = tau - off - fv th' - fc sgn(th') - T,   T = k s + d s' beyond half the play,
+//! ```
+//!
+//! with s how far th is ahead of q beyond the play. Steps are short against the swing of the rotor
+//! on the transmission; the position of the joint is the cubic of positions and rates between
+//! samples. Friction holds a rotor that it stops within a step. What reaches the joint is T.
+//!
+//! The same rotor on a transmission that hardly gives way is what it is compared with: that drives
+//! stick while they turn around, which no model that takes the sign of a rate knows, is in both.
+
+use super::program::LawProgram;
+use super::{EffectError, EffectLaw, JointSamples, names};
+use crate::regression::{RegressionModel, RegressionRows};
+use denavit_codegen::effect::{Effect, Transmission};
+use denavit_codegen::expr::Dag;
+
+/// Numbers of a joint's drive, on the side of the joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// Inertia of the rotor [kg m^2, kg].
+    pub inertia: f64,
+    /// Viscous friction [N m s/rad, N s/m].
+    pub viscous: f64,
+    /// Coulomb friction [N m, N].
+    pub coulomb: f64,
+    /// A constant torque [N m, N].
+    pub offset: f64,
+}
+
+impl Drive {
+    /// The drives of a model's joints, by phi of what a joint's drive takes and no body does: read
+    /// off the torques of a robot at rest, and of one with an acceleration of 1 and rates of 1 and
+    /// 2 of one joint.
+    pub fn all(model: &RegressionModel, phi: &[f64]) -> Vec<Self> {
+        let joints = model.joints.len();
+        let (mut evaluator, mut rows) = (model.evaluator(), RegressionRows::default());
+        let of = |joint: usize| {
+            let mut motion = vec![[0.0; 4]; 3 * joints];
+            motion[joints + joint] = [0.0, 0.0, 1.0, 2.0];
+            motion[2 * joints + joint] = [0.0, 1.0, 0.0, 0.0];
+            let motion: Vec<&[f64]> = motion.iter().map(<[f64; 4]>::as_slice).collect();
+            evaluator.evaluate(&motion, &mut rows).expect("three columns for each joint");
+            let own: Vec<f64> = model.pattern()[joint].iter().map(|&place| phi[place]).collect();
+            let mut torque = [0.0; 4];
+            rows.torque(joint, &own, &mut torque);
+            let [offset, accelerated, slow, fast] = torque;
+            let viscous = fast - slow;
+            let coulomb = slow - offset - viscous;
+            Self { inertia: accelerated - offset, viscous, coulomb, offset }
+        };
+        (0..joints).map(of).collect()
+    }
+
+    /// What a drive takes that moves with its joint, at a sample [N m, N].
+    fn rigid(&self, samples: &JointSamples<'_>, k: usize) -> f64 {
+        let qd = samples.qd[k];
+        let sign = if qd == 0.0 { 0.0 } else { qd.signum() };
+        self.inertia * samples.qdd[k] + self.viscous * qd + self.coulomb * sign + self.offset
+    }
+}
+
+/// The law of a transmission: swing \[s\], play and damping by the parameters.
+#[derive(Clone, Debug)]
+pub(super) struct TransmissionLaw(LawProgram);
+
+/// The swing of a transmission that hardly gives way \[s\]: faster than any filter of logs passes.
+const SHORTEST_S: f64 = 0.002;
+
+/// Steps to a swing, and most of them between samples.
+const STEPS: f64 = 16.0;
+const MOST_STEPS: f64 = 64.0;
+
+/// By which share of its size a parameter is moved for a difference: far enough that impacts of
+/// the rotor move by what a filter sees, since between impacts of two motions there is no slope.
+const DIFFERENCE: f64 = 0.02;
+
+impl TransmissionLaw {
+    pub(super) fn new(dag: &Dag, effect: &Effect, of: Transmission) -> Result<Self, EffectError> {
+        let entries = vec![of.swing_s, of.play, of.damping];
+        Ok(Self(LawProgram::new(dag, &names(effect), Vec::new(), entries)?))
+    }
+
+    /// The rotor with these values on its way along samples; none where the transmission hardly
+    /// gives way.
+    fn rotor(&self, drive: Drive, values: &[f64]) -> Option<Rotor> {
+        let entries = self.0.run(&[], values, 1);
+        let [swing_s, play, damping] = [0, 1, 2].map(|place| entries[place][0]);
+        let gives_way = swing_s > SHORTEST_S || play > 0.0;
+        let rotor = Rotor { drive, swing_s: swing_s.max(SHORTEST_S), damping, half: 0.5 * play };
+        (gives_way && drive.inertia > 0.0).then_some(rotor)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Rotor {
+    drive: Drive,
+    swing_s: f64,
+    damping: f64,
+    half: f64,
+}
+
+impl Rotor {
+    /// What reaches the joint at each sample [N m, N].
+    fn along(&self, samples: &JointSamples<'_>) -> Vec<f64> {
+        let JointSamples { t, q, qd, tau, .. } = *samples;
+        let Self { drive: Drive { inertia, viscous, coulomb, offset }, swing_s, half, .. } = *self;
+        let stiffness = inertia / (swing_s * swing_s);
+        let damping = 2.0 * self.damping * inertia / swing_s;
+        let first = tau[0] - self.drive.rigid(samples, 0);
+        let mut position = q[0] + half.copysign(first) + first / stiffness;
+        // rates are those between positions: a leapfrog
+        let (mut rate, mut means) = (qd[0], vec![first]);
+        for k in 1..t.len() {
+            let step_s = t[k] - t[k - 1];
+            let steps = (STEPS * step_s / swing_s).ceil().clamp(1.0, MOST_STEPS);
+            let (h, mut sum) = (step_s / steps, 0.0);
+            for step in 0..steps as usize {
+                let u = step as f64 / steps;
+                let joint = between([q[k - 1], q[k]], [qd[k - 1], qd[k]], (u, step_s));
+                let torque = tau[k - 1] + u * (tau[k] - tau[k - 1]) - offset;
+                let ahead = position - joint[0];
+                let beyond = ahead - ahead.clamp(-half, half);
+                let mut reaches = 0.0;
+                if beyond != 0.0 {
+                    reaches = stiffness * beyond + damping * (rate - joint[1]);
+                }
+                let free = rate + h * (torque - viscous * rate - reaches) / inertia;
+                let most = h * coulomb / inertia;
+                rate = free - free.clamp(-most, most);
+                position += h * rate;
+                sum += reaches;
+            }
+            means.push(sum / steps);
+        }
+        // of the steps before a sample and of those behind it
+        means.push(means[means.len() - 1]);
+        means.windows(2).map(|both| 0.5 * (both[0] + both[1])).collect()
+    }
+}
+
+/// Position and rate of the cubic with these ends, a share of the step from the first one.
+fn between(q: [f64; 2], qd: [f64; 2], (u, step_s): (f64, f64)) -> [f64; 2] {
+    let (slope, rise) = (qd.map(|rate| step_s * rate), q[1] - q[0]);
+    let (square, cube) = (3.0 * rise - 2.0 * slope[0] - slope[1], slope[0] + slope[1] - 2.0 * rise);
+    let position = q[0] + u * (slope[0] + u * (square + u * cube));
+    [position, (slope[0] + u * (2.0 * square + 3.0 * u * cube)) / step_s]
+}
+
+impl EffectLaw {
+    /// Whether the law is of what is between the drive and the joint.
+    pub fn is_transmission(&self) -> bool {
+        self.transmission().is_some()
+    }
+
+    fn transmission(&self) -> Option<&TransmissionLaw> {
+        self.channel.as_ref()?.transmission.as_ref()
+    }
+
+    /// What a transmission adds to the torque that is logged, its derivatives by the parameters
+    /// from differences, and the share that it passes on of what a stiff one would; none where
+    /// it hardly gives way, and of other laws. The drive's numbers are among the samples.
+    pub fn through(&self, samples: &JointSamples<'_>, values: &[f64]) -> Option<Transmitted> {
+        let of = |values: &[f64]| self.transmission()?.rotor(samples.drive, values);
+        let rotor = of(values).filter(|_| samples.t.len() > 1)?;
+        let rigid = Rotor { swing_s: SHORTEST_S, half: 0.0, ..rotor }.along(samples);
+        let passed = rotor.along(samples);
+        let by = |place: usize| -> Vec<f64> {
+            let start = self.parameters[place].start.first().copied().unwrap_or(1.0);
+            let size = if values[place] > 0.0 { values[place] } else { start };
+            let mut moved = values.to_vec();
+            moved[place] += DIFFERENCE * size;
+            let moved = of(&moved).map_or_else(|| passed.clone(), |rotor| rotor.along(samples));
+            passed.iter().zip(moved).map(|(a, b)| (a - b) / (DIFFERENCE * size)).collect()
+        };
+        let size = |torque: &[f64]| torque.iter().map(|torque| torque.abs()).sum::<f64>();
+        let share = size(&passed) / size(&rigid).max(f64::MIN_POSITIVE);
+        Some(Transmitted {
+            share,
+            torque: rigid.iter().zip(&passed).map(|(rigid, passed)| rigid - passed).collect(),
+            gradient: (0..values.len()).map(by).collect(),
+        })
+    }
+}
+
+/// What a transmission makes of a drive's torque.
+#[derive(Clone, Debug)]
+pub struct Transmitted {
+    /// What is logged more than a drive on a transmission that hardly gives way would need, at each
+    /// sample [N m, N].
+    pub torque: Vec<f64>,
+    /// The derivative by each parameter.
+    pub gradient: Vec<Vec<f64>>,
+    /// What reaches the joint, as a share of what would through a transmission that hardly gives
+    /// way (means of absolute values).
+    pub share: f64,
+}

@@ -1,0 +1,7 @@
+//! Effects: the catalogue, its laws as numbers.
+
+mod catalogue;
+mod laws;
+mod robot;
+mod states;
+mod transmission;

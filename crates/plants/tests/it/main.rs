@@ -1,0 +1,4 @@
+//! Robots as numbers: effects as laws on numbers, emitted code against interpreters.
+
+mod effect;
+mod emitted;

@@ -1,0 +1,379 @@
+//! What a model lacks, as a page.
+
+use super::effects::formulas;
+use super::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section, mathml};
+use super::{diagnosis_picture, percent, short};
+use denavit_codegen::effect::{Effect, Law};
+use denavit_diagnose::{
+    Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Verdict,
+    Where,
+};
+
+/// Joints whose torques are drawn, at most.
+const DRAWN: usize = 3;
+
+/// The share of all that is left from which a joint is drawn.
+const LEAST: f64 = 0.02;
+
+/// What a page about a diagnosis says.
+#[derive(Clone, Copy)]
+pub struct DiagnosisPage<'a> {
+    /// The model's name.
+    pub model: &'a str,
+    /// What it was made of: version, hash of the model, logs, seed.
+    pub facts: &'a [Fact],
+    /// What was noticed of the logs, and of the files that were written.
+    pub remarks: &'a [String],
+    /// Names of the joints.
+    pub joints: &'a [&'a str],
+    /// What may be missing.
+    pub candidates: &'a [Candidate],
+    /// The laws of these.
+    pub effects: &'a [Effect],
+    /// What was found.
+    pub found: &'a Diagnosis,
+}
+
+/// The answer in a paragraph: verdict, what was found, the gap before and after, reasons.
+pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String {
+    let mut text = match found.verdict {
+        Verdict::NothingMissing => "Nothing is missing: what is left is noise.",
+        Verdict::Explained => "What the model lacks is named, and explains the disagreement.",
+        Verdict::PartlyExplained => "A part of what the model lacks is named.",
+        Verdict::Unexplained => "The model lacks something that is not in the catalogue.",
+        Verdict::CannotTell => "The logs do not tell what the model lacks.",
+    }
+    .to_owned();
+    for (is_named, word) in [(true, "Found"), (false, "Nearest to what has no name")] {
+        let all = found.effects.iter().filter(|one| one.is_named == is_named);
+        let names = all.map(|one| &candidates[one.candidate]);
+        let names: Vec<String> = names.map(|own| format!("{} at {}", own.title, own.at)).collect();
+        if !names.is_empty() {
+            text += &format!(" {word}: {}.", names.join("; "));
+        }
+    }
+    let Gaps { before, after, floor } = &found.held_out;
+    text += &format!(
+        " On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
+         alone leaves {}",
+        percent(before.all),
+        percent(after.all),
+        percent(floor.all)
+    );
+    if let Some(share) = found.share_closed().filter(|_| !found.effects.is_empty()) {
+        text += &format!(": {} of what can be explained is closed", percent(share));
+    }
+    text.push('.');
+    for reason in &found.reasons {
+        let mut letters = reason.chars();
+        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+        text += &format!(" {first}{}.", letters.as_str());
+    }
+    text
+}
+
+/// The motion that would tell an effect from what would do as well.
+fn separating(one: &FoundEffect) -> Option<Part> {
+    let text = match one.experiment.as_ref()? {
+        Ok(found) => format!(
+            "A motion of {} s within the limits of the robot tells it from these in {} of \
+             simulated logs with the same noise: its separation is {}, that of these logs {}.",
+            found.duration_s,
+            percent(found.power),
+            short(found.separation),
+            short(found.separation_before)
+        ),
+        Err(reason) => format!("No motion was found that would tell it from these: {reason}."),
+    };
+    Some(Part::Paragraph { text })
+}
+
+impl DiagnosisPage<'_> {
+    /// The page.
+    pub fn page(&self) -> Page {
+        let mut sections = vec![self.gaps(), self.torques()];
+        sections.extend(self.terms());
+        sections.extend(self.unnamed());
+        sections.push(self.regimes());
+        sections.extend(self.evidence());
+        if !self.remarks.is_empty() {
+            let parts =
+                self.remarks.iter().map(|text| Part::Paragraph { text: text.clone() }).collect();
+            sections.push(Section { heading: "Remarks".to_owned(), parts });
+        }
+        Page {
+            title: format!("Diagnosis of {}", self.model.replace('_', " ")),
+            lead: verdict_paragraph(self.found, self.candidates),
+            facts: self.facts.to_vec(),
+            sections,
+        }
+    }
+
+    fn gaps(&self) -> Section {
+        let columns = headings(&[
+            ("joint", false),
+            ("train before", true),
+            ("after", true),
+            ("noise", true),
+            ("held out before", true),
+            ("after", true),
+            ("noise", true),
+        ]);
+        let sets = [&self.found.train, &self.found.held_out];
+        let of = |value: &dyn Fn(&Gap) -> Option<f64>| -> Vec<Cell> {
+            let gaps = sets.iter().flat_map(|set| [&set.before, &set.after, &set.floor]);
+            gaps.map(|gap| value(gap).map_or_else(|| Cell::text(""), share)).collect()
+        };
+        let mut rows: Vec<Row> = Vec::new();
+        for (place, name) in self.found.places.iter().enumerate() {
+            let numbers = of(&|gap| gap.per_joint.get(place).copied().flatten());
+            let cells = [vec![Cell::text(name)], numbers].concat();
+            rows.push(Row { cells, is_marked: false });
+        }
+        let cells = [vec![Cell::text("all")], of(&|gap| Some(gap.all))].concat();
+        rows.push(Row { cells, is_marked: true });
+        let caption =
+            "What is left of the torques, over the torques (root of mean square), before \
+                       and after the effects, and what noise alone leaves. All: root of mean \
+                       square over the joints and springs."
+                .to_owned();
+        let mut parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
+        parts.extend(self.in_motion());
+        Section { heading: "Gap".to_owned(), parts }
+    }
+
+    /// The gap of the models in motion.
+    fn in_motion(&self) -> Option<Part> {
+        let MotionGaps { train, held_out } = match self.found.motion.as_ref()? {
+            Ok(gaps) => gaps,
+            Err(reason) => {
+                return Some(Part::Paragraph { text: format!("Not simulated: {reason}.") });
+            }
+        };
+        let columns = headings(&[
+            ("joint", false),
+            ("train before", true),
+            ("after", true),
+            ("held out before", true),
+            ("after", true),
+        ]);
+        let row = |name: &str, value: &dyn Fn(&MotionGap) -> Option<f64>| -> Vec<Cell> {
+            let gaps = train.iter().chain(held_out);
+            let cells = gaps.map(|gap| value(gap).map_or_else(|| Cell::text(""), share));
+            std::iter::once(Cell::text(name)).chain(cells).collect()
+        };
+        let of_joint = |(joint, name): (usize, &&str)| Row {
+            cells: row(name, &|gap| gap.per_joint.get(joint).copied().flatten()),
+            is_marked: false,
+        };
+        let mut rows: Vec<Row> = self.joints.iter().enumerate().map(of_joint).collect();
+        rows.push(Row { cells: row("all", &|gap| Some(gap.all)), is_marked: true });
+        let caption = "Simulation gap: errors of positions in short windows from measured states \
+                       under measured torques, over how far joints went (root of mean square)."
+            .to_owned();
+        Some(Part::Table(HtmlTable { caption, columns, rows }))
+    }
+
+    /// The joints that leave most, at least one.
+    fn worst(&self) -> impl Iterator<Item = &Where> {
+        let count = self.found.before.iter().filter(|one| one.share > LEAST).count();
+        self.found.before.iter().take(count.clamp(1, DRAWN))
+    }
+
+    /// Torques of these joints, each in the held-out log where it does.
+    fn torques(&self) -> Section {
+        let squares = |curve: &Curve| curve.before.iter().map(|left| left * left).sum::<f64>();
+        let of_joint = |one: &Where| -> Option<(&str, &Curve)> {
+            let own = self.found.curves.iter().filter(|curve| curve.at == one.joint);
+            let most = own.max_by(|a, b| squares(a).total_cmp(&squares(b)))?;
+            Some((most.at.as_str(), most))
+        };
+        let shown: Vec<(&str, &Curve)> = self.worst().filter_map(of_joint).collect();
+        let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
+        let caption = "Held-out logs, the joints that leave most: torques that were measured, and \
+                       that both models compute; below, what they leave. All through one filter."
+            .to_owned();
+        let parts = vec![Part::Figure { svg, caption }];
+        Section { heading: "Torques".to_owned(), parts }
+    }
+
+    /// What was found: law, parameters, what would do as well.
+    fn terms(&self) -> Option<Section> {
+        if self.found.effects.is_empty() {
+            return None;
+        }
+        let parts = self.found.effects.iter().flat_map(|one| self.term(one)).collect();
+        Some(Section { heading: "New terms".to_owned(), parts })
+    }
+
+    fn term(&self, one: &FoundEffect) -> Vec<Part> {
+        let own = &self.candidates[one.candidate];
+        let doubt = if one.is_named { "New" } else { "Nearest to something without a name" };
+        let text = format!(
+            "{doubt}: {} at {}. It closes {} of the gap.",
+            own.title,
+            own.at,
+            percent(one.share)
+        );
+        let mut parts = vec![Part::Paragraph { text }];
+        if let Some(effect) = self.effects.iter().find(|effect| effect.name == own.effect) {
+            let new = formulas(effect).into_iter().map(|formula| marked(effect, &own.at, formula));
+            parts.extend(new.map(|latex| match mathml(&latex, true) {
+                Ok(mathml) => Part::Formula { mathml },
+                Err(_) => Part::Paragraph { text: latex },
+            }));
+        }
+        let columns = headings(&[
+            ("parameter", false),
+            ("value", true),
+            ("standard error", true),
+            ("unit", false),
+        ]);
+        let rows = one.parameters.iter().map(|value| {
+            let std = match value.std.is_finite() {
+                true => Cell::number(value.std, format!("{:.1e}", value.std)),
+                false => Cell::text("not determined"),
+            };
+            let cells = vec![
+                Cell::text(&value.name),
+                Cell::number(value.value, short(value.value)),
+                std,
+                Cell::text(&value.unit),
+            ];
+            Row { cells, is_marked: false }
+        });
+        let caption = format!("Parameters of {}.", own.name());
+        parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
+        for other in &one.alternatives {
+            let which = if other.is_exact { "No motion tells" } else { "These logs do not tell" };
+            let text = format!(
+                "{which} it from {}, which would leave {} (cosine: {:.2}).",
+                self.candidates[other.candidate].name(),
+                percent(other.held_out_gap),
+                other.cosine
+            );
+            parts.push(Part::Paragraph { text });
+        }
+        parts.extend(separating(one));
+        parts
+    }
+
+    /// What joints still lack, as formulas without a name.
+    fn unnamed(&self) -> Option<Section> {
+        let of = |one: &denavit_diagnose::Structure| {
+            let joint = &one.at;
+            let (share, formula) = (percent(one.share), one.formula());
+            let text = format!(
+                "{joint} still lacks something without a name; {formula} explains {share} of \
+                 its squares."
+            );
+            Part::Paragraph { text }
+        };
+        let parts: Vec<Part> = self.found.structures.iter().map(of).collect();
+        (!parts.is_empty()).then(|| Section { heading: "Without a name".to_owned(), parts })
+    }
+
+    fn regimes(&self) -> Section {
+        let columns = headings(&[
+            ("joint", false),
+            ("state of motion", false),
+            ("share of time", true),
+            ("share of squares before", true),
+            ("left of it after", true),
+        ]);
+        let mut rows = Vec::new();
+        for one in self.worst() {
+            let after = self.found.after.iter().find(|other| other.joint == one.joint);
+            // both are over the same noise
+            let kept = after.map(|after| (after.over_noise / one.over_noise).powi(2));
+            for part in &one.parts {
+                let same = after
+                    .and_then(|after| after.parts.iter().find(|other| other.regime == part.regime));
+                let left = same.zip(kept).map(|(same, kept)| kept * same.share / part.share);
+                let cells = vec![
+                    Cell::text(&one.joint),
+                    Cell::text(part.regime.to_string()),
+                    share(part.time),
+                    share(part.share),
+                    left.map_or_else(|| Cell::text(""), share),
+                ];
+                rows.push(Row { cells, is_marked: part.excess() > 0.15 });
+            }
+        }
+        let sentences = self.found.before.iter().filter(|one| one.share > 0.05);
+        let mut parts: Vec<Part> =
+            sentences.map(|one| Part::Paragraph { text: one.sentence() + "." }).collect();
+        let caption = "Squares of what is left of a joint's torque in the logs for training, by \
+                       states of its motion, which overlap. Marked: more than their time has."
+            .to_owned();
+        parts.push(Part::Table(HtmlTable { caption, columns, rows }));
+        Section { heading: "Where".to_owned(), parts }
+    }
+
+    fn evidence(&self) -> Option<Section> {
+        if self.found.steps.is_empty() {
+            return None;
+        }
+        let mut parts = Vec::new();
+        for (round, step) in self.found.steps.iter().enumerate() {
+            parts.push(Part::Paragraph { text: self.round(round, step) });
+            let columns = headings(&[("candidate", false), ("held-out gap", true)]);
+            let winner = (step.added, step.held_out_gap, true);
+            let others = step.runners_up.iter().map(|&(other, gap)| (other, gap, false));
+            let rows = std::iter::once(winner).chain(others).map(|(candidate, gap, is_marked)| {
+                let name = Cell::text(self.candidates[candidate].name());
+                Row { cells: vec![name, share(gap)], is_marked }
+            });
+            let caption = "The best of the round, marked, and those that came next.".to_owned();
+            parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
+        }
+        Some(Section { heading: "Evidence".to_owned(), parts })
+    }
+
+    fn round(&self, round: usize, step: &Step) -> String {
+        format!(
+            "Round {}: {}{} {}. It lowers the weighted squares of the logs for training by {}, the \
+             best decoy by {}; held-out logs are better by {:.1} standard errors; it closes {} of \
+             what can be explained.",
+            round + 1,
+            self.candidates[step.added].name(),
+            step.with.map_or_else(String::new, |with| {
+                format!(" together with {}", self.candidates[with].name())
+            }),
+            if step.is_taken { "was taken" } else { "was not taken" },
+            short(step.gain),
+            short(step.decoy),
+            step.significance,
+            percent(step.share),
+        )
+    }
+}
+
+/// A line of a law as a new term of the equation that it is part of.
+fn marked(effect: &Effect, at: &str, formula: String) -> String {
+    let (first, second) = at.split_once(" with ").unwrap_or((at, at));
+    let of_joint = [(r"\tau = ", first), (r"\tau_2 = ", second)];
+    let mut torques = of_joint.iter().filter_map(|(is, at)| Some((formula.strip_prefix(is)?, *at)));
+    match (&effect.law, torques.next()) {
+        (Law::Torque(_) | Law::Term(_), Some((law, at))) => {
+            // nothing of a name is a command
+            let is_plain = |letter: &char| letter.is_alphanumeric() || " _".contains(*letter);
+            let at: String = at.chars().filter(is_plain).collect();
+            let at = at.replace(['_', ' '], r"\ ");
+            let nominal = r"\tau_{\mathrm{nominal}}";
+            let new = format!(r"\underbrace{{{law}}}_{{\mathrm{{new}}}}");
+            format!(r"\tau_{{\mathrm{{{at}}}}} = {nominal} + {new}")
+        }
+        _ => formula,
+    }
+}
+
+fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
+    let heading =
+        |&(text, is_number): &(&str, bool)| Heading { heading: text.to_owned(), is_number };
+    list.iter().map(heading).collect()
+}
+
+fn share(value: f64) -> Cell {
+    Cell::number(value, percent(value))
+}

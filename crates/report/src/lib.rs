@@ -1,0 +1,46 @@
+//! What people look at: tables and pictures.
+//!
+//! - [`Table`], [`paragraph`]: columns and lines of text
+//! - [`Values`]: the numbers behind a model's expressions
+//! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
+//! - [`excitation_picture`]: a trajectory with its limits, and how it was found
+//! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
+//! - [`effects_page`]: the catalogue of effects
+//! - [`html`]: reports as one page that needs nothing from elsewhere
+//! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
+//!   [`convergence_picture`]: how an
+//!   estimate came about; [`IdentificationPage`]: all of it
+//! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
+//!
+//! Nothing here prints; text is handed to whoever does.
+
+mod camera;
+mod diagnosis;
+mod effects;
+pub mod html;
+mod identification;
+mod label;
+mod outline;
+mod paragraph;
+mod picture;
+mod pose;
+mod run;
+mod scene;
+mod space;
+mod svg;
+mod table;
+mod values;
+
+pub use denavit_numerics::{percent, short};
+pub use diagnosis::{DiagnosisPage, verdict_paragraph};
+pub use effects::effects_page;
+pub use identification::{IdentificationPage, SimulationPart};
+pub use paragraph::paragraph;
+pub use picture::picture;
+pub use pose::Pose;
+pub use run::{
+    ExcitationPicture, RunPicture, TorquePicture, convergence_picture, diagnosis_picture,
+    excitation_picture, motion_picture, run_picture, torque_picture,
+};
+pub use table::{Align, Table};
+pub use values::Values;

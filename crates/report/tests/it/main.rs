@@ -1,0 +1,4 @@
+//! Pages.
+
+mod effects_page;
+mod page;

@@ -1,0 +1,44 @@
+//! Simulation of robots on the ground.
+//!
+//! - [`simulate`]: smooth motion from event to event, with contacts, impacts and controllers
+//! - [`scenario`]: files that say what is simulated
+//! - [`contact`]: forces and impulses of contacts and their modes, decided by complementarity
+//! - [`constraint_drift`]: how far joints come apart where they are explicit constraints
+//! - [`time_stepping`]: the schemes that take contacts into account over whole steps
+
+mod alighting;
+mod audit;
+mod breakdown;
+pub mod constraint_drift;
+pub mod contact;
+mod control;
+mod drive;
+mod event;
+mod ground;
+pub mod integrate;
+mod laws;
+mod log;
+mod measure;
+mod measured_log;
+mod motion;
+mod record;
+mod run;
+pub mod scenario;
+mod settle;
+mod simulation;
+mod start;
+mod state;
+pub mod time_stepping;
+
+pub use audit::{Audit, Tolerances};
+pub use breakdown::{Breakdown, Stop};
+pub use control::{Compensation, Control, Damped, Feedback, JointControl};
+pub use drive::{DriveModelling, STICTION_RATE};
+pub use log::{Log, LogError, LogFault};
+pub use measure::Measurement;
+pub use measured_log::measured_log;
+pub use run::{Event, EventKind, Run, simulate, simulate_believing};
+pub use settle::{Scuffing, Touching};
+pub use simulation::Simulation;
+pub use start::StartError;
+pub use state::State;

@@ -1,0 +1,53 @@
+//! The gait that a scenario asks for. It is planned above this package, before anything is
+//! simulated; here its references complete the control.
+
+use super::fault::Cause;
+use super::reader::{Fields, Node, Report};
+use crate::control::Control;
+use denavit_plants::Plant;
+use denavit_plants::trajectory::Reference;
+
+/// What a planner made of the key `gait`.
+#[derive(Clone, Debug)]
+pub struct PlannedGait {
+    /// What each joint follows; none where no drive is to follow.
+    pub references: Vec<Option<Reference>>,
+    /// Stiffness of the joints' laws [N m/rad, N/m].
+    pub stiffness: f64,
+    /// Damping of the joints' laws [N m s/rad, N s/m].
+    pub damping: f64,
+    /// Where all coordinates are at the beginning [rad, m].
+    pub start: Option<Vec<f64>>,
+}
+
+/// Plans what stands under the key `gait` for a plant; faults go into the report.
+pub type GaitPlanner<'a> =
+    dyn Fn(Node<'_>, &mut dyn Plant, &mut Report) -> Option<PlannedGait> + 'a;
+
+/// Has the gait of a scenario planned, if it asks for one: completes the control, and gives the
+/// first posture.
+pub(super) fn gait(
+    fields: &Fields<'_>,
+    plant: &mut dyn Plant,
+    planner: Option<&GaitPlanner<'_>>,
+    control: &mut Control,
+    report: &mut Report,
+) -> Option<Vec<f64>> {
+    let node = fields.get("gait")?;
+    let Some(planner) = planner else {
+        report.push(node.at(), Cause::NoPlanner);
+        return None;
+    };
+    let gait = planner(node, plant, report)?;
+    for (law, reference) in control.joints.iter_mut().zip(gait.references) {
+        // what the scenario says of a joint itself goes before
+        if law.reference.is_some() || reference.is_none() {
+            continue;
+        }
+        law.reference = reference;
+        if law.stiffness == 0.0 && law.damping == 0.0 {
+            (law.stiffness, law.damping) = (gait.stiffness, gait.damping);
+        }
+    }
+    gait.start
+}

@@ -1,0 +1,317 @@
+//! From the bytes of a scenario file to a scenario.
+
+use super::controller::control;
+use super::fault::{Cause, ScenarioError};
+use super::gait::{GaitPlanner, gait};
+use super::options;
+use super::ranges;
+use super::reader::{Fields, Node, Report};
+use super::reference::Logs;
+use super::start::{Origin, find_start_faults};
+use super::stepping;
+use super::{FORMAT, Scenario};
+use crate::audit::Tolerances;
+use crate::control::{Control, Feedback};
+use crate::drive::DriveModelling;
+use crate::ground::Ground;
+use crate::simulation::Simulation;
+use crate::state::State;
+use denavit_codegen::effect;
+use denavit_codegen::expr::text::nearest;
+use denavit_codegen::model::json::{self, Json, Value};
+use denavit_codegen::model::{self, Robot, find_duplicate_keys};
+use denavit_plants::{Cradle, Override, Plant, PlantError, PlantModel, plant_of};
+
+/// Reads a model by what a scenario calls it: a shipped name, or a path beside the scenario. The
+/// error is a sentence.
+pub type Loader<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
+
+const KEYS: &[&str] = &[
+    "format",
+    "name",
+    "description",
+    "source",
+    "assumptions",
+    "model",
+    "cradle_balls",
+    "parameters",
+    "duration_s",
+    "initial",
+    "control",
+    "drives",
+    "stiction_rate",
+    "measurement",
+    "seed",
+    "gait",
+    "scheme",
+    "time_stepping",
+    "contact",
+    "integrator",
+    "log_period_s",
+    "limits",
+    "tolerances",
+];
+
+/// Reads a scenario file without a gait from its bytes. `file` is its name, for messages alone.
+pub fn read(file: &str, source: &[u8], load: &Loader<'_>) -> Result<Scenario, ScenarioError> {
+    read_planned(file, source, load, None)
+}
+
+/// Reads a scenario file from its bytes, with what plans its gait.
+pub fn read_planned(
+    file: &str,
+    source: &[u8],
+    load: &Loader<'_>,
+    planner: Option<&GaitPlanner<'_>>,
+) -> Result<Scenario, ScenarioError> {
+    let origin = Origin { file: file.to_owned(), source: source.to_vec() };
+    read_document(file, source, KEYS, |fields, root, report| {
+        let mut scenario = scenario(fields, origin, (load, planner), report)?;
+        if report.is_empty() {
+            find_start_faults(&mut scenario, root, report);
+        }
+        Some(scenario)
+    })
+}
+
+/// Reads a JSON document with these keys: what `build` makes of it, if nothing is wrong with it.
+pub fn read_document<T>(
+    file: &str,
+    source: &[u8],
+    keys: &'static [&'static str],
+    build: impl FnOnce(&Fields<'_>, &Json<'_>, &mut Report) -> Option<T>,
+) -> Result<T, ScenarioError> {
+    let mut report = Report::default();
+    let root = match json::parse(source) {
+        Ok(root) => root,
+        Err(error) => {
+            report.push(error.at, Cause::Form(error.cause.into()));
+            return Err(report.into_error(file, source, None));
+        }
+    };
+    find_duplicate_keys(&root, &mut report);
+    let fields = Node(&root).fields(keys, &mut report);
+    let made = fields.and_then(|fields| build(&fields, &root, &mut report));
+    match made {
+        Some(made) if report.is_empty() => Ok(made),
+        _ => Err(report.into_error(file, source, Some(&root))),
+    }
+}
+
+/// Notes a tag that is missing or of another format.
+pub fn check_format(fields: &Fields<'_>, expected: &'static str, report: &mut Report) {
+    let Some(tag) = fields.get("format") else {
+        report.push(fields.at, Cause::NoFormat(expected));
+        return;
+    };
+    if let Some(found) = tag.text(report)
+        && found != expected
+    {
+        let cause = model::Cause::WrongFormat { found: found.to_owned(), expected };
+        report.push(tag.at(), Cause::Form(cause));
+    }
+}
+
+fn scenario(
+    fields: &Fields<'_>,
+    origin: Origin,
+    (load, planner): (&Loader<'_>, Option<&GaitPlanner<'_>>),
+    report: &mut Report,
+) -> Option<Scenario> {
+    check_format(fields, FORMAT, report);
+    let text = |key: &str, report: &mut Report| {
+        fields.get(key).and_then(|node| node.text(report)).unwrap_or_default().to_owned()
+    };
+    let (name, description) = (text("name", report), text("description", report));
+    let mut simulation = options::simulation(fields, report);
+    let tolerances = options::tolerances(fields, Tolerances::of_method(simulation.method), report);
+    let scheme = stepping::scheme(fields, report);
+    let (stepping, stepping_tolerances) = stepping::stepping(fields, report);
+    let mut plant = plant(fields, load, report)?;
+    let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
+    let posture = gait(fields, plant.as_mut(), planner, &mut control, report);
+    let initial = initial(fields, plant.as_mut(), &control, posture, report);
+    simulation.end_s += initial.t_s;
+    find_idle(fields, plant.model(), &simulation, &control, report);
+    Some(Scenario {
+        origin,
+        name,
+        description,
+        plant,
+        control,
+        initial,
+        simulation,
+        tolerances,
+        scheme,
+        stepping,
+        stepping_tolerances,
+        logged_torque_noise: options::logged_torque_noise(fields, report),
+    })
+}
+
+/// Notes what is given and would do nothing: gains that follow nothing, drives of a model that has
+/// none.
+fn find_idle(
+    fields: &Fields<'_>,
+    model: &PlantModel,
+    simulation: &Simulation,
+    control: &Control,
+    report: &mut Report,
+) {
+    let mut has = |place: usize, any: bool, missing: &'static str| {
+        if !any {
+            report.push(place, Cause::NoEffect(missing));
+        }
+    };
+    if let Some(measurement) = fields.get("measurement") {
+        has(measurement.at(), control.period_s.is_some(), "`period_s` in `control`");
+    }
+    let drives = || model.joints.iter().filter_map(|joint| joint.drive);
+    if let Some(rate) = fields.get("stiction_rate") {
+        has(rate.at(), simulation.drives == DriveModelling::Model, "`\"drives\": \"model\"`");
+    }
+    if simulation.drives == DriveModelling::Model {
+        has(fields.place("drives"), drives().next().is_some(), "drives in the model");
+    }
+    let given = |key: &str| match &fields.get("control")?.0.value {
+        Value::Object(entries) => {
+            entries.iter().find(|(known, _)| known == key).map(|(_, value)| value)
+        }
+        _ => None,
+    };
+    if let (Feedback::Motor, Some(value)) = (control.feedback, given("feedback")) {
+        let elastic = simulation.drives == DriveModelling::Model
+            && drives().any(|drive| drive.series_elastic.is_some());
+        has(value.start, elastic, "series elastic drives and `\"drives\": \"model\"`");
+    }
+    if let (true, Some(value)) = (control.saturates, given("saturates")) {
+        let limited = model.joints.iter().any(|joint| joint.torque_limits.is_some());
+        has(value.start, limited, "torque limits in the model");
+    }
+    for (name, own) in given("joints").map_or(&[][..], |joints| joints.entries()) {
+        let follows = |joint: usize| control.joints[joint].reference.is_some();
+        if model.find_joint(name).is_none_or(follows) {
+            continue;
+        }
+        let gains = own.entries().iter();
+        let idle = ["kp", "kd", "damps", "gain_factor"];
+        for (_, gain) in gains.filter(|(key, _)| idle.contains(&&**key)) {
+            has(gain.start, false, "a `reference`");
+        }
+    }
+}
+
+fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Box<dyn Plant>> {
+    if let Some(balls) = fields.get("cradle_balls") {
+        if fields.get("model").is_some() {
+            report.push(balls.at(), Cause::TwoRobots);
+        }
+        if let Some(parameters) = fields.get("parameters") {
+            report.push(parameters.at(), Cause::NoEffect("a `model`"));
+        }
+        let balls = fields.count("cradle_balls", ranges::CRADLE_BALLS, 2, report);
+        return Some(Box::new(Cradle::new(balls)));
+    }
+    let node = fields.require("model", report)?;
+    let name = node.text(report)?;
+    let robot: Robot = match load(name) {
+        Ok(bytes) => match effect::read_model(name, &bytes, &[]) {
+            Ok(robot) => robot,
+            Err(error) => {
+                report.push(node.at(), Cause::Model(error.to_string()));
+                return None;
+            }
+        },
+        Err(reason) => {
+            report.push(node.at(), Cause::File(name.to_owned(), reason));
+            return None;
+        }
+    };
+    let mut overrides = Vec::new();
+    if let Some(parameters) = fields.get("parameters").and_then(|node| node.members(report)) {
+        for (parameter, node) in parameters.all() {
+            if robot.find_parameter(parameter).is_none() {
+                let names = robot.parameters.values().map(|parameter| parameter.name.as_str());
+                let meant = nearest(parameter, names).map(str::to_owned);
+                let error = PlantError::UnknownParameter(parameter.to_owned(), meant);
+                report.push(node.at(), Cause::Plant(error));
+            } else if let Some(value) = node.number(report) {
+                overrides.push(Override { parameter: parameter.to_owned(), value });
+            }
+        }
+    }
+    let made = plant_of(&robot, &overrides);
+    let place = if overrides.is_empty() { node.at() } else { fields.place("parameters") };
+    made.map_err(|error| report.push(place, Cause::Plant(error))).ok()
+}
+
+/// The joint that a key names.
+pub(super) fn joint(
+    model: &PlantModel,
+    name: &str,
+    node: Node<'_>,
+    report: &mut Report,
+) -> Option<usize> {
+    let found = model.find_joint(name);
+    if found.is_none() {
+        let names = model.joints.iter().map(|joint| joint.name.as_str());
+        let meant = nearest(name, names).map(str::to_owned);
+        report.push(node.at(), Cause::UnknownJoint(name.to_owned(), meant));
+    }
+    found
+}
+
+fn initial(
+    fields: &Fields<'_>,
+    plant: &mut dyn Plant,
+    control: &Control,
+    posture: Option<Vec<f64>>,
+    report: &mut Report,
+) -> State {
+    let model = plant.model().clone();
+    let mut state = State::resting(posture.unwrap_or_else(|| vec![0.0; model.joints.len()]));
+    let known = &["t_s", "q", "qd", "on_reference", "on_ground"];
+    let Some(given) = fields.get("initial").and_then(|node| node.fields(known, report)) else {
+        return state;
+    };
+    state.t_s = given.number("t_s", ranges::START_S, 0.0, report);
+    if given.flag("on_reference", report) {
+        for index in 0..model.joints.len() {
+            if let Some(setpoint) = control.setpoint(index, state.t_s) {
+                (state.q[index], state.qd[index]) = (setpoint.position, setpoint.rate);
+            }
+        }
+    }
+    for (key, values) in [("q", &mut state.q), ("qd", &mut state.qd)] {
+        let Some(joints) = given.get(key).and_then(|node| node.members(report)) else { continue };
+        for (name, node) in joints.all() {
+            if let Some(index) = joint(&model, name, node, report)
+                && let Some(value) = node.number_in(ranges::COORDINATE, report)
+            {
+                values[index] = value;
+            }
+        }
+    }
+    if given.flag("on_ground", report) && !put_on_ground(plant, &mut state) {
+        report.push(given.place("on_ground"), Cause::NoPlacing);
+    }
+    state
+}
+
+/// Moves the base vertically until the lowest contact point touches.
+fn put_on_ground(plant: &mut dyn Plant, state: &mut State) -> bool {
+    let model = plant.model();
+    let ground = Ground::new(model);
+    let (height, points) = (model.find_joint("base_z"), model.contacts.len());
+    let Some(height) = height.filter(|_| points > 0 && ground.normal()[2] > 1e-3) else {
+        return false;
+    };
+    let mut positions = vec![0.0; 3 * points];
+    // the second pass takes out the rounding of the first
+    for _ in 0..2 {
+        plant.contact_positions(&state.q, &mut positions);
+        let gaps = positions.chunks_exact(3).map(|position| ground.gap(position));
+        state.q[height] -= gaps.fold(f64::INFINITY, f64::min) / ground.normal()[2];
+    }
+    true
+}

@@ -1,0 +1,74 @@
+//! Scenarios by time stepping: within their tolerances, and as the event-driven scheme has them.
+
+use denavit_plants::shipped;
+use denavit_simulate::scenario::{self, RunScheme, Scenario};
+use denavit_simulate::{Run, Stop};
+
+fn load(name: &str) -> Result<Vec<u8>, String> {
+    let found = shipped::find_referred(name);
+    found.map(|model| model.text.as_bytes().to_vec()).ok_or_else(|| "no such model".to_owned())
+}
+
+fn open(name: &str, scheme: RunScheme) -> Scenario {
+    let shipped = shipped::find_scenario(name).unwrap();
+    let read = scenario::read(name, shipped.text.as_bytes(), &load);
+    let mut scenario = read.unwrap_or_else(|error| panic!("{error}"));
+    scenario.scheme = scheme;
+    scenario
+}
+
+fn run(scenario: &mut Scenario) -> Run {
+    let run = scenario.run().unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(run.stop, Stop::End, "{}", scenario.name);
+    let broken = scenario.broken(&run);
+    assert!(broken.is_empty(), "{}: {broken:?}", scenario.name);
+    run
+}
+
+#[test]
+fn every_scenario_runs_by_steps_within_its_tolerances() {
+    for shipped in shipped::SCENARIOS {
+        run(&mut open(shipped.name, RunScheme::TimeStepping));
+    }
+}
+
+/// What audits miss is of the order of the step: halved with it where motion is smooth.
+#[test]
+fn audits_miss_half_with_half_the_step() {
+    let energy = |step_s: f64| {
+        let mut scenario = open("planar_biped_zmp_gait", RunScheme::TimeStepping);
+        scenario.simulation.end_s = 2.4;
+        scenario.set_step_s(step_s);
+        run(&mut scenario).audit
+    };
+    let [coarse, fine] = [1e-3, 2.5e-4].map(energy);
+    for (of, coarse, fine) in [
+        ("energy", coarse.energy_j, fine.energy_j),
+        ("force", coarse.force_n, fine.force_n),
+        ("penetration", coarse.penetration_m, fine.penetration_m),
+    ] {
+        assert!(fine < 0.4 * coarse, "{of}: {coarse}, {fine}");
+    }
+}
+
+/// Motors, springs, Coulomb friction, sampled control with encoders: the drives of a leg move as
+/// they do in the event-driven scheme.
+#[test]
+fn drives_and_sampled_control_are_those_of_the_event_driven_scheme() {
+    let exact = run(&mut open("tulip_leg_tracking", RunScheme::Event));
+    let apart = |step_s: f64| {
+        let mut scenario = open("tulip_leg_tracking", RunScheme::TimeStepping);
+        scenario.set_step_s(step_s);
+        let run = run(&mut scenario);
+        assert_eq!(run.end.motor.len(), exact.end.motor.len());
+        let columns = exact.log.columns.iter().filter(|name| name.starts_with("q_"));
+        let mut worst = 0.0_f64;
+        for name in columns {
+            let [a, b] = [&run, &exact].map(|run| run.log.column(name).unwrap());
+            worst = a.iter().zip(b).fold(worst, |worst, (a, b)| worst.max((a - b).abs()));
+        }
+        worst
+    };
+    let [coarse, fine] = [1e-3, 1.25e-4].map(apart);
+    assert!(coarse < 5e-3 && fine < 1e-3, "{coarse} {fine}");
+}

@@ -1,0 +1,135 @@
+//! Joint positions for given places of contact points and of the centre of mass.
+//!
+//! As many conditions as coordinates, solved by Newton's method; the Jacobian of the centre of mass
+//! is the linear momentum of unit rates over the mass.
+
+use denavit_numerics::MinimumNorm;
+use denavit_plants::Plant;
+
+/// One condition on a position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// A coordinate has this value [rad, m].
+    Coordinate(usize, f64),
+    /// A contact point has this world coordinate (0 to 2) \[m\].
+    Point {
+        /// Number of the contact point.
+        contact: usize,
+        /// 0 to 2.
+        axis: usize,
+        /// \[m\].
+        value: f64,
+    },
+    /// The centre of mass has this world coordinate \[m\].
+    CenterOfMass {
+        /// 0 to 2.
+        axis: usize,
+        /// \[m\].
+        value: f64,
+    },
+}
+
+/// Why there is no posture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PostureError {
+    /// There are more or fewer conditions than coordinates.
+    Count {
+        /// Number of conditions.
+        conditions: usize,
+        /// Number of coordinates.
+        coordinates: usize,
+    },
+    /// The conditions cannot be met, or not from this start: the largest error left [m, rad].
+    OutOfReach {
+        /// The largest error of a condition.
+        residual: f64,
+    },
+}
+
+impl std::fmt::Display for PostureError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Count { conditions, coordinates } => {
+                write!(f, "{conditions} conditions for {coordinates} coordinates")
+            }
+            Self::OutOfReach { residual } => {
+                write!(f, "no posture meets the conditions; the best found misses by {residual:e}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for PostureError {}
+
+/// Errors below this are none [m, rad].
+const EXACT: f64 = 1e-11;
+const ITERATIONS: usize = 60;
+/// The largest change of a coordinate in one iteration [rad, m].
+const STRIDE: f64 = 0.2;
+
+/// Moves `q` to the posture near it that meets all conditions.
+pub fn solve(
+    plant: &mut dyn Plant,
+    conditions: &[Condition],
+    q: &mut [f64],
+) -> Result<(), PostureError> {
+    let n = q.len();
+    if conditions.len() != n {
+        return Err(PostureError::Count { conditions: conditions.len(), coordinates: n });
+    }
+    let mut system = MinimumNorm::new();
+    let mut best = f64::INFINITY;
+    for _ in 0..ITERATIONS {
+        let (matrix, errors) = linearise(plant, conditions, q);
+        let residual = errors.iter().fold(0.0_f64, |sum, error| sum.max(error.abs()));
+        best = best.min(residual);
+        if residual <= EXACT {
+            return Ok(());
+        }
+        system.factor(&matrix, n, 1e-12);
+        let mut change = vec![0.0; n];
+        system.solve(&errors, &mut change);
+        let largest = change.iter().fold(0.0_f64, |sum, entry| sum.max(entry.abs()));
+        if !largest.is_finite() {
+            break;
+        }
+        let share = (STRIDE / largest).min(1.0);
+        q.iter_mut().zip(&change).for_each(|(q, change)| *q += share * change);
+    }
+    Err(PostureError::OutOfReach { residual: best })
+}
+
+/// Derivatives of the conditions, row-major, and what is missing.
+fn linearise(plant: &mut dyn Plant, conditions: &[Condition], q: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (n, points) = (q.len(), plant.model().contacts.len());
+    let (mut positions, mut rows) = (vec![0.0; 3 * points], vec![0.0; 3 * points * n]);
+    plant.contact_positions(q, &mut positions);
+    plant.contact_jacobian(q, &mut rows);
+    let center = plant.center_of_mass(q);
+    let mass = plant.model().mass_kg;
+    let center_rows: Vec<[f64; 6]> = (0..n)
+        .map(|column| {
+            let unit: Vec<f64> = (0..n).map(|k| f64::from(u8::from(k == column))).collect();
+            plant.momentum(q, &unit).map(|entry| entry / mass)
+        })
+        .collect();
+    let (mut matrix, mut errors) = (Vec::with_capacity(n * n), Vec::with_capacity(n));
+    for condition in conditions {
+        match *condition {
+            Condition::Coordinate(index, value) => {
+                matrix.extend((0..n).map(|column| f64::from(u8::from(column == index))));
+                errors.push(value - q[index]);
+            }
+            Condition::Point { contact, axis, value } => {
+                let row = 3 * contact + axis;
+                matrix.extend_from_slice(&rows[row * n..(row + 1) * n]);
+                errors.push(value - positions[row]);
+            }
+            Condition::CenterOfMass { axis, value } => {
+                matrix.extend(center_rows.iter().map(|column| column[axis]));
+                errors.push(value - center[axis]);
+            }
+        }
+    }
+    (matrix, errors)
+}

@@ -1,0 +1,12 @@
+//! Walking: how a robot is to move so that it makes steps.
+//!
+//! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
+//! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
+//!   the other
+//! - [`read_scenario`]: scenarios whose gait is planned
+
+pub mod inverse_kinematics;
+mod scenario;
+pub mod weight_shift_step;
+
+pub use scenario::read_scenario;

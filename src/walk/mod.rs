@@ -1,8 +1,0 @@
-//! Walking: how a robot is to move so that it makes steps.
-//!
-//! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
-//! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
-//!   the other
-
-pub mod inverse_kinematics;
-pub mod weight_shift_step;

@@ -90,6 +90,29 @@ pub(crate) enum Failure {
 }
 
 /// Errors of writing that are not turned into another failure are those of standard output.
+impl Failure {
+    /// All of some logs, or the faults of all that are wrong.
+    pub(crate) fn of_any_log<T>(
+        logs: impl Iterator<Item = Result<T, Self>>,
+    ) -> Result<Vec<T>, Self> {
+        let (mut right, mut wrong) = (Vec::new(), Vec::new());
+        for log in logs {
+            match log {
+                Ok(log) => right.push(log),
+                Err(Self::Identify(IdentifyFailure::Logs(faults))) => wrong.extend(faults),
+                Err(failure) => return Err(failure),
+            }
+        }
+        if wrong.is_empty() { Ok(right) } else { Err(IdentifyFailure::Logs(wrong).into()) }
+    }
+}
+
+impl From<IdentifyFailure> for Failure {
+    fn from(failure: IdentifyFailure) -> Self {
+        Self::Identify(failure)
+    }
+}
+
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Stdout(error)

@@ -5,8 +5,12 @@
 //! all of them come the sines and cosines of angles that need no other sine: one after the other,
 //! so that they can be computed side by side. The order depends on the code alone.
 
+use super::passes::Pass;
 use super::{Code, Instruction, Slot};
 use crate::arena::Handle;
+
+pub(super) const SCHEDULE: Pass =
+    Pass { name: "schedule", rewrite: |code| code.instructions = schedule(code) };
 
 /// The instructions of `code` in the new order; those that no output needs are dropped. Of two
 /// orders of the outputs, as they stand and as their values were made, it is the one in which

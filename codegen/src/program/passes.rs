@@ -51,12 +51,8 @@ mod tests {
             outputs: vec![slot(4)],
             slots: 5,
         };
-        let shape = OutputShape {
-            name: "bias",
-            shape: vec![1],
-            doc: String::new(),
-            details: Vec::new(),
-        };
+        let shape =
+            OutputShape { name: "bias", shape: vec![1], doc: String::new(), details: Vec::new() };
         Routine {
             name: FunctionName::Bias,
             link: None,

@@ -14,8 +14,9 @@ mod row;
 mod scope;
 mod tree;
 
+use super::entry::Scalar;
 use super::fault::Cause;
-use super::file::{ModelFile, Scalar};
+use super::file::ModelFile;
 use super::parameter::{Parameter, ParameterId};
 use super::report::Report;
 use super::robot::{Ground, Link, LinkId, Robot};

@@ -6,7 +6,7 @@
 //! 4. [`robot`](Robot): what later stages see
 //!
 //! All faults are found in one run: [`ModelError`] lists them with file, line, column, JSON
-//! pointer, cause and hint.
+//! pointer, cause and hint. [`remarks`] are what a model may say by mistake and is no fault.
 //! docs/model-file.md describes the format.
 
 mod bake;
@@ -21,6 +21,7 @@ pub mod json;
 mod message;
 mod parameter;
 pub(crate) mod reader;
+mod remark;
 mod report;
 mod robot;
 pub(crate) mod spelling;
@@ -32,6 +33,7 @@ pub use fault::{Cause, Explained, Fault, FileError, MAX_FAULTS, ModelError};
 pub use inertia::Unphysical;
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};
 pub use reader::{Fields, Node, Word, find_duplicate_keys, read_document};
+pub use remark::{Remark, remarks};
 pub use report::Report;
 pub use robot::{
     About, AddedEffect, AddedValue, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace,

@@ -82,7 +82,8 @@ mod tests {
     #[test]
     fn a_pass_that_breaks_code_is_stopped_in_every_profile() {
         assert_eq!(message("nothing", |_| ()), None);
-        let broken: [(fn(&mut Code), &str); 8] = [
+        type Rewrite = fn(&mut Code);
+        let broken: [(Rewrite, &str); 8] = [
             (|code| code.instructions.reverse(), "UsedBeforeAssigned"),
             (|code| code.instructions.truncate(0), "UsedBeforeAssigned"),
             (|code| set_operand(code, 2, 4), "UsedBeforeAssigned"),

@@ -12,7 +12,7 @@ const WALLS: [(&str, &[&str]); 12] = [
     ("crates/numerics", &["runtime"]),
     ("crates/plants", &["codegen", "jit", "runtime"]),
     ("crates/simulate", &["codegen", "numerics", "plants", "runtime"]),
-    ("crates/walk", &["numerics", "plants", "runtime", "simulate"]),
+    ("crates/walk", &["codegen", "numerics", "plants", "runtime", "simulate"]),
     ("crates/identify", &["codegen", "numerics", "plants", "runtime", "simulate"]),
     ("crates/diagnose", &["codegen", "identify", "numerics", "plants", "simulate"]),
     (

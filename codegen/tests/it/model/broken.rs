@@ -141,11 +141,11 @@ fn nesting_and_number_of_values_are_bounded() {
     assert!(message_of(wide.as_bytes()).contains("the file has more than 200000 values"));
 }
 
-/// Fractions grow by a digit every five levels. What is done with each must not be cubic in its
-/// length: looking them up once was, and took more than a minute for these.
+/// Fractions grow by a digit every five levels. What is done with all of them must not be cubic in
+/// their number: looking them up once was, and took 54 s for 8000 levels, which now take 0.8 s.
 #[test]
 fn deeply_nested_quotients_are_refused_in_time() {
-    let levels = 8000;
+    let levels = 11_000;
     let quotient = format!("{}1{}", "1/(1+".repeat(levels), ")".repeat(levels));
     let source = format!(
         "{{\"format\": \"denavit-model/1\", \"name\": \"deep\", \"convention\": \"standard\",\n\

@@ -45,8 +45,8 @@ pub(crate) enum Failure {
     Emit(String, EmitError),
     /// The model has none of the functions asked for.
     NoFunction { model: String, asked: Vec<String> },
-    /// The base parameters are not found.
-    Base(Box<BaseError>),
+    /// The base parameters are not found; holds the file.
+    Base(String, Box<BaseError>),
     /// No terms are left in which bodies act by themselves; holds the model.
     NoMotionTerms(String),
     /// A file is no certificate.
@@ -193,7 +193,7 @@ impl Failure {
             | Self::Excite(_)
             | Self::Identify(_)
             | Self::Diagnose(_)
-            | Self::Base(_)
+            | Self::Base(..)
             | Self::Decompose(..)
             | Self::Equations(_)
             | Self::Read { .. }
@@ -267,7 +267,13 @@ impl fmt::Display for Failure {
             Self::NoFunction { model, asked } => {
                 write!(f, "{model}: the model has no {}", asked.join(", "))?;
             }
-            Self::Base(error) => write!(f, "{error}")?,
+            Self::Base(file, error) => {
+                if matches!(**error, BaseError::Inexact { .. }) {
+                    write!(f, "{file}: {error} (`--numeric`)")?;
+                } else {
+                    write!(f, "{error}")?;
+                }
+            }
             Self::Certificate { file, error } => {
                 write!(f, "{file}: is no certificate: {error}")?;
             }

@@ -20,6 +20,7 @@ mod json;
 mod model_effects;
 mod options;
 mod progress;
+mod remarks;
 mod schema;
 mod simulate;
 mod verify;

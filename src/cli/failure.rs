@@ -267,13 +267,10 @@ impl fmt::Display for Failure {
             Self::NoFunction { model, asked } => {
                 write!(f, "{model}: the model has no {}", asked.join(", "))?;
             }
-            Self::Base(file, error) => {
-                if matches!(**error, BaseError::Inexact { .. }) {
-                    write!(f, "{file}: {error} (`--numeric`)")?;
-                } else {
-                    write!(f, "{error}")?;
-                }
+            Self::Base(file, error) if matches!(**error, BaseError::Inexact { .. }) => {
+                write!(f, "{file}: {error} (`--numeric`)")?;
             }
+            Self::Base(_, error) => write!(f, "{error}")?,
             Self::Certificate { file, error } => {
                 write!(f, "{file}: is no certificate: {error}")?;
             }

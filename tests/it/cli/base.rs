@@ -174,7 +174,8 @@ fn certificates_are_verified_and_tampered_ones_refused() {
         (good.code, good.stdout.as_str()),
         (
             Some(0),
-            "puma560: verified: 36 base parameters (each relation by joint and in every torque)\n"
+            "puma560: verified: 36 base parameters (each relation by joint and in every torque)\n\
+             about: bodies\n"
         )
     );
     assert_eq!(verify("good.json", "rx90").code, Some(1));
@@ -270,7 +271,7 @@ fn terms_in_which_no_body_acts_are_refused() {
 fn arm(a: &str, alpha: &str, com: &str) -> String {
     format!(
         "{{\"format\": \"denavit-model/1\", \"name\": \"arm\", \"convention\": \"standard\", \
-         \"gravity\": [0, -9.81, 0], \"constants\": {{\"l\": {{\"value\": 0.5, \"unit\": \"m\"}}}}, \
+         \"gravity\": [0, -9.81, 0], \"constants\": {{\"l\": {{\"value\": 0.5}}}}, \
          \"links\": [{{\"name\": \"one\", \"joint\": {{\"type\": \"revolute\", \"a\": 0.4}}, \
          \"body\": {{\"mass\": 1, \"com\": [0, 0, 0], \"inertia\": {{\"zz\": 0.1}}, \
          \"about\": \"com\"}}}}, {{\"name\": \"two\", \"joint\": {{\"type\": \"revolute\", \

@@ -66,8 +66,9 @@ fn packages_use_only_what_is_below_them() {
 
 #[test]
 fn manifests_are_read_without_their_tests() {
-    let manifest = "[package]\nname = \"denavit-x\"\n[dependencies]\ndenavit-plants.workspace = true\n\
-                    clap = \"4\"\n[dev-dependencies]\ndenavit-walk.workspace = true\n\
+    let manifest = "[package]\nname = \"denavit-x\"\n[dependencies]\n\
+                    denavit-plants.workspace = true\nclap = \"4\"\n\
+                    [dev-dependencies]\ndenavit-walk.workspace = true\n\
                     [build-dependencies]\ndenavit-codegen = { workspace = true }\n";
     assert_eq!(named(manifest), ["plants", "codegen"]);
 }

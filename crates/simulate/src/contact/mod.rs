@@ -20,8 +20,8 @@
 //!    by [`newton`];
 //! 4. [`impact`] is the problem of the velocities after an impact.
 //!
-//! [`lemke`] and [`denavit_numerics::MinimumNorm`] are the linear algebra below; [`hold`], [`gauss_seidel`] and
-//! [`pyramid`] the solvers of time stepping.
+//! [`lemke`] and [`denavit_numerics::MinimumNorm`] are the linear algebra below; [`hold`],
+//! [`gauss_seidel`] and [`pyramid`] the solvers of time stepping.
 
 pub(crate) mod cholesky;
 pub mod delassus;

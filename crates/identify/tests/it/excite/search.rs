@@ -5,7 +5,7 @@ use denavit_identify::excite::{
     Columns, Excitation, ExciteFault, ExciteOptions, Excited, Family, LimitKind, Objective,
     check_trajectory, excite,
 };
-use denavit_codegen::model::Robot;
+use denavit_codegen::model::{self, Robot};
 use denavit_plants::{LoadedPlant, Plant};
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_simulate::scenario::{Trajectory, read_trajectory};
@@ -206,7 +206,7 @@ fn a_foot_below_a_floating_base_keeps_off_the_ground() {
             "body": {"mass": 1, "com": [-0.2, 0, 0], "inertia": {"zz": 0.02}, "about": "com"}}],
         "drives": {"leg": {"viscous": 0.1}},
         "contacts": [{"name": "foot", "link": "leg", "position": [0, 0, 0]}]}"#;
-    let robot = denavit_codegen::model::read("hopper.json", text.as_bytes()).expect("a sound model");
+    let robot = model::read("hopper.json", text.as_bytes()).expect("a sound model");
     let lowest = |clearance_m: Option<f64>| {
         let hold = vec![("base_z".to_owned(), 0.45)];
         let found = found(&robot, &ExciteOptions { clearance_m, hold, ..options() });

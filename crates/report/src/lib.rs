@@ -15,6 +15,7 @@
 //! Nothing here prints; text is handed to whoever does.
 
 mod camera;
+mod cells;
 mod diagnosis;
 mod effects;
 pub mod html;

@@ -5,8 +5,9 @@ use super::{Arguments, IdentifyFailure, logs, text};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
-use crate::cli::files::{check_outputs, on_stdout, write_whole};
+
 use crate::cli::json::write_json;
+use crate::cli::outputs::{check_outputs, on_stdout, write_whole};
 use denavit::identify::condition::Filter;
 use denavit::identify::estimate::{Consistent, IdentifiedParameter, consistent, parameters};
 use denavit::identify::two_stage::{Estimate, Spring, TwoStage, TwoStageOptions, two_stage};

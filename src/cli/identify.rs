@@ -78,8 +78,7 @@ pub(crate) struct Arguments {
     window: f64,
     /// Springs and motors of series elastic drives first, from one log with motor_JOINT and
     /// tau_cmd_JOINT, then the load with what the springs pass on
-    #[arg(long, conflicts_with_all = ["validate", "method", "controller", "prior", "svg", "html",
-        "motion_svg", "statics"])]
+    #[arg(long, conflicts_with_all = ["method", "controller", "prior", "motion_svg", "statics"])]
     two_stage: bool,
     /// Weighings and held postures: say which parameters, or sums of them, follow from these,
     /// joined with the logs for the estimate if there are any

@@ -229,13 +229,13 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         robot = bake_geometry(&robot).map_err(Failure::Bake)?;
     }
     let options = regressor_options(&robot, &arguments.with)?;
-    let mut base = base_parameters(&robot, options, &arguments.keep)
-        .map_err(|error| Failure::Base(Box::new(error)))?;
+    let failure = |error| Failure::Base(arguments.model.display().to_string(), Box::new(error));
+    let mut base = base_parameters(&robot, options, &arguments.keep).map_err(failure)?;
     let joints = match arguments.basis {
         ListedBasis::Kept => None,
         ListedBasis::Joints => Some(joint_basis(&mut base, &robot)),
     };
-    let joints = joints.transpose().map_err(|error| Failure::Base(Box::new(error)))?;
+    let joints = joints.transpose().map_err(failure)?;
     let certificate = Certificate::new(&robot, options, &base, arguments.numeric);
     let verified = certificate.verify(&robot).is_verified();
     if let Some(path) = &arguments.certificate {

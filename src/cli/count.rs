@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
 use super::options::{EffectsOption, FlavourOption, FunctionList, ModelArgument, Term, terms};
+use super::remarks::print_size;
 use clap::Args;
 use denavit::derive::{Flavour, derive};
 use denavit::function::FunctionName;
@@ -92,6 +93,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     let flavour = arguments.flavour.flavour();
     let wanted = arguments.functions.wanted();
+    print_size(&robot, wanted.contains(&FunctionName::ForwardDynamicsDerivatives));
     let functions = function_counts(&robot, flavour, &wanted)?;
     arguments.functions.refuse_missing(&robot.name, functions.iter().map(|row| row.name))?;
     if arguments.json {

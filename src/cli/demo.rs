@@ -222,8 +222,8 @@ fn base(robot: &Robot, directory: &Path, files: &mut Vec<Written>) -> Result<Bas
     let name = &robot.name;
     let options = RegressorOptions::default();
     let started = Instant::now();
-    let base =
-        base_parameters(robot, options, &[]).map_err(|error| Failure::Base(Box::new(error)))?;
+    let base = base_parameters(robot, options, &[])
+        .map_err(|error| Failure::Base(robot.name.clone(), Box::new(error)))?;
     let milliseconds = 1e3 * started.elapsed().as_secs_f64();
     let certificate = Certificate::new(robot, options, &base, false);
     let verified = certificate.verify(robot).is_verified();

@@ -368,7 +368,7 @@ fn logs(
         .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
     let paths = arguments.train.iter().chain(&arguments.validate);
     let mut train =
-        IdentifyFailure::of_any(paths.map(|path| log(arguments, robot, model, path, remarks)))?;
+        Failure::of_any_log(paths.map(|path| log(arguments, robot, model, path, remarks)))?;
     let validate = train.split_off(arguments.train.len());
     let mut sets = [train, validate];
     let [train, _] = &sets;

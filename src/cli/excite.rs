@@ -66,8 +66,15 @@ pub(crate) struct Arguments {
     /// Columns of the regressor count by their length: the condition number of scaled columns
     #[arg(long)]
     scaled: bool,
-    /// Joint parameters to add to those of the bodies, separated by commas
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_enum)]
+    /// Joint parameters to add to those of the bodies, separated by commas: as `denavit identify`
+    /// does, those that the model has
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        value_enum,
+        default_value = "modelled"
+    )]
     with: Vec<With>,
     /// The base parameters whose columns are meant
     #[arg(long, value_enum, default_value_t)]

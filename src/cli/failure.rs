@@ -47,8 +47,8 @@ pub(crate) enum Failure {
     Emit(String, EmitError),
     /// The model has none of the functions asked for.
     NoFunction { model: String, asked: Vec<String> },
-    /// The base parameters are not found.
-    Base(Box<BaseError>),
+    /// The base parameters are not found; holds the file.
+    Base(String, Box<BaseError>),
     /// No terms are left in which bodies act by themselves; holds the model.
     NoMotionTerms(String),
     /// A file is no certificate.
@@ -94,6 +94,29 @@ pub(crate) enum Failure {
 }
 
 /// Errors of writing that are not turned into another failure are those of standard output.
+impl Failure {
+    /// All of some logs, or the faults of all that are wrong.
+    pub(crate) fn of_any_log<T>(
+        logs: impl Iterator<Item = Result<T, Self>>,
+    ) -> Result<Vec<T>, Self> {
+        let (mut right, mut wrong) = (Vec::new(), Vec::new());
+        for log in logs {
+            match log {
+                Ok(log) => right.push(log),
+                Err(Self::Identify(IdentifyFailure::Logs(faults))) => wrong.extend(faults),
+                Err(failure) => return Err(failure),
+            }
+        }
+        if wrong.is_empty() { Ok(right) } else { Err(IdentifyFailure::Logs(wrong).into()) }
+    }
+}
+
+impl From<IdentifyFailure> for Failure {
+    fn from(failure: IdentifyFailure) -> Self {
+        Self::Identify(failure)
+    }
+}
+
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Stdout(error)
@@ -186,7 +209,7 @@ impl Failure {
             | Self::Excite(_)
             | Self::Identify(_)
             | Self::Diagnose(_)
-            | Self::Base(_)
+            | Self::Base(..)
             | Self::Decompose(..)
             | Self::Equations(_)
             | Self::Read { .. }
@@ -263,7 +286,13 @@ impl fmt::Display for Failure {
             Self::NoFunction { model, asked } => {
                 write!(f, "{model}: the model has no {}", asked.join(", "))?;
             }
-            Self::Base(error) => write!(f, "{error}")?,
+            Self::Base(file, error) => {
+                if matches!(**error, BaseError::Inexact { .. }) {
+                    write!(f, "{file}: {error} (`--numeric`)")?;
+                } else {
+                    write!(f, "{error}")?;
+                }
+            }
             Self::Certificate { file, error } => {
                 write!(f, "{file}: is no certificate: {error}")?;
             }

@@ -2,6 +2,7 @@
 
 use super::failure::{Failure, reason};
 use super::model_effects::ModelApart;
+use super::remarks::print_remarks;
 use denavit::effect::{self, Effect};
 use denavit::model::Robot;
 use denavit::model::equations::{self, Equations};
@@ -28,7 +29,9 @@ pub(crate) fn read_model_with_effects(
 ) -> Result<Robot, Failure> {
     let (name, bytes) = read_named(place, &[shipped::MODELS])?;
     let own = effects_beside(place, folder)?;
-    effect::read_model(&name, &bytes, &own).map_err(Failure::Model)
+    let robot = effect::read_model(&name, &bytes, &own).map_err(Failure::Model)?;
+    print_remarks(&name, &robot, &bytes);
+    Ok(robot)
 }
 
 /// The folder of a user's own effects, if there is one: `folder`, or that beside a model's file.

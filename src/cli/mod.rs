@@ -23,6 +23,7 @@ mod options;
 mod outputs;
 mod printed;
 mod progress;
+mod remarks;
 mod schema;
 mod simulate;
 mod unfinished;

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::files::{effects_beside, read_model_bytes};
+use super::remarks::print_remarks;
 use denavit::effect::{self, Effect};
 use denavit::model::Robot;
 use denavit::plants::effect::{ApartEffects, apart};
@@ -61,6 +62,7 @@ impl ModelApart {
     ) -> Result<Self, Failure> {
         let own = effects_beside(place, folder)?;
         let whole = effect::read_model(name, bytes, &own).map_err(Failure::Model)?;
+        print_remarks(name, &whole, bytes);
         let apart =
             apart(&whole, &own).map_err(|error| Failure::Apart(whole.name.clone(), error))?;
         // a model that was read is UTF-8

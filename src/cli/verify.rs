@@ -7,7 +7,7 @@ use super::json::write_json;
 use super::model_effects::ModelApart;
 use super::options::EffectsOption;
 use clap::Args;
-use denavit::regressor::{Certificate, Verdict};
+use denavit::regressor::{Certificate, ParameterGroup, Verdict};
 use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
@@ -44,6 +44,8 @@ struct VerdictJson<'a> {
     rank: Option<usize>,
     /// Whether each relation was also written out in every torque.
     multiplied_out: bool,
+    /// What it is about: bodies, friction, ..
+    about: Vec<&'static str>,
     verdict: String,
 }
 
@@ -55,6 +57,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let model = ModelApart::read(&arguments.model, arguments.effects.effects.as_deref())?;
     let robot = model.apart.robot;
     let verdict = certificate.verify(&robot);
+    let about: Vec<&str> = certificate.about().into_iter().map(ParameterGroup::as_str).collect();
     if arguments.json {
         let (rank, multiplied_out) = match verdict {
             Verdict::Verified { rank, multiplied_out } => (Some(rank), multiplied_out),
@@ -62,9 +65,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         };
         let (verified, model) = (verdict.is_verified(), robot.name.as_str());
         let verdict = verdict.to_string();
-        write_json(out, &VerdictJson { model, verified, rank, multiplied_out, verdict })?;
+        write_json(out, &VerdictJson { model, verified, rank, multiplied_out, about, verdict })?;
     } else {
         writeln!(out, "{}: {verdict}", robot.name)?;
+        writeln!(out, "about: {}", about.join(", "))?;
     }
     Ok(if verdict.is_verified() { Answer::Done } else { Answer::Negative })
 }

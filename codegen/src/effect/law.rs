@@ -3,18 +3,17 @@
 use super::{Channel, EffectKind, EffectSite, Law, Measured, ModelTerm, Property, Transmission};
 use crate::expr::{ExprId, SymbolClass};
 use crate::model::check::Scope;
-use crate::model::file::Scalar;
-use crate::model::json::Json;
-use crate::model::reader::{Fields, Word};
+use crate::model::entry::Scalar;
+use crate::model::reader::{Fields, Node, Word};
 use crate::model::{Cause, Dimension, JointKind, Report};
 
-const CHANNELS: Word<Channel> = Word {
+const CHANNELS: Word<'_, Channel> = Word {
     what: "channel",
     known: &["tau", "q", "qd"],
     values: &[Channel::Torque, Channel::Position, Channel::Rate],
 };
 
-const TERMS: Word<ModelTerm> = Word {
+const TERMS: Word<'_, ModelTerm> = Word {
     what: "term",
     known: &["coriolis", "gravity", "rotor", "friction", "spring", "inertia"],
     values: &ModelTerm::ALL,
@@ -30,11 +29,7 @@ pub(super) enum LawFile<'a> {
 
 impl<'a> LawFile<'a> {
     /// Reads the law that an effect of this kind has, and refuses others.
-    pub(super) fn read(
-        fields: &Fields<'_, 'a>,
-        kind: EffectKind,
-        report: &mut Report,
-    ) -> Option<Self> {
+    pub(super) fn read(fields: &Fields<'a>, kind: EffectKind, report: &mut Report) -> Option<Self> {
         let keys: &[&'static str] = match kind {
             EffectKind::Torque | EffectKind::State => &["torque"],
             EffectKind::Measurement => &["measured"],
@@ -43,52 +38,53 @@ impl<'a> LawFile<'a> {
             EffectKind::Mode => &["torque", "measured"],
         };
         for key in ["torque", "measured", "moves", "term"] {
-            if let Some(json) = fields.get(key).filter(|_| !keys.contains(&key)) {
-                report.push(json.start, Cause::WrongLaw(kind.as_str(), key));
+            if let Some(node) = fields.get(key).filter(|_| !keys.contains(&key)) {
+                report.push(node.at(), Cause::WrongLaw(kind.as_str(), key));
             }
         }
-        if kind == EffectKind::State && fields.get("states").is_none_or(|s| s.entries().is_empty())
+        if kind == EffectKind::State
+            && fields.get("states").is_none_or(|s| s.0.entries().is_empty())
         {
             report.push(fields.at(), Cause::NoLaw(kind.as_str(), "states"));
         }
-        let Some((key, json)) = keys.iter().find_map(|key| Some((*key, fields.get(key)?))) else {
+        let Some((key, node)) = keys.iter().find_map(|key| Some((*key, fields.get(key)?))) else {
             report.push(fields.at(), Cause::NoLaw(kind.as_str(), keys[0]));
             return None;
         };
         match key {
-            "torque" => Fields::scalar_of(json, report).map(Self::Torque),
-            "measured" => read_measured(json, report),
-            "moves" => read_moves(json, report).map(Self::Moves),
-            _ => TERMS.read(json, report).map(Self::Term),
+            "torque" => node.scalar(report).map(Self::Torque),
+            "measured" => read_measured(node, report),
+            "moves" => read_moves(node, report).map(Self::Moves),
+            _ => node.word(&TERMS, report).map(Self::Term),
         }
     }
 }
 
-fn read_measured<'a>(json: &Json<'a>, report: &mut Report) -> Option<LawFile<'a>> {
+fn read_measured<'a>(node: Node<'a>, report: &mut Report) -> Option<LawFile<'a>> {
     const KEYS: &[&str] = &[
         "channel", "value", "true", "gain", "offset", "delay_s", "lag_s", "swing_s", "damping",
         "play",
     ];
-    let fields = Fields::of(json, KEYS, report)?;
+    let fields = node.fields(KEYS, report)?;
     let channel = fields.required_word("channel", &CHANNELS, report);
     for key in ["swing_s", "damping", "play"] {
-        let Some(json) = fields.get(key) else { continue };
+        let Some(node) = fields.get(key) else { continue };
         if channel != Channel::Torque || KEYS[1..7].iter().any(|&key| fields.get(key).is_some()) {
             let why = "belongs to a law of `tau` that has nothing else";
-            report.push(json.start, Cause::LawKey(key, why));
+            report.push(node.at(), Cause::LawKey(key, why));
         }
     }
-    if let (Some(json), Some(_)) = (fields.get("true"), fields.get("value")) {
-        report.push(json.start, Cause::LawKey("true", "stands in place of `value`, not beside it"));
+    if let (Some(node), Some(_)) = (fields.get("true"), fields.get("value")) {
+        report.push(node.at(), Cause::LawKey("true", "stands in place of `value`, not beside it"));
     }
     let parts = Box::new(std::array::from_fn(|part| fields.scalar(KEYS[part + 1], report)));
     Some(LawFile::Measured { channel, parts })
 }
 
-fn read_moves<'a>(json: &Json<'a>, report: &mut Report) -> Option<Vec<(Property, Scalar<'a>)>> {
+fn read_moves<'a>(node: Node<'a>, report: &mut Report) -> Option<Vec<(Property, Scalar<'a>)>> {
     const KEYS: &[&str] =
         &["mass", "first_moment", "inertia", "gravity", "zero", "series_stiffness"];
-    let fields = Fields::of(json, KEYS, report)?;
+    let fields = node.fields(KEYS, report)?;
     let mut moves = Vec::new();
     for (key, property) in [
         ("mass", Property::Mass),
@@ -98,10 +94,10 @@ fn read_moves<'a>(json: &Json<'a>, report: &mut Report) -> Option<Vec<(Property,
         moves.extend(fields.scalar(key, report).map(|by| (property, by)));
     }
     let mut list = |key: &str, length: usize, property: fn(usize) -> Property| {
-        let Some(json) = fields.get(key) else { return };
-        let found = fields.items(key, report, Fields::scalar_of);
+        let Some(node) = fields.get(key) else { return };
+        let found = fields.items(key, report, Node::scalar);
         if found.len() != length {
-            report.push(json.start, Cause::WrongLength { expected: length, found: found.len() });
+            report.push(node.at(), Cause::WrongLength { expected: length, found: found.len() });
         }
         moves.extend(found.into_iter().take(length).enumerate().map(|(i, by)| (property(i), by)));
     };
@@ -154,7 +150,7 @@ impl LawReader {
             declare("tau_load_rate_2", Effort, torque_rate);
         }
         if at == EffectSite::Model {
-            for name in ["g_x", "g_y", "g_z"] {
+            for name in super::GRAVITY {
                 declare(name, Geometry, Some(Dimension::ACCELERATION));
             }
         }
@@ -198,18 +194,18 @@ impl LawReader {
     /// What the second joint of a pair feels, if the file says so.
     pub(super) fn on_second(
         &mut self,
-        fields: &Fields<'_, '_>,
+        fields: &Fields<'_>,
         (kind, at): (EffectKind, EffectSite),
         report: &mut Report,
     ) -> Option<ExprId> {
-        let json = fields.get("torque_2")?;
+        let node = fields.get("torque_2")?;
         // states are those of one law
         if kind != EffectKind::Torque || at != EffectSite::JointPair {
             let why = "belongs to an effect of the kind `torque` at a `joint_pair`";
-            report.push(json.start, Cause::LawKey("torque_2", why));
+            report.push(node.at(), Cause::LawKey("torque_2", why));
             return None;
         }
-        let torque = Fields::scalar_of(json, report)?;
+        let torque = node.scalar(report)?;
         Some(self.quantity(Some(torque), "a torque", self.torque, report))
     }
 

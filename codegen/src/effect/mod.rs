@@ -301,9 +301,9 @@ pub struct Effect {
     pub dag: Dag,
 }
 
-/// The symbols that laws may use beside their own: motion of the joint, of the other joint of a
-/// pair, torques.
-pub const VARIABLES: [&str; 16] = [
+/// The symbols of laws that have a value in every sample: time, motion of the joint, torques, and
+/// the same of the other joint of a pair. Samples have them as columns, in this order.
+pub const COLUMNS: [&str; 13] = [
     "t",
     "q",
     "qd",
@@ -317,10 +317,24 @@ pub const VARIABLES: [&str; 16] = [
     "qdd_2",
     "tau_load_2",
     "tau_load_rate_2",
-    "g_x",
-    "g_y",
-    "g_z",
 ];
+
+/// The symbols of laws for the components of gravity in frame 0, which do not change.
+pub const GRAVITY: [&str; 3] = ["g_x", "g_y", "g_z"];
+
+/// The symbols that laws may use beside their own: [`COLUMNS`], then [`GRAVITY`].
+pub const VARIABLES: [&str; COLUMNS.len() + GRAVITY.len()] = {
+    let mut variables = [""; COLUMNS.len() + GRAVITY.len()];
+    let mut place = 0;
+    while place < variables.len() {
+        variables[place] = match place < COLUMNS.len() {
+            true => COLUMNS[place],
+            false => GRAVITY[place - COLUMNS.len()],
+        };
+        place += 1;
+    }
+    variables
+};
 
 /// Those of [`VARIABLES`] that both joints of a pair have: the second one's end in `_2`.
 const MOTION: [&str; 5] = ["q", "qd", "qdd", "tau_load", "tau_load_rate"];
@@ -335,5 +349,19 @@ impl Effect {
     pub fn symbol(&mut self, name: &str) -> Option<ExprId> {
         let id = self.dag.find_symbol(name)?;
         Some(self.dag.symbol_expr(id))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COLUMNS, GRAVITY, MOTION, VARIABLES};
+
+    #[test]
+    fn symbols_of_laws_are_columns_then_gravity() {
+        assert_eq!(VARIABLES[..COLUMNS.len()], COLUMNS);
+        assert_eq!(VARIABLES[COLUMNS.len()..], GRAVITY);
+        for name in MOTION {
+            assert!(COLUMNS.contains(&name) && COLUMNS.contains(&&*format!("{name}_2")), "{name}");
+        }
     }
 }

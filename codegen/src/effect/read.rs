@@ -9,9 +9,9 @@ use super::{
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
-use crate::model::file::{Name, Scalar};
-use crate::model::json::{self, Json, JsonError, Value};
-use crate::model::reader::{self, Fields, Word};
+use crate::model::entry::{Name, Scalar};
+use crate::model::json::Value;
+use crate::model::reader::{Fields, Node, Word, read_document};
 use crate::model::spelling::{is_identifier, reserved_by};
 use crate::model::{Cause, Dimension, JointKind, ModelError, Report};
 use crate::number::Rational;
@@ -37,13 +37,13 @@ const KEYS: &[&str] = &[
     "confused_with",
 ];
 
-const KINDS: Word<EffectKind> = Word {
+const KINDS: Word<'_, EffectKind> = Word {
     what: "kind of effect",
     known: &["torque", "state", "measurement", "parameter", "term", "mode"],
     values: &EffectKind::ALL,
 };
 
-const SITES: Word<EffectSite> = Word {
+const SITES: Word<'_, EffectSite> = Word {
     what: "place",
     known: &["joint", "spring", "joint_pair", "link", "contact", "model"],
     values: &[
@@ -56,7 +56,7 @@ const SITES: Word<EffectSite> = Word {
     ],
 };
 
-const SIDES: Word<SpringSide> = Word {
+const SIDES: Word<'_, SpringSide> = Word {
     what: "side of a series spring",
     known: &["motor", "link"],
     values: &[SpringSide::Motor, SpringSide::Link],
@@ -65,30 +65,20 @@ const SIDES: Word<SpringSide> = Word {
 /// Reads a file of an effect from its bytes. `file` is its name, for messages alone. Names of
 /// `confused_with` are checked where all effects are known.
 pub fn read(file: &str, source: &[u8]) -> Result<Effect, ModelError> {
-    let mut report = Report::default();
-    let root = match json::parse(source) {
-        Ok(root) => root,
-        Err(JsonError { at, cause }) => {
-            report.push(at, Cause::from(cause));
-            return Err(report.into_error(file, source, None));
+    read_document(file, source, |root, report| {
+        let effect = read_root(root, JointKind::Revolute, report);
+        if report.is_empty() {
+            // units of a joint that turns are not those of one that slides: laws must fit both
+            read_root(root, JointKind::Prismatic, report);
         }
-    };
-    reader::find_duplicate_keys(&root, &mut report);
-    let effect = read_root(&root, JointKind::Revolute, &mut report);
-    if report.is_empty() {
-        // units of a joint that turns are not those of one that slides: laws must fit both
-        read_root(&root, JointKind::Prismatic, &mut report);
-    }
-    match effect {
-        Some(effect) if report.is_empty() => Ok(effect),
-        _ => Err(report.into_error(file, source, Some(&root))),
-    }
+        effect
+    })
 }
 
-fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effect> {
-    let fields = Fields::of(root, KEYS, report)?;
+fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Effect> {
+    let fields = root.fields(KEYS, report)?;
     fields.format(FORMAT, report);
-    let name = fields.name("name", report);
+    let name = fields.required_name("name", report);
     if !name.text.is_empty() && !is_identifier(&name.text) {
         report.push(name.at, Cause::NotIdentifier(name.text.clone().into_owned()));
     }
@@ -97,7 +87,7 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
     let side = fields.word("side", &SIDES, report).unwrap_or_default();
     let names = ["parameters", "states"].iter().filter_map(|key| fields.get(key));
     let names: BTreeSet<String> =
-        names.flat_map(Json::entries).map(|(name, _)| name.clone().into_owned()).collect();
+        names.flat_map(|node| node.0.entries()).map(|(name, _)| name.to_string()).collect();
     let scope = Scope::new(names, "parameters");
     let mut reading = Reading { law: LawReader::new(scope, joint, at), report };
     let mut parameters = reading.parameters(&fields);
@@ -107,7 +97,7 @@ fn read_root(root: &Json, joint: JointKind, report: &mut Report) -> Option<Effec
     let torque_2 = reading.law.on_second(&fields, (kind, at), reading.report);
     let confused_with = reading.confused_with(&fields);
     let texts = ["title", "description", "source"]
-        .map(|key| fields.name(key, reading.report).text.into_owned());
+        .map(|key| fields.required_name(key, reading.report).text.into_owned());
     let mut dag = reading.law.scope.dag;
     let law = law?;
     let mut exprs = law.expressions();
@@ -185,29 +175,28 @@ struct Reading<'r> {
 }
 
 impl Reading<'_> {
-    fn parameters(&mut self, fields: &Fields<'_, '_>) -> Vec<EffectParameter> {
+    fn parameters(&mut self, fields: &Fields<'_>) -> Vec<EffectParameter> {
         const KEYS: &[&str] = &["unit", "description", "nominal", "bounds", "start"];
-        let declared = fields.members("parameters", self.report, |name, json, report| {
-            Some((name, Fields::of(json, KEYS, report)?))
+        let declared = fields.members("parameters", self.report, |key, node, report| {
+            Some((Name::of_key(key, node), node.fields(KEYS, report)?))
         });
         declared.iter().filter_map(|(name, fields)| self.parameter(name, fields)).collect()
     }
 
-    fn parameter(&mut self, name: &Name, fields: &Fields<'_, '_>) -> Option<EffectParameter> {
+    fn parameter(&mut self, name: &Name, fields: &Fields<'_>) -> Option<EffectParameter> {
         let unit = self.unit(fields);
-        let description = fields.name("description", self.report).text.into_owned();
+        let description = fields.required_name("description", self.report).text.into_owned();
         let nominal = fields.scalar("nominal", self.report);
         let nominal = nominal.and_then(|nominal| self.rational(&nominal));
         let bounds = self.bounds(fields);
-        let starts = fields.items("start", self.report, |json, report| {
-            Some((Fields::scalar_of(json, report)?, json.start))
-        });
+        let starts = fields
+            .items("start", self.report, |node, report| Some((node.scalar(report)?, node.at())));
         let mut start = Vec::new();
         for (scalar, at) in starts {
             start.extend(self.rational(&scalar).inspect(|value| self.inside(value, &bounds, at)));
         }
-        if let (Some(value), Some(json)) = (&nominal, fields.get("nominal")) {
-            self.inside(value, &bounds, json.start);
+        if let (Some(value), Some(node)) = (&nominal, fields.get("nominal")) {
+            self.inside(value, &bounds, node.at());
         }
         if nominal.is_none() && start.is_empty() {
             self.report.push(fields.at(), Cause::MissingKey("start"));
@@ -235,42 +224,29 @@ impl Reading<'_> {
     }
 
     /// Both ends; `null` is no end.
-    fn bounds(&mut self, fields: &Fields<'_, '_>) -> [Option<Rational>; 2] {
-        let Some(json) = fields.require("bounds", self.report) else { return [None, None] };
-        let ends = match &json.value {
-            Value::List(ends) if ends.len() == 2 => ends,
-            Value::List(ends) => {
-                let cause = Cause::WrongLength { expected: 2, found: ends.len() };
-                self.report.push(json.start, cause);
-                return [None, None];
-            }
-            other => {
-                let (expected, found) = ("a list", other.kind());
-                self.report.push(json.start, Cause::WrongKind { expected, found });
-                return [None, None];
-            }
-        };
-        let bounds = [0, 1].map(|end| {
-            let end = &ends[end];
-            if matches!(end.value, Value::Null) {
+    fn bounds(&mut self, fields: &Fields<'_>) -> [Option<Rational>; 2] {
+        let Some(node) = fields.require("bounds", self.report) else { return [None, None] };
+        let Some(ends) = node.array::<2, _>(self.report) else { return [None, None] };
+        let bounds = ends.map(|end| {
+            if matches!(end.0.value, Value::Null) {
                 return None;
             }
-            let scalar = Fields::scalar_of(end, self.report)?;
+            let scalar = end.scalar(self.report)?;
             self.rational(&scalar)
         });
         if let [Some(low), Some(high)] = &bounds
             && low > high
         {
             let cause = Cause::ReversedRange(low.to_string(), high.to_string());
-            self.report.push(json.start, cause);
+            self.report.push(node.at(), cause);
             return [None, None];
         }
         bounds
     }
 
-    fn states(&mut self, fields: &Fields<'_, '_>) -> Vec<EffectState> {
-        let declared = fields.members("states", self.report, |name, json, report| {
-            Some((name, Fields::of(json, &["unit", "rate", "initial"], report)?))
+    fn states(&mut self, fields: &Fields<'_>) -> Vec<EffectState> {
+        let declared = fields.members("states", self.report, |key, node, report| {
+            Some((Name::of_key(key, node), node.fields(&["unit", "rate", "initial"], report)?))
         });
         let mut states = Vec::new();
         // rates may name every state: all are declared before one is read
@@ -289,7 +265,7 @@ impl Reading<'_> {
                 let dimension = unit.of(self.law.joint).dimension();
                 let per_second = dimension.per(seconds).unwrap_or(Dimension::NONE);
                 let rate = fields.require("rate", self.report);
-                let rate = rate.and_then(|json| Fields::scalar_of(json, self.report));
+                let rate = rate.and_then(|node| node.scalar(self.report));
                 let rate = self.law.quantity(rate, "the rate", per_second, self.report);
                 let initial = fields.scalar("initial", self.report);
                 let initial =
@@ -299,13 +275,12 @@ impl Reading<'_> {
             .collect()
     }
 
-    fn unit(&mut self, fields: &Fields<'_, '_>) -> Option<JointUnit> {
-        let json = fields.require("unit", self.report)?;
-        let unit = fields.text("unit", self.report)?;
-        let parsed = JointUnit::parse(&unit.text);
+    fn unit(&mut self, fields: &Fields<'_>) -> Option<JointUnit> {
+        let node = fields.require("unit", self.report)?;
+        let unit = node.text(self.report)?;
+        let parsed = JointUnit::parse(unit);
         if let Err(error) = &parsed {
-            let text = unit.text.into_owned();
-            self.report.push(json.start, Cause::Unit(text, error.clone()));
+            self.report.push(node.at(), Cause::Unit(unit.to_owned(), error.clone()));
         }
         parsed.ok()
     }
@@ -342,14 +317,14 @@ impl Reading<'_> {
         value
     }
 
-    fn confused_with(&mut self, fields: &Fields<'_, '_>) -> Vec<Confusion> {
-        let own = fields.text("name", &mut Report::default());
-        fields.members("confused_with", self.report, |name, json, report| {
-            if own.as_ref().is_some_and(|own| own.text == name.text) {
-                report.push(name.at, Cause::DuplicateName(name.text.to_string(), "this effect"));
+    fn confused_with(&mut self, fields: &Fields<'_>) -> Vec<Confusion> {
+        let own = fields.text("name", &mut Report::<Cause>::default());
+        fields.members("confused_with", self.report, |name, node, report| {
+            if own == Some(name) {
+                report.push(node.at(), Cause::DuplicateName(name.to_owned(), "this effect"));
             }
-            let reason = Fields::scalar_of(json, report)?.text.into_owned();
-            Some(Confusion { effect: name.text.into_owned(), reason })
+            let reason = node.scalar(report)?.text.into_owned();
+            Some(Confusion { effect: name.to_owned(), reason })
         })
     }
 }

@@ -1,10 +1,12 @@
 //! The hash-consed graph: nodes, constants and symbols in tables, each node stored once.
 
+use super::row_table::RowTable;
 use super::symbol::{ClassSet, Symbol, SymbolClass};
 use crate::arena::{Handle, PrimaryMap};
 use crate::number::{Rational, integer};
 use num_traits::{One, Zero};
 use rustc_hash::FxHashMap;
+use std::hash::{Hash, Hasher};
 
 crate::handle!(
     /// An expression of a [`Dag`]. Operands always have smaller handles than their users.
@@ -142,6 +144,26 @@ impl Node {
     }
 }
 
+/// A constant as it is looked up. Fractions are in lowest terms, so two are equal where numerators
+/// and denominators are. (`Ratio` itself is hashed by its continued fraction, in cubic time.)
+#[derive(Clone, Debug)]
+struct ConstantKey(Rational);
+
+impl PartialEq for ConstantKey {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.numer() == other.0.numer() && self.0.denom() == other.0.denom()
+    }
+}
+
+impl Eq for ConstantKey {}
+
+impl Hash for ConstantKey {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.numer().hash(state);
+        self.0.denom().hash(state);
+    }
+}
+
 /// The graph. Build with its constructors (`add`, `mul`, ...), which fold and share.
 #[derive(Clone, Debug)]
 pub struct Dag {
@@ -150,9 +172,9 @@ pub struct Dag {
     /// Kept in step with `nodes`: the classes of the symbols below each node.
     classes: Vec<ClassSet>,
     /// The inverse of `nodes`.
-    memo: FxHashMap<Node, ExprId>,
+    memo: RowTable,
     constants: PrimaryMap<ConstantId, Rational>,
-    constant_memo: FxHashMap<Rational, ConstantId>,
+    constant_memo: FxHashMap<ConstantKey, ConstantId>,
     symbols: PrimaryMap<SymbolId, Symbol>,
     symbol_memo: FxHashMap<String, SymbolId>,
     zero: ExprId,
@@ -171,7 +193,7 @@ impl Dag {
         let mut dag = Self {
             nodes: PrimaryMap::new(),
             classes: Vec::new(),
-            memo: FxHashMap::default(),
+            memo: RowTable::new(),
             constants: PrimaryMap::new(),
             constant_memo: FxHashMap::default(),
             symbols: PrimaryMap::new(),
@@ -201,11 +223,12 @@ impl Dag {
 
     /// A rational constant.
     pub fn constant(&mut self, value: Rational) -> ExprId {
-        let id = match self.constant_memo.get(&value) {
+        let key = ConstantKey(value);
+        let id = match self.constant_memo.get(&key) {
             Some(&id) => id,
             None => {
-                let id = self.constants.push(value.clone());
-                self.constant_memo.insert(value, id);
+                let id = self.constants.push(key.0.clone());
+                self.constant_memo.insert(key, id);
                 id
             }
         };
@@ -318,9 +341,11 @@ impl Dag {
     /// Stores a node as it is, or finds it. Only the constructors of `fold.rs` call this: a node
     /// that a law would change must not be stored.
     pub(super) fn intern(&mut self, node: Node) -> ExprId {
-        if let Some(&expr) = self.memo.get(&node) {
-            return expr;
-        }
+        let is_same = |row: usize| self.nodes[ExprId::from_index(row)] == node;
+        let vacancy = match self.memo.find(&node, is_same) {
+            Ok(row) => return ExprId::from_index(row),
+            Err(vacancy) => vacancy,
+        };
         let mut classes = match node {
             Node::Symbol(id) => ClassSet::of(self.symbols[id].class),
             _ => ClassSet::EMPTY,
@@ -328,7 +353,7 @@ impl Dag {
         node.for_each_operand(|operand| classes = classes.union(self.classes[operand.index()]));
         let expr = self.nodes.push(node);
         self.classes.push(classes);
-        self.memo.insert(node, expr);
+        self.memo.insert(vacancy, expr.index());
         expr
     }
 }

@@ -26,6 +26,7 @@ mod pass_tests;
 #[cfg(test)]
 pub(crate) mod random;
 mod rings;
+mod row_table;
 mod substitute;
 mod symbol;
 pub mod text;

@@ -5,11 +5,12 @@
 //! describes the format; faults are reported as those of models are.
 
 use super::check::Scope;
+use super::entry::{Name, Scalar};
 use super::fault::{Cause, ModelError};
-use super::file::{Declaration, Name, Scalar, read_declarations};
-use super::json::{self, JsonError};
+use super::file::{Declaration, read_declarations};
+use super::json;
 use super::parameter::{Parameter, Role};
-use super::reader::{self, Fields};
+use super::reader::{Fields, Node, read_document};
 use super::report::Report;
 use super::spelling::{is_identifier, reserved_by};
 use super::unit::Unit;
@@ -73,40 +74,30 @@ const KEYS: &[&str] = &[
 
 /// Reads a file of equations from its bytes. `file` is its name, for messages alone.
 pub fn read(file: &str, source: &[u8]) -> Result<Equations, ModelError> {
-    let mut report = Report::default();
-    let root = match json::parse(source) {
-        Ok(root) => root,
-        Err(JsonError { at, cause }) => {
-            report.push(at, Cause::from(cause));
-            return Err(report.into_error(file, source, None));
-        }
-    };
-    reader::find_duplicate_keys(&root, &mut report);
-    let equations =
-        Fields::of(&root, KEYS, &mut report).map(|fields| read_fields(&fields, &mut report));
-    match equations {
-        Some(equations) if report.is_empty() => Ok(equations),
-        _ => Err(report.into_error(file, source, Some(&root))),
-    }
+    read_document(file, source, |root, report| {
+        let fields = root.fields(KEYS, report)?;
+        Some(read_fields(&fields, report))
+    })
 }
 
 /// Whether a text is JSON that says it is a file of equations, so that a command can tell the two
 /// kinds of file apart.
 pub fn is_equations_file(source: &[u8]) -> bool {
     let Ok(root) = json::parse(source) else { return false };
-    let mut unheard = Report::default();
-    let format = Fields::of(&root, KEYS, &mut unheard)
+    let mut unheard: Report = Report::default();
+    let format = Node(&root)
+        .fields(KEYS, &mut unheard)
         .and_then(|fields| fields.text("format", &mut unheard));
-    format.is_some_and(|tag| tag.text.starts_with("denavit-equations/"))
+    format.is_some_and(|tag| tag.starts_with("denavit-equations/"))
 }
 
-fn read_fields(fields: &Fields<'_, '_>, report: &mut Report) -> Equations {
+fn read_fields(fields: &Fields<'_>, report: &mut Report) -> Equations {
     fields.format(FORMAT, report);
-    let name = fields.name("name", report);
+    let name = fields.required_name("name", report);
     let variables = read_declarations(fields, "variables", &["unit", "doc"], report);
     let knowns = read_declarations(fields, "knowns", &["value", "unit", "doc"], report);
     let unknowns = read_declarations(fields, "unknowns", &["value", "std", "unit", "doc"], report);
-    let texts = fields.required_items("equations", report, Fields::scalar_of);
+    let texts = fields.required_items("equations", report, Node::scalar);
     if !name.text.is_empty() && !is_identifier(&name.text) {
         report.push(name.at, Cause::NotIdentifier(name.text.clone().into_owned()));
     }
@@ -125,7 +116,7 @@ fn read_fields(fields: &Fields<'_, '_>, report: &mut Report) -> Equations {
     let knowns = reading.declare(&knowns, Role::Constant, |_| SymbolClass::Geometry);
     let unknowns = reading.declare(&unknowns, Role::Unknown, |_| SymbolClass::Inertia);
     if texts.is_empty() {
-        let at = fields.get("equations").map_or(fields.at(), |list| list.start);
+        let at = fields.place("equations");
         reading.report.push(at, Cause::NoEquations);
     }
     let equations = texts.iter().filter_map(|text| reading.equation(text)).collect();

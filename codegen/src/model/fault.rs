@@ -32,6 +32,19 @@ impl<C: Explained> Fault<C> {
     pub fn hint(&self) -> Option<String> {
         self.cause.hint()
     }
+
+    /// File, place, cause and hint.
+    pub fn message(&self, file: &str) -> String {
+        let mut message = format!("{file}:{}:{}: ", self.line, self.column);
+        if !self.pointer.is_empty() {
+            message.push_str(&format!("{}: ", self.pointer));
+        }
+        message.push_str(&self.cause.to_string());
+        if let Some(hint) = self.hint() {
+            message.push_str(&format!("\n  hint: {hint}"));
+        }
+        message
+    }
 }
 
 /// Everything that is wrong with a file, in its order.
@@ -52,14 +65,7 @@ impl<C: Explained> fmt::Display for FileError<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, fault) in self.faults.iter().enumerate() {
             let separator = if index == 0 { "" } else { "\n" };
-            write!(f, "{separator}{}:{}:{}: ", self.file, fault.line, fault.column)?;
-            if !fault.pointer.is_empty() {
-                write!(f, "{}: ", fault.pointer)?;
-            }
-            write!(f, "{}", fault.cause)?;
-            if let Some(hint) = fault.hint() {
-                write!(f, "\n  hint: {hint}")?;
-            }
+            write!(f, "{separator}{}", fault.message(&self.file))?;
         }
         match self.omitted {
             0 => Ok(()),

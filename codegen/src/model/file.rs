@@ -4,37 +4,13 @@
 //! so that one answer lists everything. Nobody sees what was put there: a robot is handed out only
 //! if no fault was noted.
 
+use super::entry::{Entry, Name, Scalar};
 use super::fault::Cause;
 use super::inertia::Violation;
-use super::json::{Json, Value};
 use super::message::EFFECT_PLACE;
-use super::reader::{Fields, Word};
+use super::reader::{Fields, Node, Word};
 use super::report::Report;
 use super::robot::{About, Base, Convention, JointKind, Side, Terms, TorqueSide};
-use std::borrow::Cow;
-
-/// A text with its place.
-#[derive(Clone, Debug)]
-pub(crate) struct Name<'a> {
-    pub(crate) text: Cow<'a, str>,
-    pub(crate) at: usize,
-}
-
-/// A number or an expression, with its place.
-#[derive(Clone, Debug)]
-pub(crate) struct Scalar<'a> {
-    pub(crate) text: Cow<'a, str>,
-    pub(crate) at: usize,
-}
-
-/// A parameter: its value and what the file says about it.
-#[derive(Clone, Debug)]
-pub(crate) struct Entry<'a> {
-    pub(crate) value: Option<Scalar<'a>>,
-    pub(crate) std: Option<Scalar<'a>>,
-    pub(crate) known: Option<bool>,
-    pub(crate) at: usize,
-}
 
 /// A constant or an unknown.
 #[derive(Clone, Debug)]
@@ -176,39 +152,39 @@ pub(super) struct ModelFile<'a> {
     pub(super) effects: Vec<EffectFile<'a>>,
 }
 
-const CONVENTIONS: Word<Convention> = Word {
+const CONVENTIONS: Word<'_, Convention> = Word {
     what: "convention",
     known: &["standard", "modified"],
     values: &[Convention::Standard, Convention::Modified],
 };
-const TORQUE_SIDES: Word<TorqueSide> = Word {
+const TORQUE_SIDES: Word<'_, TorqueSide> = Word {
     what: "torque side",
     known: &["joint", "motor"],
     values: &[TorqueSide::Joint, TorqueSide::Motor],
 };
-const BASES: Word<Base> = Word {
+const BASES: Word<'_, Base> = Word {
     what: "base",
     known: &["fixed", "floating", "planar_floating"],
     values: &[Base::Fixed, Base::Floating, Base::PlanarFloating],
 };
-const JOINT_KINDS: Word<JointKind> = Word {
+const JOINT_KINDS: Word<'_, JointKind> = Word {
     what: "joint type",
     known: &["revolute", "prismatic", "fixed"],
     values: &[JointKind::Revolute, JointKind::Prismatic, JointKind::Fixed],
 };
-const ABOUT: Word<About> = Word {
+const ABOUT: Word<'_, About> = Word {
     what: "point of reference",
     known: &["com", "origin"],
     values: &[About::Com, About::Origin],
 };
-const SIDES: Word<Side> =
+const SIDES: Word<'_, Side> =
     Word { what: "side", known: &["above", "below"], values: &[Side::Above, Side::Below] };
-const TERMS: Word<usize> = Word {
+const TERMS: Word<'_, usize> = Word {
     what: "term",
     known: &["inertia", "coriolis", "gravity", "friction", "rotor", "spring"],
     values: &[0, 1, 2, 3, 4, 5],
 };
-const MODEL: Word<()> = Word { what: EFFECT_PLACE, known: &["model"], values: &[()] };
+const MODEL: Word<'_, ()> = Word { what: EFFECT_PLACE, known: &["model"], values: &[()] };
 
 const MODEL_KEYS: &[&str] = &[
     "format",
@@ -233,11 +209,11 @@ const MODEL_KEYS: &[&str] = &[
 
 impl<'a> ModelFile<'a> {
     /// Reads the form of a whole file; none if it is no object at all.
-    pub(super) fn read(json: &Json<'a>, report: &mut Report) -> Option<Self> {
-        let fields = Fields::of(json, MODEL_KEYS, report)?;
+    pub(super) fn read(node: Node<'a>, report: &mut Report) -> Option<Self> {
+        let fields = node.fields(MODEL_KEYS, report)?;
         fields.format(super::FORMAT, report);
         Some(Self {
-            name: fields.name("name", report),
+            name: fields.required_name("name", report),
             description: fields.text_or_empty("description", report),
             source: fields.text_or_empty("source", report),
             assumptions: fields.texts("assumptions", report),
@@ -256,12 +232,12 @@ impl<'a> ModelFile<'a> {
             ),
             base: read_base(&fields, report),
             links: fields.required_items("links", report, read_link),
-            links_at: fields.get("links").map_or(fields.at(), |links| links.start),
+            links_at: fields.place("links"),
             drives: fields.members("drives", report, read_drive),
             contacts: fields.items("contacts", report, read_point),
             ground: fields
                 .get("ground")
-                .map_or_else(GroundFile::default, |json| read_ground(json, report)),
+                .map_or_else(GroundFile::default, |node| read_ground(node, report)),
             bodies_that_must_not_touch: fields.items(
                 "bodies_that_must_not_touch",
                 report,
@@ -272,64 +248,69 @@ impl<'a> ModelFile<'a> {
     }
 }
 
-fn read_terms(fields: &Fields<'_, '_>, report: &mut Report) -> Terms {
+fn read_terms(fields: &Fields<'_>, report: &mut Report) -> Terms {
     if fields.get("terms").is_none() {
         return Terms::ALL;
     }
     let mut has = [false; 6];
-    fields.items("terms", report, |json, report| {
-        TERMS.read(json, report).map(|index| has[index] = true)
+    fields.items("terms", report, |node, report| {
+        node.word(&TERMS, report).map(|index| has[index] = true)
     });
     let [inertia, coriolis, gravity, friction, rotor, spring] = has;
     Terms { inertia, coriolis, gravity, friction, rotor, spring }
 }
 
 pub(super) fn read_declarations<'a>(
-    fields: &Fields<'_, 'a>,
-    key: &'static str,
+    fields: &Fields<'a>,
+    section: &'static str,
     known: &'static [&'static str],
     report: &mut Report,
 ) -> Vec<Declaration<'a>> {
-    fields.members(key, report, |name, json, report| {
-        let mut declaration =
-            Declaration { name, value: None, std: None, unit: None, doc: String::new() };
-        if Fields::is_scalar(json) {
-            declaration.value = Fields::scalar_of(json, report);
+    fields.members(section, report, |key, node, report| {
+        let mut declaration = Declaration {
+            name: Name::of_key(key, node),
+            value: None,
+            std: None,
+            unit: None,
+            doc: String::new(),
+        };
+        if node.is_scalar() {
+            declaration.value = node.scalar(report);
             return Some(declaration);
         }
-        let fields = Fields::of(json, known, report)?;
+        let fields = node.fields(known, report)?;
         declaration.value = fields.scalar("value", report);
         declaration.std = fields.scalar("std", report);
-        declaration.unit = fields.text("unit", report);
+        declaration.unit = fields.name("unit", report);
         declaration.doc = fields.text_or_empty("doc", report);
         Some(declaration)
     })
 }
 
-fn read_base<'a>(fields: &Fields<'_, 'a>, report: &mut Report) -> BaseFile<'a> {
+fn read_base<'a>(fields: &Fields<'a>, report: &mut Report) -> BaseFile<'a> {
     let fixed = BaseFile { kind: Base::Fixed, body: None };
-    let Some(json) = fields.get("base") else { return fixed };
-    if Fields::is_text(json) {
-        return BaseFile { kind: BASES.read(json, report).unwrap_or(Base::Fixed), body: None };
+    let Some(node) = fields.get("base") else { return fixed };
+    if node.is_text() {
+        return BaseFile { kind: node.word(&BASES, report).unwrap_or(Base::Fixed), body: None };
     }
-    let Some(inner) = Fields::of(json, &["type", "body"], report) else { return fixed };
+    let Some(inner) = node.fields(&["type", "body"], report) else { return fixed };
     let kind = inner.required_word("type", &BASES, report);
-    BaseFile { kind, body: inner.get("body").and_then(|json| read_body(json, report)) }
+    BaseFile { kind, body: inner.get("body").and_then(|node| read_body(node, report)) }
 }
 
-fn read_link<'a>(json: &Json<'a>, report: &mut Report) -> Option<LinkFile<'a>> {
-    let fields = Fields::of(json, &["name", "parent", "joint", "limits", "body"], report)?;
+fn read_link<'a>(node: Node<'a>, report: &mut Report) -> Option<LinkFile<'a>> {
+    let fields = node.fields(&["name", "parent", "joint", "limits", "body"], report)?;
     Some(LinkFile {
         at: fields.at(),
-        name: fields.name("name", report),
-        parent: fields.text("parent", report),
+        name: fields.required_name("name", report),
+        parent: fields.name("parent", report),
         joint: read_joint(&fields, report),
-        limits: fields.get("limits").and_then(|json| read_limits(json, report)).unwrap_or_default(),
-        body: fields.get("body").and_then(|json| read_body(json, report)),
+        limits: fields.get("limits").and_then(|node| read_limits(node, report)).unwrap_or_default(),
+        body: fields.get("body").and_then(|node| read_body(node, report)),
     })
 }
 
-fn read_joint<'a>(link: &Fields<'_, 'a>, report: &mut Report) -> JointFile<'a> {
+fn read_joint<'a>(link: &Fields<'a>, report: &mut Report) -> JointFile<'a> {
     const KEYS: &[&str] = &["type", "a", "alpha", "d", "theta", "spring", "damping"];
     let mut joint = JointFile {
         kind: JointKind::Revolute,
@@ -338,65 +319,65 @@ fn read_joint<'a>(link: &Fields<'_, 'a>, report: &mut Report) -> JointFile<'a> {
         damping: None,
         at: link.at(),
     };
-    let Some(json) = link.require("joint", report) else { return joint };
-    let Some(fields) = Fields::of(json, KEYS, report) else { return joint };
-    joint.at = json.start;
+    let Some(node) = link.require("joint", report) else { return joint };
+    let Some(fields) = node.fields(KEYS, report) else { return joint };
+    joint.at = node.at();
     joint.kind = fields.required_word("type", &JOINT_KINDS, report);
     joint.row = ["a", "alpha", "d", "theta"].map(|key| fields.scalar(key, report));
-    joint.spring = fields.get("spring").and_then(|json| {
-        let spring = Fields::of(json, &["stiffness", "angle"], report)?;
+    joint.spring = fields.get("spring").and_then(|node| {
+        let spring = node.fields(&["stiffness", "angle"], report)?;
         Some([spring.required_entry("stiffness", report), spring.entry("angle", report)])
     });
     joint.damping = fields.entry("damping", report);
     joint
 }
 
-fn read_limits<'a>(json: &Json<'a>, report: &mut Report) -> Option<LimitsFile<'a>> {
-    let fields = Fields::of(json, &["position", "velocity", "acceleration", "torque"], report)?;
-    let torque = fields.get("torque").and_then(|json| {
-        if Fields::is_scalar(json) {
-            Fields::scalar_of(json, report).map(TorqueFile::Symmetric)
+fn read_limits<'a>(node: Node<'a>, report: &mut Report) -> Option<LimitsFile<'a>> {
+    let fields = node.fields(&["position", "velocity", "acceleration", "torque"], report)?;
+    let torque = fields.get("torque").and_then(|node| {
+        if node.is_scalar() {
+            node.scalar(report).map(TorqueFile::Symmetric)
         } else {
-            Fields::tuple_of(json, report).map(TorqueFile::Range)
+            node.scalars(report).map(TorqueFile::Range)
         }
     });
     Some(LimitsFile {
-        position: fields.get("position").and_then(|json| Fields::tuple_of(json, report)),
+        position: fields.get("position").and_then(|node| node.scalars(report)),
         velocity: fields.scalar("velocity", report),
         acceleration: fields.scalar("acceleration", report),
         torque,
-        at: Some(json.start),
+        at: Some(node.at()),
     })
 }
 
-fn read_body<'a>(json: &Json<'a>, report: &mut Report) -> Option<BodyFile<'a>> {
+fn read_body<'a>(node: Node<'a>, report: &mut Report) -> Option<BodyFile<'a>> {
     const KEYS: &[&str] = &["mass", "com", "inertia", "about", "accept_triangle_violation"];
     const TENSOR: &[&str] = &["xx", "yy", "zz", "xy", "xz", "yz"];
-    let fields = Fields::of(json, KEYS, report)?;
+    let fields = node.fields(KEYS, report)?;
     let mass = fields.entry("mass", report);
     let [x, y, z] = match fields.get("com") {
-        Some(json) => Fields::entries_of(json, report).map_or([None, None, None], |c| c.map(Some)),
+        Some(node) => node.entries(report).map_or([None, None, None], |c| c.map(Some)),
         None => [None, None, None],
     };
     let about = fields.word("about", &ABOUT, report);
     let mut tensor: [Option<Entry<'a>>; 6] = Default::default();
-    if let Some(json) = fields.get("inertia") {
+    if let Some(node) = fields.get("inertia") {
         fields.require("about", report);
-        if let Some(inertia) = Fields::of(json, TENSOR, report) {
+        if let Some(inertia) = node.fields(TENSOR, report) {
             tensor = std::array::from_fn(|entry| inertia.entry(TENSOR[entry], report));
         }
     }
     let [xx, yy, zz, xy, xz, yz] = tensor;
-    let accepted = fields.text("accept_triangle_violation", report);
+    let accepted = fields.name("accept_triangle_violation", report);
     Some(BodyFile {
         entries: [mass, x, y, z, xx, yy, zz, xy, xz, yz],
         about: about.unwrap_or(About::Com),
         violation: accepted.map_or(Violation::Refused, |reason| Violation::Accepted(reason.at)),
-        at: json.start,
+        at: node.at(),
     })
 }
 
-fn read_drive<'a>(link: Name<'a>, json: &Json<'a>, report: &mut Report) -> Option<DriveFile<'a>> {
+fn read_drive<'a>(link: &'a str, node: Node<'a>, report: &mut Report) -> Option<DriveFile<'a>> {
     const KEYS: &[&str] = &[
         "gear_ratio",
         "rotor_inertia",
@@ -406,20 +387,20 @@ fn read_drive<'a>(link: Name<'a>, json: &Json<'a>, report: &mut Report) -> Optio
         "series_elastic",
         "return_spring",
     ];
-    let fields = Fields::of(json, KEYS, report)?;
-    let series_elastic = fields.get("series_elastic").and_then(|json| {
+    let fields = node.fields(KEYS, report)?;
+    let series_elastic = fields.get("series_elastic").and_then(|node| {
         const KEYS: &[&str] = &["stiffness", "motor_radius", "load_radius"];
-        let spring = Fields::of(json, KEYS, report)?;
+        let spring = node.fields(KEYS, report)?;
         Some(std::array::from_fn(|entry| spring.required_entry(KEYS[entry], report)))
     });
-    let return_spring = fields.get("return_spring").and_then(|json| {
-        let spring = Fields::of(json, &["stiffness", "angle", "side"], report)?;
+    let return_spring = fields.get("return_spring").and_then(|node| {
+        let spring = node.fields(&["stiffness", "angle", "side"], report)?;
         let side = spring.word("side", &SIDES, report).unwrap_or(Side::Above);
         let stiffness = spring.required_entry("stiffness", report);
         Some(([stiffness, spring.entry("angle", report)], side))
     });
     Some(DriveFile {
-        link,
+        link: Name::of_key(link, node),
         gear_ratio: fields.entry("gear_ratio", report),
         rotor_inertia: fields.entry("rotor_inertia", report),
         viscous: fields.entry("viscous", report),
@@ -430,57 +411,57 @@ fn read_drive<'a>(link: Name<'a>, json: &Json<'a>, report: &mut Report) -> Optio
     })
 }
 
-fn read_point<'a>(json: &Json<'a>, report: &mut Report) -> Option<PointFile<'a>> {
-    let fields = Fields::of(json, &["name", "link", "position"], report)?;
+fn read_point<'a>(node: Node<'a>, report: &mut Report) -> Option<PointFile<'a>> {
+    let fields = node.fields(&["name", "link", "position"], report)?;
     Some(PointFile {
-        name: fields.name("name", report),
-        link: fields.name("link", report),
+        name: fields.required_name("name", report),
+        link: fields.required_name("link", report),
         position: fields.required_triple("position", report),
     })
 }
 
-fn read_ground<'a>(json: &Json<'a>, report: &mut Report) -> GroundFile<'a> {
-    let Some(fields) = Fields::of(json, &["point", "normal"], report) else {
+fn read_ground<'a>(node: Node<'a>, report: &mut Report) -> GroundFile<'a> {
+    let Some(fields) = node.fields(&["point", "normal"], report) else {
         return GroundFile::default();
     };
     GroundFile {
-        point: fields.get("point").and_then(|json| Fields::tuple_of(json, report)),
-        normal: fields.get("normal").and_then(|json| Fields::tuple_of(json, report)),
-        at: json.start,
+        point: fields.get("point").and_then(|node| node.scalars(report)),
+        normal: fields.get("normal").and_then(|node| node.scalars(report)),
+        at: node.at(),
     }
 }
 
 /// A value, or an object of a value and its standard deviation.
 fn value_with_std<'a>(
-    json: &Json<'a>,
+    node: Node<'a>,
     report: &mut Report,
 ) -> Option<(Scalar<'a>, Option<Scalar<'a>>)> {
-    if !matches!(json.value, Value::Object(_)) {
-        return Some((Fields::scalar_of(json, report)?, None));
+    if !node.is_object() {
+        return Some((node.scalar(report)?, None));
     }
-    let fields = Fields::of(json, &["value", "std"], report)?;
+    let fields = node.fields(&["value", "std"], report)?;
     let value = fields.require("value", report)?;
-    Some((Fields::scalar_of(value, report)?, fields.scalar("std", report)))
+    Some((value.scalar(report)?, fields.scalar("std", report)))
 }
 
-fn read_effect<'a>(json: &Json<'a>, report: &mut Report) -> Option<EffectFile<'a>> {
-    let fields = Fields::of(json, &["effect", "at", "parameters"], report)?;
-    let place = json.start;
-    let at = fields.require("at", report).map_or(PlaceFile::Model, |json| {
-        if Fields::is_text(json) {
-            let _ = MODEL.read(json, report);
+fn read_effect<'a>(node: Node<'a>, report: &mut Report) -> Option<EffectFile<'a>> {
+    let fields = node.fields(&["effect", "at", "parameters"], report)?;
+    let place = node.at();
+    let at = fields.require("at", report).map_or(PlaceFile::Model, |node| {
+        if node.is_text() {
+            let _ = node.word(&MODEL, report);
             return PlaceFile::Model;
         }
-        let place = Fields::of(json, &["link", "second", "contact"], report);
+        let place = node.fields(&["link", "second", "contact"], report);
         let Some(place) = place else { return PlaceFile::Model };
         if place.get("link").is_some() && place.get("contact").is_some() {
-            report.push(json.start, Cause::TwoPlaces);
+            report.push(node.at(), Cause::TwoPlaces);
         }
-        match place.text("contact", report) {
+        match place.name("contact", report) {
             Some(contact) => PlaceFile::Contact(contact),
             None => {
-                let link = place.name("link", report);
-                match place.text("second", report) {
+                let link = place.required_name("link", report);
+                match place.name("second", report) {
                     Some(second) => PlaceFile::Pair(link, second),
                     None => PlaceFile::Link(link),
                 }
@@ -489,11 +470,11 @@ fn read_effect<'a>(json: &Json<'a>, report: &mut Report) -> Option<EffectFile<'a
     });
     Some(EffectFile {
         place,
-        effect: fields.name("effect", report).text.into_owned(),
+        effect: fields.required_name("effect", report).text.into_owned(),
         at,
-        parameters: fields.members("parameters", report, |name, json, report| {
-            let (value, std) = value_with_std(json, report)?;
-            Some((name.text.into_owned(), value, std))
+        parameters: fields.members("parameters", report, |key, node, report| {
+            let (value, std) = value_with_std(node, report)?;
+            Some((key.to_owned(), value, std))
         }),
     })
 }

@@ -6,10 +6,12 @@
 //! 4. [`robot`](Robot): what later stages see
 //!
 //! All faults are found in one run: [`ModelError`] lists them with file, line, column, JSON
-//! pointer, cause and hint. docs/model-file.md describes the format.
+//! pointer, cause and hint. [`remarks`] are what a model may say by mistake and is no fault.
+//! docs/model-file.md describes the format.
 
 mod bake;
 pub(crate) mod check;
+pub(crate) mod entry;
 pub mod equations;
 mod fault;
 pub(crate) mod file;
@@ -19,6 +21,7 @@ pub mod json;
 mod message;
 mod parameter;
 pub(crate) mod reader;
+mod remark;
 mod report;
 mod robot;
 pub(crate) mod spelling;
@@ -29,7 +32,8 @@ pub use bake::{BakeError, bake, bake_geometry, bake_where, bake_zeros};
 pub use fault::{Cause, Explained, Fault, FileError, MAX_FAULTS, ModelError};
 pub use inertia::Unphysical;
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};
-pub use reader::find_duplicate_keys;
+pub use reader::{Fields, Node, Word, find_duplicate_keys, read_document};
+pub use remark::{Remark, remarks};
 pub use report::Report;
 pub use robot::{
     About, AddedEffect, AddedValue, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace,
@@ -40,7 +44,7 @@ pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};
 
 use inertia::Violation;
-use json::{JsonCause, JsonError};
+use json::JsonCause;
 
 /// The tag of a model file.
 pub const FORMAT: &str = "denavit-model/1";
@@ -71,23 +75,11 @@ fn read_file(
     source: &[u8],
     prepare: impl FnOnce(&mut file::ModelFile<'_>),
 ) -> Result<Robot, ModelError> {
-    let mut report = Report::default();
-    let root = match json::parse(source) {
-        Ok(root) => root,
-        Err(JsonError { at, cause }) => {
-            report.push(at, Cause::from(cause));
-            return Err(report.into_error(file, source, None));
-        }
-    };
-    reader::find_duplicate_keys(&root, &mut report);
-    let robot = file::ModelFile::read(&root, &mut report).map(|mut model| {
+    reader::read_document(file, source, |root, report| {
+        let mut model = file::ModelFile::read(root, report)?;
         prepare(&mut model);
-        check::check(&model, hash::content_hash(&root), &mut report)
-    });
-    match robot {
-        Some(robot) if report.is_empty() => Ok(robot),
-        _ => Err(report.into_error(file, source, Some(&root))),
-    }
+        Some(check::check(&model, hash::content_hash(root.0), report))
+    })
 }
 
 impl From<JsonCause> for Cause {

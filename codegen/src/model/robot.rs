@@ -5,7 +5,7 @@
 
 use super::parameter::{Parameter, ParameterId};
 use super::tree::Tree;
-use crate::arena::PrimaryMap;
+use crate::arena::{Handle, PrimaryMap};
 use crate::expr::{Dag, ExprId};
 
 crate::handle!(
@@ -38,6 +38,17 @@ pub enum Base {
     Floating,
     /// Three generated joints `base_z`, `base_x`, `base_pitch`: motion in the world x-z plane.
     PlanarFloating,
+}
+
+impl Base {
+    /// Number of joints, and links, that are generated before those of the file.
+    pub const fn generated_joints(self) -> usize {
+        match self {
+            Self::Fixed => 0,
+            Self::Floating => 6,
+            Self::PlanarFloating => 3,
+        }
+    }
 }
 
 /// Which side of the gear the torques of a log stand on.
@@ -411,6 +422,12 @@ impl Robot {
     /// Number of degrees of freedom.
     pub fn degrees_of_freedom(&self) -> usize {
         self.joints().count()
+    }
+
+    /// JSON pointer of a link in the model's file; none for the generated joints of a base.
+    pub fn pointer(&self, link: LinkId) -> Option<String> {
+        let index = link.index().checked_sub(self.base.generated_joints())?;
+        Some(format!("/links/{index}"))
     }
 
     /// The link of that name.

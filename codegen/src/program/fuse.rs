@@ -5,16 +5,18 @@
 //! without fusing, and depend on whether the target has the instruction; hence nothing is fused
 //! unless it is asked for.
 
+use super::passes::{Pass, run_on_routine};
 use super::renumber::close_gaps;
-use super::schedule::schedule;
+use super::schedule::SCHEDULE;
 use super::{BinaryOperation, Code, FusedOperation, Instruction, Operation, Program, Slot};
 use crate::arena::Handle;
+
+const FUSE: Pass = Pass { name: "fuse", rewrite: fuse_code };
 
 /// Fuses products in all functions of a program; the prelude, which runs once, is left alone.
 pub fn fuse(program: &mut Program) {
     for routine in &mut program.routines {
-        fuse_code(&mut routine.code);
-        routine.code.instructions = schedule(&routine.code);
+        run_on_routine(&[FUSE, SCHEDULE], routine, program.prelude.outputs.len());
     }
 }
 

@@ -1,9 +1,10 @@
 //! Expressions to code.
 
 use super::interpret::run;
-use super::schedule::schedule;
-use super::sign::absorb_signs;
-use super::verify::verify;
+use super::passes::{run_on_prelude, run_on_routine};
+use super::schedule::SCHEDULE;
+use super::sign::ABSORB_SIGNS;
+use super::verify::{expect_sound_prelude, expect_sound_routine};
 use super::{
     ArgumentShape, BinaryOperation, Code, Instruction, Leaf, Operation, OutputShape, Program,
     Routine, Slot, UnaryOperation,
@@ -52,7 +53,8 @@ pub fn lower(dag: &Dag, functions: &[Function]) -> Result<Program, LowerError> {
         Node::Symbol(id) => symbols.binary_search(&id).ok().map(Leaf::Parameter),
         _ => None,
     });
-    prelude.instructions = schedule(&prelude);
+    expect_sound_prelude("lower", &prelude, symbols.len());
+    run_on_prelude(&[SCHEDULE], &mut prelude, symbols.len());
     check_constants(&prelude).ok_or_else(|| not_finite("prelude"))?;
 
     let rows: FxHashMap<ExprId, usize> =
@@ -60,21 +62,17 @@ pub fn lower(dag: &Dag, functions: &[Function]) -> Result<Program, LowerError> {
     let mut routines = Vec::with_capacity(functions.len());
     for function in functions {
         let places = argument_places(function);
-        let mut code = builder.code(&function.entries(), |expr| {
+        let code = builder.code(&function.entries(), |expr| {
             let prelude = rows.get(&expr).map(|&row| Leaf::Prelude(row));
             prelude.or_else(|| places.get(&expr).copied())
         });
-        absorb_signs(&mut code);
-        code.instructions = schedule(&code);
-        check_constants(&code).ok_or_else(|| not_finite(&function.full_name()))?;
-        routines.push(routine(function, code));
+        let mut routine = routine(function, code);
+        expect_sound_routine("lower", &routine, prelude.outputs.len());
+        run_on_routine(&[ABSORB_SIGNS, SCHEDULE], &mut routine, prelude.outputs.len());
+        check_constants(&routine.code).ok_or_else(|| not_finite(&function.full_name()))?;
+        routines.push(routine);
     }
-    let program = Program { parameters, prelude, routines };
-    if cfg!(debug_assertions) {
-        let faults = verify(&program);
-        assert!(faults.is_empty(), "lowering broke the program: {faults:?}");
-    }
-    Ok(program)
+    Ok(Program { parameters, prelude, routines })
 }
 
 /// The values of symbol-free expressions, by the arithmetic that emitted code uses: the same on

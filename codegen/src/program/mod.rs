@@ -3,7 +3,7 @@
 //! - [`lower`]: expressions to code; what depends on parameters alone goes to one shared prelude
 //! - [`schedule`]: an order of the instructions in which values are short-lived
 //! - [`fuse`]: products and the sums that they go into as one operation, where that is wanted
-//! - [`verify`]: each slot defined once and before its use; called after each pass
+//! - [`verify`]: each slot defined once and before its use; called after each pass, in all profiles
 //! - [`counts`]: what a call costs
 //! - [`Evaluator`]: the reference interpreter; [`BatchEvaluator`]: many samples at once
 //! - [`Evaluate`], [`EvaluateBatch`]: what they and compiled code have in common
@@ -17,6 +17,7 @@ mod evaluate;
 mod fuse;
 mod interpret;
 mod lower;
+mod passes;
 mod renumber;
 mod schedule;
 mod sign;

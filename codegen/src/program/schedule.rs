@@ -5,8 +5,12 @@
 //! all of them come the sines and cosines of angles that need no other sine: one after the other,
 //! so that they can be computed side by side. The order depends on the code alone.
 
+use super::passes::Pass;
 use super::{Code, Instruction, Slot};
 use crate::arena::Handle;
+
+pub(super) const SCHEDULE: Pass =
+    Pass { name: "schedule", rewrite: |code| code.instructions = schedule(code) };
 
 /// The instructions of `code` in the new order; those that no output needs are dropped. Of two
 /// orders of the outputs, as they stand and as their values were made, it is the one in which
@@ -99,43 +103,87 @@ const REGISTERS: usize = 16;
 /// always that which is needed last. Leaves are read from memory, and outputs written to it, as it
 /// is.
 fn register_misses(code: &Code, order: &[Instruction]) -> usize {
-    let mut readers: Vec<Vec<usize>> = vec![Vec::new(); code.slots];
-    for (step, instruction) in order.iter().enumerate().rev() {
-        instruction.for_each_operand(|operand| readers[operand.index()].push(step));
-    }
+    let mut readers = Readers::new(code, order);
     let mut held: Vec<Slot> = Vec::with_capacity(REGISTERS + 1);
     let mut misses = 0;
     for (step, instruction) in order.iter().enumerate() {
-        let mut take = |slot: Slot, readers: &mut Vec<Vec<usize>>| {
+        let mut take = |slot: Slot, readers: &Readers| {
             let is_held = held.contains(&slot);
             if !is_held {
                 held.push(slot);
             }
-            held.retain(|slot| !readers[slot.index()].is_empty());
+            held.retain(|&slot| readers.next(slot).is_some());
             if held.len() > REGISTERS {
-                let next = |slot: &Slot| readers[slot.index()].last().copied();
                 let (row, _) = held
                     .iter()
                     .enumerate()
-                    .max_by_key(|(_, slot)| next(slot))
+                    .max_by_key(|&(_, &slot)| readers.next(slot))
                     .expect("it holds more than there are registers");
                 held.swap_remove(row);
             }
             is_held
         };
         instruction.for_each_operand(|operand| {
-            while readers[operand.index()].last() == Some(&step) {
-                readers[operand.index()].pop();
-            }
+            readers.leave_behind(operand, step);
             if operand.index() >= code.leaves.len() {
-                misses += usize::from(!take(operand, &mut readers));
+                misses += usize::from(!take(operand, &readers));
             }
         });
         instruction.for_each_result(|result| {
-            take(result, &mut readers);
+            take(result, &readers);
         });
     }
     misses
+}
+
+/// The steps that read each slot and are still to come. All stand in one table, those of a slot
+/// side by side: code may have millions of slots.
+struct Readers {
+    steps: Vec<u32>,
+    /// For each slot, where its steps begin and end.
+    rows: Vec<[u32; 2]>,
+}
+
+impl Readers {
+    fn new(code: &Code, order: &[Instruction]) -> Self {
+        let mut rows = vec![[0_u32; 2]; code.slots];
+        for instruction in order {
+            instruction.for_each_operand(|operand| rows[operand.index()][1] += 1);
+        }
+        let mut end = 0;
+        for row in &mut rows {
+            end += row[1];
+            *row = [end, end];
+        }
+        let mut steps = vec![0; end as usize];
+        // from the back, so that each row begins with its first step
+        let mut step = index_u32(order.len());
+        for instruction in order.iter().rev() {
+            step -= 1;
+            instruction.for_each_operand(|operand| {
+                let [begin, _] = &mut rows[operand.index()];
+                *begin -= 1;
+                steps[*begin as usize] = step;
+            });
+        }
+        Self { steps, rows }
+    }
+
+    fn next(&self, slot: Slot) -> Option<u32> {
+        let [begin, end] = self.rows[slot.index()];
+        (begin < end).then(|| self.steps[begin as usize])
+    }
+
+    /// Takes a step away from a slot, however often it reads it.
+    fn leave_behind(&mut self, slot: Slot, step: usize) {
+        while self.next(slot).is_some_and(|next| next as usize == step) {
+            self.rows[slot.index()][0] += 1;
+        }
+    }
+}
+
+fn index_u32(index: usize) -> u32 {
+    u32::try_from(index).expect("fewer than 2^32 instructions")
 }
 
 /// The largest number of values, leaves not counted, that are needed at one time.

@@ -3,16 +3,19 @@
 //! The graph keeps one of `a - b` and `b - a` and negates it for the other. Here a negation is
 //! taken back into the difference below it, through products and quotients that nothing else uses.
 
+use super::passes::Pass;
 use super::renumber::close_gaps;
 use super::{BinaryOperation, Code, Instruction, Operation, Slot, UnaryOperation};
 use crate::arena::Handle;
+
+pub(super) const ABSORB_SIGNS: Pass = Pass { name: "absorb_signs", rewrite: absorb_signs };
 
 /// How far a sign is followed down through products.
 const MAX_DEPTH: usize = 12;
 
 /// The same code with fewer negations. Values do not change, not in the last bit: `b - a` is
 /// exactly `-(a - b)` in floating point, and so are products and quotients of a changed sign.
-pub(super) fn absorb_signs(code: &mut Code) {
+fn absorb_signs(code: &mut Code) {
     let mut signs = Signs::new(code);
     for index in 0..code.instructions.len() {
         let Some((result, operand)) = negation(&code.instructions[index]) else { continue };

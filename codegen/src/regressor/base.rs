@@ -6,6 +6,7 @@ use super::column::{Regressor, RegressorError, RegressorOptions};
 use super::dependence::{Relation, relations};
 use super::eliminate::{Reduced, eliminate};
 use super::formula::{Part, parts, sum_text};
+use super::inexact::{self, InexactEntry};
 use super::rank::{PARAMETERS, Ranking, rank};
 use super::theta::column_symbol;
 use super::turning::table_angles;
@@ -26,6 +27,15 @@ pub enum BaseError {
     Regressor(RegressorError),
     /// A known parameter or an angle has no exact form.
     Canonical(CanonicalError),
+    /// An entry of the model has no exact form.
+    Inexact {
+        /// The model.
+        model: String,
+        /// The entry.
+        entry: Box<InexactEntry>,
+        /// Why it has none.
+        error: CanonicalError,
+    },
     /// The columns have no value at a random point.
     Evaluate(EvaluateError),
     /// A column to keep that the model does not have.
@@ -65,6 +75,11 @@ impl fmt::Display for BaseError {
         match self {
             Self::Regressor(error) => write!(f, "{error}"),
             Self::Canonical(error) => write!(f, "a known parameter has no exact form: {error}"),
+            Self::Inexact { model, entry, error } => write!(
+                f,
+                "{model}: {entry} has no exact form: {error}\n  hint: declare what it says as a \
+                 constant of its own, or take the model's numbers for lengths, angles and gravity"
+            ),
             Self::Evaluate(error) => write!(f, "the columns have no value: {error}"),
             Self::NoColumn { model, name } => write!(
                 f,
@@ -205,7 +220,15 @@ pub fn base_parameters(
 ) -> Result<BaseParameters, BaseError> {
     let regressor =
         Regressor::new(robot, options, robot.torque_side).map_err(BaseError::Regressor)?;
-    reduce(regressor, keep)
+    reduce(regressor, keep).map_err(|error| match error {
+        BaseError::Canonical(error) => match inexact::find(robot, error) {
+            Some(entry) => {
+                BaseError::Inexact { model: robot.name.clone(), entry: Box::new(entry), error }
+            }
+            None => BaseError::Canonical(error),
+        },
+        other => other,
+    })
 }
 
 /// The base parameters of a regressor.

@@ -17,6 +17,7 @@
 //! - [`decompose_robot`]: f and B of a model's regressor
 //! - [`Theta`]: theta from B_E, the thesis's way
 
+mod about;
 mod axis_frames;
 mod axle;
 pub mod base;
@@ -31,6 +32,7 @@ mod follow;
 mod formula;
 pub mod functions;
 mod inertial;
+mod inexact;
 mod joint_basis;
 mod link_frames;
 mod matter;
@@ -42,11 +44,13 @@ mod still;
 mod theta;
 mod turning;
 
+pub use about::ParameterGroup;
 pub use base::{BaseError, BaseParameter, BaseParameters, Dependent, base_parameters};
 pub use certificate::{Certificate, Verdict};
 pub use column::{Column, Regressor, RegressorError, RegressorOptions, Unknowns};
 pub use decompose::{DecomposeError, RobotDecomposition, decompose_robot};
 pub use formula::{Part, signed};
+pub use inexact::InexactEntry;
 pub use joint_basis::{JointParameter, joint_basis};
 pub use pull::{
     Equation, MatterRegressor, MotionTerms, TorsoMotion, fixed_base_regressor, torso_regressor,

@@ -82,9 +82,6 @@ pub struct Phi {
     pub springs: Vec<f64>,
 }
 
-/// What begins the names of parameters that no rigid body has.
-const OF_JOINT: [&str; 4] = ["fv", "fc", "off", "Ia"];
-
 impl<'a> Nominal<'a> {
     /// The nominal model with the deviations that it states, others by `uncertainty`.
     pub fn new(model: &'a RegressionModel, uncertainty: Uncertainty) -> Self {
@@ -204,7 +201,7 @@ impl<'a> Nominal<'a> {
     }
 
     fn phi_of(&self, theta: &[f64]) -> Phi {
-        let drives = self.only(theta, |prefix| OF_JOINT.contains(&prefix));
+        let drives = self.only(theta, StandardParameter::is_of_joint);
         let loads: Vec<f64> = theta.iter().zip(&drives).map(|(all, own)| all - own).collect();
         Phi {
             axes: self.model.axes_of_standard(theta),
@@ -214,11 +211,10 @@ impl<'a> Nominal<'a> {
         }
     }
 
-    /// theta0 with 0 for what does not belong to a joint by a prefix that is asked for.
-    fn only(&self, theta: &[f64], asked: impl Fn(&str) -> bool) -> Vec<f64> {
+    /// theta0 with 0 for what is not asked for.
+    fn only(&self, theta: &[f64], is_asked: impl Fn(&StandardParameter) -> bool) -> Vec<f64> {
         let of = |(value, standard): (&f64, &StandardParameter)| {
-            let is_asked = standard.owner.as_ref().is_some_and(|(_, prefix)| asked(prefix));
-            if is_asked { *value } else { 0.0 }
+            if is_asked(standard) { *value } else { 0.0 }
         };
         theta.iter().zip(&self.model.standard).map(of).collect()
     }
@@ -244,10 +240,10 @@ fn deviation(
     parameter: &ModelParameter,
     uncertainty: Uncertainty,
 ) -> Option<f64> {
-    let is_of_joint = model.standard.iter().any(|standard| {
-        standard.name == parameter.name
-            && standard.owner.as_ref().is_some_and(|(_, prefix)| OF_JOINT.contains(prefix))
-    });
+    let is_of_joint = model
+        .standard
+        .iter()
+        .any(|standard| standard.name == parameter.name && standard.is_of_joint());
     let share = if is_of_joint { uncertainty.joint } else { uncertainty.body };
     let std = parameter.std.unwrap_or(share * parameter.value.abs());
     Some(std).filter(|std| *std > 0.0)

@@ -17,9 +17,6 @@ use std::ops::Range;
 /// Samples that are evaluated at once.
 const BLOCK: usize = 512;
 
-/// What begins the names of parameters that no rigid body has.
-const NOT_OF_BODIES: [&str; 4] = ["fv", "fc", "Ia", "off"];
-
 /// Undoes laws of logged positions and rates.
 pub fn undo_readings(log: &mut MeasuredLog, laws: &[AddedLaw]) {
     let t: Vec<f64> = (0..log.samples()).map(|k| log.start_s + log.step_s * k as f64).collect();
@@ -212,9 +209,7 @@ impl Moved<'_> {
 /// phi of the bodies alone, or of the drives alone, with the values that the model gives.
 fn phi_of(model: &RegressionModel, of_bodies: bool) -> Vec<f64> {
     let value = |one: &StandardParameter| {
-        let owner = one.owner.as_ref();
-        let is_of_body = owner.is_none_or(|(_, prefix)| !NOT_OF_BODIES.contains(prefix));
-        if is_of_body == of_bodies { one.value.unwrap_or(0.0) } else { 0.0 }
+        if one.is_of_joint() == of_bodies { 0.0 } else { one.value.unwrap_or(0.0) }
     };
     let standard: Vec<f64> = model.standard.iter().map(value).collect();
     model.axes_of_standard(&standard)

@@ -2,9 +2,10 @@
 
 use super::statics::{HoldingTorque, StaticMeasurement};
 use denavit_codegen::expr::text::nearest;
+use denavit_codegen::model::{Fields, Node, read_document};
 use denavit_plants::regression::RegressionModel;
 use denavit_simulate::scenario::{
-    Cause, Fields, Node, Range, Report, ScenarioError, check_format, read_document,
+    Cause, FieldsNumbers, NodeNumbers, Range, Report, ScenarioError, check_format,
 };
 use serde_json::json;
 
@@ -25,7 +26,8 @@ pub fn read_statics(
     source: &[u8],
     model: &RegressionModel,
 ) -> Result<Vec<StaticMeasurement>, ScenarioError> {
-    read_document(file, source, KEYS, |fields, _, report| {
+    read_document(file, source, |root, report| {
+        let fields = &root.fields(KEYS, report)?;
         check_format(fields, STATICS_FORMAT, report);
         for key in ["name", "description", "source"] {
             fields.get(key).and_then(|node| node.text(report));
@@ -65,7 +67,7 @@ fn posture(
     for joint in &model.joints {
         match given.get(&joint.name) {
             Some(node) => q.push(node.number_in(POSITION, report).unwrap_or(0.0)),
-            None => report.push(given.at, Cause::NoPosition(joint.name.clone())),
+            None => report.push(given.at(), Cause::NoPosition(joint.name.clone())),
         }
     }
     known_joints(&given, model, report);

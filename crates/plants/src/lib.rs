@@ -28,6 +28,7 @@ mod model;
 mod native;
 pub mod regression;
 mod regression_model;
+mod regression_parameter;
 mod regression_rows;
 mod regression_values;
 pub mod shipped;

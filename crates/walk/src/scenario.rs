@@ -1,10 +1,11 @@
 //! Scenarios with gaits: the key `gait` is planned here, then the simulation sees references.
 
 use crate::weight_shift_step::{Gait, GaitError, WeightShiftStep, plan};
+use denavit_codegen::model::{Fields, Node};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::scenario::{
-    Cause, Fields, Loader, Node, PlannedGait, Range, Report, Scenario, ScenarioError, read_planned,
+    Cause, FieldsNumbers, Loader, PlannedGait, Range, Report, Scenario, ScenarioError, read_planned,
 };
 
 const KEYS: &[&str] = &[

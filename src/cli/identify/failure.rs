@@ -1,6 +1,5 @@
 //! Why nothing is identified.
 
-use crate::cli::failure::Failure;
 use denavit::identify::UpdateError;
 use denavit::identify::condition::ConditionError;
 use denavit::identify::estimate::{EstimateError, MisreadColumns};
@@ -118,31 +117,8 @@ impl fmt::Display for IdentifyFailure {
     }
 }
 
-impl IdentifyFailure {
-    /// All of some logs, or the faults of all that are wrong.
-    pub(crate) fn of_any<T>(
-        logs: impl Iterator<Item = Result<T, Failure>>,
-    ) -> Result<Vec<T>, Failure> {
-        let (mut right, mut wrong) = (Vec::new(), Vec::new());
-        for log in logs {
-            match log {
-                Ok(log) => right.push(log),
-                Err(Failure::Identify(Self::Logs(faults))) => wrong.extend(faults),
-                Err(failure) => return Err(failure),
-            }
-        }
-        if wrong.is_empty() { Ok(right) } else { Err(Self::Logs(wrong).into()) }
-    }
-}
-
 impl From<LogFaults> for IdentifyFailure {
     fn from(faults: LogFaults) -> Self {
         Self::Logs(vec![faults])
-    }
-}
-
-impl From<IdentifyFailure> for Failure {
-    fn from(failure: IdentifyFailure) -> Self {
-        Self::Identify(failure)
     }
 }

@@ -337,7 +337,7 @@ impl<'a> Reader<'a> {
         self.motions = longest_s.map(|_| Vec::new());
         let halvings = halvings.iter().copied().chain(std::iter::repeat(0));
         let all = paths.iter().zip(halvings);
-        IdentifyFailure::of_any(all.map(|(path, own)| self.one((path, own), longest_s)))
+        Failure::of_any_log(all.map(|(path, own)| self.one((path, own), longest_s)))
     }
 
     fn one(

@@ -265,3 +265,62 @@ fn terms_in_which_no_body_acts_are_refused() {
     assert_eq!(run.code, Some(2));
     assert!(run.stderr.contains("inertia or gravity") && run.stderr.contains("--with friction"));
 }
+
+/// A planar arm whose second link begins at `a`, and turns about an axis at `alpha`.
+fn arm(a: &str, alpha: &str, com: &str) -> String {
+    format!(
+        "{{\"format\": \"denavit-model/1\", \"name\": \"arm\", \"convention\": \"standard\", \
+         \"gravity\": [0, -9.81, 0], \"constants\": {{\"l\": {{\"value\": 0.5, \"unit\": \"m\"}}}}, \
+         \"links\": [{{\"name\": \"one\", \"joint\": {{\"type\": \"revolute\", \"a\": 0.4}}, \
+         \"body\": {{\"mass\": 1, \"com\": [0, 0, 0], \"inertia\": {{\"zz\": 0.1}}, \
+         \"about\": \"com\"}}}}, {{\"name\": \"two\", \"joint\": {{\"type\": \"revolute\", \
+         \"a\": {a}, \"alpha\": {alpha}}}, \"body\": {{\"mass\": 1, \"com\": [{com}, 0, 0], \
+         \"inertia\": {{\"zz\": 0.1}}, \"about\": \"com\"}}}}]}}"
+    )
+}
+
+#[test]
+fn a_length_without_an_exact_form_is_told_with_its_place_and_a_way_out() {
+    let directory = Directory::new("inexact");
+    let file = directory.path.join("arm.json");
+    std::fs::write(&file, arm("\"1/(1+l)\"", "0", "0.1")).expect("a file");
+    let run = run_in(&directory.path, &["base", "arm.json"]);
+    assert_eq!(run.code, Some(2), "{}", run.stderr);
+    for part in ["arm.json: ", "/links/1/joint/a", "`two`", "--numeric"] {
+        assert!(run.stderr.contains(part), "{part}: {}", run.stderr);
+    }
+    let run = run_in(&directory.path, &["base", "arm.json", "--numeric"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+}
+
+#[test]
+fn degrees_and_millimetres_are_remarked_on_and_answered() {
+    let directory = Directory::new("remarks");
+    let file = directory.path.join("arm.json");
+    for (text, said) in [
+        (arm("0.3", "90", "0.1"), "/links/1/joint/alpha"),
+        (arm("0.3", "0", "120"), "/links/1/body/com"),
+    ] {
+        std::fs::write(&file, text).expect("a file");
+        for command in ["base", "inspect", "count"] {
+            let run = run_in(&directory.path, &[command, "arm.json"]);
+            assert_eq!(run.code, Some(0), "{}", run.stderr);
+            assert!(run.stderr.starts_with("remark: arm.json:1:"), "{}", run.stderr);
+            assert!(run.stderr.contains(said), "{said}: {}", run.stderr);
+        }
+    }
+}
+
+/// Certificates with and without joint parameters say what they are about.
+#[test]
+fn a_verdict_says_what_its_certificate_is_about() {
+    let directory = Directory::new("about");
+    for (with, about) in [("", "about: bodies\n"), ("friction", "about: bodies, friction\n")] {
+        let mut words = vec!["base", "scara", "--certificate", "c.json"];
+        words.extend(if with.is_empty() { vec![] } else { vec!["--with", with] });
+        assert_eq!(run_in(&directory.path, &words).code, Some(0));
+        let run = run_in(&directory.path, &["verify", "c.json", "scara"]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert!(run.stdout.ends_with(about), "{}", run.stdout);
+    }
+}

@@ -2,8 +2,9 @@
 
 use super::Check;
 use crate::expr::SymbolClass;
+use crate::model::entry::Name;
 use crate::model::fault::Cause;
-use crate::model::file::{Declaration, ModelFile, Name};
+use crate::model::file::{Declaration, ModelFile};
 use crate::model::parameter::{BodyEntry, JointEntry, Parameter, Role};
 use crate::model::spelling::{is_identifier, reserved_by};
 use crate::model::unit::{Unit, UnitError};

@@ -4,8 +4,9 @@ use super::Check;
 use super::parameter::EntryKind;
 use crate::arena::Handle;
 use crate::expr::ExprId;
+use crate::model::entry::Entry;
 use crate::model::fault::Cause;
-use crate::model::file::{DriveFile, Entry, JointFile, ModelFile};
+use crate::model::file::{DriveFile, JointFile, ModelFile};
 use crate::model::parameter::{JointEntry, Role};
 use crate::model::robot::{Drive, JointKind, JointSpring, LinkId, ReturnSpring, SeriesElastic};
 

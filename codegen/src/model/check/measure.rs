@@ -202,7 +202,7 @@ fn sum(a: Measure, b: Measure, faults: &mut Vec<NodeFault>) -> Measure {
 
 /// A rational near the value of a symbol-free expression, to tell signs and order: exact but for
 /// pi, which is off by 2e-38; none for functions that leave the rationals.
-pub(super) fn approximate(dag: &Dag, value: ExprId) -> Option<Rational> {
+pub(in crate::model) fn approximate(dag: &Dag, value: ExprId) -> Option<Rational> {
     if let Some(constant) = dag.as_constant(value) {
         return Some(constant.clone());
     }
@@ -229,7 +229,7 @@ pub(super) fn approximate(dag: &Dag, value: ExprId) -> Option<Rational> {
 }
 
 /// A convergent of the continued fraction of pi, right to 2e-38.
-pub(super) fn near_pi() -> Rational {
+pub(in crate::model) fn near_pi() -> Rational {
     ratio(2_646_693_125_139_304_345, 842_468_587_426_513_207)
 }
 

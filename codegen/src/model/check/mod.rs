@@ -14,8 +14,9 @@ mod row;
 mod scope;
 mod tree;
 
+use super::entry::Scalar;
 use super::fault::Cause;
-use super::file::{ModelFile, Scalar};
+use super::file::ModelFile;
 use super::parameter::{Parameter, ParameterId};
 use super::report::Report;
 use super::robot::{Ground, Link, LinkId, Robot};
@@ -24,6 +25,7 @@ use super::unit::Dimension;
 use crate::arena::PrimaryMap;
 use crate::expr::ExprId;
 use crate::expr::text::nearest;
+pub(super) use measure::{approximate, near_pi};
 use rustc_hash::FxHashMap;
 pub(crate) use scope::Scope;
 

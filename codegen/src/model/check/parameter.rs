@@ -3,8 +3,8 @@
 
 use super::Check;
 use crate::expr::{ExprId, SymbolClass};
+use crate::model::entry::Entry;
 use crate::model::fault::Cause;
-use crate::model::file::Entry;
 use crate::model::parameter::{Parameter, Role};
 use crate::model::unit::Unit;
 

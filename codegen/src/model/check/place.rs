@@ -3,8 +3,9 @@
 use super::{Check, level_ground};
 use crate::arena::Handle;
 use crate::expr::text::nearest;
+use crate::model::entry::Name;
 use crate::model::fault::Cause;
-use crate::model::file::{GroundFile, ModelFile, Name, PlaceFile, PointFile};
+use crate::model::file::{GroundFile, ModelFile, PlaceFile, PointFile};
 use crate::model::robot::{
     AddedEffect, AddedValue, Contact, ContactId, EffectPlace, Ground, LinkId,
 };

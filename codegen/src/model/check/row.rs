@@ -3,8 +3,9 @@
 use super::Check;
 use super::tree::{Carrier, GENERATED};
 use crate::expr::{ExprId, SymbolClass, free_symbols};
+use crate::model::entry::Scalar;
 use crate::model::fault::Cause;
-use crate::model::file::{LimitsFile, LinkFile, ModelFile, Scalar, TorqueFile};
+use crate::model::file::{LimitsFile, LinkFile, ModelFile, TorqueFile};
 use crate::model::robot::{Joint, JointKind, Limits, Link, LinkId};
 use crate::model::unit::Dimension;
 use crate::number::decimal_text;

@@ -4,6 +4,7 @@ mod broken;
 mod fuzz;
 mod parameters;
 mod pose;
+mod remarks;
 mod schema;
 mod shipped;
 

@@ -5,6 +5,7 @@ mod counts;
 mod files;
 mod joint_basis;
 mod laws;
+mod messages;
 mod oracle;
 
 use denavit_codegen::model::{self, Robot};

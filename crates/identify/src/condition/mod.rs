@@ -431,7 +431,8 @@ impl Conditioned {
 
     fn gains_after(&self, decimator: &Decimator) -> [[f64; 3]; 3] {
         let settling = self.filter.as_ref().map_or(0, Butterworth::settling);
-        let margin = 2 * settling + decimator.reach() + STENCIL;
+        // without a filter the differences alone reach a stencil beyond each sample of the impulse
+        let margin = (2 * settling + decimator.reach() + STENCIL).max(2 * STENCIL);
         let mut impulse = vec![0.0; 2 * margin + 1 + 2 * decimator.reach()];
         let middle = impulse.len() / 2;
         impulse[middle] = 1.0;

@@ -141,6 +141,9 @@ impl Problem<'_> {
             let rows = weights[joint] * (r * own);
             leverage += rows.tr_mul(&rows);
         }
+        if leverage.iter().any(|entry| !entry.is_finite()) {
+            return score;
+        }
         let eigen = leverage.symmetric_eigen();
         let mut turned = eigen.eigenvectors.tr_mul(&score);
         for (entry, share) in turned.iter_mut().zip(eigen.eigenvalues.iter()) {

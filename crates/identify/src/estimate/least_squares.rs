@@ -260,6 +260,9 @@ pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), Estimat
     }
 }
 
+/// The factors of both sides of rows: log, block, joint.
+type Factors = Box<dyn Fn(usize, &Block, usize) -> Vec<f64>>;
+
 /// What estimates have in common.
 pub(super) struct Fit<'a> {
     pub(super) options: &'a Options,
@@ -326,41 +329,45 @@ impl Fit<'_> {
     fn robust(
         &self,
         model: &RegressionModel,
-        (logs, left_out): Rows<'_>,
-        mut found: Estimate,
+        rows: Rows<'_>,
+        found: Estimate,
         loss: Loss,
     ) -> Result<Estimate, EstimateError> {
-        let mut change = f64::INFINITY;
-        for round in 0..MAX_REWEIGHTING {
+        self.reweighting((model, rows), found, |found, round| {
             // medians jump: with scales that stay the weights settle
             if round < ROUNDS_OF_SCALES {
-                let scales = scales(model, (logs, left_out), found.solution.phi.as_slice());
+                let scales = scales(model, rows, found.solution.phi.as_slice());
                 found.noise = found.condensed.steadied(&scales, (&found.solution, &found.weights));
             }
-            let factors = factors_of_loss(&found, loss);
-            let condensed = Condensed::weighted(model, (logs, left_out), &factors);
-            let weights = condensed.reciprocal(&found.noise, &condensed.whole());
-            change = self.reweighted(&mut found, condensed, weights);
-            if change < SETTLED {
-                break;
-            }
-        }
-        settled(found, change)
+            (Box::new(factors_of_loss(found, loss)), found.noise.clone())
+        })
     }
 
     fn likely(
         &self,
         model: &RegressionModel,
-        (logs, left_out): Rows<'_>,
+        rows: Rows<'_>,
+        found: Estimate,
+    ) -> Result<Estimate, EstimateError> {
+        self.reweighting((model, rows), found, |found, _| {
+            let ones = vec![vec![1.0; found.condensed.pattern.len()]; rows.0.len()];
+            (Box::new(self.factors_of_noise(model, rows.0, found)), ones)
+        })
+    }
+
+    /// Weighs rows one by one and solves, again and again, until phi settles. `weigh` gives from
+    /// what was found, and the number of the round, the factors of rows and each joint's deviation.
+    fn reweighting(
+        &self,
+        (model, rows): (&RegressionModel, Rows<'_>),
         mut found: Estimate,
+        mut weigh: impl FnMut(&mut Estimate, usize) -> (Factors, ByLog),
     ) -> Result<Estimate, EstimateError> {
         let mut change = f64::INFINITY;
-        for _ in 0..MAX_REWEIGHTING {
-            let factors = self.factors_of_noise(model, logs, &found);
-            let condensed = Condensed::weighted(model, (logs, left_out), &factors);
-            let triangles = condensed.whole();
-            let ones = vec![vec![1.0; condensed.pattern.len()]; logs.len()];
-            let weights = condensed.reciprocal(&ones, &triangles);
+        for round in 0..MAX_REWEIGHTING {
+            let (factors, deviations) = weigh(&mut found, round);
+            let condensed = Condensed::weighted(model, rows, &factors);
+            let weights = condensed.reciprocal(&deviations, &condensed.whole());
             change = self.reweighted(&mut found, condensed, weights);
             if change < SETTLED {
                 break;

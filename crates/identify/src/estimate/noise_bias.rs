@@ -232,11 +232,19 @@ impl Noise {
         noise
     }
 
-    /// The largest eigenvalue of F^T N F.
+    /// The largest eigenvalue of F^T N F: 0 where no direction is determined, all where noise is
+    /// beyond numbers.
     fn share(&self, solution: &Solution) -> f64 {
         let factor = &solution.factor;
+        if factor.is_empty() {
+            return 0.0;
+        }
         let own = factor.tr_mul(&self.0.columns(0, factor.nrows())) * factor;
         let symmetric = (&own + own.transpose()) * 0.5;
+        // eigenvalues of what is no number are looked for without end
+        if symmetric.iter().any(|entry| !entry.is_finite()) {
+            return 1.0;
+        }
         symmetric.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max).min(1.0)
     }
 

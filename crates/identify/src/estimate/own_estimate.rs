@@ -116,7 +116,11 @@ impl<'a> Tested<'a> {
         let r = self.system(self.weights);
         let w = r.view((0, 0), (rank, rank));
         let left = r.view((0, rank), (rank, 1)).column(0) - w * phi;
-        let along = (w * dead).svd(true, true);
+        let along = w * dead;
+        if along.iter().any(|entry| !entry.is_finite()) {
+            return phi.clone();
+        }
+        let along = along.svd(true, true);
         let least = DEAD * along.singular_values.max();
         along.solve(&left, least).map_or_else(|_| phi.clone(), |along| phi + dead * along)
     }

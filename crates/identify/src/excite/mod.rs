@@ -66,6 +66,45 @@ pub struct StartReport {
     pub coordinates: Vec<f64>,
 }
 
+impl StartReport {
+    fn rank(&self) -> Rank {
+        Rank::new(&self.ended, self.objective)
+    }
+}
+
+/// What trajectories are chosen by: within the limits, or by how much not, then the objective.
+#[derive(Clone, Copy, Debug)]
+struct Rank {
+    excess: f64,
+    objective: f64,
+}
+
+impl Rank {
+    fn new(check: &Check, objective: f64) -> Self {
+        Self { excess: if check.is_feasible() { 0.0 } else { check.worst() }, objective }
+    }
+
+    /// Whether it is better than another; what is no number is worse than all that is.
+    fn is_below(self, other: Self) -> bool {
+        let by_limits = self.excess.total_cmp(&other.excess);
+        by_limits.then(self.objective.total_cmp(&other.objective)).is_lt()
+    }
+}
+
+impl Candidate {
+    fn rank(&self) -> Rank {
+        Rank::new(&self.check, self.objective)
+    }
+}
+
+/// A trajectory that a start came by, made to keep the limits.
+struct Candidate {
+    x: Vec<f64>,
+    shrunk: f64,
+    check: Check,
+    objective: f64,
+}
+
 /// The trajectories that were found.
 #[derive(Clone, Debug)]
 pub struct Excited {
@@ -139,11 +178,7 @@ pub fn excite(
     let starts = search.run(tell);
     let mut best = 0;
     for (index, start) in starts.iter().enumerate() {
-        let rank = |s: &StartReport| match s.ended.is_feasible() {
-            true => (0.0, s.objective),
-            false => (s.ended.worst(), s.objective),
-        };
-        if rank(start) < rank(&starts[best]) {
+        if start.rank().is_below(starts[best].rank()) {
             best = index;
         }
     }
@@ -310,6 +345,7 @@ impl Search<'_> {
         };
         let mut x = self.beginning(start);
         let began = self.judged(&x, evaluators);
+        let mut best = self.candidate(x.clone(), evaluators);
         let (mut evaluations, mut iterates) = (0, Vec::new());
         let mut stop = SolverStop::Stuck;
         let first = (FIRST_SHARE * self.options.evaluations as f64) as usize;
@@ -324,15 +360,24 @@ impl Search<'_> {
             };
             let solved = solve::solve(&problem, evaluators, &x, most, &tell_start);
             x = solved.x;
+            // few evaluations may end where it is worse than on the way
+            let candidate = self.candidate(x.clone(), evaluators);
+            if !best.rank().is_below(candidate.rank()) {
+                best = candidate;
+            }
             stop = solved.stop;
             evaluations += solved.evaluations;
             iterates.extend(solved.iterates);
         }
-        let (x, shrunk) = self.within_limits(x, evaluators);
-        let ended = self.judged(&x, evaluators);
-        let objective = objective(&self.options.objective, &ended, self.stack.names.len());
-        let coordinates = x;
+        let Candidate { x: coordinates, shrunk, check: ended, objective } = best;
         StartReport { began, ended, objective, stop, evaluations, shrunk, iterates, coordinates }
+    }
+
+    fn candidate(&self, x: Vec<f64>, evaluators: &mut Evaluators) -> Candidate {
+        let (x, shrunk) = self.within_limits(x, evaluators);
+        let check = self.judged(&x, evaluators);
+        let objective = objective(&self.options.objective, &check, self.stack.names.len());
+        Candidate { x, shrunk, check, objective }
     }
 
     fn clearance_m(&self) -> f64 {

@@ -130,6 +130,24 @@ fn encoders_and_noise_leave_the_parameters_within_a_few_percent() {
     assert!(ours < 1.2 * plain, "{ours} {plain}");
 }
 
+/// Differences of unfiltered positions: what noise does to rates and accelerations is that of the
+/// differences alone, and likelihood weighs rows by it.
+#[test]
+fn likelihood_needs_no_filter() {
+    let model = model();
+    let how = Conditioning { decimation: 1, ..Conditioning::default() };
+    assert_eq!(how.filter, None);
+    let step = TAU / 2e6;
+    let data = Conditioned::new(log(1e-2, 6000, step, false), &names(), &how).expect("long");
+    let likely = Options {
+        method: Method::Likelihood,
+        position_noise: vec![step / 12.0_f64.sqrt(); 2],
+        ..Options::default()
+    };
+    let ours = error(&model, &[data], &[], &likely);
+    assert!(ours < 0.02 * model.rank() as f64, "{ours}");
+}
+
 #[test]
 fn laps_are_found_averaged_and_show_the_noise() {
     let model = model();

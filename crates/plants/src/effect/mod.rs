@@ -19,7 +19,9 @@ pub use added::{AddedError, AddedLaw, ApartEffects, apart};
 pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
 pub use transmission::{Drive, Transmitted};
 
-use denavit_codegen::effect::{Channel, Effect, EffectParameter, EffectSite, Law, SpringSide};
+use denavit_codegen::effect::{
+    COLUMNS, Channel, Effect, EffectParameter, EffectSite, Law, SpringSide,
+};
 use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};
 use denavit_codegen::model::JointKind;
 use denavit_codegen::number::to_f64;
@@ -114,23 +116,6 @@ pub struct JointSamples<'a> {
     /// Numbers of the drive, for laws of what is between it and the joint.
     pub drive: Drive,
 }
-
-/// The names of the columns of [`JointSamples`], which are those of the symbols of laws.
-const COLUMNS: [&str; 13] = [
-    "t",
-    "q",
-    "qd",
-    "creep",
-    "qdd",
-    "tau_load",
-    "tau_load_rate",
-    "tau",
-    "q_2",
-    "qd_2",
-    "qdd_2",
-    "tau_load_2",
-    "tau_load_rate_2",
-];
 
 impl<'a> JointSamples<'a> {
     fn column(&self, column: usize) -> &'a [f64] {

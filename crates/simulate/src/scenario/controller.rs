@@ -2,12 +2,13 @@
 
 use super::fault::{Cause, ScenarioError};
 use super::ranges::{self, Range};
-use super::read::{Loader, check_format, joint, read_document};
-use super::reader::{Fields, Node, Report};
+use super::read::{Loader, joint};
+use super::reader::{FieldsNumbers, NodeNumbers, Report, check_format};
 use super::reference::{self, Logs};
 use super::trajectory::read_trajectory;
 use crate::control::{Compensation, Control, Damped, Feedback, JointControl};
 use denavit_codegen::model::json::Value;
+use denavit_codegen::model::{Fields, Node, read_document};
 use denavit_plants::PlantModel;
 use serde_json::json;
 
@@ -46,7 +47,8 @@ pub fn read_controller(
     model: &PlantModel,
     load: &Loader<'_>,
 ) -> Result<Controller, ScenarioError> {
-    read_document(file, source, KEYS, |fields, _, report| {
+    read_document(file, source, |root, report| {
+        let fields = &root.fields(KEYS, report)?;
         check_format(fields, CONTROLLER_FORMAT, report);
         Some(controller(fields, model, &mut Logs::new(load), report))
     })
@@ -100,11 +102,12 @@ fn controller(
     let meanings = [Compensation::None, Compensation::Gravity, Compensation::ComputedTorque];
     let word = given.get("compensation");
     control.compensation =
-        word.and_then(|node| node.word(words, &meanings, report)).unwrap_or_default();
+        word.and_then(|node| node.choice(words, &meanings, report)).unwrap_or_default();
     let word = given.get("feedback");
     let meanings = [Feedback::Joint, Feedback::Motor];
-    control.feedback =
-        word.and_then(|node| node.word(&["joint", "motor"], &meanings, report)).unwrap_or_default();
+    control.feedback = word
+        .and_then(|node| node.choice(&["joint", "motor"], &meanings, report))
+        .unwrap_or_default();
     control.saturates = given.flag("saturates", report);
     if given.get("period_s").is_some() {
         control.period_s = Some(given.number("period_s", ranges::SAMPLE_PERIOD_S, 1e-3, report));
@@ -145,7 +148,7 @@ fn joint_control(
     let [reference, feed_forward, gain_factor] =
         ["reference", "feed_forward", "gain_factor"].map(&mut follow);
     let meanings = [Damped::Error, Damped::Rate];
-    let word = own.get("damps").and_then(|n| n.word(&["error", "rate"], &meanings, report));
+    let word = own.get("damps").and_then(|n| n.choice(&["error", "rate"], &meanings, report));
     Some(JointControl {
         reference: reference.or(followed),
         stiffness: own.number("kp", Range::GAIN, 0.0, report),

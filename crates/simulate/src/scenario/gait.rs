@@ -2,8 +2,9 @@
 //! simulated; here its references complete the control.
 
 use super::fault::Cause;
-use super::reader::{Fields, Node, Report};
+use super::reader::Report;
 use crate::control::Control;
+use denavit_codegen::model::{Fields, Node};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::Reference;
 

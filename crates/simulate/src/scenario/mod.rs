@@ -21,8 +21,8 @@ pub use fault::{Cause, ScenarioError};
 pub use gait::{GaitPlanner, PlannedGait};
 pub use limits::{Exceeded, Limited};
 pub use ranges::Range;
-pub use read::{Loader, check_format, read, read_document, read_planned};
-pub use reader::{Fields, Node, Report};
+pub use read::{Loader, read, read_planned};
+pub use reader::{FieldsNumbers, NodeNumbers, Report, check_format};
 pub use trajectory::{TRAJECTORY_FORMAT, Trajectory, read_trajectory, trajectory_schema};
 
 use super::audit::Tolerances;

@@ -2,7 +2,7 @@
 
 use super::fault::Cause;
 use super::ranges;
-use super::reader::{Fields, Node, Report};
+use super::reader::{FieldsNumbers, NodeNumbers, Report};
 use crate::audit::Tolerances;
 use crate::contact::Friction;
 use crate::drive::DriveModelling;
@@ -10,6 +10,7 @@ use crate::integrate::{Accuracy, Method};
 use crate::measure::Measurement;
 use crate::settle::Scuffing;
 use crate::simulation::Simulation;
+use denavit_codegen::model::Fields;
 
 /// A log with more rows would not fit into memory.
 const MAX_ROWS: f64 = 1e6;
@@ -20,7 +21,8 @@ pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation
     simulation.seed = fields.count("seed", ranges::SEED, 0, report) as u64;
     if let Some(drives) = fields.get("drives") {
         let meanings = [DriveModelling::Ideal, DriveModelling::Model];
-        simulation.drives = drives.word(&["ideal", "model"], &meanings, report).unwrap_or_default();
+        simulation.drives =
+            drives.choice(&["ideal", "model"], &meanings, report).unwrap_or_default();
     }
     let (range, absent) = (ranges::STICTION_RATE, simulation.stiction_rate);
     simulation.stiction_rate = fields.number("stiction_rate", range, absent, report);
@@ -46,7 +48,7 @@ fn times(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report) 
     simulation.log_period_s = fields.number("log_period_s", ranges::LOG_PERIOD_S, absent, report);
     if report.count() == faults && simulation.end_s / simulation.log_period_s > MAX_ROWS {
         let blamed = fields.get("log_period_s").or(fields.get("duration_s"));
-        report.push(blamed.map_or(fields.at, Node::at), Cause::TooManyRows(MAX_ROWS));
+        report.push(blamed.map_or(fields.at(), |node| node.at()), Cause::TooManyRows(MAX_ROWS));
     }
 }
 
@@ -97,7 +99,7 @@ fn method(fields: &Fields<'_>, report: &mut Report) -> Method {
     };
     let words = &["dormand_prince", "radau", "runge_kutta"];
     let meanings = [Kind::Explicit, Kind::Implicit, Kind::Fixed];
-    let word = given.get("method").and_then(|node| node.word(words, &meanings, report));
+    let word = given.get("method").and_then(|node| node.choice(words, &meanings, report));
     let absent = Accuracy::default();
     let accuracy = Accuracy {
         relative: given.number("relative", ranges::RELATIVE, absent.relative, report),
@@ -129,7 +131,7 @@ fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report
         simulation.friction = if friction.as_number().is_some() {
             Friction::Coulomb(given.number("friction", ranges::FRICTION, 0.0, report))
         } else {
-            let word = friction.word(&["no_slip"], &[Friction::NoSlip], report);
+            let word = friction.choice(&["no_slip"], &[Friction::NoSlip], report);
             word.unwrap_or(Friction::NoSlip)
         };
     }
@@ -143,7 +145,7 @@ fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report
     if let Some(word) = given.get("scuffing") {
         let meanings = [Scuffing::Counts, Scuffing::IgnoredBehind];
         touching.scuffing =
-            word.word(&["counts", "ignored_behind"], &meanings, report).unwrap_or_default();
+            word.choice(&["counts", "ignored_behind"], &meanings, report).unwrap_or_default();
     }
     simulation.drift_rate =
         given.number("drift_rate_per_s", ranges::DRIFT_RATE_PER_S, simulation.drift_rate, report);

@@ -6,7 +6,7 @@ use super::gait::{GaitPlanner, gait};
 use super::limits::speed_limits;
 use super::options;
 use super::ranges;
-use super::reader::{Fields, Node, Report};
+use super::reader::{FieldsNumbers, NodeNumbers, Report, check_format};
 use super::reference::Logs;
 use super::start::{Origin, find_start_faults};
 use super::stepping;
@@ -19,8 +19,8 @@ use crate::simulation::Simulation;
 use crate::state::State;
 use denavit_codegen::effect;
 use denavit_codegen::expr::text::nearest;
-use denavit_codegen::model::json::{self, Json, Value};
-use denavit_codegen::model::{self, Robot, find_duplicate_keys};
+use denavit_codegen::model::json::Value;
+use denavit_codegen::model::{self, Fields, Node, Robot};
 use denavit_plants::{Cradle, Override, Plant, PlantError, PlantModel, plant_of};
 
 /// Reads a model by what a scenario calls it: a shipped name, or a path beside the scenario. The
@@ -66,51 +66,14 @@ pub fn read_planned(
     planner: Option<&GaitPlanner<'_>>,
 ) -> Result<Scenario, ScenarioError> {
     let origin = Origin { file: file.to_owned(), source: source.to_vec() };
-    read_document(file, source, KEYS, |fields, root, report| {
-        let mut scenario = scenario(fields, origin, (load, planner), report)?;
+    model::read_document(file, source, |root, report| {
+        let fields = root.fields(KEYS, report)?;
+        let mut scenario = scenario(&fields, origin, (load, planner), report)?;
         if report.is_empty() {
-            find_start_faults(&mut scenario, root, report);
+            find_start_faults(&mut scenario, root.0, report);
         }
         Some(scenario)
     })
-}
-
-/// Reads a JSON document with these keys: what `build` makes of it, if nothing is wrong with it.
-pub fn read_document<T>(
-    file: &str,
-    source: &[u8],
-    keys: &'static [&'static str],
-    build: impl FnOnce(&Fields<'_>, &Json<'_>, &mut Report) -> Option<T>,
-) -> Result<T, ScenarioError> {
-    let mut report = Report::default();
-    let root = match json::parse(source) {
-        Ok(root) => root,
-        Err(error) => {
-            report.push(error.at, Cause::Form(error.cause.into()));
-            return Err(report.into_error(file, source, None));
-        }
-    };
-    find_duplicate_keys(&root, &mut report);
-    let fields = Node(&root).fields(keys, &mut report);
-    let made = fields.and_then(|fields| build(&fields, &root, &mut report));
-    match made {
-        Some(made) if report.is_empty() => Ok(made),
-        _ => Err(report.into_error(file, source, Some(&root))),
-    }
-}
-
-/// Notes a tag that is missing or of another format.
-pub fn check_format(fields: &Fields<'_>, expected: &'static str, report: &mut Report) {
-    let Some(tag) = fields.get("format") else {
-        report.push(fields.at, Cause::NoFormat(expected));
-        return;
-    };
-    if let Some(found) = tag.text(report)
-        && found != expected
-    {
-        let cause = model::Cause::WrongFormat { found: found.to_owned(), expected };
-        report.push(tag.at(), Cause::Form(cause));
-    }
 }
 
 fn scenario(
@@ -240,7 +203,7 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
                 let meant = nearest(parameter, names).map(str::to_owned);
                 let error = PlantError::UnknownParameter(parameter.to_owned(), meant);
                 report.push(node.at(), Cause::Plant(error));
-            } else if let Some(value) = node.number(report) {
+            } else if let Some(value) = node.finite(report) {
                 overrides.push(Override { parameter: parameter.to_owned(), value });
             }
         }

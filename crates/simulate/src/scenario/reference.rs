@@ -3,9 +3,10 @@
 use super::fault::Cause;
 use super::ranges;
 use super::read::Loader;
-use super::reader::{Fields, Node, Report};
+use super::reader::{FieldsNumbers, NodeNumbers, Report};
 use crate::log::Log;
 use denavit_codegen::expr::text::nearest;
+use denavit_codegen::model::{Fields, Node};
 use denavit_plants::trajectory::{
     Between, Bezier, CosineProfile, CubicSpline, EndCondition, Fourier, Part, Polynomial,
     QuinticSpline, Reference, Samples, Sequence, TrajectoryError,
@@ -91,7 +92,7 @@ fn make(
     report: &mut Report,
 ) -> Option<Result<Reference, TrajectoryError>> {
     Some(match kind {
-        "constant" => Ok(Reference::Constant(node.number(report)?)),
+        "constant" => Ok(Reference::Constant(node.finite(report)?)),
         "polynomial" => Polynomial::new(node.numbers(report)).map(Reference::Polynomial),
         "cubic" => cubic(&node.fields(&["times", "values", "end_rates"], report)?, report)?,
         "quintic" => {
@@ -139,10 +140,10 @@ fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, Trajec
 
 /// A series of multiples of one frequency, or of frequencies of its own.
 fn fourier(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
-    let offset = fields.get("offset").and_then(|node| node.number(report)).unwrap_or(0.0);
+    let offset = fields.get("offset").and_then(|node| node.finite(report)).unwrap_or(0.0);
     let own = fields.get("frequencies_rad_s").map(|node| node.numbers(report));
     if let (true, Some(both)) = (own.is_some(), fields.get("frequency_rad_s")) {
-        both.wrong_kind::<()>("either frequency_rad_s or frequencies_rad_s", report);
+        both.wrong_kind::<(), _>("either frequency_rad_s or frequencies_rad_s", report);
     }
     let [sines, cosines] = ["sines", "cosines"].map(|key| fields.numbers(key, report));
     let made = match own {
@@ -174,7 +175,7 @@ fn logged(
     let (file_name, name) = (file.text(report)?, column.text(report)?);
     let meanings = [Interpolation::Cubic, Interpolation::Linear, Interpolation::Hold];
     let word = fields.get("between");
-    let word = word.and_then(|n| n.word(&["cubic", "linear", "hold"], &meanings, report));
+    let word = word.and_then(|n| n.choice(&["cubic", "linear", "hold"], &meanings, report));
     let log = match logs.get(file_name) {
         Ok(log) => log,
         Err(cause) => {

@@ -4,10 +4,11 @@ use super::RunScheme;
 use super::fault::Cause;
 use super::options::tolerances;
 use super::ranges;
-use super::reader::{Fields, Report};
+use super::reader::{FieldsNumbers, NodeNumbers, Report};
 use crate::audit::Tolerances;
 use crate::contact::gauss_seidel::SweepLimits;
 use crate::time_stepping::{Scheme, StepSolver, Stepping};
+use denavit_codegen::model::Fields;
 
 const KEYS: &[&str] = &[
     "method",
@@ -25,7 +26,7 @@ const KEYS: &[&str] = &[
 
 pub(super) fn scheme(fields: &Fields<'_>, report: &mut Report) -> RunScheme {
     let meanings = [RunScheme::Event, RunScheme::TimeStepping];
-    let word = fields.get("scheme").and_then(|n| n.word(&RunScheme::WORDS, &meanings, report));
+    let word = fields.get("scheme").and_then(|n| n.choice(&RunScheme::WORDS, &meanings, report));
     word.unwrap_or_default()
 }
 
@@ -43,7 +44,8 @@ pub(super) fn stepping(fields: &Fields<'_>, report: &mut Report) -> (Stepping, T
     stepping.no_slip_friction = given.number("no_slip_friction", range, absent, report);
     let reach_m = given.number("reach_m", ranges::REACH_M, 0.01, report);
     let meanings = [Scheme::MoreauMidpoint, Scheme::Anitescu { reach_m }];
-    let word = given.get("method").and_then(|n| n.word(&["moreau", "anitescu"], &meanings, report));
+    let word =
+        given.get("method").and_then(|n| n.choice(&["moreau", "anitescu"], &meanings, report));
     stepping.scheme = word.unwrap_or(stepping.scheme);
     let absent = SweepLimits::default();
     let limits = SweepLimits {
@@ -55,7 +57,7 @@ pub(super) fn stepping(fields: &Fields<'_>, report: &mut Report) -> (Stepping, T
         report.push(given.place("facets"), Cause::Odd);
     }
     let meanings = [StepSolver::Sweeps(limits), StepSolver::Pivots { facets }];
-    let word = given.get("solver").and_then(|n| n.word(&["sweeps", "pivots"], &meanings, report));
+    let word = given.get("solver").and_then(|n| n.choice(&["sweeps", "pivots"], &meanings, report));
     stepping.solver = word.unwrap_or(StepSolver::Sweeps(limits));
     let tolerances = tolerances(&given, Tolerances::of_steps(stepping.step_s), report);
     (stepping, tolerances)

@@ -2,9 +2,10 @@
 
 use super::fault::{Cause, ScenarioError};
 use super::ranges;
-use super::read::{Loader, check_format, read_document};
-use super::reader::{Fields, Report};
+use super::read::Loader;
+use super::reader::{FieldsNumbers, Report, check_format};
 use super::reference::{self, Logs};
+use denavit_codegen::model::{Fields, read_document};
 use denavit_plants::trajectory::{Part, Reference, Sequence};
 use serde_json::{Value, json};
 
@@ -54,7 +55,9 @@ pub fn read_trajectory(
     source: &[u8],
     load: &Loader<'_>,
 ) -> Result<Trajectory, ScenarioError> {
-    read_document(file, source, KEYS, |fields, _, report| trajectory(fields, load, report))
+    read_document(file, source, |root, report| {
+        trajectory(&root.fields(KEYS, report)?, load, report)
+    })
 }
 
 fn trajectory(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Trajectory> {

@@ -26,16 +26,11 @@ pub(super) const LEAST: f64 = 1e-3;
 /// measured.
 pub(super) type Shares = Vec<Option<f64>>;
 
-/// Prefixes of the names of parameters of joints.
-const OF_JOINTS: [&str; 4] = ["fv", "fc", "Ia", "off"];
-
 /// The model's own values of phi; what it does not say of joints (friction, rotors, offsets) is
 /// taken for 0. None if it does not say all of its bodies.
 pub(crate) fn nominal_values(model: &RegressionModel) -> Option<Vec<f64>> {
     let is_of_joint = |parameter: &RegressionParameter| {
-        let owner = |at: usize| model.standard[at].owner.as_ref();
-        let mut members = parameter.members.iter();
-        members.all(|&(at, _)| owner(at).is_some_and(|(_, prefix)| OF_JOINTS.contains(prefix)))
+        parameter.members.iter().all(|&(at, _)| model.standard[at].is_of_joint())
     };
     let value = |parameter: &RegressionParameter| {
         parameter.value.or_else(|| is_of_joint(parameter).then_some(0.0))

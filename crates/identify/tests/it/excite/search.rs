@@ -223,3 +223,27 @@ fn a_foot_below_a_floating_base_keeps_off_the_ground() {
     let (height, _, _) = lowest(None);
     assert!(height < -0.01, "{height}");
 }
+
+/// A solver that is broken off may be at a worse place than it was: what is answered is the best.
+#[test]
+fn few_evaluations_end_nowhere_worse_than_they_began() {
+    let robot = arm("[-1.0, 2.0]", TIP);
+    let mut began_within = 0;
+    for seed in 0..12 {
+        for evaluations in [2, 5, 9] {
+            let few = ExciteOptions { starts: 1, evaluations, seed, reach: 0.5, ..options() };
+            let found = found(&robot, &few);
+            let start = found.found();
+            if start.began.is_feasible() {
+                began_within += 1;
+                assert!(start.ended.is_feasible(), "{seed} {evaluations}");
+                let [began, ended] = [&start.began, &start.ended];
+                let [began, ended] = [began, ended].map(|one| one.excitation.condition);
+                assert!(ended <= began * (1.0 + 1e-9), "{seed} {evaluations}: {began} {ended}");
+            } else {
+                assert!(start.ended.worst() <= start.began.worst(), "{seed} {evaluations}");
+            }
+        }
+    }
+    assert!(began_within > 0, "no start is within the limits");
+}

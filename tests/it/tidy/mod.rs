@@ -1,5 +1,9 @@
 //! The rules of docs/ARCHITECTURE.md that a machine can hold, over the whole tree.
 
+mod circles;
+mod ignored;
+mod walls;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +54,10 @@ fn rust_files(folder: &str) -> Vec<PathBuf> {
 }
 
 fn all_files() -> Vec<PathBuf> {
-    ["src", "codegen", "tests", "benches"].into_iter().flat_map(rust_files).collect()
+    ["src", "codegen", "crates", "tests", "benches", "examples"]
+        .into_iter()
+        .flat_map(rust_files)
+        .collect()
 }
 
 fn shown(path: &Path) -> String {
@@ -137,8 +144,8 @@ fn a_stage_uses_only_stages_before_it() {
 #[test]
 fn only_the_command_prints() {
     let mut faults = Vec::new();
-    let files = rust_files("src").into_iter().chain(rust_files("codegen/src"));
-    for path in files.chain(rust_files("codegen/runtime/src")) {
+    let files = ["src", "codegen", "crates"].into_iter().flat_map(rust_files);
+    for path in files.filter(|path| path.iter().any(|part| part == "src")) {
         let place = shown(&path);
         // The build script speaks to cargo by printing.
         let may = ["src/cli", "src/main.rs", "codegen/src/build_script"];
@@ -202,14 +209,14 @@ fn no_file_is_a_drawer_for_everything() {
 #[test]
 fn nothing_is_left_unfinished() {
     let mut faults = Vec::new();
-    for path in all_files().iter().filter(|path| !path.ends_with("tests/it/tidy.rs")) {
+    for path in all_files().iter().filter(|path| !path.ends_with("tests/it/tidy/mod.rs")) {
         let text = fs::read_to_string(path).unwrap();
         for (index, line) in text.lines().enumerate() {
-            let marks = ["todo!(", "unimplemented!(", "FIXME", "TODO", "XXX", "#[ignore]"];
+            let marks = ["todo!(", "unimplemented!(", "FIXME", "TODO", "XXX"];
             if marks.iter().any(|mark| line.contains(mark)) {
                 faults.push(format!("{}:{}", shown(path), index + 1));
             }
         }
     }
-    assert_none(&faults, "no stub and no ignored test");
+    assert_none(&faults, "no stub");
 }

@@ -1,0 +1,73 @@
+//! Which package may use which: cargo refuses what a manifest does not name, and this table says
+//! what manifests may name.
+
+use super::{assert_none, root};
+use std::fs;
+
+/// Our packages, each after what it may use: folder, and the packages that it uses.
+const WALLS: [(&str, &[&str]); 12] = [
+    ("codegen/runtime", &[]),
+    ("codegen", &["runtime"]),
+    ("codegen/jit", &["codegen", "runtime"]),
+    ("crates/numerics", &["runtime"]),
+    ("crates/plants", &["codegen", "jit", "runtime"]),
+    ("crates/simulate", &["codegen", "numerics", "plants", "runtime"]),
+    ("crates/walk", &["codegen", "numerics", "plants", "runtime", "simulate"]),
+    ("crates/identify", &["codegen", "numerics", "plants", "runtime", "simulate"]),
+    ("crates/diagnose", &["codegen", "identify", "numerics", "plants", "simulate"]),
+    (
+        "crates/report",
+        &["codegen", "diagnose", "identify", "numerics", "plants", "runtime", "simulate"],
+    ),
+    // shares nothing with what it tries out
+    ("tests/blind", &[]),
+    (
+        "",
+        &[
+            "codegen", "diagnose", "identify", "jit", "numerics", "plants", "report", "runtime",
+            "simulate", "walk",
+        ],
+    ),
+];
+
+/// Our packages that a manifest names outside its tests.
+fn named(manifest: &str) -> Vec<&str> {
+    let (mut names, mut counts) = (Vec::new(), false);
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            counts = ["[dependencies]", "[build-dependencies]"].contains(&line.trim());
+        } else if let Some(rest) = line.strip_prefix("denavit-").filter(|_| counts) {
+            names.extend(rest.split(['.', ' ', '=']).next());
+        }
+    }
+    names
+}
+
+#[test]
+fn packages_use_only_what_is_below_them() {
+    let mut faults = Vec::new();
+    for (folder, allowed) in WALLS {
+        let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
+        for name in named(&manifest) {
+            if !allowed.contains(&name) {
+                faults.push(format!("{folder} uses {name}"));
+            }
+        }
+    }
+    let crates = fs::read_dir(root().join("crates")).unwrap().map(Result::unwrap);
+    for entry in crates {
+        let folder = format!("crates/{}", entry.file_name().to_string_lossy());
+        if !WALLS.iter().any(|(known, _)| *known == folder) {
+            faults.push(format!("{folder} has no place"));
+        }
+    }
+    assert_none(&faults, "walls between packages");
+}
+
+#[test]
+fn manifests_are_read_without_their_tests() {
+    let manifest = "[package]\nname = \"denavit-x\"\n[dependencies]\ndenavit-plants.workspace = true\n\
+                    clap = \"4\"\n[dev-dependencies]\ndenavit-walk.workspace = true\n\
+                    [build-dependencies]\ndenavit-codegen = { workspace = true }\n";
+    assert_eq!(named(manifest), ["plants", "codegen"]);
+}

@@ -7,9 +7,10 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{Input, check_outputs, on_stdout, read_input, write_whole};
+use super::files::{Input, read_input};
 use super::model_effects::EffectUse;
 use super::options::{EffectsOption, Term, terms};
+use super::outputs::{check_outputs, on_stdout, write_whole};
 use clap::{Args, ValueEnum};
 use denavit::emit::latex::base_document;
 use denavit::expr::ExprId;

@@ -13,8 +13,9 @@ use super::Answer;
 use super::base::{Found, latex};
 use super::emit::Emitted;
 use super::failure::Failure;
-use super::files::{make_directory, read_model_with_effects, write_whole};
+use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
+use super::outputs::{NewDirectory, write_whole};
 use super::progress::Progress;
 use checks::Check;
 use clap::Args;
@@ -114,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let progress = Progress::new();
     let version = env!("CARGO_PKG_VERSION");
     let directory = &arguments.out;
-    make_directory(directory)?;
+    let _made = NewDirectory::make(directory)?;
     if !arguments.json {
         writeln!(out, "denavit {version}, seed {}", arguments.seed)?;
     }

@@ -4,9 +4,10 @@ mod equations;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{on_stdout, read_model_with_effects, write_whole};
+use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
 use super::options::{EffectsOption, ModelArgument};
+use super::outputs::{on_stdout, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::dynamics::methods::Method;

@@ -7,11 +7,10 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{
-    NewDirectory, check_outputs, effects_folder, make_directory, open_log, read_file, write_whole,
-};
+use super::files::{effects_folder, open_log, read_file};
 use super::identify::IdentifyFailure;
 use super::model_effects::{EffectUse, ModelApart};
+use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
@@ -21,6 +20,7 @@ use denavit::diagnose::{
 };
 use denavit::effect::{Channel, Effect};
 use denavit::identify::Ground;
+use denavit::identify::condition::{Conditioned, Conditioning};
 use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::effect::ApartEffects;
@@ -37,7 +37,8 @@ use std::path::{Path, PathBuf};
 ///
 /// The model's own parameters are estimated again within their standard deviations; what is left
 /// of the torques of --train is searched for effects of the catalogue, and every effect must lower
-/// what is left of --validate. Exits with 1 if what is left is not explained.
+/// what is left of --validate. Exits with 1 if what is left is not explained, or if logs of
+/// --validate are among those of --train.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -177,6 +178,14 @@ impl Shown {
         there.chain(motions).collect()
     }
 
+    /// Logs for judging that say the same as one that was searched: they judge nothing.
+    fn searched_again(&self) -> impl Iterator<Item = [&str; 2]> {
+        self.remarks.iter().filter_map(|(file, remark)| match remark {
+            LogRemark::SameAs { other } => Some([file.as_str(), other.as_str()]),
+            _ => None,
+        })
+    }
+
     /// Experiments that were found, each with the number of its effect.
     fn experiments(&self) -> impl Iterator<Item = (usize, &Experiment)> {
         let all = self.found.effects.iter().enumerate();
@@ -209,8 +218,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         true => json::write(out, &shown)?,
         false => text::write(out, &shown)?,
     }
+    let is_judged = shown.searched_again().next().is_none();
     Ok(match shown.found.verdict {
-        Verdict::NothingMissing | Verdict::Explained => Answer::Done,
+        Verdict::NothingMissing | Verdict::Explained if is_judged => Answer::Done,
         _ => Answer::Negative,
     })
 }
@@ -308,17 +318,22 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     })
 }
 
-/// Writes answer, model and page.
+/// Writes answer, model and page, which belong together: all of them, or none.
 fn write_folder(arguments: &Arguments, folder: &Path, shown: &mut Shown) -> Result<(), Failure> {
-    make_directory(folder)?;
+    let _made = NewDirectory::make(folder)?;
+    let mut files = Vec::new();
+    let mut _effects_made = None;
     let completed = model::complete(&shown.source, shown, &shown.effects);
     let model = match &completed {
         Completed::Text(text) => {
             let own = effects_folder(&arguments.model, arguments.effects.as_deref());
             if let Some(own) = own.filter(|own| own.is_dir()) {
-                model::write_definitions(&own, folder, shown)?;
+                files = model::definitions(&own, folder, shown)?;
             }
-            write_whole(&folder.join(MODEL), text.as_bytes())?;
+            if let Some((path, _)) = files.first() {
+                _effects_made = path.parent().map(NewDirectory::make).transpose()?;
+            }
+            files.push((folder.join(MODEL), text.clone().into_bytes()));
             Ok(true)
         }
         Completed::NothingFound => Ok(false),
@@ -328,12 +343,13 @@ fn write_folder(arguments: &Arguments, folder: &Path, shown: &mut Shown) -> Resu
     for (number, experiment) in shown.experiments() {
         let mut bytes = serde_json::to_vec_pretty(&experiment.file)?;
         bytes.push(b'\n');
-        write_whole(&folder.join(experiment_file(number)), &bytes)?;
+        files.push((folder.join(experiment_file(number)), bytes));
     }
-    write_whole(&folder.join(REPORT), page::of(arguments, shown).render().as_bytes())?;
+    files.push((folder.join(REPORT), page::of(arguments, shown).render().into_bytes()));
     let mut bytes = Vec::new();
     json::write(&mut bytes, shown)?;
-    write_whole(&folder.join(DIAGNOSIS), &bytes)
+    files.push((folder.join(DIAGNOSIS), bytes));
+    write_together(&files)
 }
 
 fn regression(robot: &Robot) -> Result<RegressionModel, Failure> {
@@ -363,10 +379,31 @@ fn logs(
     if let Some(same) = same {
         return Err(IdentifyFailure::SameLogs(same).into());
     }
+    remarks.extend(searched_again(model, &sets));
     if let Some(ground) = &mut ground {
         sets.iter_mut().flatten().for_each(|log| ground.load(log));
     }
     Ok(sets)
+}
+
+/// Logs for judging with a part that is one of a log that is searched, whatever their files are
+/// called.
+fn searched_again(
+    model: &RegressionModel,
+    sets: &[Vec<MeasuredLog>; 2],
+) -> Vec<(String, LogRemark)> {
+    let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
+    let as_it_is = |log: &MeasuredLog| {
+        // one that is too short is refused later
+        Conditioned::new(log.clone(), &names, &Conditioning::default()).ok()
+    };
+    let [searched, judging] = sets.each_ref().map(|set| set.iter().filter_map(as_it_is));
+    let searched: Vec<Conditioned> = searched.collect();
+    let same = judging.filter_map(|log| {
+        let other = searched.iter().find(|other| other.overlaps(&log))?.file.clone();
+        Some((log.file, LogRemark::SameAs { other }))
+    });
+    same.collect()
 }
 
 fn log(

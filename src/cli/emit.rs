@@ -2,9 +2,10 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{on_stdout, read_model_with_effects, write_whole};
+use super::files::read_model_with_effects;
 use super::json::write_json;
 use super::options::{EffectsOption, FlavourOption, FunctionList, ModelArgument};
+use super::outputs::{on_stdout, write_whole};
 use super::progress::Progress;
 use clap::Args;
 use denavit::derive::{Derivation, Flavour, derive};

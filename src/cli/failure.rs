@@ -28,6 +28,8 @@ pub(crate) enum Failure {
     TooLarge { file: String, limit: u64 },
     /// A file cannot be written.
     Write { file: String, error: io::Error },
+    /// A link leads to a place in a directory that is not there.
+    LinkToNowhere { link: String, target: String },
     /// A file that was read would be replaced by the output.
     Overwrites(String),
     /// Two documents were asked for on standard output.
@@ -73,6 +75,8 @@ pub(crate) enum Failure {
         nearest: Option<&'static str>,
         all: &'static [ShippedModel],
     },
+    /// A model stands where a scenario should; holds its name.
+    ModelForScenario(String),
     /// Two outputs would be one file.
     SameOutput(String),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
@@ -165,6 +169,9 @@ impl Failure {
                 }
                 _ => return None,
             },
+            Self::LinkToNowhere { .. } => {
+                "make the directory of its target first, or remove the link".to_owned()
+            }
             Self::Lower(..) | Self::Emit(..) => {
                 "check the exponents of the numbers in the model".to_owned()
             }
@@ -184,6 +191,15 @@ impl Failure {
             Self::NoShipped { kind, all, .. } => {
                 let names: Vec<_> = all.iter().map(|one| one.name).collect();
                 format!("give the path of a {kind} file, or one of {}", names.join(", "))
+            }
+            Self::ModelForScenario(name) => {
+                let name = serde_json::Value::from(name.as_str());
+                format!(
+                    "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {name}, \
+                     \"duration_s\": 1}} lets it go from rest; docs/scenario.md has the rest, \
+                     `denavit schema scenario` all keys",
+                    denavit::simulate::scenario::FORMAT
+                )
             }
             Self::SameOutput(_) => "give each a file of its own".to_owned(),
             Self::Window(_) => "choose two times of the run".to_owned(),
@@ -250,6 +266,9 @@ impl fmt::Display for Failure {
             Self::Write { file, error } => {
                 write!(f, "{file}: cannot be written: {}", reason(error))?;
             }
+            Self::LinkToNowhere { link, target } => {
+                write!(f, "{link}: is a link to {target}, whose directory is not there")?;
+            }
             Self::Overwrites(file) => {
                 write!(f, "{file}: is what this command reads, and would be replaced")?;
             }
@@ -283,6 +302,9 @@ impl fmt::Display for Failure {
             }
             Self::NoShipped { kind, name, .. } => {
                 write!(f, "{name}: there is no such file, and no shipped {kind} of that name")?;
+            }
+            Self::ModelForScenario(name) => {
+                write!(f, "{name}: this is a model, where a scenario is simulated")?;
             }
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
             Self::Window([from, to]) => write!(f, "--window: the run is from {from} to {to} s")?,

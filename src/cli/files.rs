@@ -1,4 +1,4 @@
-//! Files in and out: models by path or by name, outputs that are whole or not there.
+//! Files in: models by path or by name, logs, what other files refer to.
 
 use super::failure::{Failure, reason};
 use super::model_effects::ModelApart;
@@ -7,8 +7,8 @@ use denavit::effect::{self, Effect};
 use denavit::model::Robot;
 use denavit::model::equations::{self, Equations};
 use denavit::shipped::{self, ShippedModel};
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufReader, Read, Write};
+use std::fs::File;
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -160,6 +160,11 @@ fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// Whether this run has read the file of this path, which has no links in it.
+pub(crate) fn is_input(path: &PathBuf) -> bool {
+    READ.lock().is_ok_and(|read| read.contains(path))
+}
+
 fn read_all(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     file.take(MAX_MODEL_BYTES + 1)
@@ -199,150 +204,4 @@ pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
             None => reason(&error),
         }
     })
-}
-
-/// Whether one of these outputs is standard output. Only one can be, JSON included.
-pub(crate) fn on_stdout(outputs: &[Option<&PathBuf>], json: bool) -> Result<bool, Failure> {
-    let documents = outputs.iter().flatten().filter(|path| path.as_os_str() == "-").count();
-    match documents + usize::from(json) {
-        0 | 1 => Ok(documents > 0),
-        _ => Err(Failure::TwoDocuments),
-    }
-}
-
-/// Finds before a long run what would keep its outputs from being written: each has a place of its
-/// own, where files can be made, and is no input.
-pub(crate) fn check_outputs(outputs: &[Option<&PathBuf>]) -> Result<(), Failure> {
-    let mut seen = Vec::new();
-    for path in outputs.iter().copied().flatten().filter(|path| path.as_os_str() != "-") {
-        refuse_input(path)?;
-        probe(path)
-            .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })?;
-        let directory = path.parent().and_then(|parent| directory(parent).canonicalize().ok());
-        let place = path.canonicalize().ok().or_else(|| Some(directory?.join(path.file_name()?)));
-        if seen.contains(&place) {
-            return Err(Failure::SameOutput(path.display().to_string()));
-        }
-        seen.push(place);
-    }
-    Ok(())
-}
-
-/// The directory of a path's parent, which is empty for a bare name.
-fn directory(parent: &Path) -> &Path {
-    if parent.as_os_str().is_empty() { Path::new(".") } else { parent }
-}
-
-/// Makes the file that would take the path's name, and removes it.
-fn probe(path: &Path) -> io::Result<()> {
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    if let Some(temporary) = beside(&target)? {
-        write_new(&temporary, b"")?;
-        fs::remove_file(&temporary)?;
-    }
-    Ok(())
-}
-
-fn refuse_input(path: &Path) -> Result<(), Failure> {
-    let is_input = |target| READ.lock().is_ok_and(|read| read.contains(&target));
-    if path.is_file() && path.canonicalize().is_ok_and(is_input) {
-        return Err(Failure::Overwrites(path.display().to_string()));
-    }
-    Ok(())
-}
-
-/// Writes a file whole: into a new file beside it, which then takes its name. What was there stays
-/// until then. `-` is standard output.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    if path.as_os_str() == "-" {
-        return Ok(io::stdout().lock().write_all(bytes)?);
-    }
-    refuse_input(path)?;
-    replace(path, bytes)
-        .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })
-}
-
-/// Says which files were written.
-pub(crate) fn say_written(
-    out: &mut dyn Write,
-    outputs: &[Option<&PathBuf>],
-) -> Result<(), Failure> {
-    let files = outputs.iter().flatten().filter(|path| path.as_os_str() != "-");
-    for (at, path) in files.enumerate() {
-        let begin = if at == 0 { "\n" } else { "" };
-        writeln!(out, "{begin}wrote {}", path.display())?;
-    }
-    Ok(())
-}
-
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // a link stays a link: its target is replaced
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let Some(temporary) = beside(&target)? else { return fs::write(&target, bytes) };
-    let written = write_new(&temporary, bytes).and_then(|()| {
-        if let Ok(metadata) = target.metadata() {
-            fs::set_permissions(&temporary, metadata.permissions())?;
-        }
-        fs::rename(&temporary, &target)
-    });
-    if written.is_err() {
-        // the first error is the one to report
-        let _ = fs::remove_file(&temporary);
-    }
-    written
-}
-
-/// The name of the file that is written first; none for devices and pipes, which are written to and
-/// not replaced.
-fn beside(target: &Path) -> io::Result<Option<PathBuf>> {
-    match target.metadata() {
-        Ok(metadata) if metadata.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        Ok(metadata) if !metadata.is_file() => return Ok(None),
-        Ok(metadata) if metadata.permissions().readonly() => {
-            return Err(io::ErrorKind::PermissionDenied.into());
-        }
-        _ => {}
-    }
-    let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}.tmp", std::process::id()));
-    Ok(Some(target.with_file_name(hidden)))
-}
-
-fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
-}
-
-/// Makes a directory with those above it.
-pub(crate) fn make_directory(path: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(path)
-        .map_err(|error| Failure::Write { file: path.to_string_lossy().into_owned(), error })
-}
-
-/// A directory for outputs of a run. What of it was not there before and is empty in the end, since
-/// the run failed, goes with it.
-pub(crate) struct NewDirectory {
-    made: Vec<PathBuf>,
-}
-
-impl NewDirectory {
-    /// Makes a directory with those above it.
-    pub(crate) fn make(path: &Path) -> Result<Self, Failure> {
-        let is_new = |one: &&Path| !one.as_os_str().is_empty() && !one.exists();
-        let made = path.ancestors().take_while(is_new).map(Path::to_owned).collect();
-        make_directory(path)?;
-        Ok(Self { made })
-    }
-}
-
-impl Drop for NewDirectory {
-    fn drop(&mut self) {
-        for path in &self.made {
-            // those with something in them stay
-            let _ = fs::remove_dir(path);
-        }
-    }
 }

@@ -13,9 +13,10 @@ mod two_stage;
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{check_outputs, on_stdout, say_written, write_whole};
 use super::model_effects::{EffectUse, ModelApart};
 use super::options::EffectsOption;
+use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::printed::standard_error;
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow, SlowRows};
@@ -39,7 +40,7 @@ use std::path::PathBuf;
 /// torques and regressor one decimator. Base parameters are exact; what the motion does not show
 /// keeps the model's value and is said to. Exits with 1 if what is found leaves as much of the
 /// torques as nothing would, or, of the torque of a joint that moves, nearly all, or a third that
-/// is no noise.
+/// is no noise; or if a log of --validate says the same as one of --train.
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:
@@ -77,8 +78,7 @@ pub(crate) struct Arguments {
     window: f64,
     /// Springs and motors of series elastic drives first, from one log with motor_JOINT and
     /// tau_cmd_JOINT, then the load with what the springs pass on
-    #[arg(long, conflicts_with_all = ["validate", "method", "controller", "prior", "svg", "html",
-        "motion_svg", "statics"])]
+    #[arg(long, conflicts_with_all = ["method", "controller", "prior", "motion_svg", "statics"])]
     two_stage: bool,
     /// Weighings and held postures: say which parameters, or sums of them, follow from these,
     /// joined with the logs for the estimate if there are any
@@ -435,7 +435,11 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     match (is_answered, arguments.json) {
         // the document has no place for it
-        (true, _) => text::write_doubts(&mut std::io::stderr().lock(), &shown)?,
+        (true, _) => {
+            let mut errors = standard_error();
+            text::write_doubts(&mut errors, &shown)?;
+            errors.flush()?;
+        }
         (_, true) => json::write(out, &shown)?,
         (_, false) => {
             text::write(out, &shown)?;
@@ -445,7 +449,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let judged = found.validate.as_ref().unwrap_or(&found.train);
     let is_doubted = found.is_noise() || !found.misread.is_empty() || found.is_of_other_robot();
     let is_doubted = is_doubted && !arguments.accept_suspicious || found.no_bodies().is_some();
-    let explains = judged.relative < 1.0
+    let is_same = |(_, remark): &(String, LogRemark)| matches!(remark, LogRemark::SameAs { .. });
+    let explains = !answered.remarks.iter().any(is_same)
+        && judged.relative < 1.0
         && found.unexplained.is_empty()
         && found.contradicting_logs.is_empty();
     Ok(if explains && !is_doubted { Answer::Done } else { Answer::Negative })

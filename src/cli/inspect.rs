@@ -5,9 +5,10 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{on_stdout, read_model_with_effects, write_whole};
+use super::files::read_model_with_effects;
 use super::json::write_json;
 use super::options::{EffectsOption, ModelArgument};
+use super::outputs::{on_stdout, write_whole};
 use clap::Args;
 use denavit::report::{Pose, Values, picture};
 use std::io::Write;

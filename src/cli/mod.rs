@@ -1,4 +1,5 @@
-//! The command: one file for each subcommand; what they share stands here and in `files`.
+//! The command: one file for each subcommand; what they share stands here, in `files`,
+//! `outputs` and `printed`.
 //!
 //! Answers go to standard output, progress to standard error where that is a terminal, failures to
 //! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
@@ -19,14 +20,21 @@ mod inspect;
 mod json;
 mod model_effects;
 mod options;
+mod outputs;
+mod printed;
 mod progress;
 mod remarks;
 mod schema;
 mod simulate;
+mod unfinished;
 mod verify;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use printed::{Printed, shown, standard_error};
+use std::env;
+use std::ffi::OsString;
+use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -76,21 +84,41 @@ pub(crate) fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // help that nobody reads, or an error that nobody sees: nothing is left to say
-            let _ = error.print();
+            say_usage(&error);
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
-    let mut out = io::BufWriter::new(io::stdout().lock());
+    let mut out = Printed::new(io::BufWriter::new(io::stdout().lock()));
     let answer = cli.command.run(&mut out);
     match answer.and_then(|answer| Ok(out.flush().map(|()| answer)?)) {
         Ok(Answer::Done) => ExitCode::SUCCESS,
         Ok(Answer::Negative) => ExitCode::from(1),
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
         Err(failure) => {
-            let _ = writeln!(io::stderr(), "{failure}");
+            say_error(&failure);
             ExitCode::from(2)
         }
+    }
+}
+
+/// Says on standard error what nobody may see.
+fn say_error(said: &impl Display) {
+    let mut errors = standard_error();
+    let _ = writeln!(errors, "{said}").and_then(|()| errors.flush());
+}
+
+/// Prints help, or what is wrong with the usage: in colours, unless an argument brings control
+/// characters along.
+fn say_usage(error: &clap::Error) {
+    let is_plain = |argument: OsString| {
+        let argument = argument.to_string_lossy();
+        shown(&argument) == argument
+    };
+    if env::args_os().all(is_plain) {
+        // help that nobody reads, or an error that nobody sees: nothing is left to say
+        let _ = error.print();
+    } else {
+        say_error(&error.render().to_string().trim_end());
     }
 }
 
@@ -110,7 +138,7 @@ impl Command {
     fn run(&self, out: &mut dyn Write) -> Result<Answer, Failure> {
         if let (true, Err(unsupported)) = (self.computes(), denavit::plants::native_code()) {
             let note = "note: models are interpreted, which takes three to five times as long";
-            let _ = writeln!(io::stderr(), "{note}: {unsupported}");
+            say_error(&format!("{note}: {unsupported}"));
         }
         match self {
             Self::Demo(arguments) => demo::run(arguments, out),

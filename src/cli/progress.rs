@@ -1,5 +1,6 @@
 //! What a command is doing, on one line of standard error, where somebody can see it.
 
+use super::printed::shown;
 use std::io::{self, IsTerminal, Write};
 
 /// The line; it is cleared in the end.
@@ -27,7 +28,7 @@ impl Progress {
         if self.is_visible {
             let mut line = io::stderr().lock();
             // progress that cannot be shown is no reason to stop
-            let _ = write!(line, "\r\x1b[2K{text}").and_then(|()| line.flush());
+            let _ = write!(line, "\r\x1b[2K{}", shown(text)).and_then(|()| line.flush());
         }
     }
 }

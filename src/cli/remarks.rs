@@ -1,7 +1,7 @@
 //! What is said of a model that is read as it stands: faults that pass, and work that is large.
 
+use super::say_error;
 use denavit::model::{Robot, remarks};
-use std::io::{self, Write};
 
 /// From so many joints on, functions whose size grows with the cube of that number take seconds:
 /// 3 n^3 operations are then half a million.
@@ -10,8 +10,7 @@ const MANY_JOINTS: usize = 55;
 /// Writes the remarks on a model, read from `source`, to standard error.
 pub(crate) fn print_remarks(file: &str, robot: &Robot, source: &[u8]) {
     for remark in remarks(robot, source) {
-        // an answer without its remarks is better than none
-        let _ = writeln!(io::stderr(), "remark: {}", remark.message(file));
+        say_error(&format_args!("remark: {}", remark.message(file)));
     }
 }
 
@@ -19,11 +18,10 @@ pub(crate) fn print_remarks(file: &str, robot: &Robot, source: &[u8]) {
 pub(crate) fn print_size(robot: &Robot, has_derivatives: bool) {
     let joints = robot.joints().count();
     if joints >= MANY_JOINTS && has_derivatives {
-        let _ = writeln!(
-            io::stderr(),
+        say_error(&format_args!(
             "remark: {}: forward_dynamics_derivatives grows with the cube of {joints} joints\n  \
              hint: `--functions` chooses others",
             robot.name
-        );
+        ));
     }
 }

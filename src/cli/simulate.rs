@@ -1,12 +1,14 @@
 //! `denavit simulate`: run a scenario.
 
+mod joints;
+
 use super::Answer;
 use super::failure::Failure;
-use super::files::{
-    check_outputs, load_beside, on_stdout, read_or_shipped, say_written, write_whole,
-};
+use super::files::{load_beside, read_or_shipped};
 use super::json::write_json;
+use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::{Args, ValueEnum};
+use denavit::model::json::{self, Value};
 use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
 use denavit::simulate::scenario::{RunScheme, Scenario};
@@ -147,9 +149,25 @@ fn shown(path: &Path) -> String {
 
 fn open(path: &Path) -> Result<Scenario, Failure> {
     let name = shown(path);
-    let bytes = read_or_shipped(path, ("scenario", shipped::SCENARIOS))?;
+    let bytes = match read_or_shipped(path, ("scenario", shipped::SCENARIOS)) {
+        Err(Failure::NoShipped { .. }) if shipped::find_referred(&name).is_some() => {
+            return Err(Failure::ModelForScenario(name));
+        }
+        read => read?,
+    };
+    if is_model(&bytes) {
+        return Err(Failure::ModelForScenario(name));
+    }
     let load = |model: &str| load_beside(path, model);
     walk::read_scenario(&name, &bytes, &load).map_err(Failure::Scenario)
+}
+
+/// Whether a file says of itself that it is a model.
+fn is_model(bytes: &[u8]) -> bool {
+    let root = json::parse(bytes).ok();
+    let tag = root.as_ref().and_then(|root| root.entries().iter().find(|(key, _)| key == "format"));
+    let text = tag.map(|(_, tag)| &tag.value);
+    matches!(text, Some(Value::Text(tag)) if tag.starts_with("denavit-model/"))
 }
 
 fn summary(
@@ -188,6 +206,8 @@ fn summary(
             "force_n": audit.force_n,
             "torque": audit.torque,
         },
+        "joints": joints::joints(scenario, run),
+        "exceeded": joints::exceeded(scenario, run),
         "broken": broken.iter().map(|(law, _, _)| *law).collect::<Vec<_>>(),
     })
 }
@@ -232,5 +252,5 @@ fn print(
     if let Some(hint) = scenario.broken_hint(broken) {
         writeln!(out, "hint: {hint}")?;
     }
-    Ok(())
+    Ok(joints::print(out, scenario, run)?)
 }

@@ -22,8 +22,11 @@ mod identify_procedures;
 mod identify_rest;
 mod identify_told;
 mod landings;
+mod outputs;
+mod printed;
 mod readme;
 mod simulate;
+mod simulate_summary;
 mod simulated_again;
 
 use std::path::{Path, PathBuf};

@@ -37,14 +37,15 @@ pub struct SimulationPart<'a> {
 impl IdentificationPage<'_> {
     /// The page.
     pub fn page(&self) -> Result<Page, FormulaError> {
-        let mut sections = vec![self.parameters()?, self.residuals(), self.torques()];
+        let (found, held_out) = (self.found, self.found.validate.as_ref());
+        let mut sections = vec![
+            parameters(&found.parameters)?,
+            residuals(&found.train, held_out),
+            torques(self.model, &found.train, held_out),
+        ];
         sections.extend(self.simulation.map(|simulation| simulation.section(self.model)));
         sections.push(self.convergence());
-        if !self.remarks.is_empty() {
-            let paragraph = |text: &String| Part::Paragraph { text: text.clone() };
-            let parts = self.remarks.iter().map(paragraph).collect();
-            sections.push(Section { heading: "Remarks on the logs".to_owned(), parts });
-        }
+        sections.extend(remarks(self.remarks));
         Ok(Page {
             title: format!("Identification of {}", self.model.replace('_', " ")),
             lead: self.lead(),
@@ -75,76 +76,7 @@ impl IdentificationPage<'_> {
         for warning in found.notes().into_iter().chain(found.warnings()) {
             text = format!("{text} {warning}");
         }
-        if found.consistent.distance > 1.0 {
-            text += &format!(
-                " The estimate belongs to no bodies that exist; the nearest ones are {} standard \
-                 errors away, over all parameters.",
-                short(found.consistent.distance)
-            );
-        }
-        text
-    }
-
-    fn parameters(&self) -> Result<Section, FormulaError> {
-        let columns = headings(&[
-            ("parameter", false),
-            ("formula", false),
-            ("value", true),
-            ("standard error", true),
-            ("95 % interval", true),
-            ("bias by noise of positions, in errors", true),
-            ("model", true),
-            ("unit", false),
-            ("", false),
-        ]);
-        let rows = self.found.parameters.iter().map(parameter_row).collect::<Result<_, _>>()?;
-        let caption = "Base parameters; marked are those that the motion does not show, which keep \
-                       the model's values. A click on a heading sorts.";
-        let table = HtmlTable { caption: caption.to_owned(), columns, rows };
-        Ok(Section { heading: "Parameters".to_owned(), parts: vec![Part::Table(table)] })
-    }
-
-    fn residuals(&self) -> Section {
-        let columns = headings(&[
-            ("joint", false),
-            ("torque rms", true),
-            ("residual rms", true),
-            ("left", true),
-            ("left of other logs", true),
-            ("largest residual", true),
-            ("correlation with the next sample", true),
-        ]);
-        let rows = self.found.train.joints.iter().map(|joint| {
-            let other = self.found.validate.as_ref().and_then(|all| find(all, &joint.name));
-            let number = |value: f64| Cell::number(value, short(value));
-            let next = joint.autocorrelation.first().copied().unwrap_or(0.0);
-            let cells = vec![
-                Cell::text(&joint.name),
-                number(joint.torque_rms),
-                number(joint.residual_rms),
-                share(joint.relative),
-                other.map_or_else(|| Cell::text(""), |other| share(other.relative)),
-                number(joint.largest),
-                Cell::number(next, format!("{next:.2}")),
-            ];
-            Row { cells, is_marked: false }
-        });
-        let caption = "What is left of the torques [N m, N], after the filter. Residuals that are \
-                       noise alone are not correlated.";
-        let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
-        Section { heading: "Residuals".to_owned(), parts: vec![Part::Table(table)] }
-    }
-
-    fn torques(&self) -> Section {
-        let (validation, caption) = match &self.found.validate {
-            Some(validation) => (validation, "Logs that the estimate has not seen."),
-            None => (&self.found.train, "The logs that the estimate is from: there are no others."),
-        };
-        let title = self.model.replace('_', " ");
-        let picture = TorquePicture { title: &title, subtitle: caption, validation };
-        let svg = torque_picture(&picture);
-        let caption = "Measured and computed torques.".to_owned();
-        Section { heading: "Torques".to_owned(), parts: vec![Part::Figure { svg, caption }] }
+        text + &nearest_bodies(found.consistent.distance)
     }
 
     fn convergence(&self) -> Section {
@@ -203,6 +135,91 @@ impl SimulationPart<'_> {
     }
 }
 
+/// The base parameters.
+pub(super) fn parameters(found: &[IdentifiedParameter]) -> Result<Section, FormulaError> {
+    let columns = headings(&[
+        ("parameter", false),
+        ("formula", false),
+        ("value", true),
+        ("standard error", true),
+        ("95 % interval", true),
+        ("bias by noise of positions, in errors", true),
+        ("model", true),
+        ("unit", false),
+        ("", false),
+    ]);
+    let rows = found.iter().map(parameter_row).collect::<Result<_, _>>()?;
+    let caption = "Base parameters; marked are those that the motion does not show, which keep the \
+                   model's values. A click on a heading sorts.";
+    let table = HtmlTable { caption: caption.to_owned(), columns, rows };
+    Ok(Section { heading: "Parameters".to_owned(), parts: vec![Part::Table(table)] })
+}
+
+/// What is left of the torques of the logs of an estimate, and of others.
+pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Section {
+    let columns = headings(&[
+        ("joint", false),
+        ("torque rms", true),
+        ("residual rms", true),
+        ("left", true),
+        ("left of other logs", true),
+        ("largest residual", true),
+        ("correlation with the next sample", true),
+    ]);
+    let rows = train.joints.iter().map(|joint| {
+        let other = held_out.and_then(|all| find(all, &joint.name));
+        let number = |value: f64| Cell::number(value, short(value));
+        let next = joint.autocorrelation.first().copied().unwrap_or(0.0);
+        let cells = vec![
+            Cell::text(&joint.name),
+            number(joint.torque_rms),
+            number(joint.residual_rms),
+            share(joint.relative),
+            other.map_or_else(|| Cell::text(""), |other| share(other.relative)),
+            number(joint.largest),
+            Cell::number(next, format!("{next:.2}")),
+        ];
+        Row { cells, is_marked: false }
+    });
+    let caption = "What is left of the torques [N m, N], after the filter. Residuals that are noise \
+                   alone are not correlated.";
+    let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
+    Section { heading: "Residuals".to_owned(), parts: vec![Part::Table(table)] }
+}
+
+/// Measured and computed torques, of logs that the estimate has not seen if there are any.
+pub(super) fn torques(model: &str, train: &Validation, held_out: Option<&Validation>) -> Section {
+    let (validation, caption) = match held_out {
+        Some(validation) => (validation, "Logs that the estimate has not seen."),
+        None => (train, "The logs that the estimate is from: there are no others."),
+    };
+    let title = model.replace('_', " ");
+    let picture = TorquePicture { title: &title, subtitle: caption, validation };
+    let svg = torque_picture(&picture);
+    let caption = "Measured and computed torques.".to_owned();
+    Section { heading: "Torques".to_owned(), parts: vec![Part::Figure { svg, caption }] }
+}
+
+/// What was noticed of the logs; none if nothing was.
+pub(super) fn remarks(remarks: &[String]) -> Option<Section> {
+    let paragraph = |text: &String| Part::Paragraph { text: text.clone() };
+    let parts: Vec<Part> = remarks.iter().map(paragraph).collect();
+    let heading = "Remarks on the logs".to_owned();
+    (!parts.is_empty()).then_some(Section { heading, parts })
+}
+
+/// How far the nearest bodies that exist are, where the estimate belongs to none.
+pub(super) fn nearest_bodies(distance: f64) -> String {
+    match distance > 1.0 {
+        true => format!(
+            " The estimate belongs to no bodies that exist; the nearest ones are {} standard \
+             errors away, over all parameters.",
+            short(distance)
+        ),
+        false => String::new(),
+    }
+}
+
 fn parameter_row(one: &IdentifiedParameter) -> Result<Row, FormulaError> {
     let status = match one.status {
         Status::Identified => "",
@@ -227,7 +244,7 @@ fn parameter_row(one: &IdentifiedParameter) -> Result<Row, FormulaError> {
     Ok(Row { cells, is_marked: one.status == Status::NotExcited })
 }
 
-fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
+pub(super) fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
     let heading =
         |&(text, is_number): &(&str, bool)| Heading { heading: text.to_owned(), is_number };
     list.iter().map(heading).collect()
@@ -237,7 +254,7 @@ fn find<'a>(validation: &'a Validation, joint: &str) -> Option<&'a JointResidual
     validation.joints.iter().find(|other| other.name == joint)
 }
 
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 

@@ -1,6 +1,7 @@
 //! Names beside points, where they hide least.
 
 use super::camera::Vec2;
+use super::cells::Cells;
 
 /// Height of letters, and width of one on average [px].
 pub(super) const LETTER: Vec2 = [6.3, 11.0];
@@ -60,15 +61,25 @@ const DISTANCES: [f64; 8] = [10.0, 16.0, 22.0, 32.0, 44.0, 58.0, 74.0, 92.0];
 pub(super) struct Labels {
     size: Vec2,
     /// Points that names should not hide.
-    obstacles: Vec<Vec2>,
+    obstacles: Cells<Vec2>,
     taken: Vec<Rectangle>,
+    /// Numbers of the rectangles that are taken.
+    places: Cells<usize>,
     /// The names, placed.
     pub(super) placed: Vec<Label>,
 }
 
 impl Labels {
     pub(super) fn new(size: Vec2) -> Self {
-        Self { size, obstacles: Vec::new(), taken: Vec::new(), placed: Vec::new() }
+        let [_, tall] = LETTER;
+        Self {
+            size,
+            // a name has cells within it, and a rectangle lies in few
+            obstacles: Cells::new(size, tall / 3.0),
+            taken: Vec::new(),
+            places: Cells::new(size, 3.0 * tall),
+            placed: Vec::new(),
+        }
     }
 
     /// Keeps names away from a line.
@@ -78,13 +89,19 @@ impl Labels {
         let steps = (length / STEP).ceil().clamp(1.0, 1000.0) as usize;
         for step in 0..=steps {
             let part = step as f64 / steps as f64;
-            self.obstacles.push([0, 1].map(|side| from[side] + part * (to[side] - from[side])));
+            let point = [0, 1].map(|side| from[side] + part * (to[side] - from[side]));
+            self.obstacles.push(point, point);
         }
     }
 
     /// Keeps names out of a rectangle: left, top, right, bottom.
     pub(super) fn reserve(&mut self, rectangle: [f64; 4]) {
-        self.taken.push(Rectangle(rectangle));
+        self.take(Rectangle(rectangle));
+    }
+
+    fn take(&mut self, rectangle: Rectangle) {
+        self.places.push_over(rectangle.0, self.taken.len());
+        self.taken.push(rectangle);
     }
 
     /// Places a name beside its point.
@@ -95,14 +112,15 @@ impl Labels {
             for (turn, way) in DIRECTIONS.into_iter().enumerate() {
                 let place = beside(point, way, distance, width);
                 let rectangle = outline(place, width);
-                let burden = ring as f64 * 11.0 + turn as f64 + self.burden(&rectangle);
-                if best.as_ref().is_none_or(|(least, ..)| burden < *least) {
+                let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
+                let away = ring as f64 * 11.0 + turn as f64;
+                if let Some(burden) = self.burden(&rectangle, away, least) {
                     best = Some((burden, place, rectangle, ring > 1));
                 }
             }
         }
         if let Some((_, place, rectangle, is_far)) = best {
-            self.taken.push(rectangle);
+            self.take(rectangle);
             if is_far {
                 self.avoid(point, place);
             }
@@ -110,14 +128,31 @@ impl Labels {
         }
     }
 
-    /// How much a name in this place would hide.
-    fn burden(&self, rectangle: &Rectangle) -> f64 {
-        let hidden = self.obstacles.iter().filter(|&&point| rectangle.holds(point)).count();
-        let overlap: f64 = self.taken.iter().map(|taken| taken.shared(rectangle)).sum();
+    /// How bad this place of a name is, which is so far `away`: by what it would hide; none if that
+    /// is not below the `least` that another place has.
+    fn burden(&self, rectangle: &Rectangle, away: f64, least: f64) -> Option<f64> {
         let [left, top, right, bottom] = rectangle.0;
         let outside =
             left < 6.0 || top < 6.0 || right > self.size[0] - 6.0 || bottom > self.size[1] - 6.0;
-        hidden as f64 * 9.0 + overlap * 3.0 + if outside { 1e4 } else { 0.0 }
+        let outside = if outside { 1e4 } else { 0.0 };
+        let mut hidden = 0;
+        for met in self.obstacles.met(rectangle.0) {
+            hidden += match met.is_inside {
+                true => met.things.len(),
+                false => met.things.iter().filter(|&&point| rectangle.holds(point)).count(),
+            };
+            if away + (hidden as f64 * 9.0 + outside) >= least {
+                return None;
+            }
+        }
+        let near = self.places.met(rectangle.0).flat_map(|met| met.things);
+        let mut near: Vec<usize> = near.copied().collect();
+        near.sort_unstable();
+        near.dedup();
+        let overlap: f64 = near.iter().map(|&taken| self.taken[taken].shared(rectangle)).sum();
+        let burden = away + (hidden as f64 * 9.0 + overlap * 3.0 + outside);
+        // the first place is taken however bad it is
+        (burden < least || least == f64::INFINITY).then_some(burden)
     }
 }
 

@@ -15,6 +15,7 @@
 //! Nothing here prints; text is handed to whoever does.
 
 mod camera;
+mod cells;
 mod diagnosis;
 mod effects;
 pub mod html;
@@ -29,6 +30,7 @@ mod scene;
 mod space;
 mod svg;
 mod table;
+mod two_stage;
 mod values;
 
 pub use denavit_numerics::{percent, short};
@@ -43,4 +45,5 @@ pub use run::{
     excitation_picture, motion_picture, run_picture, torque_picture,
 };
 pub use table::{Align, Table};
+pub use two_stage::TwoStagePage;
 pub use values::Values;

@@ -1,5 +1,6 @@
 //! Logs: a table in time, with what it was made of in its header.
 
+use std::borrow::Cow;
 use std::fmt::{self, Write};
 
 /// A table of numbers with named columns, `t` first; the columns are those of the project's logs:
@@ -168,6 +169,7 @@ impl Log {
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
         for (name, value) in &self.header {
+            let [name, value] = [name, value].map(|said| on_one_line(said));
             // writing to a string cannot fail
             let _ = writeln!(text, "# {name}: {value}");
         }
@@ -188,6 +190,26 @@ impl Log {
     }
 }
 
+/// What is said in a line of the header: control characters, ends of lines among them, are written
+/// as `\u000a`, so that no text makes a line of its own.
+fn on_one_line(said: &str) -> Cow<'_, str> {
+    // some readers end lines at these too
+    let is_broken = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
+    if !said.contains(is_broken) {
+        return Cow::Borrowed(said);
+    }
+    let mut line = String::new();
+    for c in said.chars() {
+        match is_broken(c) {
+            true => {
+                let _ = write!(line, "\\u{:04x}", u32::from(c));
+            }
+            false => line.push(c),
+        }
+    }
+    Cow::Owned(line)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,6 +222,21 @@ mod tests {
             values: vec![0.0, 0.1, 1e-3, -1.0 / 3.0],
         };
         assert_eq!(Log::from_csv("a.csv", log.to_csv().as_bytes()), Ok(log));
+    }
+
+    #[test]
+    fn no_text_makes_a_line_of_the_header() {
+        let said = "a\n# torque_side: motor\r\u{2028}\u{1b}[2J";
+        let log = Log {
+            header: vec![("scenario".to_owned(), said.to_owned())],
+            columns: vec!["t".to_owned()],
+            values: vec![0.0],
+        };
+        let text = log.to_csv();
+        let escaped = r"a\u000a# torque_side: motor\u000d\u2028\u001b[2J";
+        assert_eq!(text, format!("# scenario: {escaped}\nt\n0\n"));
+        let read = Log::from_csv("a.csv", text.as_bytes()).expect("a log");
+        assert_eq!(read.header, [("scenario".to_owned(), escaped.to_owned())]);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::audit::{Audit, balance, friction_angle, support_margin, worst};
 use super::breakdown::Breakdown;
 use super::contact::{Friction, Mode};
 use super::control::Control;
+use super::joint_record::JointObserver;
 use super::log::Log;
 use super::motion::Motion;
 use denavit_plants::PlantModel;
@@ -13,6 +14,7 @@ use denavit_plants::PlantModel;
 pub(super) struct Recorder {
     pub(super) log: Log,
     pub(super) audit: Audit,
+    pub(super) joints: JointObserver,
     /// Nothing but contacts and gravity acts from outside.
     free: bool,
     start_energy: f64,
@@ -29,6 +31,7 @@ impl Recorder {
         Self {
             log: Log { columns, ..Log::default() },
             audit: Audit::new(model),
+            joints: JointObserver::new(model, motion.control),
             free: model.joints.first().is_some_and(|joint| !joint.drivable),
             start_energy,
             impact_energy: 0.0,
@@ -49,6 +52,7 @@ impl Recorder {
         if self.note(motion, t_s, y, true).is_ok() {
             return;
         }
+        self.see(motion, t_s, y);
         motion.place(y);
         let rows = motion.ground.rows() * motion.closed.len();
         motion.work.force.clear();
@@ -73,6 +77,8 @@ impl Recorder {
         writes: bool,
     ) -> Result<(), Breakdown> {
         motion.constrained_motion(t_s, y)?;
+        self.see(motion, t_s, y);
+        self.joints.command(&motion.work.command);
         if motion.closed.is_empty() {
             motion.place(y);
         }
@@ -109,6 +115,13 @@ impl Recorder {
             self.write(motion, t_s, y, zmp, [energy, energy_error]);
         }
         Ok(())
+    }
+
+    fn see(&mut self, motion: &Motion<'_>, t_s: f64, y: &[f64]) {
+        let parts = motion.layout.parts(y);
+        self.joints.commanded_until(t_s);
+        let times = (t_s, motion.reference_time(t_s));
+        self.joints.see(motion.control, times, [parts.q, parts.qd]);
     }
 
     fn audit_contacts(&mut self, motion: &Motion<'_>) {

@@ -9,6 +9,7 @@ use super::drive::Drives;
 use super::event::{Fired, Watch, Watched, look_ahead};
 use super::ground::TOUCH_M;
 use super::integrate::{Statistics, Stepper};
+use super::joint_record::JointRecord;
 use super::laws::LawForces;
 use super::log::Log;
 use super::measure::Instrument;
@@ -74,6 +75,8 @@ pub struct Run {
     pub events: Vec<Event>,
     /// The audits.
     pub audit: Audit,
+    /// What became of each joint of the plant.
+    pub joints: Vec<JointRecord>,
     /// What it cost.
     pub statistics: Statistics,
     /// The contacts that are closed at its end.
@@ -486,6 +489,7 @@ impl Runner<'_> {
             log: self.recorder.log,
             events: self.events,
             audit: self.recorder.audit,
+            joints: self.recorder.joints.finish(),
             statistics: self.stepper.statistics,
             closed: self.motion.closed.iter().map(|closed| closed.contact).collect(),
         }

@@ -3,8 +3,8 @@
 use super::markdown::escaped;
 use super::{Answer, Arguments, CertificateJson, Failure, ListedBasis};
 use crate::cli::elimination::{Elimination, columns};
-use crate::cli::files::write_whole;
 use crate::cli::json::write_json;
+use crate::cli::outputs::write_whole;
 use crate::cli::progress::Progress;
 use denavit::emit::latex::equations_decomposition;
 use denavit::fundamental::{Basis, DEFAULT_MEMORY_BYTES, Expansion};

@@ -1,12 +1,13 @@
 //! Generated functions against equations of motion that were derived in another way.
 
 use super::compiled::Compiled;
-use super::states::{Random, State};
+use super::states::State;
 use crate::cli::failure::Failure;
 use denavit::dynamics::methods::{self, Method};
 use denavit::expr::{Dag, ExprId};
 use denavit::function::{Argument, Form, Function, FunctionName, Output};
 use denavit::model::Robot;
+use denavit::numerics::Random;
 use denavit::program::{Evaluator, lower, parameter_defaults, prelude_values};
 use denavit::report::{Align, Table};
 use serde::Serialize;

@@ -1,10 +1,10 @@
 //! The model with the effects that were found, as a file.
 
 use super::{Failure, Shown};
-use crate::cli::files::{make_directory, read_file, write_whole};
+use crate::cli::files::read_file;
 use denavit::effect::{self, Effect, EffectSite};
 use denavit::identify::{EffectValues, NewEffect, NewPlace, with_effects};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What became of the model.
 pub(super) enum Completed {
@@ -55,12 +55,17 @@ pub(super) fn complete(source: &str, shown: &Shown, effects: &[Effect]) -> Compl
     }
 }
 
-/// Writes the definitions of the user's own effects that were found into a folder `effects` beside
+/// The definitions of the user's own effects that were found, as files of a folder `effects` beside
 /// the model, where commands look for them.
-pub(super) fn write_definitions(own: &Path, folder: &Path, shown: &Shown) -> Result<(), Failure> {
+pub(super) fn definitions(
+    own: &Path,
+    folder: &Path,
+    shown: &Shown,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let beside = folder.join("effects");
+    let mut files = Vec::new();
     if beside.canonicalize().is_ok_and(|beside| own.canonicalize().is_ok_and(|own| own == beside)) {
-        return Ok(());
+        return Ok(files);
     }
     let failure = |error| Failure::Read { file: own.display().to_string(), error };
     for path in effect::files(own).map_err(failure)? {
@@ -70,9 +75,8 @@ pub(super) fn write_definitions(own: &Path, folder: &Path, shown: &Shown) -> Res
         let found = shown.found.effects.iter().map(|one| one.candidate);
         let given = shown.found.given.iter().map(|one| one.candidate);
         if found.chain(given).any(is_found) {
-            make_directory(&beside)?;
-            write_whole(&beside.join(format!("{}.json", known.name)), &bytes)?;
+            files.push((beside.join(format!("{}.json", known.name)), bytes));
         }
     }
-    Ok(())
+    Ok(files)
 }

@@ -11,6 +11,13 @@ use std::io::Write;
 pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     let Shown { robot, candidates, found, remarks, .. } = shown;
     writeln!(out, "{}: {}", robot.name, found.verdict.word().replace('_', " "))?;
+    for [log, searched] in shown.searched_again() {
+        let said = format!(
+            "{log} says the same as {searched}, which was searched: nothing is judged \
+                            by it. Give --validate a log of another motion."
+        );
+        writeln!(out, "{}", paragraph("", "", &said))?;
+    }
     writeln!(out, "{}", paragraph("", "", &shown.paragraph()))?;
     let places: Vec<String> = found
         .before

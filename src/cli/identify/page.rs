@@ -3,29 +3,32 @@
 use super::{Arguments, IdentifyFailure, Shown};
 use crate::cli::failure::Failure;
 use clap::ValueEnum;
+use denavit::model::Robot;
 use denavit::report::html::Fact;
 use denavit::report::{IdentificationPage, SimulationPart};
 use std::path::PathBuf;
 
-pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Failure> {
+/// What an identification is made of.
+pub(super) fn facts(arguments: &Arguments, robot: &Robot) -> Vec<Fact> {
     let list = |paths: &[PathBuf]| {
         let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         names.join(", ")
     };
     let facts = [
         ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
-        ("model", format!("{}, content {:016x}", shown.robot.name, shown.robot.hash)),
+        ("model", format!("{}, content {:016x}", robot.name, robot.hash)),
         ("estimated from", list(&arguments.train)),
         ("judged with", list(&arguments.validate)),
         ("method", word(arguments.method)),
         ("standard errors", word(arguments.errors)),
         ("seed", arguments.seed.to_string()),
     ];
-    let facts: Vec<Fact> = facts
-        .into_iter()
-        .filter(|(_, value)| !value.is_empty())
-        .map(|(name, value)| Fact { name: name.to_owned(), value })
-        .collect();
+    let given = facts.into_iter().filter(|(_, value)| !value.is_empty());
+    given.map(|(name, value)| Fact { name: name.to_owned(), value }).collect()
+}
+
+pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Failure> {
+    let facts = facts(arguments, shown.robot);
     let mut remarks: Vec<String> =
         shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
     remarks.extend(shown.effects.iter().map(ToString::to_string));

@@ -1,22 +1,26 @@
 //! `denavit identify --two-stage`: springs and motors first, then the load (thesis 3.3.2).
 
-use super::json::{ConsistentJson, ParameterJson};
-use super::{Arguments, IdentifyFailure, logs, text};
+mod json;
+mod loads;
+
+use super::{Arguments, IdentifyFailure, logs, page, text};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
-use crate::cli::files::{check_outputs, on_stdout, write_whole};
 use crate::cli::json::write_json;
-use denavit::identify::condition::Filter;
-use denavit::identify::estimate::{Consistent, IdentifiedParameter, consistent, parameters};
-use denavit::identify::two_stage::{Estimate, Spring, TwoStage, TwoStageOptions, two_stage};
+use crate::cli::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use denavit::identify::condition::{Conditioning, Filter};
+use denavit::identify::estimate::{
+    Consistent, IdentifiedParameter, JointResidual, Validation, consistent, parameters, validate,
+};
+use denavit::identify::log::{LogRemark, MeasuredLog};
+use denavit::identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
 use denavit::identify::{NewValue, UpdateError, updated_model, updated_text};
 use denavit::model::{self, Robot};
 use denavit::plants::plant_of;
 use denavit::plants::regression::{ModelParameter, RegressionModel};
 use denavit::regressor::RegressorOptions;
-use denavit::report::{Align, Table, short};
-use serde::Serialize;
+use denavit::report::{Align, Table, TorquePicture, TwoStagePage, percent, short, torque_picture};
 use std::io::Write;
 
 /// What was found.
@@ -26,53 +30,137 @@ struct Found<'a> {
     parameters: Vec<IdentifiedParameter>,
     /// The bodies nearest to the load.
     bodies: Consistent,
+    /// What the load leaves of the torques of the log, and of those for validation.
+    train: Validation,
+    validate: Option<Validation>,
+    /// Whether a log for validation is the one of the estimate.
+    is_searched_again: bool,
     remarks: Vec<String>,
 }
 
 pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let outputs = [arguments.output.as_ref()];
+    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     check_outputs(&outputs)?;
     let [path] = &arguments.train[..] else { return Err(IdentifyFailure::OneLog.into()) };
-    let model = arguments.model_apart()?;
-    let robot = model.whole.clone();
-    let (_, source) = model.without_laws()?;
+    let given = arguments.model_apart()?;
+    let robot = given.whole.clone();
+    let (_, source) = given.without_laws()?;
     // inertias of rotors are known here (thesis 3.3.1)
     let asked = regressor_options(&robot, &arguments.with)?;
     let options = RegressorOptions { rotor: false, ..asked };
     let mut model = RegressionModel::new(&robot, options, &arguments.keep)
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
     model.law = arguments.friction;
-    let plant =
-        plant_of(&robot, &[]).map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
     let log = logs::measured(arguments, &robot, &model, path)?;
-    let remarks = log.remarks.iter().map(|remark| format!("{}: {remark}", log.file)).collect();
-    let of_load = arguments.conditions.of(log.step_s, log.samples(), 0);
-    // springs are stiff: the first stage takes what the rate of sampling allows
-    let tenth = Filter { order: 4, cutoff_hz: 0.1 / log.step_s };
-    let of_springs = denavit::identify::condition::Conditioning {
-        filter: Some(tenth),
-        decimation: 1,
-        ..of_load
-    };
-    let how = TwoStageOptions { of_springs, of_load, slow: arguments.skip_slow };
-    let stages = two_stage(plant.model(), &model, &log, &how)
-        .map_err(|error| IdentifyFailure::TwoStage(log.file.clone(), error))?;
-    let parameters = parameters(&model, &stages.load);
-    let standard: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();
-    let bodies = consistent(&model, &stages.load, &standard);
-    let mut found = Found { model: &model, stages, parameters, bodies, remarks };
-    let moved = found.moved();
-    found.remarks.extend(moved);
+    let found = Found::new(arguments, &robot, &model, &log)?;
     if let Some(path) = &arguments.output {
         write_whole(path, found.updated(&robot, &source)?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.svg {
+        write_whole(path, found.picture().as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        write_whole(path, found.page(arguments, &robot)?.as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
         (_, true) => write_json(out, &found.json())?,
-        (_, false) => found.write(out)?,
+        (_, false) => {
+            found.write(out)?;
+            say_written(out, &outputs)?;
+        }
     }
-    Ok(Answer::Done)
+    let explains = found.validate.as_ref().is_none_or(|held_out| held_out.relative < 1.0);
+    Ok(if explains && !found.is_searched_again { Answer::Done } else { Answer::Negative })
+}
+
+impl<'a> Found<'a> {
+    /// Both stages, and what they leave.
+    fn new(
+        arguments: &Arguments,
+        robot: &Robot,
+        model: &'a RegressionModel,
+        log: &MeasuredLog,
+    ) -> Result<Self, Failure> {
+        let plant = plant_of(robot, &[])
+            .map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
+        let plant = plant.model();
+        let conditions = |log: &MeasuredLog| arguments.conditions.of(log.step_s, log.samples(), 0);
+        let of_load = conditions(log);
+        // springs are stiff: the first stage takes what the rate of sampling allows
+        let tenth = Filter { order: 4, cutoff_hz: 0.1 / log.step_s };
+        let of_springs = Conditioning { filter: Some(tenth), decimation: 1, ..of_load };
+        let how = TwoStageOptions { of_springs, of_load, slow: arguments.skip_slow };
+        let stages = two_stage(plant, model, log, &how)
+            .map_err(|error| IdentifyFailure::TwoStage(log.file.clone(), error))?;
+        let parameters = parameters(model, &stages.load);
+        let standard: Vec<f64> =
+            model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();
+        let bodies = consistent(model, &stages.load, &standard);
+        let named = |log: &MeasuredLog| {
+            let said = |remark: &LogRemark| format!("{}: {remark}", log.file);
+            log.remarks.iter().map(said).collect::<Vec<String>>()
+        };
+        let mut remarks = named(log);
+        let own = loads::conditioned(plant, log, &stages.springs, &of_load)?;
+        let mut held_out = Vec::new();
+        let mut is_searched_again = false;
+        for path in &arguments.validate {
+            let log = logs::measured(arguments, robot, model, path)?;
+            let new: Vec<String> =
+                named(&log).into_iter().filter(|one| !remarks.contains(one)).collect();
+            remarks.extend(new);
+            let loads = loads::conditioned(plant, &log, &stages.springs, &conditions(&log))?;
+            if own.overlaps(&loads) {
+                is_searched_again = true;
+                let same = LogRemark::SameAs { other: own.file.clone() };
+                remarks.push(format!("{}: {same}", log.file));
+            }
+            held_out.push(loads);
+        }
+        let phi = stages.load.solution.phi.as_slice();
+        let train = validate(model, phi, &[own]);
+        let validate = (!held_out.is_empty()).then(|| validate(model, phi, &held_out));
+        let mut found =
+            Self { model, stages, parameters, bodies, train, validate, is_searched_again, remarks };
+        let moved = found.moved();
+        found.remarks.extend(moved);
+        Ok(found)
+    }
+
+    /// What is left of a joint's torque in the logs for validation.
+    fn left_of(&self, joint: &str) -> Option<f64> {
+        let held_out = self.validate.as_ref()?;
+        let is_own = |one: &&JointResidual| one.name == joint;
+        held_out.joints.iter().find(is_own).map(|one| one.relative)
+    }
+
+    fn picture(&self) -> String {
+        let picture = TorquePicture {
+            title: &self.model.model.replace('_', " "),
+            subtitle: match self.validate {
+                Some(_) => "torques on the loads, of the logs for validation",
+                None => "torques on the loads, of the log that the estimate is from",
+            },
+            validation: self.validate.as_ref().unwrap_or(&self.train),
+        };
+        torque_picture(&picture)
+    }
+
+    fn page(&self, arguments: &Arguments, robot: &Robot) -> Result<String, Failure> {
+        let page = TwoStagePage {
+            model: &robot.name,
+            facts: &page::facts(arguments, robot),
+            remarks: &self.remarks,
+            springs: &self.stages.springs,
+            parameters: &self.parameters,
+            train: &self.train,
+            validate: self.validate.as_ref(),
+            distance: self.bodies.distance,
+        };
+        Ok(page.page().map_err(IdentifyFailure::Formula)?.render())
+    }
 }
 
 impl Found<'_> {
@@ -156,30 +244,13 @@ impl Found<'_> {
         }
         writeln!(out, "{table}")?;
         writeln!(out, "{}", text::parameter_table(&self.parameters))?;
-        let mut table = columns(&["joint", "torque", "residual"]);
+        let mut table = columns(&["joint", "torque", "residual", "left of other logs"]);
         for (joint, [missed, size]) in self.model.joints.iter().zip(&self.stages.residuals) {
-            table.push(vec![joint.name.clone(), short(*size), short(*missed)]);
+            let other = self.left_of(&joint.name).map(percent).unwrap_or_default();
+            table.push(vec![joint.name.clone(), short(*size), short(*missed), other]);
         }
-        write!(out, "{table}")?;
+        write!(out, "{}", table.without_empty_columns())?;
         text::write_nearest(out, self.bodies.distance)
-    }
-
-    fn json(&self) -> TwoStageJson<'_> {
-        let residuals = self.model.joints.iter().zip(&self.stages.residuals);
-        TwoStageJson {
-            model: &self.model.model,
-            springs: self.stages.springs.iter().map(SpringJson::new).collect(),
-            parameters: self.parameters.iter().map(ParameterJson::new).collect(),
-            residual: residuals
-                .map(|(joint, &[residual_rms, torque_rms])| ResidualJson {
-                    joint: &joint.name,
-                    torque_rms,
-                    residual_rms,
-                })
-                .collect(),
-            consistent: ConsistentJson::new(self.model, &self.bodies),
-            remarks: &self.remarks,
-        }
     }
 }
 
@@ -188,60 +259,4 @@ fn columns(names: &[&str]) -> Table {
     let align = |name: &str| if is_text.contains(&name) { Align::Left } else { Align::Right };
     let columns: Vec<(&str, Align)> = names.iter().map(|name| (*name, align(name))).collect();
     Table::new(&columns)
-}
-
-#[derive(Serialize)]
-struct TwoStageJson<'a> {
-    model: &'a str,
-    springs: Vec<SpringJson<'a>>,
-    parameters: Vec<ParameterJson<'a>>,
-    residual: Vec<ResidualJson<'a>>,
-    /// theta0 of the nearest bodies that exist, and how far they are.
-    consistent: ConsistentJson<'a>,
-    remarks: &'a [String],
-}
-
-#[derive(Serialize)]
-struct SpringJson<'a> {
-    joint: &'a str,
-    stiffness: EstimateJson,
-    viscous: EstimateJson,
-    coulomb: EstimateJson,
-    /// The force of the spring where both encoders read 0.
-    preload: EstimateJson,
-    /// The motor's reading where the spring is relaxed and the joint reads 0.
-    motor_zero: EstimateJson,
-    /// Roots of the mean square of what the motor's equation misses, and of its torque \[N m\].
-    residual_rms: f64,
-    torque_rms: f64,
-}
-
-#[derive(Serialize)]
-struct EstimateJson {
-    value: f64,
-    std: f64,
-    unit: &'static str,
-}
-
-#[derive(Serialize)]
-struct ResidualJson<'a> {
-    joint: &'a str,
-    torque_rms: f64,
-    residual_rms: f64,
-}
-
-impl<'a> SpringJson<'a> {
-    fn new(spring: &'a Spring) -> Self {
-        let of = |Estimate { value, std }, unit| EstimateJson { value, std, unit };
-        Self {
-            joint: &spring.joint,
-            stiffness: of(spring.stiffness, "N/m"),
-            viscous: of(spring.viscous, "N m s/rad"),
-            coulomb: of(spring.coulomb, "N m"),
-            preload: of(spring.preload, "N"),
-            motor_zero: of(spring.motor_zero, "rad"),
-            residual_rms: spring.residual,
-            torque_rms: spring.torque,
-        }
-    }
 }

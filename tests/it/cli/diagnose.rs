@@ -161,7 +161,9 @@ fn where_nothing_is_found_no_model_is_written_and_numbers_stay_short() {
     let words =
         ["diagnose", MODEL, "--train", "leg.csv", "--validate", "leg.csv", "--out", "found"];
     let run = run_in(&directory.path, &words);
-    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    // One log for both judges nothing.
+    assert_eq!(run.code, Some(1), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("leg.csv says the same as leg.csv"), "{}", run.stdout);
     assert!(run.stdout.contains("no model.json"), "{}", run.stdout);
     assert!(!directory.path.join("found/model.json").exists());
     assert!(read(&directory, "found/report.html").contains("Nothing is missing"));

@@ -103,6 +103,49 @@ fn springs_come_out_in_two_stages() {
     assert_eq!(run_in(&directory.path, &words).code, Some(2));
 }
 
+/// Both stages are judged by a log that they have not seen, and drawn.
+#[test]
+fn two_stages_are_judged_by_other_logs() {
+    let directory = Directory::new("two-stages-judged");
+    simulate(&directory, "tulip_leg_elastic_identification");
+    std::fs::rename(directory.path.join("log.csv"), directory.path.join("train.csv"))
+        .expect("renamed");
+    let text = shipped::find_scenario("tulip_leg_elastic_identification").expect("shipped").text;
+    let mut other: Value = serde_json::from_str(text).expect("JSON");
+    // another beginning and other noise
+    (other["initial"]["t_s"], other["seed"]) = (5.into(), 2.into());
+    (other["duration_s"], other["parameters"]["m6"]) = (9.into(), 2.4.into());
+    write(&directory, "other.json", &other.to_string());
+    simulate(&directory, "other.json");
+    let words = ["tulip_leg", "--train", "train.csv", "--accept-suspicious", "--two-stage"];
+    let words = [&words[..], &["--filter", "40", "--friction", "tanh", "--validate"]].concat();
+    let drawn = ["log.csv", "--svg", "torques.svg", "--html", "page.html"];
+    let found = identified(&directory, &[&words[..], &drawn].concat());
+    // the foot of the other log is 33 g heavier
+    let left = number(&found["validate"]);
+    assert!((1e-3..0.05).contains(&left), "{left}");
+    for joint in found["residual"].as_array().expect("a list") {
+        assert!(number(&joint["validate"]) < 0.1, "{joint}");
+    }
+    let text = |name: &str| std::fs::read_to_string(directory.path.join(name)).expect("a file");
+    let (svg, page) = (text("torques.svg"), text("page.html"));
+    assert!(svg.starts_with("<svg") && svg.contains("of the logs for validation"), "{svg}");
+    for part in ["Springs and motors", "of those of other logs", "ankle_y", "<svg", "log.csv"] {
+        assert!(page.contains(part), "no {part}");
+    }
+    // without a log to judge by they are those of the estimate, which the fit is known of
+    let found = identified(&directory, &words[..words.len() - 1]);
+    assert_eq!(found["validate"], Value::Null);
+    let run = run_in(&directory.path, &[&["identify"], &words[..], &["train.csv"]].concat());
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(run.stdout.contains("train.csv: says the same as train.csv"), "{}", run.stdout);
+    let mute = text("log.csv").replace("motor_knee", "angle_knee");
+    write(&directory, "mute.csv", &mute);
+    let run = run_in(&directory.path, &[&["identify"], &words[..], &["mute.csv"]].concat());
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("mute.csv") && run.stderr.contains("motor_knee"), "{}", run.stderr);
+}
+
 /// Weighings and held postures of the planar arm, by hand: gravity along -y, centres of mass 0.28
 /// and 0.23 m from their joints, a link of 0.5 m between these.
 #[test]
@@ -381,9 +424,12 @@ fn what_only_the_model_shows_is_told() {
     refused(&["--train", "arm.csv", "copy.csv"], "copy.csv says the same as arm.csv");
     refused(&["--train", "arm.csv", "--average", "1.7"], "do not repeat");
     refused(&["--train", "arm.csv", "--prior"], "--prior");
-    let found =
-        identified(&directory, &["planar_2r", "--train", "arm.csv", "--validate", "copy.csv"]);
-    assert!(found["remarks"].to_string().contains("it validates nothing"), "{}", found["remarks"]);
+    // the same measurement under another name is no other one
+    let words = ["planar_2r", "--train", "arm.csv", "--validate", "copy.csv"];
+    let run = run_in(&directory.path, &[&["identify"], &words[..]].concat());
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(run.stdout.contains("copy.csv: says the same as arm.csv"), "{}", run.stdout);
+    assert!(run.stdout.contains("it validates nothing"), "{}", run.stdout);
     let weighing = json!({"links": ["link1", "link2"], "mass_kg": 3500, "std_kg": 1});
     let statics = json!({"format": "denavit-statics/1", "weighings": [weighing], "postures": []});
     write(&directory, "grams.json", &statics.to_string());

@@ -98,6 +98,7 @@ fn torques_that_are_no_numbers_are_refused() {
         ("t,tau_link2\n0,1\n0,1\n", "tau.csv:3:1: the time is not after"),
         ("time,tau_link2\n0,1\n", "tau.csv:1:1: no column `t`"),
         ("", "tau.csv:1:1: no line with the names of columns"),
+        ("t,tau_link2\n0,1\n5e-12,2\n", "the rows of the log are 5e-12 s apart"),
     ] {
         refused_beside(&[("tau.csv", log)], &text, &[said]);
     }

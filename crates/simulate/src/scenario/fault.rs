@@ -38,6 +38,8 @@ pub enum Cause {
     TooManyRows(f64),
     /// A log is wrong.
     Log(LogError),
+    /// Rows of a log are nearer in time than any that is written; holds their distance \[s\].
+    RowsTooNear(f64),
     /// A log has no such column; holds it and the one that was meant, perhaps.
     UnknownColumn(String, Option<String>),
     /// A column of a log has an empty cell; holds it and the line.
@@ -102,6 +104,9 @@ impl fmt::Display for Cause {
                 write!(f, "the log would have more than {most} rows")
             }
             Self::Log(error) => write!(f, "{error}"),
+            Self::RowsTooNear(distance_s) => {
+                write!(f, "the rows of the log are {} s apart, in the mean", short(*distance_s))
+            }
             Self::UnknownColumn(name, _) => write!(f, "the log has no column `{name}`"),
             Self::EmptyCell(column, line) => {
                 write!(f, "the column `{column}` has no number in line {line} of the log")
@@ -160,6 +165,9 @@ impl Cause {
             Self::Undrivable(_) => "control the joints between links",
             Self::TooManyRows(_) => "write a row less often: `log_period_s`",
             Self::Log(_) => "a log is a table with a column `t` that increases (docs/scenario.md)",
+            Self::RowsTooNear(_) => {
+                "`t` is in seconds; no log has rows that are less than 1e-9 s apart"
+            }
             Self::EmptyCell(..) => "fill the gap, or cut the log before it",
             Self::Gait(_, hint) => hint,
             Self::NoPlanner => "`denavit_walk::read_scenario` reads scenarios with gaits",

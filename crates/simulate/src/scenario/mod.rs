@@ -6,6 +6,7 @@
 mod controller;
 mod fault;
 mod gait;
+mod limits;
 mod options;
 mod ranges;
 mod read;
@@ -18,6 +19,7 @@ mod trajectory;
 pub use controller::{CONTROLLER_FORMAT, Controller, controller_schema, read_controller};
 pub use fault::{Cause, ScenarioError};
 pub use gait::{GaitPlanner, PlannedGait};
+pub use limits::{Exceeded, Limited};
 pub use ranges::Range;
 pub use read::{Loader, read, read_planned};
 pub use reader::{FieldsNumbers, NodeNumbers, Report, check_format};
@@ -74,6 +76,8 @@ pub struct Scenario {
     pub description: String,
     /// The robot.
     pub plant: Box<dyn Plant>,
+    /// The largest speed of each joint, where its model states one [rad/s, m/s].
+    pub speed_limits: Vec<Option<f64>>,
     /// What drives it.
     pub control: Control,
     /// Where it starts.

@@ -17,12 +17,7 @@ const MAX_ROWS: f64 = 1e6;
 
 pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation {
     let mut simulation = Simulation::default();
-    simulation.end_s = fields.required_number("duration_s", ranges::DURATION_S, report);
-    simulation.log_period_s =
-        fields.number("log_period_s", ranges::LOG_PERIOD_S, simulation.log_period_s, report);
-    if simulation.end_s / simulation.log_period_s > MAX_ROWS {
-        report.push(fields.place("log_period_s"), Cause::TooManyRows(MAX_ROWS));
-    }
+    times(fields, &mut simulation, report);
     simulation.seed = fields.count("seed", ranges::SEED, 0, report) as u64;
     if let Some(drives) = fields.get("drives") {
         let meanings = [DriveModelling::Ideal, DriveModelling::Model];
@@ -42,6 +37,19 @@ pub(super) fn simulation(fields: &Fields<'_>, report: &mut Report) -> Simulation
             limits.count("evaluations", ranges::EVALUATIONS, simulation.max_evaluations, report);
     }
     simulation
+}
+
+/// How long the run is, and how often a row of the log is written. Rows are counted only if both
+/// numbers are right: what stands in for a fault is nobody's.
+fn times(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report) {
+    let faults = report.count();
+    simulation.end_s = fields.required_number("duration_s", ranges::DURATION_S, report);
+    let absent = simulation.log_period_s;
+    simulation.log_period_s = fields.number("log_period_s", ranges::LOG_PERIOD_S, absent, report);
+    if report.count() == faults && simulation.end_s / simulation.log_period_s > MAX_ROWS {
+        let blamed = fields.get("log_period_s").or(fields.get("duration_s"));
+        report.push(blamed.map_or(fields.at(), |node| node.at()), Cause::TooManyRows(MAX_ROWS));
+    }
 }
 
 const MEASUREMENT: &[&str] = &[

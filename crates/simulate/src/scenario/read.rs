@@ -3,6 +3,7 @@
 use super::controller::control;
 use super::fault::{Cause, ScenarioError};
 use super::gait::{GaitPlanner, gait};
+use super::limits::speed_limits;
 use super::options;
 use super::ranges;
 use super::reader::{FieldsNumbers, NodeNumbers, Report, check_format};
@@ -90,7 +91,7 @@ fn scenario(
     let tolerances = options::tolerances(fields, Tolerances::of_method(simulation.method), report);
     let scheme = stepping::scheme(fields, report);
     let (stepping, stepping_tolerances) = stepping::stepping(fields, report);
-    let mut plant = plant(fields, load, report)?;
+    let (mut plant, speed_limits) = plant(fields, load, report)?;
     let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
     let posture = gait(fields, plant.as_mut(), planner, &mut control, report);
     let initial = initial(fields, plant.as_mut(), &control, posture, report);
@@ -101,6 +102,7 @@ fn scenario(
         name,
         description,
         plant,
+        speed_limits,
         control,
         initial,
         simulation,
@@ -164,7 +166,10 @@ fn find_idle(
     }
 }
 
-fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Box<dyn Plant>> {
+/// A robot with the limits of its joints' speeds.
+type Limited = (Box<dyn Plant>, Vec<Option<f64>>);
+
+fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Limited> {
     if let Some(balls) = fields.get("cradle_balls") {
         if fields.get("model").is_some() {
             report.push(balls.at(), Cause::TwoRobots);
@@ -173,7 +178,7 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
             report.push(parameters.at(), Cause::NoEffect("a `model`"));
         }
         let balls = fields.count("cradle_balls", ranges::CRADLE_BALLS, 2, report);
-        return Some(Box::new(Cradle::new(balls)));
+        return Some((Box::new(Cradle::new(balls)), Vec::new()));
     }
     let node = fields.require("model", report)?;
     let name = node.text(report)?;
@@ -205,7 +210,8 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
     }
     let made = plant_of(&robot, &overrides);
     let place = if overrides.is_empty() { node.at() } else { fields.place("parameters") };
-    made.map_err(|error| report.push(place, Cause::Plant(error))).ok()
+    let plant = made.map_err(|error| report.push(place, Cause::Plant(error))).ok()?;
+    Some((plant, speed_limits(&robot)))
 }
 
 /// The joint that a key names.

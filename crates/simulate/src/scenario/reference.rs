@@ -48,9 +48,20 @@ impl<'a> Logs<'a> {
         let load = self.load;
         self.read.entry(file.to_owned()).or_insert_with(|| {
             let bytes = load(file).map_err(|reason| Cause::File(file.to_owned(), reason))?;
-            Log::from_csv(file, &bytes).map_err(Cause::Log)
+            let log = Log::from_csv(file, &bytes).map_err(Cause::Log)?;
+            match row_distance(&log).filter(|distance_s| *distance_s < ranges::LOG_PERIOD_S.least) {
+                Some(distance_s) => Err(Cause::RowsTooNear(distance_s)),
+                None => Ok(log),
+            }
         })
     }
+}
+
+/// How far rows of a log are apart in the mean \[s\]; none of a single row.
+fn row_distance(log: &Log) -> Option<f64> {
+    let times = log.column("t")?;
+    let gaps = times.len().checked_sub(1).filter(|gaps| *gaps > 0)?;
+    Some((times[gaps] - times[0]) / gaps as f64)
 }
 
 /// A reference, or nothing with its faults noted.

@@ -9,6 +9,7 @@ use super::{StepLaw, StepReport, TimeStepper};
 use crate::audit::{Audit, point_of_moment, support_margin, worst};
 use crate::control::Control;
 use crate::ground::{Ground, cross, dot};
+use crate::joint_record::JointObserver;
 use crate::log::Log;
 use crate::record::columns;
 use crate::run::{Event, EventKind};
@@ -18,6 +19,7 @@ use denavit_plants::PlantModel;
 pub(super) struct StepRecorder {
     pub(super) log: Log,
     pub(super) audit: Audit,
+    pub(super) joints: JointObserver,
     pub(super) events: Vec<Event>,
     /// Contacts with an impulse in the last step.
     pub(super) pushing: Vec<usize>,
@@ -80,6 +82,7 @@ impl StepRecorder {
         let mut recorder = Self {
             log: Log { columns, ..Log::default() },
             audit: Audit::new(&model),
+            joints: JointObserver::new(&model, control),
             events: Vec::new(),
             pushing: Vec::new(),
             ground: Ground::new(&model),
@@ -94,6 +97,7 @@ impl StepRecorder {
             interval: Interval::default(),
         };
         recorder.open_interval(system, t_s, q, qd);
+        recorder.joints.see(control, (t_s, t_s), [q, qd]);
         recorder
     }
 
@@ -164,6 +168,19 @@ impl StepRecorder {
             add(&mut interval.places[contact], std::array::from_fn(|axis| normal * at[axis]));
         }
         self.note_event(system, stepper, made);
+    }
+
+    /// Takes the end of a step, and the commands that it was made with, into account.
+    pub(super) fn see_joints(
+        &mut self,
+        control: &Control,
+        (t_s, command): (f64, &[f64]),
+        q: &[f64],
+        qd: &[f64],
+    ) {
+        self.joints.command(command);
+        self.joints.commanded_until(t_s);
+        self.joints.see(control, (t_s, t_s), [q, qd]);
     }
 
     /// An event is a step in which contacts begin or cease to push.

@@ -202,6 +202,7 @@ impl Runner<'_> {
         let work = self.system.finish_step(before, after, settings.step_s, settings.implicitness);
         let made = Made { t_s: end_s, report, q: &self.q, before, after, work };
         self.recorder.note_step(&self.system, &self.stepper, &made);
+        self.recorder.see_joints(self.control, (end_s, &self.system.step.command), &self.q, after);
         if let Some(name) = self.falls.fallen(self.system.plant(), &self.ground, &self.q) {
             return Some(Stop::Fall(name));
         }
@@ -231,6 +232,7 @@ impl Runner<'_> {
             log: self.recorder.log,
             events: self.recorder.events,
             audit: self.recorder.audit,
+            joints: self.recorder.joints.finish(),
             statistics: self.statistics,
             closed: self.recorder.pushing,
         }

@@ -2,6 +2,7 @@
 
 mod before_springs;
 mod closed_forms;
+mod contact;
 mod control;
 mod drift;
 mod drops;
@@ -10,6 +11,7 @@ mod kneed_walker;
 mod scenarios;
 mod schema;
 mod smooth;
+mod time_stepping;
 mod trajectory;
 mod walkers;
 

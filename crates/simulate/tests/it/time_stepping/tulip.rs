@@ -1,12 +1,12 @@
 //! TUlip on its feet: 18 degrees of freedom, 8 contact points, redundant.
 
+use denavit_plants::trajectory::Reference;
 use denavit_plants::{Override, Plant, tulip};
 use denavit_simulate::Control;
 use denavit_simulate::contact::gauss_seidel::SweepLimits;
 use denavit_simulate::time_stepping::{
     ControlledPlant, Scheme, StepLaw, StepSolver, Stepping, TimeStepper,
 };
-use denavit_plants::trajectory::Reference;
 
 const N: usize = denavit_plants::emitted::tulip::DOF;
 

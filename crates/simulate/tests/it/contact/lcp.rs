@@ -1,8 +1,8 @@
 //! Lemke's method against known answers and against all complementary bases.
 
 use super::systems::{assert_close, number};
+use denavit_numerics::MinimumNorm;
 use denavit_simulate::contact::lemke::{LcpOutcome, Lemke};
-use denavit_simulate::contact::minimum_norm::MinimumNorm;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 

@@ -1,0 +1,70 @@
+//! Why an output is not written.
+
+use super::failure::{Failure, reason};
+use std::fmt;
+use std::io;
+
+/// Why an output is not written.
+#[derive(Debug)]
+pub(crate) enum OutputFailure {
+    /// A file cannot be written.
+    Write { file: String, error: io::Error },
+    /// A link leads to a place in a directory that is not there.
+    LinkToNowhere { link: String, target: String },
+    /// A file that was read would be replaced by the output.
+    Overwrites(String),
+    /// Two documents were asked for on standard output.
+    TwoDocuments,
+    /// Two outputs would be one file.
+    SameOutput(String),
+}
+
+impl OutputFailure {
+    fn hint(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::Write { error, .. } => match error.kind() {
+                io::ErrorKind::NotFound => "make the directory first",
+                io::ErrorKind::IsADirectory => "give the path of a file in it",
+                io::ErrorKind::NotADirectory => "a part of the path is a file",
+                io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                    "choose a place where you may write"
+                }
+                _ => return None,
+            },
+            Self::LinkToNowhere { .. } => {
+                "make the directory of its target first, or remove the link"
+            }
+            Self::Overwrites(_) => "choose another file for the output",
+            Self::TwoDocuments => "give all but one of them a file",
+            Self::SameOutput(_) => "give each a file of its own",
+        })
+    }
+}
+
+impl fmt::Display for OutputFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Write { file, error } => {
+                write!(f, "{file}: cannot be written: {}", reason(error))?;
+            }
+            Self::LinkToNowhere { link, target } => {
+                write!(f, "{link}: is a link to {target}, whose directory is not there")?;
+            }
+            Self::Overwrites(file) => {
+                write!(f, "{file}: is what this command reads, and would be replaced")?;
+            }
+            Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
+            Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
+        }
+        match self.hint() {
+            Some(hint) => write!(f, "\n  hint: {hint}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl From<OutputFailure> for Failure {
+    fn from(failure: OutputFailure) -> Self {
+        Self::Output(failure)
+    }
+}

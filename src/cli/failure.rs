@@ -1,6 +1,7 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
 use super::identify::IdentifyFailure;
+use super::output_failure::OutputFailure;
 use denavit::diagnose::DiagnosisError;
 use denavit::emit::rust::EmitError;
 use denavit::identify::excite::ExciteError;
@@ -26,14 +27,8 @@ pub(crate) enum Failure {
     Read { file: String, error: io::Error },
     /// A file is larger than any model.
     TooLarge { file: String, limit: u64 },
-    /// A file cannot be written.
-    Write { file: String, error: io::Error },
-    /// A link leads to a place in a directory that is not there.
-    LinkToNowhere { link: String, target: String },
-    /// A file that was read would be replaced by the output.
-    Overwrites(String),
-    /// Two documents were asked for on standard output.
-    TwoDocuments,
+    /// An output is not written.
+    Output(OutputFailure),
     /// A model has an effect beside its equations, for which a command has no place; holds model
     /// and effect.
     Effect(String, String),
@@ -77,8 +72,6 @@ pub(crate) enum Failure {
     },
     /// A model stands where a scenario should; holds its name.
     ModelForScenario(String),
-    /// Two outputs would be one file.
-    SameOutput(String),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
     Window([f64; 2]),
     /// No trajectory can be looked for.
@@ -152,26 +145,12 @@ impl Failure {
                 "check the permissions of the file and of its directories".to_owned()
             }
             Self::TooLarge { .. } => "a model is a table of some kilobytes: check the path".into(),
-            Self::Overwrites(_) => "choose another file for the output".to_owned(),
             Self::NoMotionTerms(_) => {
                 "--terms inertia,gravity; --with friction,rotor adds the parameters of joints"
                     .to_owned()
             }
             Self::ModelledAndMore => "the others add those of all joints".to_owned(),
-            Self::TwoDocuments => "give all but one of them a file".to_owned(),
             Self::Effect(..) => "see \"effects\" in docs/model-file.md".to_owned(),
-            Self::Write { error, .. } => match error.kind() {
-                io::ErrorKind::NotFound => "make the directory first".to_owned(),
-                io::ErrorKind::IsADirectory => "give the path of a file in it".to_owned(),
-                io::ErrorKind::NotADirectory => "a part of the path is a file".to_owned(),
-                io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-                    "choose a place where you may write".to_owned()
-                }
-                _ => return None,
-            },
-            Self::LinkToNowhere { .. } => {
-                "make the directory of its target first, or remove the link".to_owned()
-            }
             Self::Lower(..) | Self::Emit(..) => {
                 "check the exponents of the numbers in the model".to_owned()
             }
@@ -192,18 +171,10 @@ impl Failure {
                 let names: Vec<_> = all.iter().map(|one| one.name).collect();
                 format!("give the path of a {kind} file, or one of {}", names.join(", "))
             }
-            Self::ModelForScenario(name) => {
-                let name = serde_json::Value::from(name.as_str());
-                format!(
-                    "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {name}, \
-                     \"duration_s\": 1}} lets it go from rest; docs/scenario.md has the rest, \
-                     `denavit schema scenario` all keys",
-                    denavit::simulate::scenario::FORMAT
-                )
-            }
-            Self::SameOutput(_) => "give each a file of its own".to_owned(),
+            Self::ModelForScenario(name) => smallest_scenario(name),
             Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
+            | Self::Output(_)
             | Self::Scenario(_)
             | Self::Apart(..)
             | Self::Excite(_)
@@ -217,6 +188,17 @@ impl Failure {
             | Self::Stdout(_) => return None,
         })
     }
+}
+
+/// What to write where a model alone was given.
+fn smallest_scenario(model: &str) -> String {
+    let model = serde_json::Value::from(model);
+    format!(
+        "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
+         \"duration_s\": 1}} lets it go from rest; docs/scenario.md has the rest, `denavit schema \
+         scenario` all keys",
+        denavit::simulate::scenario::FORMAT
+    )
 }
 
 /// Why a model has none of these functions.
@@ -239,10 +221,21 @@ fn why_no_function(asked: &[String]) -> String {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.cause(f)?;
+        match self.hint() {
+            Some(hint) => write!(f, "\n  hint: {hint}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Failure {
+    fn cause(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             // place and hint are part of these
             Self::Model(error) => write!(f, "{error}")?,
             Self::Bake(error) => write!(f, "{error}")?,
+            Self::Output(error) => write!(f, "{error}")?,
             Self::Equations(error) => write!(f, "{error}")?,
             Self::Decompose(error) => write!(f, "{error}")?,
             Self::NotOfEquations(name) => write!(
@@ -263,20 +256,10 @@ impl fmt::Display for Failure {
             Self::TooLarge { file, limit } => {
                 write!(f, "{file}: has more than the {limit} bytes that are read")?;
             }
-            Self::Write { file, error } => {
-                write!(f, "{file}: cannot be written: {}", reason(error))?;
-            }
-            Self::LinkToNowhere { link, target } => {
-                write!(f, "{link}: is a link to {target}, whose directory is not there")?;
-            }
-            Self::Overwrites(file) => {
-                write!(f, "{file}: is what this command reads, and would be replaced")?;
-            }
             Self::NoMotionTerms(model) => {
                 write!(f, "{model}: base parameters need inertia or gravity among the terms")?;
             }
             Self::ModelledAndMore => write!(f, "--with modelled stands alone")?,
-            Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::Effect(model, effect) => {
                 write!(f, "{model}: this has no place for the effect `{effect}`")?;
             }
@@ -306,16 +289,12 @@ impl fmt::Display for Failure {
             Self::ModelForScenario(name) => {
                 write!(f, "{name}: this is a model, where a scenario is simulated")?;
             }
-            Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
             Self::Window([from, to]) => write!(f, "--window: the run is from {from} to {to} s")?,
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;
             }
         }
-        match self.hint() {
-            Some(hint) => write!(f, "\n  hint: {hint}"),
-            None => Ok(()),
-        }
+        Ok(())
     }
 }
 

@@ -20,6 +20,7 @@ mod inspect;
 mod json;
 mod model_effects;
 mod options;
+mod output_failure;
 mod outputs;
 mod printed;
 mod progress;

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::files::is_input;
+use super::output_failure::OutputFailure;
 use super::unfinished;
 use std::fs;
 use std::io::{self, Write};
@@ -16,7 +17,7 @@ pub(crate) fn on_stdout(outputs: &[Option<&PathBuf>], json: bool) -> Result<bool
     let documents = outputs.iter().flatten().filter(|path| path.as_os_str() == "-").count();
     match documents + usize::from(json) {
         0 | 1 => Ok(documents > 0),
-        _ => Err(Failure::TwoDocuments),
+        _ => Err(OutputFailure::TwoDocuments.into()),
     }
 }
 
@@ -32,7 +33,7 @@ pub(crate) fn check_outputs(outputs: &[Option<&PathBuf>]) -> Result<(), Failure>
             new_beside(&place).map_err(|error| failed(path, error))?;
         }
         if seen.contains(&place) {
-            return Err(Failure::SameOutput(path.display().to_string()));
+            return Err(OutputFailure::SameOutput(path.display().to_string()).into());
         }
         seen.push(place);
     }
@@ -77,12 +78,12 @@ pub(crate) fn say_written(
 }
 
 fn failed(path: &Path, error: io::Error) -> Failure {
-    Failure::Write { file: path.to_string_lossy().into_owned(), error }
+    OutputFailure::Write { file: path.to_string_lossy().into_owned(), error }.into()
 }
 
 fn refuse_input(path: &Path) -> Result<(), Failure> {
     if path.is_file() && path.canonicalize().is_ok_and(|path| is_input(&path)) {
-        return Err(Failure::Overwrites(path.display().to_string()));
+        return Err(OutputFailure::Overwrites(path.display().to_string()).into());
     }
     Ok(())
 }
@@ -107,7 +108,7 @@ fn target(path: &Path) -> Result<PathBuf, Failure> {
         }
         (Err(_), _) if place != path => {
             let [link, target] = [path, &place].map(|path| path.display().to_string());
-            Err(Failure::LinkToNowhere { link, target })
+            Err(OutputFailure::LinkToNowhere { link, target }.into())
         }
         (Err(error), _) => Err(failed(path, error)),
         (_, None) => Err(failed(path, io::ErrorKind::IsADirectory.into())),

@@ -22,6 +22,7 @@ mod identify_procedures;
 mod identify_rest;
 mod identify_told;
 mod landings;
+mod mutated_files;
 mod outputs;
 mod printed;
 mod readme;

@@ -1,9 +1,9 @@
-//! A picture in square cells, so that what lies in a small rectangle is found without a look at all.
+//! A picture in square cells: what lies in a small rectangle is found without a look at all.
 
 use super::camera::Vec2;
 
-/// Things of a picture by the cells in which they lie. What lies outside the picture is in the cells
-/// at its edge.
+/// Things of a picture by the cells in which they lie. What lies outside the picture is in the
+/// cells at its edge.
 #[derive(Debug)]
 pub(super) struct Cells<T> {
     /// Side of a cell [px].

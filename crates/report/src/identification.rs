@@ -181,8 +181,8 @@ pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Se
         ];
         Row { cells, is_marked: false }
     });
-    let caption = "What is left of the torques [N m, N], after the filter. Residuals that are noise \
-                   alone are not correlated.";
+    let caption = "What is left of the torques [N m, N], after the filter. Residuals that are \
+                   noise alone are not correlated.";
     let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
     Section { heading: "Residuals".to_owned(), parts: vec![Part::Table(table)] }
 }

@@ -7,6 +7,13 @@ use denavit_plants::regression::RegressionJoint;
 /// A step of the time from which on it hardly counts seconds.
 const SLOWEST_STEP_S: f64 = 0.1;
 
+/// A step of the time below which it hardly counts seconds: a millisecond in days is 1e-8, and no
+/// loop of a drive has a rate of a megahertz.
+const FASTEST_STEP_S: f64 = 1e-6;
+
+/// Seconds in an hour.
+const HOUR_S: f64 = 3600.0;
+
 /// A turning joint without limits hardly goes further \[rad\].
 const LARGEST_ANGLE_RAD: f64 = 20.0;
 
@@ -56,6 +63,8 @@ fn time_unit(log: &MeasuredLog, found: &mut Findings) {
     if log.step_s > SLOWEST_STEP_S {
         let factor = if log.step_s >= 50.0 { 1e-6 } else { 1e-3 };
         found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor });
+    } else if log.step_s < FASTEST_STEP_S {
+        found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor: HOUR_S });
     }
 }
 

@@ -298,12 +298,14 @@ impl fmt::Display for Suspicion {
                 "a step of `t` is {}, as if it did not count seconds\n  hint: map it: {{\"t\": \
                  {{\"scale\": {factor}}}}}{}",
                 short(*step),
-                match *step < LONGER_PARTS {
-                    true => {
+                match step {
+                    _ if *factor > 1.0 =>
+                        " if it counts hours, {\"t\": {\"scale\": 86400}} if days",
+                    step if *step < LONGER_PARTS => {
                         ", or {\"t\": {\"scale\": 0.01}} if it counts hundredths of a second, \
                          {\"t\": {\"scale\": 0.016666666666666666}} if sixtieths"
                     }
-                    false => "",
+                    _ => "",
                 }
             )?,
             Self::Degrees { column, largest } => write!(

@@ -194,6 +194,16 @@ fn milliseconds_are_no_seconds() {
     assert!(matches!(found, Suspicion::RateScale { ratio, .. } if (ratio - 10.0).abs() < 0.2));
 }
 
+#[test]
+fn days_and_picoseconds_are_no_seconds() {
+    for scale in [1.0 / 86_400.0, 1e-9] {
+        let faults = Made::new().each(|_, row| row[0] *= scale).read().unwrap_err();
+        let found = suspicion(faults);
+        assert!(matches!(found, Suspicion::TimeUnit { factor: 3600.0, .. }), "{found:?}");
+        assert!(found.to_string().contains("86400"), "{found}");
+    }
+}
+
 /// Torques of a joint that moves are never as small: what changes by 1e-40 N m does not.
 #[test]
 fn torques_that_vanish_are_refused() {

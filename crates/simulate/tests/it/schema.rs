@@ -2,6 +2,7 @@
 
 use denavit_plants::shipped;
 use denavit_simulate::{Tolerances, scenario};
+use denavit_walk::read_scenario;
 use serde_json::Value;
 
 fn validator() -> jsonschema::Validator {
@@ -114,7 +115,7 @@ fn schema_and_reader_agree_on_ranges() {
         let pointer = format!("/{}: the number must be", path.join("/"));
         let outside = |value: f64| {
             let text = with_value(&path, &format!("{value:e}"));
-            let read = scenario::read("test.json", text.as_bytes(), &load);
+            let read = read_scenario("test.json", text.as_bytes(), &load);
             read.err().is_some_and(|error| error.to_string().contains(&pointer))
         };
         for (limit, beyond) in [(least, least - 0.5 * least.abs().max(1e-9)), (most, 2.0 * most)] {

@@ -1,8 +1,9 @@
 //! Scenarios by time stepping: within their tolerances, and as the event-driven scheme has them.
 
 use denavit_plants::shipped;
-use denavit_simulate::scenario::{self, RunScheme, Scenario};
+use denavit_simulate::scenario::{RunScheme, Scenario};
 use denavit_simulate::{Run, Stop};
+use denavit_walk::read_scenario;
 
 fn load(name: &str) -> Result<Vec<u8>, String> {
     let found = shipped::find_referred(name);
@@ -11,7 +12,7 @@ fn load(name: &str) -> Result<Vec<u8>, String> {
 
 fn open(name: &str, scheme: RunScheme) -> Scenario {
     let shipped = shipped::find_scenario(name).unwrap();
-    let read = scenario::read(name, shipped.text.as_bytes(), &load);
+    let read = read_scenario(name, shipped.text.as_bytes(), &load);
     let mut scenario = read.unwrap_or_else(|error| panic!("{error}"));
     scenario.scheme = scheme;
     scenario

@@ -2,6 +2,7 @@
 
 mod circles;
 mod ignored;
+mod reached;
 mod walls;
 
 use std::fs;

@@ -2,6 +2,7 @@
 
 mod emps;
 mod estimate;
+mod excite;
 mod forward;
 mod friction;
 mod leg;

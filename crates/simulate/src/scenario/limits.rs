@@ -62,7 +62,7 @@ impl Scenario {
             let [lowest, highest] = record.position;
             let mut check = |limited, limit: f64, worst: Peak, beyond: f64| {
                 // written so that what is no number is beyond
-                if !(beyond <= self.error_at(limit)) {
+                if beyond.is_nan() || beyond > self.error_at(limit) {
                     all.push(Exceeded { joint, limited, limit, worst });
                 }
             };

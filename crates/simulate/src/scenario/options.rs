@@ -128,7 +128,7 @@ fn contact(fields: &Fields<'_>, simulation: &mut Simulation, report: &mut Report
     };
     let touching = &mut simulation.touching;
     if let Some(friction) = given.get("friction") {
-        simulation.friction = if friction.as_number().is_some() {
+        simulation.friction = if friction.any_number().is_some() {
             Friction::Coulomb(given.number("friction", ranges::FRICTION, 0.0, report))
         } else {
             let word = friction.choice(&["no_slip"], &[Friction::NoSlip], report);

@@ -10,7 +10,7 @@ pub type Report = model::Report<Cause>;
 /// What a value says as floating-point numbers and words.
 pub trait NodeNumbers: Sized {
     /// The value, if it is a number, however large.
-    fn as_number(self) -> Option<f64>;
+    fn any_number(self) -> Option<f64>;
 
     /// The value, if it is a finite number.
     fn finite(self, report: &mut Report) -> Option<f64>;
@@ -31,7 +31,7 @@ pub trait NodeNumbers: Sized {
 }
 
 impl NodeNumbers for Node<'_> {
-    fn as_number(self) -> Option<f64> {
+    fn any_number(self) -> Option<f64> {
         self.number_text()?.parse().ok()
     }
 

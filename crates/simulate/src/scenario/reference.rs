@@ -66,7 +66,7 @@ fn row_distance(log: &Log) -> Option<f64> {
 
 /// A reference, or nothing with its faults noted.
 pub(super) fn read(node: Node<'_>, logs: &mut Logs<'_>, report: &mut Report) -> Option<Reference> {
-    if let Some(constant) = node.as_number().filter(|number| number.is_finite()) {
+    if let Some(constant) = node.any_number().filter(|number| number.is_finite()) {
         return Some(Reference::Constant(constant));
     }
     let before = report.count();

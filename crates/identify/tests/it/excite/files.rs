@@ -1,7 +1,7 @@
 //! Trajectory files, and scenarios that follow them.
 
-use denavit_simulate::scenario::{self, read_trajectory, trajectory_schema};
 use denavit_plants::trajectory::Setpoint;
+use denavit_simulate::scenario::{self, read_trajectory, trajectory_schema};
 use serde_json::{Value, json};
 
 fn file() -> Value {

@@ -1,13 +1,13 @@
 //! What is found keeps the limits, and excites.
 
 use super::{arm, shipped_robot};
+use denavit_codegen::model::{self, Robot};
+use denavit_codegen::regressor::RegressorOptions;
 use denavit_identify::excite::{
     Columns, Excitation, ExciteFault, ExciteOptions, Excited, Family, LimitKind, Objective,
     check_trajectory, excite,
 };
-use denavit_codegen::model::{self, Robot};
 use denavit_plants::{LoadedPlant, Plant};
-use denavit_codegen::regressor::RegressorOptions;
 use denavit_simulate::scenario::{Trajectory, read_trajectory};
 
 fn options() -> ExciteOptions {

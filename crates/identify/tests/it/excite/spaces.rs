@@ -1,8 +1,8 @@
 //! Spaces of trajectories have the ends that are asked for, and are what their references say.
 
 use denavit_identify::excite::{Ends, Family, Space};
-use denavit_simulate::scenario::read_trajectory;
 use denavit_plants::trajectory::Reference;
+use denavit_simulate::scenario::read_trajectory;
 use proptest::prelude::*;
 
 const FAMILIES: [Family; 4] = [

@@ -61,7 +61,12 @@ pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
 
 fn time_unit(log: &MeasuredLog, found: &mut Findings) {
     if log.step_s > SLOWEST_STEP_S {
-        let factor = if log.step_s >= 50.0 { 1e-6 } else { 1e-3 };
+        // of microseconds these would be slower than any log
+        let factor = match log.step_s {
+            step if step > SLOWEST_STEP_S * 1e6 => 1e-9,
+            step if step >= 50.0 => 1e-6,
+            _ => 1e-3,
+        };
         found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor });
     } else if log.step_s < FASTEST_STEP_S {
         found.suspicions.push(Suspicion::TimeUnit { step: log.step_s, factor: HOUR_S });

@@ -187,6 +187,11 @@ fn milliseconds_are_no_seconds() {
     let hundredths = Made::new().each(|_, row| row[0] *= 100.0).read().unwrap_err();
     let found = suspicion(hundredths).to_string();
     assert!(found.contains(r#"{"scale": 0.001}"#) && found.contains(r#"{"scale": 0.01}"#));
+    for (scale, factor) in [(1e6, 1e-6), (1e9, 1e-9)] {
+        let found = suspicion(Made::new().each(|_, row| row[0] *= scale).read().unwrap_err());
+        let is_told = matches!(found, Suspicion::TimeUnit { factor: told, .. } if told == factor);
+        assert!(is_told, "{scale}: {found:?}");
+    }
     // Slower sampling hides it from the step, not from the rates.
     let mut slow = Made::new().each(|_, row| row[0] *= 10.0);
     slow.rows.truncate(1200);

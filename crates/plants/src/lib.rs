@@ -5,6 +5,7 @@
 //! - [`PlantModel`]: what a simulation must know of it besides: names, drives, contact points
 //! - [`LoadedPlant`]: any model file, derived and compiled in memory
 //! - [`Cradle`]: balls that collide with each other
+//! - [`SimplestWalker`], [`KneedWalker`]: passive walkers with jumps of their own
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
@@ -26,6 +27,7 @@ mod laws;
 mod loaded;
 mod model;
 mod native;
+mod passive_walkers;
 pub mod regression;
 mod regression_model;
 mod regression_parameter;
@@ -43,6 +45,7 @@ pub use model::{
     SeriesElasticModel,
 };
 pub use native::{Native, NativeBatch, native_code};
+pub use passive_walkers::{KneedWalker, SimplestWalker};
 
 /// The functions of a robot with n joints and c contact points. Each may use memory of its own,
 /// hence `&mut self`; none changes what another returns.
@@ -104,6 +107,9 @@ pub trait Plant {
         let _ = (moment, response);
         false
     }
+
+    /// A run begins: what jumps have changed in the plant is undone.
+    fn begin(&mut self) {}
 
     /// Number of guards: events of its own that a plant written by hand may have, beside those of
     /// its contacts (a knee that locks, a heel strike in a limit of vanishing masses).

@@ -86,7 +86,8 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub(super) fn new(contacts: usize, links: usize, fall_points: usize, len: usize) -> Self {
+    /// For so many contacts, links and points that must not touch, and a state of this length.
+    pub(super) fn new([contacts, links, fall_points]: [usize; 3], len: usize) -> Self {
         Self {
             level: vec![0.0; contacts],
             alighting: Alighting::new(contacts, len),
@@ -365,7 +366,7 @@ impl Watch {
     }
 
     /// A watched value at a state.
-    fn measure(
+    pub(super) fn measure(
         &mut self,
         motion: &mut Motion<'_>,
         watched: Watched,

@@ -1,6 +1,7 @@
 //! Simulation of robots on the ground.
 //!
 //! - [`simulate`]: smooth motion from event to event, with contacts, impacts and controllers
+//! - [`simulate_varied`]: and what small changes of the initial state become
 //! - [`scenario`]: files that say what is simulated
 //! - [`contact`]: forces and impulses of contacts and their modes, decided by complementarity
 //! - [`constraint_drift`]: how far joints come apart where they are explicit constraints
@@ -24,12 +25,14 @@ mod measured_log;
 mod motion;
 mod record;
 mod run;
+mod runner;
 pub mod scenario;
 mod settle;
 mod simulation;
 mod start;
 mod state;
 pub mod time_stepping;
+mod variation;
 
 pub use audit::{Audit, Tolerances};
 pub use breakdown::{Breakdown, Stop};
@@ -39,8 +42,9 @@ pub use joint_record::{JointRecord, Peak, TrackingError};
 pub use log::{Log, LogError, LogFault};
 pub use measure::Measurement;
 pub use measured_log::measured_log;
-pub use run::{Event, EventKind, Run, simulate, simulate_believing};
+pub use run::{Event, EventKind, Run, simulate, simulate_believing, simulate_varied};
 pub use settle::{Scuffing, Touching};
 pub use simulation::Simulation;
 pub use start::StartError;
 pub use state::State;
+pub use variation::VariationError;

@@ -65,6 +65,9 @@ pub(super) struct Motion<'a> {
     pub(super) closed: Vec<Closed>,
     /// Torque held by a sampled controller; none controls continuously.
     pub(super) held: Option<Vec<f64>>,
+    /// Whether contacts that stick are held where they stand, not only still. Each of the motions
+    /// near one has its own places.
+    pub(super) holds_places: bool,
     /// References are those before this time: at it they may jump.
     pub(super) segment_end: f64,
     measured: [Vec<f64>; 2],
@@ -144,6 +147,7 @@ impl<'a> Motion<'a> {
             layout,
             closed: Vec::new(),
             held: None,
+            holds_places: true,
             segment_end: f64::INFINITY,
             measured: [Vec::new(), Vec::new()],
             solver: ContactSolver::new(),
@@ -354,6 +358,7 @@ impl<'a> Motion<'a> {
                     self.ground.append(position, &mut along);
                     for axis in 0..tangents {
                         let error = along[axis] - closed.anchor[axis];
+                        let error = if self.holds_places { error } else { 0.0 };
                         free[axis] += rate * (2.0 * speed[axis] + rate * error);
                     }
                 }

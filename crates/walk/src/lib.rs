@@ -3,10 +3,14 @@
 //! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
+//! - [`poincare`]: cycles, and whether they are stable
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod inverse_kinematics;
+mod leg_exchange;
+pub mod poincare;
 mod scenario;
 pub mod weight_shift_step;
 
+pub use leg_exchange::LegExchange;
 pub use scenario::read_scenario;

@@ -50,6 +50,16 @@ impl Fourier {
         Ok(Self { frequencies, offset, sines, cosines })
     }
 
+    /// The time after which it repeats itself \[s\]: none where the frequencies are no multiples of
+    /// the lowest.
+    pub(super) fn period_s(&self) -> Option<f64> {
+        let Some(lowest) = self.frequencies.iter().copied().reduce(f64::min) else {
+            return Some(0.0);
+        };
+        let is_multiple = |w: &f64| (w / lowest - (w / lowest).round()).abs() < 1e-9;
+        self.frequencies.iter().all(is_multiple).then_some(std::f64::consts::TAU / lowest)
+    }
+
     pub(super) fn at(&self, t_s: f64) -> Setpoint {
         let mut sum = Setpoint::resting(self.offset);
         for ((&w, a), b) in self.frequencies.iter().zip(&self.sines).zip(&self.cosines) {

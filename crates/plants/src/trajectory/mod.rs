@@ -77,6 +77,17 @@ impl Reference {
         }
     }
 
+    /// The time after which it repeats itself \[s\]: 0 for one that never changes, none for one
+    /// that does not repeat.
+    pub fn period_s(&self) -> Option<f64> {
+        match self {
+            Self::Constant(_) => Some(0.0),
+            Self::Sequence(sequence) => sequence.period_s(),
+            Self::Fourier(series) => series.period_s(),
+            _ => None,
+        }
+    }
+
     /// The first time after `t_s` at which position or rate may jump: integrators stop there.
     pub fn next_break(&self, t_s: f64) -> Option<f64> {
         let ends = |range: [f64; 2]| range.into_iter().find(|end| *end > t_s);

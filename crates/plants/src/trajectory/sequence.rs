@@ -40,6 +40,11 @@ impl Sequence {
         Ok(Self { parts, ends, repeat })
     }
 
+    /// The time after which it repeats itself, if it does \[s\].
+    pub(super) fn period_s(&self) -> Option<f64> {
+        self.repeat.then(|| self.period())
+    }
+
     fn period(&self) -> f64 {
         self.ends[self.ends.len() - 1]
     }

@@ -1,0 +1,18 @@
+//! Cycles of walking robots: fixed points of return maps and their stability (thesis 4.2.2).
+//!
+//! - [`ReturnMap`]: from a section of the cycle to the next
+//! - [`fixed_point`]: the state that comes back to itself
+//! - [`by_differences`], [`by_variation`]: the linearised return map, in two independent ways
+//! - [`multipliers`]: its eigenvalues with their directions
+
+mod chart;
+mod cycle;
+mod multipliers;
+mod section;
+mod symmetry;
+
+pub use chart::Chart;
+pub use cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
+pub use multipliers::{Multiplier, multipliers};
+pub use section::{ReturnError, ReturnMap, Returned, Section};
+pub use symmetry::Symmetry;

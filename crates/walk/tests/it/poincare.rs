@@ -1,0 +1,102 @@
+//! Cycles of the planar biped: fixed points and multipliers of both shipped gaits against walking.md
+//! section 2, which another simulator found, and the two ways to a monodromy against each other.
+
+use super::assert_near;
+use denavit_plants::shipped;
+use denavit_simulate::integrate::{Accuracy, Method};
+use denavit_simulate::scenario::Scenario;
+use denavit_simulate::{Simulation, State, simulate};
+use denavit_walk::LegExchange;
+use denavit_walk::poincare::{
+    ReturnMap, Section, by_differences, by_variation, fixed_point, multipliers,
+};
+
+fn scenario(name: &str) -> Scenario {
+    let load = |model: &str| {
+        let shipped = shipped::find(model).ok_or("no such model")?;
+        Ok(shipped.text.as_bytes().to_vec())
+    };
+    let found = shipped::SCENARIOS.iter().find(|known| known.name == name).unwrap();
+    denavit_walk::read_scenario(name, found.text.as_bytes(), &load).unwrap()
+}
+
+/// The return map of a gait with this time of a step, looked at after a share of it.
+fn with_map<T>(
+    name: &str,
+    (step_s, share): (f64, f64),
+    then: impl FnOnce(&mut ReturnMap<'_>, State) -> T,
+) -> T {
+    let mut scenario = scenario(name);
+    let accuracy = Accuracy { relative: 1e-11, absolute: 1e-12, max_step_s: 0.02 };
+    let simulation = Simulation { method: Method::Radau(accuracy), ..scenario.simulation.clone() };
+    let (plant, at_s) = (scenario.plant.as_mut(), share * step_s);
+    let exchange = LegExchange::find(plant);
+    assert!(exchange.is_some(), "the biped is its own mirror image");
+    let approach = Simulation { end_s: at_s + 4.0 * step_s, ..simulation.clone() };
+    let run = simulate(plant, &scenario.control, &scenario.initial, &approach).unwrap();
+    let mut map = ReturnMap {
+        plant,
+        control: &scenario.control,
+        simulation,
+        exchange,
+        section: Section::Clock { at_s, period_s: step_s },
+        patience_s: 2.0,
+        clock_s: Some(step_s),
+    };
+    then(&mut map, State { t_s: at_s, ..run.end })
+}
+
+/// Largest first; those after them are smaller than 1e-3.
+fn assert_cycle(gait: (&str, f64), share: f64, travel_m: f64, expected: &[[f64; 2]]) {
+    with_map(gait.0, (gait.1, share), |map, near| {
+        let cycle = fixed_point(map, &near).unwrap();
+        assert_eq!(cycle.chart.len(), 12, "fourteen, of which a flat foot forbids two");
+        assert_near(cycle.travel_m[0], travel_m, 2e-4);
+        let varied = by_variation(map, &cycle.chart, cycle.period_s).unwrap();
+        let differences = by_differences(map, &cycle.chart).unwrap();
+        assert_near((&varied - &differences).amax(), 0.0, 1e-5);
+        let found = multipliers(&varied).unwrap();
+        for (multiplier, expected) in found.iter().zip(expected) {
+            for part in 0..2 {
+                assert_near(multiplier.value[part], expected[part], 2e-6);
+            }
+        }
+        assert!(found[expected.len()..].iter().all(|multiplier| multiplier.modulus() < 1e-3));
+    });
+}
+
+const ZMP_GAIT: (&str, f64) = ("planar_biped_zmp_gait", 1.2);
+const LIMIT_CYCLE: (&str, f64) = ("planar_biped_limit_cycle_gait", 0.45);
+
+#[test]
+fn the_zmp_gait_has_its_two_multipliers() {
+    assert_cycle(ZMP_GAIT, 0.5, 0.1012, &[[-0.211688, 0.0], [-0.066230, 0.0]]);
+}
+
+#[test]
+fn the_limit_cycle_has_its_multipliers_on_every_section() {
+    let pair = [[-0.455933, 0.490869], [-0.455933, -0.490869]];
+    let small = [[0.078810, 0.0], [0.00276, 0.00211], [0.00276, -0.00211]];
+    for share in [0.3, 0.5, 0.65] {
+        assert_cycle(LIMIT_CYCLE, share, 0.30933, &[&pair[..], &small[..]].concat());
+    }
+}
+
+#[test]
+fn the_fixed_points_are_those_of_walking_md() {
+    // torso, stance thigh, shank, foot, swing thigh, shank, foot from upright, counterclockwise
+    let expected = [0.1625252, 0.2582333, -0.74292352, 0.0, 0.31361067, -1.00950902, -0.0258306];
+    with_map(LIMIT_CYCLE.0, (LIMIT_CYCLE.1, 0.5), |map, near| {
+        let cycle = fixed_point(map, &near).unwrap();
+        let q = &cycle.chart.base.q;
+        // clockwise from the base on: pitch, then hip, knee and ankle of each leg
+        let right = [q[3], q[3] + q[4], q[3] + q[4] + q[5]].map(|angle| -q[2] - angle);
+        let left = [q[6], q[6] + q[7], q[6] + q[7] + q[8]].map(|angle| -q[2] - angle);
+        let (stance, swing) =
+            if right[2].abs() < left[2].abs() { (right, left) } else { (left, right) };
+        let found = [&[-q[2]][..], &stance[..], &swing[..]].concat();
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert_near(found.abs(), f64::abs(expected), 2e-6);
+        }
+    });
+}

@@ -99,9 +99,9 @@ impl ReturnMap<'_> {
             Section::Touch(contact) => {
                 let becomes = |e: &LegExchange| e.contacts.iter().position(|to| *to == contact);
                 let contact = self.exchange.as_ref().and_then(becomes).unwrap_or(contact);
-                self.to_event(start, &EventKind::Touch(contact))
+                self.until_event(start, &EventKind::Touch(contact))
             }
-            Section::Jump(guard) => self.to_event(start, &EventKind::Jump(guard)),
+            Section::Jump(guard) => self.until_event(start, &EventKind::Jump(guard)),
         }
     }
 
@@ -126,7 +126,7 @@ impl ReturnMap<'_> {
         state
     }
 
-    fn to_event(&mut self, start: &State, kind: &EventKind) -> Result<Returned, ReturnError> {
+    fn until_event(&mut self, start: &State, kind: &EventKind) -> Result<Returned, ReturnError> {
         if !start.motor.is_empty() || self.plant.law_states() > 0 {
             return Err(ReturnError::HiddenStates);
         }

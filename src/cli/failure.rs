@@ -80,6 +80,8 @@ pub(crate) enum Failure {
     Identify(IdentifyFailure),
     /// Nothing is diagnosed.
     Diagnose(DiagnosisError),
+    /// A gait has no answer; holds the scenario and why.
+    Walk(String, String),
     /// A step was given for the scheme that chooses its own.
     StepOfEventScheme,
     /// The answer cannot be written to standard output.
@@ -180,6 +182,7 @@ impl Failure {
             | Self::Excite(_)
             | Self::Identify(_)
             | Self::Diagnose(_)
+            | Self::Walk(..)
             | Self::Base(..)
             | Self::Decompose(..)
             | Self::Equations(_)
@@ -280,6 +283,7 @@ impl Failure {
             Self::Excite(error) => write!(f, "{error}")?,
             Self::Identify(error) => write!(f, "{error}")?,
             Self::Diagnose(error) => write!(f, "{error}")?,
+            Self::Walk(scenario, why) => write!(f, "{scenario}: {why}")?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }

@@ -29,6 +29,7 @@ mod schema;
 mod simulate;
 mod unfinished;
 mod verify;
+mod walk;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -66,6 +67,7 @@ enum Command {
     Verify(verify::Arguments),
     Schema(schema::Arguments),
     Simulate(simulate::Arguments),
+    Walk(walk::Arguments),
     Excite(excite::Arguments),
     Identify(identify::Arguments),
     Diagnose(diagnose::Arguments),
@@ -130,6 +132,7 @@ impl Command {
             self,
             Self::Demo(_)
                 | Self::Simulate(_)
+                | Self::Walk(_)
                 | Self::Excite(_)
                 | Self::Identify(_)
                 | Self::Diagnose(_)
@@ -152,6 +155,7 @@ impl Command {
             Self::Verify(arguments) => verify::run(arguments, out),
             Self::Schema(arguments) => schema::run(arguments, out),
             Self::Simulate(arguments) => simulate::run(arguments, out),
+            Self::Walk(arguments) => walk::run(arguments, out),
             Self::Excite(arguments) => excite::run(arguments, out),
             Self::Identify(arguments) => identify::run(arguments, out),
             Self::Diagnose(arguments) => diagnose::run(arguments, out),

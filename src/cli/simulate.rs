@@ -147,7 +147,7 @@ fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
-fn open(path: &Path) -> Result<Scenario, Failure> {
+pub(super) fn open(path: &Path) -> Result<Scenario, Failure> {
     let name = shown(path);
     let bytes = match read_or_shipped(path, ("scenario", shipped::SCENARIOS)) {
         Err(Failure::NoShipped { .. }) if shipped::find_referred(&name).is_some() => {

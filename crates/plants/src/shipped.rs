@@ -65,6 +65,7 @@ pub const CONTROLLERS: &[ShippedModel] = &shipped!["models/controllers": "emps",
 /// Every shipped scenario, by name.
 pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "bouncing_ball",
+    "compass_gait",
     "cradle",
     "double_pendulum",
     "falling_rod",

@@ -11,6 +11,7 @@
 //!   [`convergence_picture`]: how an
 //!   estimate came about; [`IdentificationPage`]: all of it
 //! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
+//! - [`UnitCircle`]: Floquet multipliers of a gait
 //!
 //! Nothing here prints; text is handed to whoever does.
 
@@ -32,6 +33,7 @@ mod svg;
 mod table;
 mod two_stage;
 mod values;
+mod walk;
 
 pub use denavit_numerics::{percent, short};
 pub use diagnosis::{DiagnosisPage, verdict_paragraph};
@@ -47,3 +49,4 @@ pub use run::{
 pub use table::{Align, Table};
 pub use two_stage::TwoStagePage;
 pub use values::Values;
+pub use walk::UnitCircle;

@@ -15,6 +15,8 @@ pub(super) struct Recorder {
     pub(super) log: Log,
     pub(super) audit: Audit,
     pub(super) joints: JointObserver,
+    /// Contacts that pass through the ground by a rule, until they rise again.
+    pub(super) passing: Vec<bool>,
     /// Nothing but contacts and gravity acts from outside.
     free: bool,
     start_energy: f64,
@@ -32,6 +34,7 @@ impl Recorder {
             log: Log { columns, ..Log::default() },
             audit: Audit::new(model),
             joints: JointObserver::new(model, motion.control),
+            passing: vec![false; model.contacts.len()],
             free: model.joints.first().is_some_and(|joint| !joint.drivable),
             start_energy,
             impact_energy: 0.0,
@@ -127,8 +130,11 @@ impl Recorder {
     fn audit_contacts(&mut self, motion: &Motion<'_>) {
         let (rows, work, audit) = (motion.ground.rows(), &motion.work, &mut self.audit);
         let model = motion.plant.model();
-        for contact in 0..model.contacts.len() {
-            audit.penetration_m = worst(audit.penetration_m, -motion.gap(contact));
+        for (contact, passes) in self.passing.iter_mut().enumerate() {
+            *passes = *passes && motion.gap(contact) < 0.0;
+            if !*passes {
+                audit.penetration_m = worst(audit.penetration_m, -motion.gap(contact));
+            }
         }
         for (index, closed) in motion.closed.iter().enumerate() {
             let normal = index * rows + rows - 1;

@@ -237,6 +237,7 @@ impl<'a> Runner<'a> {
         if let (EventKind::Touch(contact), []) = (&kind, touching) {
             // passes through, by rule: it counts again once it has risen
             self.watch.level[*contact] = f64::NEG_INFINITY;
+            self.recorder.passing[*contact] = true;
             return Ok(());
         }
         let (n, rates) = (self.motion.layout.joints, self.motion.layout.joint_rates());

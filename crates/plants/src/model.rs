@@ -128,6 +128,40 @@ impl Default for GroundModel {
     }
 }
 
+impl GroundModel {
+    /// Height of a point above the ground \[m\].
+    pub fn height(&self, position: &[f64]) -> f64 {
+        let arm: [f64; 3] = std::array::from_fn(|axis| position[axis] - self.point[axis]);
+        dot(self.normal, &arm)
+    }
+
+    /// The tangents: forward, then to the left of it. For a ground that faces up forward is
+    /// towards x.
+    pub fn tangents(&self) -> [[f64; 3]; 2] {
+        // y x n, or z x n for a wall that faces y
+        let mut forward = cross([0.0, 1.0, 0.0], self.normal);
+        if dot(forward, &forward).sqrt() < 1e-6 {
+            forward = cross([0.0, 0.0, 1.0], self.normal);
+        }
+        let size = dot(forward, &forward).sqrt();
+        let forward = forward.map(|entry| entry / size);
+        [forward, cross(self.normal, forward)]
+    }
+
+    /// A point along the tangents \[m\].
+    pub fn along(&self, position: &[f64]) -> [f64; 2] {
+        self.tangents().map(|tangent| dot(tangent, position))
+    }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: [f64; 3], b: &[f64]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 /// A value for a parameter in place of the model's own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {

@@ -1,6 +1,6 @@
 //! Audits: laws of mechanics that a run must obey, measured on what it did.
 
-use super::ground::{Ground, cross, dot};
+use super::ground::{cross, dot};
 use super::integrate::Method;
 use super::motion::Motion;
 use denavit_plants::PlantModel;
@@ -240,7 +240,7 @@ const DIFFERENCE: f64 = 1e-3;
 
 /// Compares contact forces with the change of momentum, for a plant that nothing else holds.
 /// `work` of the motion is that of `y`.
-pub(super) fn balance(motion: &mut Motion<'_>, y: &[f64]) -> Balance {
+pub(super) fn balance(motion: &mut Motion<'_>, t_s: f64, y: &[f64]) -> Balance {
     let rows = motion.ground.rows();
     let ([mut force, mut moment], normal) = ([[0.0; 3]; 2], motion.ground.normal());
     let origin = motion.plant.model().ground.point;
@@ -258,10 +258,14 @@ pub(super) fn balance(motion: &mut Motion<'_>, y: &[f64]) -> Balance {
     for axis in 0..3 {
         rate[axis] -= mass * gravity[axis];
     }
-    let needed = [rate[0], rate[1], rate[2]];
+    let [pushed, pushed_moment] = pushes(motion, t_s, y, origin);
+    let carried = [rate[0], rate[1], rate[2]];
     let arm = std::array::from_fn(|axis| center[axis] - origin[axis]);
-    let mut needed_moment = cross(arm, needed);
+    let mut needed_moment = cross(arm, carried);
     add(&mut needed_moment, [rate[3], rate[4], rate[5]]);
+    // what pushes is not the ground's to give
+    let needed = std::array::from_fn(|axis| carried[axis] - pushed[axis]);
+    needed_moment.iter_mut().zip(pushed_moment).for_each(|(entry, push)| *entry -= push);
     let error = (0..3).map(|axis| (force[axis] - needed[axis]).powi(2)).sum::<f64>().sqrt();
     let normal_force = dot(normal, &force);
     // below a hundredth of the weight a moment has no point
@@ -278,6 +282,19 @@ pub(super) fn balance(motion: &mut Motion<'_>, y: &[f64]) -> Balance {
         force_error: error,
         normal_force,
     }
+}
+
+/// Sum and moment about a point of the forces that push from outside [N, N m].
+fn pushes(motion: &mut Motion<'_>, t_s: f64, y: &[f64], origin: [f64; 3]) -> [[f64; 3]; 2] {
+    let [mut sum, mut moment] = [[0.0; 3]; 2];
+    let (q, time) = (motion.layout.parts(y).q, motion.reference_time(t_s));
+    for push in motion.pushes {
+        let Some(force) = push.force(time) else { continue };
+        let place = push.place(motion.plant, q);
+        add(&mut sum, force);
+        add(&mut moment, cross(std::array::from_fn(|axis| place[axis] - origin[axis]), force));
+    }
+    [sum, moment]
 }
 
 /// The point of the ground about which forces of this sum and of this moment about `origin` have no
@@ -329,77 +346,4 @@ fn momentum_rate(motion: &mut Motion<'_>, y: &[f64]) -> [f64; 6] {
         let along = (8.0 * (ahead[i] - back[i]) - (far_ahead[i] - far_back[i])) / (12.0 * h);
         of_acceleration[i] + along
     })
-}
-
-/// Distance of a point from the edge of the convex hull of others, seen along the normal; negative
-/// outside, and minus the distance for hulls without area.
-pub(super) fn support_margin<'a>(
-    ground: &Ground,
-    corners: impl Iterator<Item = &'a [f64]>,
-    point: [f64; 3],
-) -> f64 {
-    let tangents = ground.tangents();
-    let flat = |position: &[f64]| tangents.map(|tangent| dot(tangent, position));
-    let at = flat(&point);
-    let corners: Vec<[f64; 2]> = corners.map(flat).collect();
-    if ground.rows() == 2 {
-        let ends = |pick: fn(f64, f64) -> f64, start: f64| {
-            corners.iter().fold(start, |sum, corner| pick(sum, corner[0]))
-        };
-        let (low, high) = (ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY));
-        return (at[0] - low).min(high - at[0]);
-    }
-    hull_margin(&corners, at)
-}
-
-fn hull_margin(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
-    let mut margin = f64::INFINITY;
-    let mut edges = 0;
-    for (i, a) in corners.iter().enumerate() {
-        for b in corners.iter().skip(i + 1).chain(&corners[..i]) {
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let size = along[0].hypot(along[1]);
-            if size < 1e-9 {
-                continue;
-            }
-            let left = |p: &[f64; 2]| (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / size;
-            // an edge has every corner on its left
-            if corners.iter().all(|corner| left(corner) >= -1e-9) {
-                edges += 1;
-                margin = margin.min(left(&at));
-            }
-        }
-    }
-    if edges >= 3 { margin } else { -nearest(corners, at) }
-}
-
-/// Distance from the nearest of the lines between corners.
-fn nearest(corners: &[[f64; 2]], at: [f64; 2]) -> f64 {
-    let mut least = f64::INFINITY;
-    for (i, a) in corners.iter().enumerate() {
-        for b in &corners[i..] {
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let (square, arm) = (along[0].powi(2) + along[1].powi(2), [at[0] - a[0], at[1] - a[1]]);
-            let share = (arm[0] * along[0] + arm[1] * along[1]) / square.max(1e-18);
-            let share = share.clamp(0.0, 1.0);
-            let apart = [arm[0] - share * along[0], arm[1] - share * along[1]];
-            least = least.min(apart[0].hypot(apart[1]));
-        }
-    }
-    least
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_margin_of_a_square_is_the_distance_from_its_nearest_edge() {
-        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]];
-        assert!((hull_margin(&square, [0.5, 1.0]) - 0.5).abs() < 1e-15);
-        assert!((hull_margin(&square, [1.0, 2.25]) + 0.25).abs() < 1e-15);
-        // on an edge that two points alone support
-        assert_eq!(hull_margin(&square[..2], [0.7, 0.0]), 0.0);
-        assert_eq!(hull_margin(&square[..2], [3.0, 0.0]), -1.0);
-    }
 }

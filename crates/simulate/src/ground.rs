@@ -18,14 +18,8 @@ impl Ground {
     pub(super) fn new(model: &PlantModel) -> Self {
         let GroundModel { point, normal } = model.ground;
         let space = if model.planar { Space::Planar } else { Space::Spatial };
-        // forward: y x n, or z x n for a wall that faces y
-        let mut forward = cross([0.0, 1.0, 0.0], normal);
-        if length(forward) < 1e-6 {
-            forward = cross([0.0, 0.0, 1.0], normal);
-        }
-        let size = length(forward);
-        let forward = forward.map(|entry| entry / size);
-        Self { space, point, directions: [forward, cross(normal, forward), normal] }
+        let [forward, left] = model.ground.tangents();
+        Self { space, point, directions: [forward, left, normal] }
     }
 
     /// Rows per contact.
@@ -87,8 +81,4 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 pub(super) fn dot(a: [f64; 3], b: &[f64]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    dot(a, &a).sqrt()
 }

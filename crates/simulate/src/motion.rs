@@ -16,6 +16,7 @@ use super::drive::{DriveOutput, Drives};
 use super::ground::Ground;
 use super::integrate::Rates;
 use super::laws::LawForces;
+use super::push::{self, Push};
 use super::state::{INTEGRALS, Layout};
 use denavit_plants::Plant;
 
@@ -65,6 +66,8 @@ pub(super) struct Motion<'a> {
     pub(super) closed: Vec<Closed>,
     /// Torque held by a sampled controller; none controls continuously.
     pub(super) held: Option<Vec<f64>>,
+    /// What pushes from outside.
+    pub(super) pushes: &'a [Push],
     /// Whether contacts that stick are held where they stand, not only still. Each of the motions
     /// near one has its own places.
     pub(super) holds_places: bool,
@@ -104,6 +107,8 @@ pub(super) struct Work {
     pub(super) free: Vec<f64>,
     /// Forces of the closed contacts, rows of each in turn.
     pub(super) force: Vec<f64>,
+    /// Torques of what pushes, if anything does.
+    pub(super) push: Option<Vec<f64>>,
     pub(super) contacts: Vec<Contact>,
     pub(super) modes: Vec<Mode>,
     scratch: Vec<f64>,
@@ -147,6 +152,7 @@ impl<'a> Motion<'a> {
             layout,
             closed: Vec::new(),
             held: None,
+            pushes: &[],
             holds_places: true,
             segment_end: f64::INFINITY,
             measured: [Vec::new(), Vec::new()],
@@ -195,11 +201,17 @@ impl<'a> Motion<'a> {
         }
         self.factor_mass(y)?;
         let parts = self.layout.parts(y);
-        let Work { mass, bias, acceleration, drive, command, laws, .. } = &mut self.work;
+        let Work { mass, bias, acceleration, drive, command, laws, push, .. } = &mut self.work;
         self.drives.respond(self.plant.model(), command, parts, drive);
         self.plant.bias(parts.q, parts.qd, bias);
         for (entry, (torque, bias)) in acceleration.iter_mut().zip(drive.torque.iter().zip(bias)) {
             *entry = torque - *bias;
+        }
+        if !self.pushes.is_empty() {
+            *push = push::torques(self.pushes, self.plant, time, parts.q);
+            for (entry, torque) in acceleration.iter_mut().zip(push.iter().flatten()) {
+                *entry += torque;
+            }
         }
         if !laws.respond(self.plant, t_s, parts, None) {
             self.delassus.solve_mass(acceleration);
@@ -429,8 +441,11 @@ impl Rates for Motion<'_> {
             by_laws = laws.power(parts);
             dy[2 * positions..2 * positions + self.layout.laws].copy_from_slice(laws.rates());
         }
+        let by_push = self.work.push.as_ref().map_or(0.0, |push| {
+            push.iter().zip(parts.qd).map(|(torque, velocity)| torque * velocity).sum()
+        });
         let integrals = 2 * positions + self.layout.laws;
-        dy[integrals] = put_in;
+        dy[integrals] = put_in + by_push;
         dy[integrals + 1] = lost + rubbed + by_laws;
         match dy.iter().all(|entry| entry.is_finite()) {
             true => Ok(()),

@@ -1,12 +1,14 @@
 //! Writes a run down: rows of the log, and the worst of every audit.
 
-use super::audit::{Audit, balance, friction_angle, support_margin, worst};
+use super::audit::{Audit, balance, friction_angle, worst};
 use super::breakdown::Breakdown;
 use super::contact::{Friction, Mode};
 use super::control::Control;
 use super::joint_record::JointObserver;
 use super::log::Log;
 use super::motion::Motion;
+use super::simulation::Simulation;
+use super::support::SupportPolygon;
 use denavit_plants::PlantModel;
 
 /// Log and audit of a run.
@@ -17,6 +19,8 @@ pub(super) struct Recorder {
     pub(super) joints: JointObserver,
     /// Contacts that pass through the ground by a rule, until they rise again.
     pub(super) passing: Vec<bool>,
+    /// Whether rows have accelerations.
+    accelerations: bool,
     /// Nothing but contacts and gravity acts from outside.
     free: bool,
     start_energy: f64,
@@ -26,12 +30,16 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    pub(super) fn new(motion: &mut Motion<'_>, y: &[f64]) -> Self {
+    pub(super) fn new(motion: &mut Motion<'_>, simulation: &Simulation, y: &[f64]) -> Self {
         let start_energy = motion.energy(y);
         let model = motion.plant.model();
-        let columns = columns(model, motion.control, &motion.drives.elastic);
+        let mut columns = columns(model, motion.control, &motion.drives.elastic);
+        if simulation.logs_accelerations {
+            columns.extend(model.joints.iter().map(|joint| format!("qdd_{}", joint.name)));
+        }
         Self {
             log: Log { columns, ..Log::default() },
+            accelerations: simulation.logs_accelerations,
             audit: Audit::new(model),
             joints: JointObserver::new(model, motion.control),
             passing: vec![false; model.contacts.len()],
@@ -49,6 +57,12 @@ impl Recorder {
         self.audit.impact_gain_j = self.audit.impact_gain_j.max(energy_j);
     }
 
+    /// A push changed the energy by this much \[J\].
+    pub(super) fn add_push(&mut self, energy_j: f64) {
+        self.impact_energy += energy_j;
+        self.lost_in_impacts += energy_j.abs();
+    }
+
     /// Writes the row of the end. Where a run stops because nothing goes on from there, the row has
     /// no forces.
     pub(super) fn note_end(&mut self, motion: &mut Motion<'_>, t_s: f64, y: &[f64]) {
@@ -60,6 +74,7 @@ impl Recorder {
         let rows = motion.ground.rows() * motion.closed.len();
         motion.work.force.clear();
         motion.work.force.resize(rows, f64::NAN);
+        motion.work.acceleration.fill(f64::NAN);
         let energy = motion.energy(y);
         let undefined = self.free.then_some([[f64::NAN; 3]; 2]);
         self.write(motion, t_s, y, undefined, [energy, energy - self.expected_energy(motion, y)]);
@@ -98,7 +113,7 @@ impl Recorder {
         }
         self.audit_contacts(motion);
         // a balance has a meaning where contacts are all that holds the plant
-        let balance = self.free.then(|| balance(motion, y));
+        let balance = self.free.then(|| balance(motion, t_s, y));
         if let Some(balance) = balance {
             let audit = &mut self.audit;
             audit.force_n = worst(audit.force_n, balance.force_error);
@@ -109,7 +124,8 @@ impl Recorder {
                 let points = &motion.work.positions;
                 let corners =
                     motion.closed.iter().map(|c| &points[3 * c.contact..3 * c.contact + 3]);
-                let margin = support_margin(&motion.ground, corners, balance.zmp);
+                let support = SupportPolygon::of(motion.plant.model(), corners);
+                let margin = support.margin(balance.zmp);
                 audit.zmp_margin_m = audit.zmp_margin_m.min(margin);
             }
         }
@@ -217,6 +233,9 @@ impl Recorder {
             values.extend(point);
         }
         values.extend(energies);
+        if self.accelerations {
+            values.extend(&motion.work.acceleration);
+        }
     }
 }
 

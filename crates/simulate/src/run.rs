@@ -33,6 +33,8 @@ pub enum EventKind {
     SlipEnds(usize),
     /// A guard of the plant fired.
     Jump(usize),
+    /// An impulse from outside.
+    Push,
 }
 
 /// An event of a run.
@@ -138,7 +140,7 @@ fn prepare<'a>(
     plant: &'a mut dyn Plant,
     control: &'a Control,
     initial: &State,
-    simulation: &Simulation,
+    simulation: &'a Simulation,
 ) -> Result<(Motion<'a>, f64, Vec<f64>), StartError> {
     plant.begin();
     let mut state = initial.clone();
@@ -157,7 +159,8 @@ fn prepare<'a>(
         tolerance: Tolerance { force: 1e-9, response: 1e-9, relative: 1e-10 },
         slips: SlipMemory::of(simulation.method),
     };
-    let motion = Motion::new(plant, control, drives, friction, holding);
+    let mut motion = Motion::new(plant, control, drives, friction, holding);
+    motion.pushes = &simulation.pushes;
     let y = motion.layout.pack(&state);
     Ok((motion, state.t_s, y))
 }

@@ -9,7 +9,8 @@ use super::measure::Instrument;
 use super::motion::Motion;
 use super::record::Recorder;
 use super::run::{Event, EventKind, Run, stand};
-use super::settle::{Scuffing, Settled, Settler};
+use super::push::Shove;
+use super::settle::{Onset, Scuffing, Settled, Settler};
 use super::simulation::Simulation;
 use super::start::StartError;
 use super::variation::{Variation, VariationError};
@@ -38,6 +39,8 @@ pub(super) struct Runner<'a> {
     recent: Vec<f64>,
     /// Number of the controller's next sample, and of the log's next row.
     sample: u64,
+    /// Number of the next push.
+    pushed: usize,
     row: u64,
     /// Time of the last row.
     written_s: f64,
@@ -63,13 +66,14 @@ impl<'a> Runner<'a> {
         let mut runner = Self {
             watch: Watch::new(counts, y.len()),
             stepper: Stepper::new(simulation.method, start_s, &y),
-            recorder: Recorder::new(&mut motion, &y),
+            recorder: Recorder::new(&mut motion, simulation, &y),
             settler: Settler::default(),
             instrument: Instrument::new(simulation.measurement, simulation.seed),
             variation,
             events: Vec::new(),
             recent: Vec::new(),
             sample: 0,
+            pushed: 0,
             row: 0,
             written_s: f64::NEG_INFINITY,
             start_s,
@@ -100,6 +104,7 @@ impl<'a> Runner<'a> {
         loop {
             let t = self.t_s;
             self.sample_control(t);
+            self.push(t)?;
             self.write_rows(t)?;
             if t >= self.simulation.end_s {
                 return Ok(Stop::End);
@@ -251,7 +256,11 @@ impl<'a> Runner<'a> {
             self.watch.slack = 0.0;
             self.motion.want(Loads::Compliant);
             let law = &self.simulation.touching;
-            self.settler.settle(&mut self.motion, law, touching, t_s, &mut self.y)
+            let onset = match kind {
+                EventKind::Push => Onset::Push,
+                _ => Onset::Touch(touching),
+            };
+            self.settler.settle(&mut self.motion, law, onset, t_s, &mut self.y)
         };
         let settled = match outcome {
             Ok(settled) => settled,
@@ -343,6 +352,40 @@ impl<'a> Runner<'a> {
         });
     }
 
+    /// Impulses from outside that are due.
+    fn push(&mut self, t_s: f64) -> Result<(), Breakdown> {
+        while let Some(push) = self.simulation.pushes.get(self.pushed) {
+            if push.at_s > t_s + SAME_TIME_S {
+                break;
+            }
+            self.pushed += 1;
+            let Shove::Impulse(impulse) = push.shove else { continue };
+            if push.at_s < t_s - SAME_TIME_S {
+                continue;
+            }
+            if let Some(variation) = &mut self.variation {
+                variation.failure.get_or_insert(VariationError::Pushed);
+            }
+            let rates = self.motion.layout.joint_rates();
+            let before = self.y[rates.clone()].to_vec();
+            let energy = self.motion.energy(&self.y);
+            let q = self.motion.layout.parts(&self.y).q.to_vec();
+            let mut change = push.torques(self.motion.plant, &q, impulse);
+            self.motion.factor_mass(&self.y)?;
+            self.motion.delassus.solve_mass(&mut change);
+            self.y[rates].iter_mut().zip(change).for_each(|(rate, change)| *rate += change);
+            let events = self.events.len();
+            let pushed = self.motion.energy(&self.y) - energy;
+            self.recorder.add_push(pushed);
+            self.happen(EventKind::Push, t_s, &[])?;
+            if let Some(event) = self.events.get_mut(events) {
+                event.before = before;
+                event.energy_j += pushed;
+            }
+        }
+        Ok(())
+    }
+
     /// Takes the samples of the controller that are due.
     fn sample_control(&mut self, t_s: f64) {
         let Some(period_s) = self.motion.control.period_s else { return };
@@ -370,8 +413,10 @@ impl<'a> Runner<'a> {
             Some(_) => None,
         };
         let end_s = self.simulation.end_s;
+        let pushes = self.simulation.pushes.iter().flat_map(|push| [push.at_s, push.end_s()]);
+        let push = pushes.filter(|at_s| *at_s > t_s + SAME_TIME_S).reduce(f64::min);
         let before = |stop_s: &f64| *stop_s < end_s - SAME_TIME_S;
-        [sample, jump].into_iter().flatten().filter(before).fold(end_s, f64::min)
+        [sample, jump, push].into_iter().flatten().filter(before).fold(end_s, f64::min)
     }
 
     /// The time of the log's next row.

@@ -42,6 +42,15 @@ const SLIP_SPEED: f64 = 1e-8;
 /// How often a decision is taken again for points that others of their foot hold.
 const HELD_ROUNDS: usize = 3;
 
+/// What contacts are asked to settle after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Onset<'a> {
+    /// These touch the ground beside those that are closed.
+    Touch(&'a [usize]),
+    /// An impulse has changed the velocities, which those that are closed may forbid.
+    Push,
+}
+
 /// What an event did to the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Settled {
@@ -61,16 +70,20 @@ pub(super) struct Settler {
 }
 
 impl Settler {
-    /// Impact, if any, and the modes after it, of the closed contacts and those in `new`. Changes
+    /// Impact, if any, and the modes after it, of the closed contacts and those that touch. Changes
     /// the rates in `y`.
     pub(super) fn settle(
         &mut self,
         motion: &mut Motion<'_>,
         touching: &Touching,
-        new: &[usize],
+        onset: Onset<'_>,
         t_s: f64,
         y: &mut [f64],
     ) -> Result<Settled, Breakdown> {
+        let new = match onset {
+            Onset::Touch(new) => new,
+            Onset::Push => &[],
+        };
         let mut candidates: Vec<usize> = motion.closed.iter().map(|c| c.contact).collect();
         candidates.extend(new);
         candidates.sort_unstable();
@@ -84,7 +97,7 @@ impl Settler {
         let rows = motion.ground.rows();
         let hits = (0..candidates.len())
             .any(|index| motion.work.velocity[index * rows + rows - 1] < -IMPACT_SPEED);
-        if hits {
+        if hits || onset == Onset::Push {
             self.collide(motion, touching, &candidates, y, &mut settled)?;
         }
         self.rest(motion, touching, &candidates, t_s, y, &mut settled)?;

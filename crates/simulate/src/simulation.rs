@@ -4,6 +4,7 @@ use super::contact::Friction;
 use super::drive::{DriveModelling, STICTION_RATE};
 use super::integrate::Method;
 use super::measure::Measurement;
+use super::push::Push;
 use super::settle::{Scuffing, Touching};
 
 /// How a run is made.
@@ -25,10 +26,14 @@ pub struct Simulation {
     pub friction: Friction,
     /// Laws of impacts.
     pub touching: Touching,
+    /// What pushes from outside.
+    pub pushes: Vec<Push>,
     /// Errors of closed contacts decay at this rate [1/s].
     pub drift_rate: f64,
     /// Period of the log's rows \[s\].
     pub log_period_s: f64,
+    /// Whether rows of the event-driven scheme have accelerations, too: columns `qdd_JOINT`.
+    pub logs_accelerations: bool,
     /// More events end the run.
     pub max_events: usize,
     /// More evaluations of the equations of motion end the run; of time stepping sweeps and pivots
@@ -52,8 +57,10 @@ impl Default for Simulation {
                 fallback_friction: None,
                 scuffing: Scuffing::Counts,
             },
+            pushes: Vec::new(),
             drift_rate: 50.0,
             log_period_s: 0.01,
+            logs_accelerations: false,
             max_events: 100_000,
             max_evaluations: 50_000_000,
         }

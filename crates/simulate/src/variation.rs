@@ -9,7 +9,7 @@ use super::breakdown::{Breakdown, Stop};
 use super::event::{Fired, Watch};
 use super::integrate::{Rates, Stepper};
 use super::motion::{Closed, Motion};
-use super::settle::{Settler, Touching};
+use super::settle::{Onset, Settler, Touching};
 use super::start::StartError;
 use super::state::{INTEGRALS, Layout, State};
 use nalgebra::DMatrix;
@@ -26,6 +26,8 @@ pub enum VariationError {
     Sampled,
     /// The plant has jumps of its own, which may change it.
     Jumps,
+    /// An impulse from outside.
+    Pushed,
     /// The crossing at this time is not transversal: a change of the state has no first-order
     /// effect on its time \[s\].
     Grazing(f64),
@@ -40,6 +42,7 @@ impl fmt::Display for VariationError {
             Self::Stopped(stop, t_s) => write!(f, "at {t_s} s the run {stop}"),
             Self::Sampled => write!(f, "a sampled controller has no variational equation here"),
             Self::Jumps => write!(f, "the plant jumps by a rule of its own"),
+            Self::Pushed => write!(f, "an impulse pushes the robot"),
             Self::Grazing(t_s) => write!(f, "the event at {t_s} s is only grazed"),
             Self::Decision(t_s) => {
                 write!(f, "at {t_s} s other contacts close after the smallest change")
@@ -245,7 +248,7 @@ impl Variation {
         for (end, share) in ends.iter_mut().zip([share, -share]) {
             *end = moved(&crossing.y, change, share);
             motion.closed.clone_from(&crossing.closed);
-            let settled = Settler::default().settle(motion, law, hit, crossing.t_s, end);
+            let settled = Settler::default().settle(motion, law, Onset::Touch(hit), crossing.t_s, end);
             let same = motion.closed.len() == nominal.len()
                 && motion.closed.iter().zip(&nominal).all(|(a, b)| a.does_as(b));
             if settled.is_err() || !same {

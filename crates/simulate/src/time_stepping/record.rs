@@ -6,13 +6,14 @@
 
 use super::plant::{ControlledPlant, split};
 use super::{StepLaw, StepReport, TimeStepper};
-use crate::audit::{Audit, point_of_moment, support_margin, worst};
+use crate::audit::{Audit, point_of_moment, worst};
 use crate::control::Control;
 use crate::ground::{Ground, cross, dot};
 use crate::joint_record::JointObserver;
 use crate::log::Log;
 use crate::record::columns;
 use crate::run::{Event, EventKind};
+use crate::support::SupportPolygon;
 use denavit_plants::PlantModel;
 
 /// Log, audits and events of a run by steps.
@@ -316,7 +317,7 @@ impl StepRecorder {
             .map(|(p, place)| place.map(|entry| entry / dot(normal, p)))
             .collect();
         let corners = corners.iter().map(|corner| &corner[..]);
-        let margin = support_margin(&self.ground, corners, zmp);
+        let margin = SupportPolygon::of(&self.model, corners).margin(zmp);
         self.audit.zmp_margin_m = self.audit.zmp_margin_m.min(margin);
         [zmp, of_momentum]
     }

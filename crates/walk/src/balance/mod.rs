@@ -1,0 +1,14 @@
+//! How a robot keeps its balance along a run: the criteria of thesis 4.2 at every instant.
+//!
+//! - [`Instant`]: zero moment point, centre of pressure, foot rotation indicator, capture point,
+//!   centroidal momentum and support polygon at one time
+//! - [`Course`]: these along a run or a log
+//! - [`Criterion`], [`Margins`], [`Shares`]: what they come to
+
+mod course;
+mod instant;
+mod summary;
+
+pub use course::{BalanceError, Course, Over, course_of_log, course_of_scenario};
+pub use instant::{Instant, Phase};
+pub use summary::{Criterion, Margins, Shares};

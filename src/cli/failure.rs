@@ -4,6 +4,7 @@ use super::identify::IdentifyFailure;
 use super::output_failure::OutputFailure;
 use denavit::diagnose::DiagnosisError;
 use denavit::emit::rust::EmitError;
+use denavit::function::FunctionName;
 use denavit::identify::excite::ExciteError;
 use denavit::model::{BakeError, ModelError};
 use denavit::plants::effect::AddedError;
@@ -202,11 +203,21 @@ fn smallest_scenario(model: &str) -> String {
 }
 
 /// Why a model has none of these functions.
+/// Whether a function finds a point of the ground.
+fn is_of_ground(name: &str) -> bool {
+    use FunctionName::{CapturePoint, CartTableZmp, FootRotationIndicator, ZeroMomentPoint};
+    let points = [ZeroMomentPoint, CartTableZmp, FootRotationIndicator, CapturePoint];
+    points.iter().any(|point| point.as_str() == name)
+}
+
 fn why_no_function(asked: &[String]) -> String {
     let why = |name: &String| match name.as_str() {
         name if name.contains("contact") => "contacts are declared under \"contacts\"",
         name if name.starts_with("base_") => {
             "`denavit base` says why its base parameters are not found"
+        }
+        name if is_of_ground(name) => {
+            "points of the ground are those of robots with a floating base and contact points"
         }
         "state_rates" => "it has no effects with states",
         _ => {

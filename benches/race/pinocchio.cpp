@@ -5,6 +5,7 @@
 #include <pinocchio/fwd.hpp>
 #include <pinocchio/multibody.hpp>
 #include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/centroidal.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/regressor.hpp>
 #include <pinocchio/algorithm/rnea-derivatives.hpp>
@@ -100,6 +101,7 @@ CALL(dynamics_terms, pinocchio::crba(m, d, robot.q, pinocchio::Convention::LOCAL
      pinocchio::computeCoriolisMatrix(m, d, robot.q, robot.qd);
      pinocchio::computeGeneralizedGravity(m, d, robot.q))
 CALL(gravity_vector, pinocchio::computeGeneralizedGravity(m, d, robot.q))
+CALL(centroidal_momentum_matrix, pinocchio::computeCentroidalMap(m, d, robot.q))
 CALL(regressor, pinocchio::computeJointTorqueRegressor(m, d, robot.q, robot.qd, robot.last))
 CALL(inverse_dynamics_derivatives,
      pinocchio::computeRNEADerivatives(m, d, robot.q, robot.qd, robot.last))
@@ -112,6 +114,7 @@ void results(const char *function, double *to) {
     if (name == "forward_dynamics") copied(d.ddq, to);
     if (name == "dynamics_terms") copied(d.g, copied(d.C, symmetric(d.M, to)));
     if (name == "gravity_vector") copied(d.g, to);
+    if (name == "centroidal_momentum_matrix") copied(d.Ag, to);
     if (name == "regressor") regressor(to);
     if (name == "inverse_dynamics_derivatives") copied(d.dtau_dv, copied(d.dtau_dq, to));
 }

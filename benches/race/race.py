@@ -43,6 +43,7 @@ ARGUMENTS = {
     "forward_dynamics": ["q", "qd", "tau"],
     "dynamics_terms": ["q", "qd"],
     "gravity_vector": ["q"],
+    "centroidal_momentum_matrix": ["q"],
     "regressor": ["q", "qd", "qdd"],
     "inverse_dynamics_derivatives": ["q", "qd", "qdd"],
     "base_regressor": ["q", "qd", "qdd"],
@@ -103,6 +104,8 @@ def casadi_outputs(function, model, q, v, a):
         return [dense([robot.gravity_vector(positions)]).T]
     if function == "mass_matrix":
         return [dense(robot.mass_matrix(positions))]
+    if function == "centroidal_momentum_matrix":
+        return [dense(robot.centroidal_momentum_matrix(positions)).T]
     if function == "forward_dynamics":
         return [dense([robot.forward_dynamics(positions, rates, last)]).T]
     if function == "regressor":
@@ -220,6 +223,7 @@ def shapes_of(function, n, columns):
         "dynamics_terms": [(n, n), (n, n), (n,)],
         "inverse_dynamics_derivatives": [(n, n), (n, n)],
         "mass_matrix": [(n, n)],
+        "centroidal_momentum_matrix": [(6, n)],
         "regressor": [(n, columns)],
         ALONE: [(n, columns)],
     }.get(function, [(n,)])
@@ -387,6 +391,8 @@ def exact(function, model, q, v, a):
         return flat(robot.mass_matrix(q))
     if function == "gravity_vector":
         return robot.gravity_vector(q)
+    if function == "centroidal_momentum_matrix":
+        return flat(robot.centroidal_momentum_matrix(q))
     if function == "regressor":
         return flat(robot.regressor(q, v, a, model.bodies))
     if function == "inverse_dynamics_derivatives":

@@ -297,6 +297,43 @@ class Dynamics:
                 composite[joint.parent] = self.carried(i, composite[i], composite[joint.parent])
         return entries
 
+    def centroidal_momentum_matrix(self, q):
+        """Momentum of what each joint carries at a unit velocity: linear, then about the centre of mass."""
+        self.place(q)
+        composite = [[m, list(h), [list(r) for r in inertia]] for m, h, inertia in self.matter]
+        for i in reversed(range(self.n)):
+            parent = self.joints[i].parent
+            if parent >= 0:
+                composite[parent] = self.carried(i, composite[i], composite[parent])
+        whole = [0.0, list(ZERO3), [list(ZERO3) for _ in range(3)]]
+        # Axes of the joints' frames and their origins, in the world.
+        axes, origins = [], []
+        for i, joint in enumerate(self.joints):
+            before = axes[joint.parent] if joint.parent >= 0 else \
+                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            turned = product(before, joint.turn)
+            if self.turns[i] is not None:
+                s, c = self.turns[i]
+                turned = [[add(mul(c, x), mul(s, y)), sub(mul(c, y), mul(s, x)), z]
+                          for x, y, z in turned]
+            shift = times(before, self.offsets[i])
+            axes.append(turned)
+            origins.append(plus(origins[joint.parent], shift) if joint.parent >= 0 else shift)
+            if joint.parent < 0:
+                whole = self.carried(i, composite[i], whole)
+        center = [x / whole[0] for x in whole[1]]
+        columns = []
+        for joint, (mass, moment, inertia), turn, origin in zip(self.joints, composite, axes, origins):
+            if joint.is_revolute:
+                force = [sub(0.0, moment[1]), moment[0], 0.0]
+                torque = [inertia[0][2], inertia[1][2], inertia[2][2]]
+            else:
+                force, torque = [0.0, 0.0, mass], [moment[1], sub(0.0, moment[0]), 0.0]
+            force = times(turn, force)
+            lever = [sub(o, c) for o, c in zip(origin, center)]
+            columns.append([*force, *plus(times(turn, torque), cross(lever, force))])
+        return [list(row) for row in zip(*columns)]
+
     def carried(self, i, part, whole):
         """The composite `whole` with `part`, which stands on joint i."""
         mass, moment, inertia = part

@@ -40,6 +40,22 @@ pub enum FunctionName {
     ContactBias,
     /// Derivatives of the contact points' velocities and accelerations, and of the torques W f.
     ContactDerivatives,
+    /// (d/dt J) qd, J the Jacobian of the centre of mass.
+    CenterOfMassBias,
+    /// A of momentum = A qd: linear, then angular about the centre of mass.
+    CentroidalMomentumMatrix,
+    /// (d/dt A) qd.
+    CentroidalMomentumBias,
+    /// The point of the ground plane about which gravity and inertia have no moment but along the
+    /// plane's normal.
+    ZeroMomentPoint,
+    /// The same of all mass in the centre of mass, which keeps its height.
+    CartTableZmp,
+    /// The point of the ground plane where the ground would have to act to keep a foot still; one
+    /// function for each link that carries contact points.
+    FootRotationIndicator,
+    /// The point of the ground plane above which the linear inverted pendulum comes to rest.
+    CapturePoint,
     /// World position of the centre of mass of all that moves, without what is fixed to the base.
     CenterOfMass,
     /// d(centre of mass)/dq, of all that moves.
@@ -87,7 +103,16 @@ impl FunctionName {
     ];
 
     /// The functions for walking, which are derived where they are asked for by name.
-    pub const WALKING: [Self; 1] = [Self::ContactDerivatives];
+    pub const WALKING: [Self; 8] = [
+        Self::ContactDerivatives,
+        Self::CenterOfMassBias,
+        Self::CentroidalMomentumMatrix,
+        Self::CentroidalMomentumBias,
+        Self::ZeroMomentPoint,
+        Self::CartTableZmp,
+        Self::FootRotationIndicator,
+        Self::CapturePoint,
+    ];
 
     /// The functions for identification, which are derived where they are asked for by name.
     pub const REGRESSORS: [Self; 3] = [Self::Regressor, Self::BaseRegressor, Self::BaseParameters];
@@ -111,6 +136,13 @@ impl FunctionName {
             Self::ContactJacobian => "contact_jacobian",
             Self::ContactBias => "contact_bias",
             Self::ContactDerivatives => "contact_derivatives",
+            Self::CenterOfMassBias => "center_of_mass_bias",
+            Self::CentroidalMomentumMatrix => "centroidal_momentum_matrix",
+            Self::CentroidalMomentumBias => "centroidal_momentum_bias",
+            Self::ZeroMomentPoint => "zero_moment_point",
+            Self::CartTableZmp => "cart_table_zmp",
+            Self::FootRotationIndicator => "foot_rotation_indicator",
+            Self::CapturePoint => "capture_point",
             Self::CenterOfMass => "center_of_mass",
             Self::CenterOfMassJacobian => "center_of_mass_jacobian",
             Self::Momentum => "momentum",
@@ -156,6 +188,12 @@ pub struct Argument {
     pub name: &'static str,
     /// The symbols, in the order of the joints.
     pub symbols: Vec<ExprId>,
+}
+
+/// The name of the symbol of one coordinate (`x`, `y`, `z`) of the force on a contact point. No name
+/// of a model has a full stop.
+pub fn force_name(contact: &str, coordinate: &str) -> String {
+    format!("f.{contact}.{coordinate}")
 }
 
 /// An output: an array of expressions.

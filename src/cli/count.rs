@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         robot.terms = terms(list);
     }
     let flavour = arguments.flavour.flavour();
-    let wanted = arguments.functions.wanted();
+    let wanted = arguments.functions.wanted_with_walking();
     print_size(&robot, wanted.contains(&FunctionName::ForwardDynamicsDerivatives));
     let functions = function_counts(&robot, flavour, &wanted)?;
     arguments.functions.refuse_missing(&robot.name, functions.iter().map(|row| row.name))?;

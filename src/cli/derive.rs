@@ -6,13 +6,14 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
-use super::options::{EffectsOption, ModelArgument};
+use super::options::{EffectsOption, ModelArgument, walking_names};
 use super::outputs::{on_stdout, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::dynamics::methods::Method;
 use denavit::expr::text::{print, print_with_intermediates};
 use denavit::expr::{ExprId, Operations};
+use denavit::function::FunctionName;
 use denavit::model::{JointLaw, Robot};
 use denavit::report::{Align, Table};
 use equations::{Equations, Part};
@@ -46,6 +47,7 @@ Examples:
   denavit derive double_pendulum
   denavit derive double_pendulum --method lagrange
   denavit derive tulip --latex tulip.tex
+  denavit derive planar_biped --functions zero_moment_point --latex biped.tex
   denavit derive scara --json")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -55,6 +57,15 @@ pub(crate) struct Arguments {
     /// How: by the recursions that emitted code uses, or in one of the thesis's four ways
     #[arg(long, value_enum, value_name = "METHOD", default_value = "recursive")]
     method: MethodName,
+    /// Derive these functions for walking, too, separated by commas
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        value_parser = walking_names(),
+        conflicts_with = "method"
+    )]
+    functions: Vec<FunctionName>,
     /// Write the equations as a LaTeX document; - is standard output
     #[arg(long, value_name = "FILE")]
     latex: Option<PathBuf>,
@@ -134,9 +145,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return Err(Failure::Effect(robot.name.clone(), law.effect.clone()));
     }
     let mut equations = match arguments.method.method() {
-        None => Equations::recursive(&robot),
+        None => Equations::recursive(&robot, &arguments.functions),
         Some(method) => Equations::by_method(&robot, method),
     };
+    let missing = arguments.functions.iter().filter(|name| !equations.has(**name));
+    let missing: Vec<String> = missing.map(|name| name.to_string()).collect();
+    if !missing.is_empty() {
+        return Err(Failure::NoFunction { model: robot.name.clone(), asked: missing });
+    }
     if let Some(file) = &arguments.latex {
         progress.show(&format!("setting the equations of {}", robot.name));
         write_whole(file, equations.latex(&robot).as_bytes())?;
@@ -190,7 +206,7 @@ fn write_answer(out: &mut dyn Write, robot: &Robot, equations: &Equations) -> Re
     for part in &equations.parts {
         let (own, rest) = texts.split_at(part.entries.len());
         let json = PartJson { symbol: part.symbol, shape: &part.shape, entries: own };
-        functions.push((part.name.to_owned(), json));
+        functions.push((part.key.clone(), json));
         texts = rest;
     }
     let bindings = printed.bindings.iter();
@@ -299,7 +315,7 @@ fn write_summary(out: &mut dyn Write, equations: &Equations) -> Result<(), Failu
     for part in &equations.parts {
         let Operations { mul, add, sincos, .. } = Operations::count(&equations.dag, &part.entries);
         let nodes = equations.dag.topological(&part.entries).len();
-        let mut row = vec![format!("{} {}", part.symbol, part.name), part.form.to_owned()];
+        let mut row = vec![format!("{} {}", part.symbol, part.key), part.form.to_owned()];
         row.extend([mul, add, sincos, nodes].map(|count| count.to_string()));
         row.push(part.time.map_or(String::new(), |time| format!("{:.1} ms", 1e3 * time)));
         table.push(row);

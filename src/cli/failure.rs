@@ -4,6 +4,7 @@ use super::identify::IdentifyFailure;
 use super::output_failure::OutputFailure;
 use denavit::diagnose::DiagnosisError;
 use denavit::emit::rust::EmitError;
+use denavit::function::FunctionName;
 use denavit::identify::excite::ExciteError;
 use denavit::model::{BakeError, ModelError};
 use denavit::plants::effect::AddedError;
@@ -11,6 +12,7 @@ use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
 use denavit::shipped::ShippedModel;
+use denavit::simulate::LogError;
 use denavit::simulate::scenario::ScenarioError;
 use std::fmt;
 use std::io;
@@ -80,6 +82,8 @@ pub(crate) enum Failure {
     Identify(IdentifyFailure),
     /// Nothing is diagnosed.
     Diagnose(DiagnosisError),
+    /// A log is wrong.
+    Log(LogError),
     /// A gait has no answer; holds the scenario and why.
     Walk(String, String),
     /// A step was given for the scheme that chooses its own.
@@ -182,6 +186,7 @@ impl Failure {
             | Self::Excite(_)
             | Self::Identify(_)
             | Self::Diagnose(_)
+            | Self::Log(_)
             | Self::Walk(..)
             | Self::Base(..)
             | Self::Decompose(..)
@@ -205,11 +210,21 @@ fn smallest_scenario(model: &str) -> String {
 }
 
 /// Why a model has none of these functions.
+/// Whether a function finds a point of the ground.
+fn is_of_ground(name: &str) -> bool {
+    use FunctionName::{CapturePoint, CartTableZmp, FootRotationIndicator, ZeroMomentPoint};
+    let points = [ZeroMomentPoint, CartTableZmp, FootRotationIndicator, CapturePoint];
+    points.iter().any(|point| point.as_str() == name)
+}
+
 fn why_no_function(asked: &[String]) -> String {
     let why = |name: &String| match name.as_str() {
         name if name.contains("contact") => "contacts are declared under \"contacts\"",
         name if name.starts_with("base_") => {
             "`denavit base` says why its base parameters are not found"
+        }
+        name if is_of_ground(name) => {
+            "points of the ground are those of robots with a floating base and contact points"
         }
         "state_rates" => "it has no effects with states",
         _ => {
@@ -283,6 +298,7 @@ impl Failure {
             Self::Excite(error) => write!(f, "{error}")?,
             Self::Identify(error) => write!(f, "{error}")?,
             Self::Diagnose(error) => write!(f, "{error}")?,
+            Self::Log(error) => write!(f, "{error}")?,
             Self::Walk(scenario, why) => write!(f, "{scenario}: {why}")?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;

@@ -7,6 +7,7 @@ use denavit::effect::{self, Effect};
 use denavit::model::Robot;
 use denavit::model::equations::{self, Equations};
 use denavit::shipped::{self, ShippedModel};
+use denavit::simulate::Log;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -78,6 +79,19 @@ pub(crate) fn open_log(path: &Path) -> Result<BufReader<File>, Failure> {
     let failure = |error| Failure::Read { file: path.display().to_string(), error };
     let file = open(path).map_err(failure)?;
     Ok(BufReader::with_capacity(1 << 16, file))
+}
+
+/// A log of the project's own columns.
+pub(crate) fn read_log(path: &Path) -> Result<Log, Failure> {
+    let name = path.display().to_string();
+    let failure = |error| Failure::Read { file: name.clone(), error };
+    let mut bytes = Vec::new();
+    let read = open(path).and_then(|file| file.take(MAX_LOG_BYTES + 1).read_to_end(&mut bytes));
+    read.map_err(failure)?;
+    if bytes.len() as u64 > MAX_LOG_BYTES {
+        return Err(Failure::TooLarge { file: name, limit: MAX_LOG_BYTES });
+    }
+    Log::from_csv(&name, &bytes).map_err(Failure::Log)
 }
 
 /// What a command can be about that takes models and equations.

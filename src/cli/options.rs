@@ -28,19 +28,30 @@ pub(crate) struct EffectsOption {
 #[derive(Debug, Args)]
 pub(crate) struct FunctionList {
     /// Functions, separated by commas; if none are named, all that the model has but regressor,
-    /// base_regressor and base_parameters
+    /// base_regressor and base_parameters, and, where code is emitted, those for walking:
+    /// contact_derivatives, center_of_mass_bias, centroidal_momentum_matrix,
+    /// centroidal_momentum_bias, zero_moment_point, cart_table_zmp, foot_rotation_indicator,
+    /// capture_point
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = function_names())]
     functions: Vec<FunctionName>,
 }
 
 impl FunctionList {
-    /// The functions asked for, each once, in the order of listings.
+    /// The functions asked for, each once, in the order of listings; those of general use if none
+    /// are named.
     pub(crate) fn wanted(&self) -> Vec<FunctionName> {
-        let asked =
-            |name: &FunctionName| self.functions.is_empty() || self.functions.contains(name);
-        let named =
-            FunctionName::REGRESSORS.into_iter().filter(|name| self.functions.contains(name));
-        FunctionName::ALL.into_iter().filter(asked).chain(named).collect()
+        match self.functions.is_empty() {
+            true => FunctionName::ALL.to_vec(),
+            false => every_function().filter(|name| self.functions.contains(name)).collect(),
+        }
+    }
+
+    /// The same; if none are named, those for walking, too.
+    pub(crate) fn wanted_with_walking(&self) -> Vec<FunctionName> {
+        match self.functions.is_empty() {
+            true => [&FunctionName::ALL[..], &FunctionName::WALKING].concat(),
+            false => self.wanted(),
+        }
     }
 
     /// Refuses what was named and is not among the functions that were found.
@@ -59,9 +70,23 @@ impl FunctionList {
     }
 }
 
+fn every_function() -> impl Iterator<Item = FunctionName> {
+    FunctionName::ALL.into_iter().chain(FunctionName::WALKING).chain(FunctionName::REGRESSORS)
+}
+
 fn function_names() -> impl TypedValueParser<Value = FunctionName> {
-    let names = FunctionName::ALL.into_iter().chain(FunctionName::REGRESSORS);
-    PossibleValuesParser::new(names.map(FunctionName::as_str)).try_map(|name| {
+    names_of(every_function())
+}
+
+/// The functions for walking, by name.
+pub(crate) fn walking_names() -> impl TypedValueParser<Value = FunctionName> {
+    names_of(FunctionName::WALKING.into_iter())
+}
+
+fn names_of(
+    functions: impl Iterator<Item = FunctionName>,
+) -> impl TypedValueParser<Value = FunctionName> {
+    PossibleValuesParser::new(functions.map(FunctionName::as_str)).try_map(|name| {
         FunctionName::parse(&name).ok_or_else(|| format!("`{name}` is not a function"))
     })
 }

@@ -1,9 +1,11 @@
 //! `denavit walk`: gaits, their stability, and what each criterion misses.
 
+mod balance;
 mod poincare;
 
 use super::Answer;
 use super::failure::Failure;
+use balance::What;
 use clap::{Args, Subcommand};
 use std::io::Write;
 
@@ -21,11 +23,40 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Zero moment point: exact, from forces, and of the cart-table model (thesis 4.2.1)
+    ///
+    /// Periodic gaits are judged over one cycle from their fixed point.
+    #[command(after_help = "\
+Example:
+  denavit walk zmp planar_biped_zmp_gait --svg zmp.svg")]
+    Zmp(balance::Arguments),
+    /// Foot rotation indicator (thesis 4.2.1)
+    ///
+    /// The point of the ground where its force would have to act to keep the foot still that
+    /// stands (Goswami 1999), while exactly one foot does.
+    #[command(after_help = "\
+Example:
+  denavit walk fri planar_biped_limit_cycle_gait")]
+    Fri(balance::Arguments),
+    /// Capture point of the linear inverted pendulum (thesis 4.2.4)
+    #[command(after_help = "\
+Example:
+  denavit walk capture planar_biped_limit_cycle_gait")]
+    Capture(balance::Arguments),
+    /// Angular momentum about the centre of mass (thesis 4.2.3)
+    #[command(after_help = "\
+Example:
+  denavit walk momentum planar_biped_limit_cycle_gait")]
+    Momentum(balance::Arguments),
     Poincare(poincare::Arguments),
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     match &arguments.command {
+        Command::Zmp(arguments) => balance::run(What::Zmp, arguments, out),
+        Command::Fri(arguments) => balance::run(What::Fri, arguments, out),
+        Command::Capture(arguments) => balance::run(What::Capture, arguments, out),
+        Command::Momentum(arguments) => balance::run(What::Momentum, arguments, out),
         Command::Poincare(arguments) => poincare::run(arguments, out),
     }
 }

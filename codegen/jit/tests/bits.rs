@@ -69,7 +69,8 @@ fn compare(program: &Program, prelude: &[f64], value: impl Fn(usize, usize) -> f
 fn program(model: &str, flavour: Flavour) -> (Program, Vec<f64>) {
     let path = format!("{}/../../models/{model}.json", env!("CARGO_MANIFEST_DIR"));
     let robot = effect::read_model(&path, &std::fs::read(&path).unwrap(), &[]).unwrap();
-    let functions = [&FunctionName::ALL[..], &FunctionName::REGRESSORS].concat();
+    let functions =
+        [&FunctionName::ALL[..], &FunctionName::WALKING, &FunctionName::REGRESSORS].concat();
     let derivation = derive(&robot, flavour, &functions).unwrap();
     let program = lower(&derivation.dag, &derivation.functions).unwrap();
     let defaults = parameter_defaults(&program, &robot);

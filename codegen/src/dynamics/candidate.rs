@@ -32,7 +32,7 @@ pub(super) enum Solver {
 }
 
 impl Candidate<'_> {
-    fn terms(&self) -> Terms {
+    pub(super) fn terms(&self) -> Terms {
         let terms = self.robot.terms;
         Terms { rates: terms.coriolis, accelerations: terms.inertia, gravity: terms.gravity }
     }
@@ -168,6 +168,14 @@ impl Candidate<'_> {
                 by_position[i][k] = dag.add(by_position[i][k], stiffness);
                 let damping = slope(dag, joint.torque, variables.qd);
                 by_rate[i][k] = dag.add(by_rate[i][k], damping);
+            }
+            // an inertia that a law varies with positions
+            let own = self.frames.frames[i].variables.qdd;
+            let qdd = accelerations.map_or(own, |given| given[i]);
+            for k in 0..self.frames.len() {
+                let change = slope(dag, joint.rotor, self.frames.frames[k].variables.q);
+                let change = dag.mul(change, qdd);
+                by_position[i][k] = dag.add(by_position[i][k], change);
             }
         }
         [by_position, by_rate]

@@ -10,9 +10,9 @@
 
 use super::candidate::Candidate;
 use crate::expr::{Dag, ExprId, SymbolClass};
-use crate::function::Output;
+use crate::function::{Output, force_name};
 use crate::kinematics::{Frames, Moving, World, WorldMotion};
-use crate::model::Robot;
+use crate::model::{LinkId, Robot};
 use crate::spatial::{Vector, add, cross, dot, scale, subtract, zero};
 
 /// The columns of one contact point's Jacobian, with their derivatives by time; joints that do not
@@ -32,8 +32,7 @@ pub(super) fn forces(dag: &mut Dag, robot: &Robot) -> Vec<ExprId> {
     let mut symbols = Vec::new();
     for contact in robot.contacts.values() {
         for coordinate in ["x", "y", "z"] {
-            // No name of a model has a full stop.
-            let name = format!("f.{}.{coordinate}", contact.name);
+            let name = force_name(&contact.name, coordinate);
             symbols.push(dag.symbol(&name, SymbolClass::Effort));
         }
     }
@@ -52,7 +51,12 @@ pub(super) fn contact_derivatives(dag: &mut Dag, candidate: &Candidate<'_>) -> V
         let placement = &candidate.mechanism.placements[contact.link];
         let local = world.in_carrier(dag, placement, contact.position);
         let point = motion.point(dag, &world, placement.body, local);
-        columns.push(point_columns(dag, frames, &motion, placement.body, point));
+        let before = candidate.robot.contacts.values().take(columns.len());
+        let before: Vec<_> = before.map(|before| (before.link, before.position)).collect();
+        columns.push(match corner(&before, (contact.link, contact.position)) {
+            Some(corner) => corner_columns(dag, &columns, corner),
+            None => point_columns(dag, frames, &motion, placement.body, point),
+        });
         places.push(point.value);
     }
     let two = dag.integer(2);
@@ -126,6 +130,36 @@ fn point_columns(
         columns.push((j, column));
     }
     columns
+}
+
+/// A point of a link.
+type Place = (LinkId, Vector);
+
+/// The rows a, b, c of points of the same link for which the point is a + b - c: three corners of a
+/// parallelogram, of which a foot's sole often is one.
+fn corner(before: &[Place], (link, point): Place) -> Option<[usize; 3]> {
+    let own: Vec<usize> = (0..before.len()).filter(|&row| before[row].0 == link).collect();
+    let at = |row: usize| before[row].1;
+    let closes = |[a, b, c]: [usize; 3]| {
+        (0..3).all(|k| {
+            let (a, b, c) = (at(a)[k], at(b)[k], at(c)[k]);
+            (point[k] == a && b == c) || (point[k] == b && a == c)
+        })
+    };
+    let triples = own.iter().flat_map(|&a| own.iter().map(move |&b| (a, b)));
+    let mut triples = triples.flat_map(|(a, b)| own.iter().map(move |&c| [a, b, c]));
+    triples.find(|&[a, b, c]| a < b && a != c && b != c && closes([a, b, c]))
+}
+
+/// Columns are sums of levers, so that those of the fourth corner follow from three.
+fn corner_columns(dag: &mut Dag, columns: &[Columns], [a, b, c]: [usize; 3]) -> Columns {
+    let rows = columns[a].iter().zip(&columns[b]).zip(&columns[c]);
+    let rows: Vec<_> = rows.map(|((&(j, a), &(_, b)), &(_, c))| (j, [a, b, c])).collect();
+    let sum = |(j, [a, b, c]): (usize, [Moving; 3])| {
+        let edge = b.with(dag, c, subtract);
+        (j, a.with(dag, edge, add))
+    };
+    rows.into_iter().map(sum).collect()
 }
 
 /// d(W f)/dq.

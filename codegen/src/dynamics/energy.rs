@@ -40,7 +40,7 @@ pub(super) fn kinetic_energy(dag: &mut Dag, frames: &Frames) -> ExprId {
 }
 
 /// All matter in the coordinates and about the origin of frame 0.
-fn matter_in_base(
+pub(super) fn matter_in_base(
     dag: &mut Dag,
     frames: &Frames,
     composites: &[PseudoInertia],

@@ -11,11 +11,15 @@
 //! - `forward`: forward dynamics by factorising D, and by articulated bodies
 //! - `explicit`: closed forms of small robots
 //! - `energy`: kinetic and potential energy, momentum
+//! - `centroidal`: the matrix of the momentum, and derivatives by time
+//! - `balance`: points of the ground plane: zero-moment point, foot rotation indicator, ...
 //! - [`portfolio`]: every function of a model, the cheapest formulation of each
 //! - [`methods`]: the thesis's four derivations, which share nothing with the recursions
 
 mod articulated;
+mod balance;
 mod candidate;
+mod centroidal;
 mod composite;
 mod contact_derivatives;
 mod coriolis;
@@ -28,6 +32,7 @@ pub mod methods;
 mod motion;
 mod outputs;
 pub mod portfolio;
+mod walking;
 
 pub(crate) use explicit::explicit;
 pub use joint_torque::implicit_effects;

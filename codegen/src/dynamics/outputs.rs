@@ -1,8 +1,8 @@
 //! The outputs of every function, with shapes and one line of documentation each.
 
 use super::candidate::{Candidate, Solver};
-use super::contact_derivatives::contact_derivatives;
 use super::portfolio::Route;
+use super::walking;
 use crate::expr::{Dag, ExprId, SymbolClass};
 use crate::function::{FunctionName, Output};
 use crate::model::LinkId;
@@ -61,8 +61,8 @@ pub(super) fn outputs(
         F::InverseDynamicsDerivatives | F::ForwardDynamicsDerivatives => {
             derivatives(dag, candidate, name, route)
         }
-        F::ContactDerivatives => contact_derivatives(dag, candidate),
         F::StateRates => vec![state_rates(dag, candidate)],
+        _ if F::WALKING.contains(&name) => walking::outputs(dag, candidate, name),
         _ => kinematics_and_energy(dag, candidate, name),
     }
 }

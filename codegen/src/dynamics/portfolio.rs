@@ -5,10 +5,11 @@ use super::contact_derivatives::forces;
 use super::explicit::explicit;
 use super::joint_torque::{JointTerms, joint_terms};
 use super::outputs;
+use super::walking;
 use crate::expr::{Dag, ExprId, Operations, Residues, evaluate};
 use crate::function::{Argument, Form, Function, FunctionName, Output};
 use crate::kinematics::{Frames, Mechanism};
-use crate::model::Robot;
+use crate::model::{Base, LinkId, Robot};
 use crate::number::Residue;
 use std::cell::OnceCell;
 
@@ -38,51 +39,70 @@ impl<'a> Portfolio<'a> {
     /// The functions of a name: none if the robot cannot have it (contacts without contact
     /// points, the inverse of a mass matrix that has none), one for each link if it is of links.
     pub fn derive(&self, dag: &mut Dag, name: FunctionName) -> Vec<Function> {
-        use FunctionName::{
-            ContactBias, ContactDerivatives, ContactJacobian, ContactPositions, ForwardDynamics,
-            ForwardDynamicsDerivatives, LinkJacobian, MassMatrixSolve,
-        };
+        if self.is_missing(dag, name) {
+            return Vec::new();
+        }
         let robot = self.robot;
         match name {
-            ContactPositions | ContactJacobian | ContactBias | ContactDerivatives
-                if robot.contacts.is_empty() =>
-            {
-                Vec::new()
+            FunctionName::LinkJacobian => {
+                self.of_links(dag, name, robot.links.keys().collect(), outputs::link_jacobian)
             }
-            FunctionName::StateRates if robot.law_states().next().is_none() => Vec::new(),
-            FunctionName::Bias
-            | ForwardDynamics
-            | FunctionName::InverseDynamicsDerivatives
-            | ForwardDynamicsDerivatives
-                if self.is_implicit(dag) =>
-            {
-                Vec::new()
+            FunctionName::FootRotationIndicator => {
+                self.of_links(dag, name, self.feet(), walking::foot_rotation_indicator)
             }
-            ForwardDynamics | MassMatrixSolve | ForwardDynamicsDerivatives
-                if self.is_singular(dag) =>
-            {
-                Vec::new()
-            }
-            // Of the stage after this one.
-            FunctionName::Regressor
-            | FunctionName::BaseRegressor
-            | FunctionName::BaseParameters => Vec::new(),
-            LinkJacobian => robot
-                .links
-                .iter()
-                .map(|(id, link)| {
-                    let build = |dag: &mut Dag, candidate: &Candidate<'_>, _| {
-                        vec![outputs::link_jacobian(dag, candidate, id)]
-                    };
-                    self.cheapest(dag, (name, Some(link.name.clone())), &build)
-                })
-                .collect(),
             _ => {
                 let build = |dag: &mut Dag, candidate: &Candidate<'_>, route| {
                     outputs::outputs(dag, candidate, name, route)
                 };
                 vec![self.cheapest(dag, (name, None), &build)]
             }
+        }
+    }
+
+    /// One function for each of some links.
+    fn of_links(
+        &self,
+        dag: &mut Dag,
+        name: FunctionName,
+        links: Vec<LinkId>,
+        output: fn(&mut Dag, &Candidate<'_>, LinkId) -> Output,
+    ) -> Vec<Function> {
+        let make = |link: LinkId| {
+            let build =
+                |dag: &mut Dag, candidate: &Candidate<'_>, _| vec![output(dag, candidate, link)];
+            self.cheapest(dag, (name, Some(self.robot.links[link].name.clone())), &build)
+        };
+        links.into_iter().map(make).collect()
+    }
+
+    /// The links that carry contact points and move.
+    fn feet(&self) -> Vec<LinkId> {
+        let contacts = &self.robot.contacts;
+        let moves = |link: &LinkId| self.mechanism.placements[*link].body.is_some();
+        let carries = |link: &LinkId| contacts.values().any(|contact| contact.link == *link);
+        self.robot.links.keys().filter(|link| carries(link) && moves(link)).collect()
+    }
+
+    /// Whether the robot cannot have a function.
+    fn is_missing(&self, dag: &mut Dag, name: FunctionName) -> bool {
+        use FunctionName as F;
+        let robot = self.robot;
+        match name {
+            F::ContactPositions | F::ContactJacobian | F::ContactBias | F::ContactDerivatives => {
+                robot.contacts.is_empty()
+            }
+            F::ZeroMomentPoint | F::CartTableZmp | F::FootRotationIndicator | F::CapturePoint => {
+                robot.contacts.is_empty() || robot.base == Base::Fixed
+            }
+            F::StateRates => robot.law_states().next().is_none(),
+            F::Bias | F::InverseDynamicsDerivatives => self.is_implicit(dag),
+            F::MassMatrixSolve => self.is_singular(dag),
+            F::ForwardDynamics | F::ForwardDynamicsDerivatives => {
+                self.is_implicit(dag) || self.is_singular(dag)
+            }
+            // Of the stage after this one.
+            F::Regressor | F::BaseRegressor | F::BaseParameters => true,
+            _ => false,
         }
     }
 
@@ -208,6 +228,10 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         F::InverseDynamics
         | F::InverseDynamicsDerivatives
         | F::StateRates
+        | F::ContactDerivatives
+        | F::ZeroMomentPoint
+        | F::CartTableZmp
+        | F::FootRotationIndicator
         | F::Regressor
         | F::BaseRegressor => &["q", "qd", "qdd"],
         F::ForwardDynamics | F::ForwardDynamicsDerivatives => &["q", "qd", "tau"],
@@ -215,10 +239,12 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         | F::Bias
         | F::DynamicsTerms
         | F::ContactBias
+        | F::CenterOfMassBias
+        | F::CentroidalMomentumBias
+        | F::CapturePoint
         | F::Momentum
         | F::KineticEnergy => &["q", "qd"],
         F::MassMatrixSolve => &["q", "b"],
-        F::ContactDerivatives => &["q", "qd", "qdd"],
         F::MassMatrix
         | F::GravityVector
         | F::LinkTransforms
@@ -227,6 +253,7 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         | F::ContactJacobian
         | F::CenterOfMass
         | F::CenterOfMassJacobian
+        | F::CentroidalMomentumMatrix
         | F::PotentialEnergy => &["q"],
     };
     let mut arguments: Vec<Argument> = names

@@ -12,7 +12,7 @@ const KEYWORDS: [&str; 54] = [
 ];
 
 /// Names that emitted functions give to arguments, to the parameters and to packs of values.
-const LOCALS: [&str; 16] = [
+const LOCALS: [&str; 17] = [
     "q",
     "qd",
     "qdd",
@@ -26,6 +26,7 @@ const LOCALS: [&str; 16] = [
     "parameters",
     "model",
     "link",
+    "foot",
     "contact",
     "sines",
     "cosines",

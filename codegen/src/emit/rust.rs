@@ -13,7 +13,6 @@ use super::arrays::{Place, list};
 use super::layout::fill;
 use super::names::Names;
 use super::wording::{columns, one_line, wrapped};
-use crate::function::FunctionName;
 use crate::model::Robot;
 use crate::program::{Counts, Program, counts};
 use std::fmt;
@@ -166,12 +165,4 @@ fn template(text: &str, values: &[(&str, &str)]) -> String {
 /// The name of the trait that code needs.
 fn bound(is_transcendental: bool) -> &'static str {
     if is_transcendental { "Transcendental" } else { "Scalar" }
-}
-
-/// The functions with one entry for each link, in the order of the program.
-fn per_link(program: &Program) -> impl Iterator<Item = (FunctionName, &str)> {
-    program
-        .routines
-        .iter()
-        .filter_map(|routine| routine.link.as_deref().map(|link| (routine.name, link)))
 }

@@ -40,6 +40,19 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
             "Derivatives of the contact points' velocities and accelerations by q and qd, and of \
              the torques W f of forces on them by q."
         }
+        FunctionName::CenterOfMassBias => {
+            "Acceleration of the centre of mass without qdd: (d/dt J) qd."
+        }
+        FunctionName::CentroidalMomentumMatrix => {
+            "Centroidal momentum matrix A(q): the momentum about the centre of mass is A qd."
+        }
+        FunctionName::CentroidalMomentumBias => {
+            "Derivative of the momentum about the centre of mass without qdd: (d/dt A) qd."
+        }
+        FunctionName::ZeroMomentPoint => "Zero-moment point (ZMP) of a motion.",
+        FunctionName::CartTableZmp => "Zero-moment point of the cart-table model.",
+        FunctionName::FootRotationIndicator => "Foot rotation indicator (FRI) of a motion.",
+        FunctionName::CapturePoint => "Capture point of the linear inverted pendulum.",
         FunctionName::CenterOfMass => "Position of the centre of mass of all that moves.",
         FunctionName::CenterOfMassJacobian => "Jacobian of the centre of mass of all that moves.",
         FunctionName::Momentum => {
@@ -150,6 +163,7 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         FunctionName::LinkJacobian
         | FunctionName::ContactJacobian
         | FunctionName::ContactDerivatives
+        | FunctionName::CentroidalMomentumMatrix
         | FunctionName::CenterOfMassJacobian => (false, true),
         FunctionName::Regressor | FunctionName::BaseRegressor => (true, false),
         FunctionName::BaseParameters
@@ -158,6 +172,12 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         | FunctionName::ContactPositions
         | FunctionName::ContactBias
         | FunctionName::CenterOfMass
+        | FunctionName::CenterOfMassBias
+        | FunctionName::CentroidalMomentumBias
+        | FunctionName::ZeroMomentPoint
+        | FunctionName::CartTableZmp
+        | FunctionName::FootRotationIndicator
+        | FunctionName::CapturePoint
         | FunctionName::Momentum
         | FunctionName::KineticEnergy
         | FunctionName::PotentialEnergy => (false, false),

@@ -45,6 +45,11 @@ impl<'a> World<'a> {
         self.axes[j][2]
     }
 
+    /// The origin of frame `j` \[m\].
+    pub fn origin(&self, j: usize) -> Vector {
+        self.origins[j]
+    }
+
     /// A free vector of a frame (none: frame 0) in frame 0.
     pub fn vector(&self, dag: &mut Dag, frame: Option<usize>, vector: Vector) -> Vector {
         let axes = self.axes_of(dag, frame);

@@ -22,6 +22,7 @@ fn robots() -> Vec<Robot> {
     for name in ["planar_2r", "puma560", "rx90", "iiwa", "tulip_leg5", "tulip_leg6", "tulip"] {
         robots.push(rigid(load(name)));
     }
+    robots.push(rigid(load("planar_biped")));
     robots
 }
 
@@ -116,7 +117,8 @@ fn derivatives_are_at_or_below_the_best_known() {
 #[test]
 fn the_graph_and_the_program_count_alike() {
     for robot in robots() {
-        let derivation = derive(&robot, Flavour::Tunable, &FunctionName::ALL).unwrap();
+        let wanted = [&FunctionName::ALL[..], &FunctionName::WALKING].concat();
+        let derivation = derive(&robot, Flavour::Tunable, &wanted).unwrap();
         let program = lower(&derivation.dag, &derivation.functions).unwrap();
         for (function, routine) in derivation.functions.iter().zip(&program.routines) {
             let graph = Operations::count(&derivation.dag, &function.entries());
@@ -153,7 +155,8 @@ fn counts_are_recorded_per_model() {
          UPDATE_EXPECT=1 rewrites this file.\n",
     );
     for robot in robots() {
-        let wanted = [&FunctionName::ALL[..], &FunctionName::REGRESSORS].concat();
+        let wanted =
+            [&FunctionName::ALL[..], &FunctionName::WALKING, &FunctionName::REGRESSORS].concat();
         let derivation = derive(&robot, Flavour::Tunable, &wanted).unwrap();
         writeln!(text, "\n{}", robot.name).unwrap();
         for function in derivation.functions.iter().filter(|function| function.link.is_none()) {

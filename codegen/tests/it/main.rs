@@ -15,4 +15,5 @@ mod robots;
 mod singular_values;
 mod thesis;
 mod trees;
+mod varying_inertia;
 mod walking;

@@ -101,6 +101,17 @@ fn emitted(criterion: &mut Criterion) {
     measure(&mut group, "contact_positions", |q, _, _| m::contact_positions(p, q));
     measure(&mut group, "contact_jacobian", |q, _, _| m::contact_jacobian(p, q));
     measure(&mut group, "contact_bias", |q, v, _| m::contact_bias(p, q, v));
+    let f: [f64; 24] = std::array::from_fn(|entry| number(7, entry));
+    let g = &mut group;
+    measure(g, "contact_derivatives", |q, v, x| m::contact_derivatives(p, q, v, x, &f));
+    measure(g, "center_of_mass_bias", |q, v, _| m::center_of_mass_bias(p, q, v));
+    measure(g, "centroidal_momentum_matrix", |q, _, _| m::centroidal_momentum_matrix(p, q));
+    measure(g, "centroidal_momentum_bias", |q, v, _| m::centroidal_momentum_bias(p, q, v));
+    measure(g, "zero_moment_point", |q, v, x| m::zero_moment_point(p, q, v, x));
+    measure(g, "cart_table_zmp", |q, v, x| m::cart_table_zmp(p, q, v, x));
+    let foot = m::Foot::ALL[0];
+    measure(g, "foot_rotation_indicator", |q, v, x| m::foot_rotation_indicator(p, foot, q, v, x));
+    measure(g, "capture_point", |q, v, _| m::capture_point(p, q, v));
     group.bench_function("parameters", |b| {
         b.iter_batched_ref(
             m::ModelParameters::<f64>::default,

@@ -1,7 +1,10 @@
 //! The modules that `build.rs` generated, as plants.
 
 use super::model::baked;
-use super::{ContactDerivatives, LoadedPlant, Override, Plant, PlantError, PlantModel};
+use super::on_demand::OnDemand;
+use super::{
+    ContactDerivatives, LoadedPlant, Override, Plant, PlantError, PlantModel, WalkingFunctions,
+};
 use crate::shipped;
 use denavit_codegen::model::{self, Robot};
 
@@ -46,6 +49,8 @@ macro_rules! generated {
             struct Generated {
                 model: PlantModel,
                 parameters: robot::Parameters<f64>,
+                /// What the module does not have.
+                on_demand: OnDemand,
             }
 
             fn sized(values: &[f64]) -> &[f64; robot::DOF] {
@@ -65,6 +70,15 @@ macro_rules! generated {
                 fn bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]) {
                     bias.copy_from_slice(&robot::bias(&self.parameters, sized(q), sized(qd)));
                     without_coulomb(&self.model, qd, bias);
+                }
+
+                fn center_of_mass_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]) {
+                    let rows = robot::center_of_mass_jacobian(&self.parameters, sized(q));
+                    jacobian.copy_from_slice(rows.as_flattened());
+                }
+
+                fn walking(&mut self) -> Option<WalkingFunctions<'_>> {
+                    Some(WalkingFunctions::new(&self.model, &mut self.on_demand))
                 }
 
                 fn inverse_dynamics_derivatives(
@@ -123,7 +137,9 @@ macro_rules! generated {
             // a value that cannot be baked is the interpreter's to refuse
             let robot = baked(&shipped_robot(stringify!($robot)), overrides).ok()?;
             let model = PlantModel::of_baked(&robot);
-            Some(Box::new(Generated { model, parameters: robot::Parameters::new(&parameters) }))
+            let parameters = robot::Parameters::new(&parameters);
+            let on_demand = OnDemand::new(robot);
+            Some(Box::new(Generated { model, parameters, on_demand }))
         }
     };
 }

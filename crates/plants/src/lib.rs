@@ -7,6 +7,7 @@
 //! - [`Cradle`]: balls that collide with each other
 //! - [`SimplestWalker`], [`KneedWalker`]: passive walkers with jumps of their own
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
+//! - [`WalkingFunctions`]: momentum about the centre of mass, zero-moment point and the like
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
 //!
@@ -37,6 +38,7 @@ mod regression_rows;
 mod regression_values;
 pub mod shipped;
 pub mod trajectory;
+mod walking;
 
 pub use cradle::Cradle;
 pub use derivatives::ContactDerivatives;
@@ -49,6 +51,7 @@ pub use model::{
 };
 pub use native::{Native, NativeBatch, native_code};
 pub use passive_walkers::{KneedWalker, SimplestWalker};
+pub use walking::WalkingFunctions;
 
 /// The functions of a robot with n joints and c contact points. Each may use memory of its own,
 /// hence `&mut self`; none changes what another returns.
@@ -87,6 +90,22 @@ pub trait Plant {
 
     /// For each link the upper three rows of its homogeneous transform, 12 entries a link.
     fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]);
+
+    /// d(centre of mass)/dq, 3 x n: the linear momentum of unit velocities over the mass, where the
+    /// plant has no function of its own.
+    fn center_of_mass_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]) {
+        let (n, mass) = (q.len(), self.model().mass_kg);
+        for column in 0..n {
+            let unit: Vec<f64> = (0..n).map(|k| f64::from(u8::from(k == column))).collect();
+            let momentum = self.momentum(q, &unit);
+            (0..3).for_each(|row| jacobian[row * n + column] = momentum[row] / mass);
+        }
+    }
+
+    /// Functions for walking; none for plants written by hand.
+    fn walking(&mut self) -> Option<WalkingFunctions<'_>> {
+        None
+    }
 
     /// Derivatives of D qdd + bias, exactly those of [`Plant::mass_matrix`] and [`Plant::bias`]:
     /// by q [N m/rad] and by qd [N m s/rad], n x n, row: torque. That by qdd is D. Answers whether

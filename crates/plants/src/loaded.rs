@@ -4,7 +4,7 @@ use super::laws::{LawMoment, LawResponse, Laws};
 use super::model::baked;
 use super::native::NativeRoutine;
 use super::on_demand::OnDemand;
-use super::{ContactDerivatives, Override, Plant, PlantError, PlantModel};
+use super::{ContactDerivatives, Override, Plant, PlantError, PlantModel, WalkingFunctions};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::Robot;
@@ -96,6 +96,15 @@ impl Plant for LoadedPlant {
         self.call(FunctionName::ContactBias, &[q, qd], bias);
     }
 
+    fn center_of_mass_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]) {
+        let name = FunctionName::CenterOfMassJacobian;
+        assert!(self.on_demand.call(name, None, &[q], &mut [jacobian]), "every robot has it");
+    }
+
+    fn walking(&mut self) -> Option<WalkingFunctions<'_>> {
+        Some(WalkingFunctions::new(&self.model, &mut self.on_demand))
+    }
+
     fn inverse_dynamics_derivatives(
         &mut self,
         q: &[f64],
@@ -105,7 +114,7 @@ impl Plant for LoadedPlant {
         by_velocity: &mut [f64],
     ) -> bool {
         let name = FunctionName::InverseDynamicsDerivatives;
-        self.on_demand.call(name, &[q, qd, qdd], &mut [by_position, by_velocity])
+        self.on_demand.call(name, None, &[q, qd, qdd], &mut [by_position, by_velocity])
     }
 
     fn contact_derivatives(
@@ -121,7 +130,7 @@ impl Plant for LoadedPlant {
             derivatives.torque_dq.fill(0.0);
             return true;
         }
-        self.on_demand.call(name, &[q, qd, qdd, f], &mut derivatives.arrays())
+        self.on_demand.call(name, None, &[q, qd, qdd, f], &mut derivatives.arrays())
     }
 
     fn law_states(&self) -> usize {

@@ -8,6 +8,9 @@ use denavit_codegen::model::Robot;
 use denavit_codegen::program::{Evaluate, lower};
 use std::collections::BTreeMap;
 
+/// A function, and the row of its link where there is one for each.
+type Key = (FunctionName, Option<usize>);
+
 /// The functions of a robot by name, each made when it is called first.
 #[derive(Clone, Debug)]
 pub(crate) struct OnDemand {
@@ -15,30 +18,35 @@ pub(crate) struct OnDemand {
     /// the plant's bias leaves out.
     robot: Robot,
     /// None where the robot cannot have the function.
-    made: BTreeMap<FunctionName, Option<NativeRoutine>>,
+    made: BTreeMap<Key, Option<NativeRoutine>>,
+    /// The outputs of the last call, one array after the other.
+    entries: Vec<f64>,
 }
 
 impl OnDemand {
     /// The functions of a robot whose parameters are numbers.
     pub(crate) fn new(robot: Robot) -> Self {
-        Self { robot, made: BTreeMap::new() }
+        Self { robot, made: BTreeMap::new(), entries: Vec::new() }
     }
 
-    /// The outputs of a function, one array after the other. Answers whether the robot has it; if
-    /// not, `outputs` are left as they are.
+    /// The outputs of a function, of a link where there is one for each. Answers whether the robot
+    /// has it; if not, `outputs` are left as they are.
     pub(crate) fn call(
         &mut self,
         name: FunctionName,
+        link: Option<usize>,
         arguments: &[&[f64]],
         outputs: &mut [&mut [f64]],
     ) -> bool {
-        let robot = &self.robot;
-        let Some(routine) = self.made.entry(name).or_insert_with(|| make(robot, name)) else {
+        let (robot, key) = (&self.robot, (name, link));
+        let Some(routine) = self.made.entry(key).or_insert_with(|| make(robot, key)) else {
             return false;
         };
-        let mut all = vec![0.0; routine.outputs()];
-        routine.evaluate(arguments, &mut all).expect("the caller's slices have the robot's sizes");
-        let mut rest = &all[..];
+        self.entries.resize(routine.outputs(), 0.0);
+        routine
+            .evaluate(arguments, &mut self.entries)
+            .expect("the caller's slices have the robot's sizes");
+        let mut rest = &self.entries[..];
         for output in outputs {
             let (own, others) = rest.split_at(output.len());
             output.copy_from_slice(own);
@@ -49,9 +57,11 @@ impl OnDemand {
     }
 }
 
-fn make(robot: &Robot, name: FunctionName) -> Option<NativeRoutine> {
+fn make(robot: &Robot, (name, link): Key) -> Option<NativeRoutine> {
+    let link = link.and_then(|row| robot.links.values().nth(row));
+    let link = link.map(|link| link.name.as_str());
     // The plant itself has been made of the same numbers.
     let derivation = derive(robot, Flavour::Baked, &[name]).ok()?;
     let program = lower(&derivation.dag, &derivation.functions).ok()?;
-    Some(NativeRoutine::new(program.find(name, None)?, &[]))
+    Some(NativeRoutine::new(program.find(name, link)?, &[]))
 }

@@ -11,6 +11,7 @@
 //!   [`convergence_picture`]: how an
 //!   estimate came about; [`IdentificationPage`]: all of it
 //! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
+//! - [`BalancePicture`]: points of balance and support polygon over time
 //! - [`UnitCircle`]: Floquet multipliers of a gait
 //!
 //! Nothing here prints; text is handed to whoever does.
@@ -43,8 +44,9 @@ pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
 pub use run::{
-    ExcitationPicture, RunPicture, TorquePicture, convergence_picture, diagnosis_picture,
-    excitation_picture, motion_picture, run_picture, torque_picture,
+    BalanceCurve, BalancePicture, ExcitationPicture, RunPicture, TorquePicture,
+    convergence_picture, diagnosis_picture, excitation_picture, motion_picture, run_picture,
+    torque_picture,
 };
 pub use table::{Align, Table};
 pub use two_stage::TwoStagePage;

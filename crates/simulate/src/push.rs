@@ -63,8 +63,8 @@ impl Push {
         };
         (0..q.len())
             .map(|joint| {
-                let [far, ahead, behind, far_behind] =
-                    [2.0, 1.0, -1.0, -2.0].map(|share| along(joint, share * DIFFERENCE, &mut moved));
+                let [far, ahead, behind, far_behind] = [2.0, 1.0, -1.0, -2.0]
+                    .map(|share| along(joint, share * DIFFERENCE, &mut moved));
                 (8.0 * (ahead - behind) - (far - far_behind)) / (12.0 * DIFFERENCE)
             })
             .collect()

@@ -4,6 +4,7 @@ use super::breakdown::Breakdown;
 use super::control::Control;
 use super::drive::Drives;
 use super::ground::Ground;
+use super::push::{Push, Shove};
 use super::simulation::Simulation;
 use super::state::State;
 use denavit_plants::Plant;
@@ -91,6 +92,9 @@ pub(super) fn check(
     if roll.is_some_and(|roll| quarter_turn_left(roll) <= 0.0) {
         return Err(StartError::Breakdown(Breakdown::SingularPose));
     }
+    if !are_in_order(&simulation.pushes) {
+        return Err(StartError::Number("a push, or the order of pushes,"));
+    }
     let positive = |value: f64| value > 0.0 && value.is_finite();
     if !positive(simulation.log_period_s) {
         return Err(StartError::Number("the period of the log"));
@@ -102,6 +106,19 @@ pub(super) fn check(
         return Err(StartError::Number("the end of the run"));
     }
     Ok(())
+}
+
+/// Whether pushes are sound, and in the order of their times.
+fn are_in_order(pushes: &[Push]) -> bool {
+    let is_sound = |push: &Push| {
+        let (strength, length_s) = match push.shove {
+            Shove::Impulse(impulse) => (impulse, 0.0),
+            Shove::Force(force, duration_s) => (force, duration_s),
+        };
+        let numbers = strength.into_iter().chain(push.point.position).chain([push.at_s]);
+        numbers.chain([length_s]).all(f64::is_finite) && length_s >= 0.0
+    };
+    pushes.iter().all(is_sound) && pushes.is_sorted_by(|a, b| a.at_s <= b.at_s)
 }
 
 /// How far the angle between the first and the last axis of a floating base is from where these are

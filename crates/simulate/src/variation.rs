@@ -248,7 +248,8 @@ impl Variation {
         for (end, share) in ends.iter_mut().zip([share, -share]) {
             *end = moved(&crossing.y, change, share);
             motion.closed.clone_from(&crossing.closed);
-            let settled = Settler::default().settle(motion, law, Onset::Touch(hit), crossing.t_s, end);
+            let settled =
+                Settler::default().settle(motion, law, Onset::Touch(hit), crossing.t_s, end);
             let same = motion.closed.len() == nominal.len()
                 && motion.closed.iter().zip(&nominal).all(|(a, b)| a.does_as(b));
             if settled.is_err() || !same {

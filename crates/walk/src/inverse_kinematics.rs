@@ -1,7 +1,6 @@
 //! Joint positions for given places of contact points and of the centre of mass.
 //!
-//! As many conditions as coordinates, solved by Newton's method; the Jacobian of the centre of mass
-//! is the linear momentum of unit rates over the mass.
+//! As many conditions as coordinates, solved by Newton's method.
 
 use denavit_numerics::MinimumNorm;
 use denavit_plants::Plant;
@@ -106,13 +105,8 @@ fn linearise(plant: &mut dyn Plant, conditions: &[Condition], q: &[f64]) -> (Vec
     plant.contact_positions(q, &mut positions);
     plant.contact_jacobian(q, &mut rows);
     let center = plant.center_of_mass(q);
-    let mass = plant.model().mass_kg;
-    let center_rows: Vec<[f64; 6]> = (0..n)
-        .map(|column| {
-            let unit: Vec<f64> = (0..n).map(|k| f64::from(u8::from(k == column))).collect();
-            plant.momentum(q, &unit).map(|entry| entry / mass)
-        })
-        .collect();
+    let mut center_rows = vec![0.0; 3 * n];
+    plant.center_of_mass_jacobian(q, &mut center_rows);
     let (mut matrix, mut errors) = (Vec::with_capacity(n * n), Vec::with_capacity(n));
     for condition in conditions {
         match *condition {
@@ -126,7 +120,7 @@ fn linearise(plant: &mut dyn Plant, conditions: &[Condition], q: &[f64]) -> (Vec
                 errors.push(value - positions[row]);
             }
             Condition::CenterOfMass { axis, value } => {
-                matrix.extend(center_rows.iter().map(|column| column[axis]));
+                matrix.extend_from_slice(&center_rows[axis * n..(axis + 1) * n]);
                 errors.push(value - center[axis]);
             }
         }

@@ -3,9 +3,11 @@
 //! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
+//! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`read_scenario`]: scenarios whose gait is planned
 
+pub mod balance;
 pub mod inverse_kinematics;
 mod leg_exchange;
 pub mod poincare;

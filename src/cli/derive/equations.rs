@@ -12,7 +12,13 @@ use std::time::Instant;
 /// One term of the equations: a matrix or a vector.
 pub(super) struct Part {
     /// What it is called in JSON.
-    pub(super) name: &'static str,
+    pub(super) key: String,
+    /// The function, where it is one of the compiler's.
+    function: Option<FunctionName>,
+    /// Of which link, where there is one for each.
+    link: Option<String>,
+    /// The name of the array.
+    output: &'static str,
     /// What it is called in formulas.
     pub(super) symbol: &'static str,
     /// Its dimensions.
@@ -56,9 +62,11 @@ const RECURSIVE: [(FunctionName, &str); 5] = [
 ];
 
 impl Equations {
-    /// By the recursions that emitted code uses.
-    pub(super) fn recursive(robot: &Robot) -> Self {
-        let wanted = RECURSIVE.map(|(name, _)| name);
+    /// By the recursions that emitted code uses; functions for walking where they are asked for.
+    pub(super) fn recursive(robot: &Robot, walking: &[FunctionName]) -> Self {
+        let also = FunctionName::WALKING.into_iter().filter(|name| walking.contains(name));
+        let wanted: Vec<FunctionName> =
+            RECURSIVE.iter().map(|(name, _)| *name).chain(also).collect();
         let derivation =
             derive(robot, Flavour::Tunable, &wanted).expect("only baking asks for values");
         let mut parts = Vec::new();
@@ -66,8 +74,12 @@ impl Equations {
             let name = function.name.as_str();
             let stage = derivation.report.iter().find(|stage| stage.stage == name);
             let letter = RECURSIVE.iter().find(|(own, _)| *own == function.name);
+            let single = function.outputs.len() == 1;
             parts.extend(function.outputs.iter().map(|output| Part {
-                name,
+                key: if single { function.full_name() } else { output.name.to_owned() },
+                function: Some(function.name),
+                link: function.link.clone(),
+                output: output.name,
                 symbol: letter.map_or("", |(_, letter)| letter),
                 shape: output.shape.clone(),
                 entries: output.entries.clone(),
@@ -100,15 +112,19 @@ impl Equations {
         } = methods::derive(&mut dag, robot, method);
         let time = Some(started.elapsed().as_secs_f64());
         let n = gravity.len();
-        let part = |name, symbol, shape: &[usize], entries: Vec<ExprId>, doc: &str| Part {
-            name,
-            symbol,
-            shape: shape.to_vec(),
-            entries,
-            doc: format!("By the method {method}. {doc}"),
-            form: "",
-            time: None,
-        };
+        let part =
+            |name: &'static str, symbol, shape: &[usize], entries: Vec<ExprId>, doc: &str| Part {
+                key: name.to_owned(),
+                function: FunctionName::parse(name),
+                link: None,
+                output: name,
+                symbol,
+                shape: shape.to_vec(),
+                entries,
+                doc: format!("By the method {method}. {doc}"),
+                form: "",
+                time: None,
+            };
         let parts = vec![
             part("mass_matrix", "D", &[n, n], mass_matrix.concat(), "D(q), rotors included."),
             part("coriolis_matrix", "C", &[n, n], coriolis_matrix.concat(), "C(q, qd)."),
@@ -118,6 +134,11 @@ impl Equations {
         ];
         let (model, joints) = (robot.name.clone(), joints(robot));
         Self { model, method: method.as_str(), joints, dag, parts, time }
+    }
+
+    /// Whether a function is among the parts.
+    pub(super) fn has(&self, function: FunctionName) -> bool {
+        self.parts.iter().any(|part| part.function == Some(function))
     }
 
     /// What holds between the parts.
@@ -130,20 +151,25 @@ impl Equations {
 
     /// D, C, G and W as a LaTeX document.
     pub(super) fn latex(&self, robot: &Robot) -> String {
-        let function = |part: &Part| {
-            let name = FunctionName::parse(part.name)?;
+        let mut functions: Vec<Function> = Vec::new();
+        for part in self.parts.iter().filter(|part| part.symbol != "tau") {
+            let Some(name) = part.function else { continue };
             let output = Output {
-                name: part.name,
+                name: part.output,
                 shape: part.shape.clone(),
                 entries: part.entries.clone(),
                 doc: part.doc.clone(),
                 details: Vec::new(),
             };
-            let (arguments, outputs, form) = (Vec::new(), vec![output], Form::Plain);
-            Some(Function { name, link: None, arguments, outputs, form })
-        };
-        let set = self.parts.iter().filter(|part| part.symbol != "tau");
-        let functions: Vec<Function> = set.filter_map(function).collect();
+            let link = part.link.clone();
+            match functions.last_mut().filter(|last| last.name == name && last.link == link) {
+                Some(same) => same.outputs.push(output),
+                None => {
+                    let (arguments, outputs, form) = (Vec::new(), vec![output], Form::Plain);
+                    functions.push(Function { name, link, arguments, outputs, form });
+                }
+            }
+        }
         document(robot, &self.dag, &functions).expect("our template has a place for each value")
     }
 

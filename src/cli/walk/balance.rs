@@ -7,7 +7,7 @@ use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::simulate::open;
 use clap::Args;
-use denavit::plants::{Plant, PlantModel, plant_of};
+use denavit::plants::{PlantModel, plant_of};
 use denavit::report::{Align, BalanceCurve, BalancePicture, Table, percent};
 use denavit::simulate::{EventKind, Log};
 use denavit::walk::balance::{
@@ -71,8 +71,7 @@ pub(crate) fn run(
     arguments: &Arguments,
     out: &mut dyn Write,
 ) -> Result<Answer, Failure> {
-    let outputs =
-        [arguments.output.as_ref(), arguments.events.as_ref(), arguments.svg.as_ref()];
+    let outputs = [arguments.output.as_ref(), arguments.events.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let judged = judge(arguments)?;
     check_outputs(&outputs)?;
@@ -196,7 +195,8 @@ fn events(judged: &Judged) -> Log {
         values.extend(contacts.clone().map(|c| f64::from(u8::from(event.closed.contains(&c)))));
         for contact in contacts {
             let hits = event.impulses.iter().filter(|(hit, _)| *hit == contact);
-            let sum = hits.fold([0.0; 3], |sum, (_, p)| [sum[0] + p[0], sum[1] + p[1], sum[2] + p[2]]);
+            let sum =
+                hits.fold([0.0; 3], |sum, (_, p)| [sum[0] + p[0], sum[1] + p[1], sum[2] + p[2]]);
             values.extend(sum);
         }
         [&event.q, &event.before, &event.after].into_iter().for_each(|part| values.extend(part));
@@ -316,9 +316,15 @@ fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure
     let over = course.over.word();
     writeln!(out, "{}: over one {over} of {:.4} s\n", judged.name, course.duration_s())?;
     if what == What::Momentum {
-        let columns = [("angular momentum [kg m^2/s]", Align::Left), ("least", Align::Right), ("largest", Align::Right)];
+        let columns = [
+            ("angular momentum [kg m^2/s]", Align::Left),
+            ("least", Align::Right),
+            ("largest", Align::Right),
+        ];
         let mut table = Table::new(&columns);
-        for (axis, name) in ["x, forward axis", "y, to the left", "z, upwards"].into_iter().enumerate() {
+        for (axis, name) in
+            ["x, forward axis", "y, to the left", "z, upwards"].into_iter().enumerate()
+        {
             let [low, high] = momentum_range(course, axis);
             table.push(vec![name.to_owned(), format!("{low:.4}"), format!("{high:.4}")]);
         }

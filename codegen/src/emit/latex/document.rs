@@ -119,6 +119,7 @@ fn letter(function: &Function, output: &Output) -> String {
         FunctionName::CoriolisMatrix => "C".to_owned(),
         FunctionName::GravityVector => "G".to_owned(),
         FunctionName::ContactJacobian => r"W^{\mathsf T}".to_owned(),
+        FunctionName::CentroidalMomentumMatrix => "A".to_owned(),
         _ => format!(r"\mathrm{{{}}}", escape(output.name)),
     }
 }
@@ -126,11 +127,15 @@ fn letter(function: &Function, output: &Output) -> String {
 /// One output: as a matrix if that fits the page, else entry by entry.
 fn section(function: &Function, output: &Output, texts: &[Vec<String>]) -> String {
     let letter = letter(function, output);
-    let title = function.full_name().replace('_', " ");
+    let title = match function.outputs.len() {
+        1 => function.full_name(),
+        _ => output.name.to_owned(),
+    };
+    let title = title.replace('_', " ");
     let formulas: Vec<String> = texts.iter().map(|terms| terms.join(" ")).collect();
     let mut text =
         format!("\n\\subsection{{{}}}\n{}\n", escape(&capitalised(&title)), escape(&output.doc));
-    match as_matrix(output, &formulas) {
+    match as_matrix(&letter, output, &formulas) {
         Some(matrix) => text.push_str(&format!("\\[ {letter} = {matrix} \\]\n")),
         None => text.push_str(&entry_by_entry(&letter, output, texts, &formulas)),
     }
@@ -145,7 +150,7 @@ fn capitalised(text: &str) -> String {
 }
 
 /// The whole array in one display, if it is a vector or a matrix that fits on a line.
-fn as_matrix(output: &Output, formulas: &[String]) -> Option<String> {
+fn as_matrix(letter: &str, output: &Output, formulas: &[String]) -> Option<String> {
     let columns = match output.shape[..] {
         [rows] if rows <= 20 => 1,
         [rows, columns] if rows <= 20 && (1..=10).contains(&columns) => columns,
@@ -157,8 +162,13 @@ fn as_matrix(output: &Output, formulas: &[String]) -> Option<String> {
     }
     let total: u32 = widest.iter().map(|width| width + 20).sum();
     let rows: Vec<String> = formulas.chunks(columns).map(|row| row.join(" & ")).collect();
-    (total + 80 <= LINE)
+    (total + left_side(letter) <= LINE)
         .then(|| format!("\\begin{{bmatrix}} {} \\end{{bmatrix}}", rows.join(" \\\\ ")))
+}
+
+/// The width of a name with its indices and the sign of equality.
+fn left_side(letter: &str) -> u32 {
+    (width(letter) + 50).max(80)
 }
 
 fn entry_by_entry(
@@ -187,7 +197,7 @@ fn entry_by_entry(
             true => format!("{{{letter}}}_{{{}}}", subscript.join(comma)),
             false => with_subscript(letter, &subscript.join(comma)),
         };
-        if width(formula) + 80 <= LINE {
+        if width(formula) + left_side(letter) <= LINE {
             text.push_str(&format!("\\formula{{{name} = {formula}}}\n"));
         } else {
             text.push_str(&broken(&name, terms));

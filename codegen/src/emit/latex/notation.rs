@@ -1,6 +1,7 @@
 //! How symbols, angles and plain words are written.
 
 use crate::expr::{Dag, ExprId, Node, SymbolClass, SymbolId};
+use crate::function::force_name;
 use crate::model::{Robot, Role};
 use rustc_hash::FxHashMap;
 
@@ -82,6 +83,15 @@ impl Notation {
             }
             if let Node::Symbol(id) = dag.node(variables.q) {
                 notation.joints.insert(id, number);
+            }
+        }
+        for (number, contact) in robot.contacts.values().enumerate() {
+            for coordinate in ["x", "y", "z"] {
+                let name = force_name(&contact.name, coordinate);
+                if let Some(id) = dag.find_symbol(&name) {
+                    let subscript = format!("{coordinate},{}", number + 1);
+                    notation.symbols.insert(id, with_subscript("f", &subscript));
+                }
             }
         }
         for parameter in robot.parameters.values() {

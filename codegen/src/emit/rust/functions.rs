@@ -1,7 +1,7 @@
 //! The functions: documentation, signature, statements, result.
 
 use super::filling::{array_name, empty_arrays, entry_places, filled_result, fills_arrays};
-use super::selectors::{links, variants};
+use super::selectors::{Selector, links, variants};
 use super::{Context, bound, template};
 use crate::arena::Handle;
 use crate::emit::arrays::{Place, array};
@@ -315,7 +315,8 @@ fn result_lines(routine: &Routine, entries: &[&str]) -> Vec<String> {
 
 /// The public function that chooses by link.
 fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String {
-    let known = links(context);
+    let selector = Selector::of(first.name);
+    let known = links(context, selector);
     let variants = variants(&known);
     let of_name = context.program.routines.iter().zip(names);
     let arms: Vec<String> = of_name
@@ -325,11 +326,16 @@ fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String 
             let row = known.iter().position(|known| Some(*known) == link);
             let variant = &variants[row.expect("the link is one of the links")];
             let vectors = routine.arguments.iter().map(|shape| format!(", {}", shape.name));
-            format!("    Link::{variant} => {name}(parameters{}),", vectors.collect::<String>())
+            let chosen = format!("{}::{variant}", selector.type_name());
+            format!("    {chosen} => {name}(parameters{}),", vectors.collect::<String>())
         })
         .collect();
-    assert!(arms.len() == known.len(), "{} is derived for each link or for none", first.name);
-    let mut lines = vec!["match link {".to_owned()];
+    assert!(
+        arms.len() == known.len(),
+        "{} is derived for each of its links or for none",
+        first.name
+    );
+    let mut lines = vec![format!("match {} {{", selector.argument())];
     lines.extend(arms);
     lines.push("}".to_owned());
 
@@ -337,7 +343,7 @@ fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String 
     let all = context.program.routines.iter().filter(|routine| routine.name == first.name);
     let bounding = all.clone().find(is_transcendental).unwrap_or(first);
     let mut arguments = arguments(first);
-    arguments.insert(1, "link: Link".to_owned());
+    arguments.insert(1, format!("{}: {}", selector.argument(), selector.type_name()));
     let result = result_type(context, first);
     let start = format!("pub fn {}", first.name);
     let signature = signature(bounding, &start, &arguments, &result);

@@ -1,15 +1,60 @@
-//! The enumerations `Link` and `Contact`.
+//! The enumerations `Link`, `Foot` and `Contact`.
 
-use super::{Context, per_link, template};
+use super::{Context, template};
 use crate::emit::arrays::{Place, list};
 use crate::emit::names::Names;
+use crate::function::FunctionName;
 
-/// `Link`, if a function is chosen by link, and `Contact`, if the robot has contact points.
+/// Which links a function of links has a part for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Selector {
+    /// All of them.
+    Link,
+    /// Those that carry contact points.
+    Foot,
+}
+
+impl Selector {
+    /// By which links a function is chosen.
+    pub(super) fn of(function: FunctionName) -> Self {
+        match function {
+            FunctionName::FootRotationIndicator => Self::Foot,
+            _ => Self::Link,
+        }
+    }
+
+    /// Its enumeration.
+    pub(super) fn type_name(self) -> &'static str {
+        match self {
+            Self::Link => "Link",
+            Self::Foot => "Foot",
+        }
+    }
+
+    /// The argument of the functions.
+    pub(super) fn argument(self) -> &'static str {
+        match self {
+            Self::Link => "link",
+            Self::Foot => "foot",
+        }
+    }
+
+    fn doc(self) -> &'static str {
+        match self {
+            Self::Link => "A link of the robot.",
+            Self::Foot => "A link of the robot that carries contact points.",
+        }
+    }
+}
+
+/// `Link` and `Foot`, if a function is chosen by them, and `Contact`, if the robot has contact points.
 pub(super) fn items(context: &Context<'_>) -> Vec<String> {
     let mut items = Vec::new();
-    let links = links(context);
-    if !links.is_empty() {
-        items.push(enumeration("Link", "A link of the robot.", &links));
+    for selector in [Selector::Link, Selector::Foot] {
+        let links = links(context, selector);
+        if !links.is_empty() {
+            items.push(enumeration(selector.type_name(), selector.doc(), &links));
+        }
     }
     let contacts: Vec<&str> =
         context.robot.contacts.values().map(|contact| contact.name.as_str()).collect();
@@ -21,9 +66,11 @@ pub(super) fn items(context: &Context<'_>) -> Vec<String> {
 }
 
 /// The names of the links that a function is chosen by, each once.
-pub(super) fn links<'a>(context: &Context<'a>) -> Vec<&'a str> {
+pub(super) fn links<'a>(context: &Context<'a>, selector: Selector) -> Vec<&'a str> {
     let mut links = Vec::new();
-    for (_, link) in per_link(context.program) {
+    let program = context.program;
+    let chosen = program.routines.iter().filter(|made| Selector::of(made.name) == selector);
+    for link in chosen.filter_map(|routine| routine.link.as_deref()) {
         if !links.contains(&link) {
             links.push(link);
         }

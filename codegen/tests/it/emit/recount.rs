@@ -71,7 +71,8 @@ fn emitted_text_has_the_operations_that_are_counted() {
         let file = path.to_string_lossy();
         let robot = model::read(&file, &std::fs::read(&path).unwrap()).unwrap();
         let flavours = [Flavour::Tunable, Flavour::Sparse, Flavour::Baked];
-        let wanted = [&FunctionName::ALL[..], &FunctionName::REGRESSORS].concat();
+        let wanted =
+            [&FunctionName::ALL[..], &FunctionName::WALKING, &FunctionName::REGRESSORS].concat();
         for flavour in flavours {
             let Ok(derivation) = derive(&robot, flavour, &wanted) else {
                 assert_eq!(flavour, Flavour::Baked, "only baking needs values");

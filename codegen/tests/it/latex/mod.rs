@@ -3,3 +3,4 @@
 mod decompositions;
 mod documents;
 mod reader;
+mod walking;

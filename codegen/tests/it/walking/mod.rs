@@ -1,3 +1,1 @@
-//! The functions for walking: exact laws modulo p, and closed forms.
 
-mod contact_derivatives;

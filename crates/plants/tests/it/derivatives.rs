@@ -5,7 +5,7 @@ use denavit_plants::{ContactDerivatives, Cradle, LoadedPlant, Plant, plant_of};
 
 const STEP: f64 = 1e-5;
 
-fn robot(name: &str) -> denavit_codegen::model::Robot {
+pub(crate) fn robot(name: &str) -> denavit_codegen::model::Robot {
     let path = format!("{}/../../models/{name}.json", env!("CARGO_MANIFEST_DIR"));
     effect::read_model(&path, &std::fs::read(&path).unwrap(), &[]).unwrap()
 }
@@ -25,12 +25,12 @@ fn plants() -> Vec<Box<dyn Plant>> {
 }
 
 /// Numbers between -0.8 and 0.8, the same every time.
-fn numbers(count: usize, seed: usize) -> Vec<f64> {
+pub(crate) fn numbers(count: usize, seed: usize) -> Vec<f64> {
     (0..count).map(|k| 0.8 * ((7 * k + 3 * seed) as f64 * 0.737 + 0.3).sin()).collect()
 }
 
 /// The derivative of `function` at `x` by central differences: a row for each value.
-fn differences(x: &[f64], mut function: impl FnMut(&[f64]) -> Vec<f64>) -> Vec<f64> {
+pub(crate) fn differences(x: &[f64], mut function: impl FnMut(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let columns: Vec<Vec<f64>> = (0..x.len())
         .map(|j| {
             let mut at = |step: f64| {

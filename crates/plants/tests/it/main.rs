@@ -4,3 +4,4 @@
 mod derivatives;
 mod effect;
 mod emitted;
+mod walking;

@@ -2,12 +2,14 @@
 //! the torque that drives them (figures 3.4, 3.6), and contact forces.
 
 mod axes;
+mod balance;
 mod compared;
 mod convergence;
 mod excitation;
 mod figures;
 mod torques;
 
+pub use balance::{BalanceCurve, BalancePicture};
 pub use compared::diagnosis_picture;
 pub use convergence::convergence_picture;
 pub use torques::{TorquePicture, motion_picture, torque_picture};

@@ -30,6 +30,10 @@ pub enum Cause {
     TwoRobots,
     /// No joint has this name; holds it and the one that was meant, perhaps.
     UnknownJoint(String, Option<String>),
+    /// No link has this name; holds it and the one that was meant, perhaps.
+    UnknownLink(String, Option<String>),
+    /// A push that is an impulse and a force.
+    TwoShoves,
     /// A posture has no position of this joint.
     NoPosition(String),
     /// A joint of the floating base, which nothing drives.
@@ -95,6 +99,8 @@ impl fmt::Display for Cause {
             Self::Odd => write!(f, "the number must be even"),
             Self::NoEffect(missing) => write!(f, "this has no effect without {missing}"),
             Self::TwoRobots => write!(f, "`model` and `cradle_balls` are two robots"),
+            Self::UnknownLink(name, _) => write!(f, "no link is called `{name}`"),
+            Self::TwoShoves => write!(f, "a push is an impulse or a force, not both"),
             Self::UnknownJoint(name, _) => write!(f, "no joint is called `{name}`"),
             Self::NoPosition(name) => write!(f, "the position of `{name}` is missing"),
             Self::Undrivable(name) => {
@@ -143,7 +149,9 @@ impl Explained for Cause {
             Self::Form(cause) => {
                 return cause.hint().or_else(|| Some("docs/scenario.md says what is right".into()));
             }
-            Self::UnknownJoint(_, Some(near)) | Self::UnknownColumn(_, Some(near)) => {
+            Self::UnknownLink(_, Some(near))
+            | Self::UnknownJoint(_, Some(near))
+            | Self::UnknownColumn(_, Some(near)) => {
                 format!("`{near}` is meant, perhaps")
             }
             other => return other.fixed_hint().map(str::to_owned),
@@ -159,7 +167,9 @@ impl Cause {
             }
             Self::NoEffect(_) => "add that, or leave this out",
             Self::TwoRobots => "keep one of them",
-            Self::UnknownJoint(..) => "`denavit inspect MODEL` lists the joints",
+            Self::UnknownLink(..) | Self::UnknownJoint(..) => {
+                "`denavit inspect MODEL` lists the joints"
+            }
             Self::UnknownColumn(..) => "columns are named in the first line of the log",
             Self::NoPosition(_) => "a posture has the position of every joint",
             Self::Undrivable(_) => "control the joints between links",

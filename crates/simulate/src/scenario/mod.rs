@@ -8,6 +8,7 @@ mod fault;
 mod gait;
 mod limits;
 mod options;
+mod pushes;
 mod ranges;
 mod read;
 mod reader;

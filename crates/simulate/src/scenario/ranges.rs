@@ -64,6 +64,11 @@ pub(super) const RESTITUTION: Range = Range::new(0.0, 1.0);
 pub(super) const REST_SPEED_M_S: Range = Range::new(0.0, 1e3);
 pub(super) const DRIFT_RATE_PER_S: Range = Range::new(0.0, 1e4);
 
+/// Of pushes.
+pub(super) const PLACE_M: Range = Range::new(-1e3, 1e3);
+pub(super) const SHOVE: Range = Range::new(-1e9, 1e9);
+pub(super) const SHOVE_S: Range = Range::new(1e-6, 1e5);
+
 /// Of the integrator.
 pub(super) const RELATIVE: Range = Range::new(1e-14, 0.1);
 pub(super) const ABSOLUTE: Range = Range::new(1e-18, 1.0);

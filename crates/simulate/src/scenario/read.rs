@@ -5,6 +5,7 @@ use super::fault::{Cause, ScenarioError};
 use super::gait::{GaitPlanner, gait};
 use super::limits::speed_limits;
 use super::options;
+use super::pushes::pushes;
 use super::ranges;
 use super::reader::{FieldsNumbers, NodeNumbers, Report, check_format};
 use super::reference::Logs;
@@ -44,6 +45,7 @@ const KEYS: &[&str] = &[
     "measurement",
     "seed",
     "gait",
+    "pushes",
     "scheme",
     "time_stepping",
     "contact",
@@ -95,6 +97,7 @@ fn scenario(
     let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
     let posture = gait(fields, plant.as_mut(), planner, &mut control, report);
     let initial = initial(fields, plant.as_mut(), &control, posture, report);
+    simulation.pushes = pushes(fields, plant.model(), report);
     simulation.end_s += initial.t_s;
     find_idle(fields, plant.model(), &simulation, &control, report);
     Some(Scenario {

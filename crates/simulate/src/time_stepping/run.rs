@@ -88,6 +88,9 @@ fn check_stepping(simulation: &Simulation, stepping: &Stepping) -> Result<(), St
     if simulation.touching.scuffing != Scuffing::Counts {
         return Err(StartError::EventSchemeOnly("contacts that do not count"));
     }
+    if !simulation.pushes.is_empty() {
+        return Err(StartError::EventSchemeOnly("pushes"));
+    }
     let constrains_gaps = matches!(stepping.scheme, Scheme::Anitescu { .. });
     if constrains_gaps && simulation.touching.restitution > 0.0 {
         return Err(StartError::MoreauOnly("restitution"));

@@ -41,13 +41,14 @@ pub struct Instant {
     pub phase: Phase,
     /// How many contact points carry it.
     pub closed: usize,
-    /// Whether the foot that stands is still.
+    /// Whether more than one point carries the robot, and all of them rest.
     pub is_still: bool,
 }
 
-/// Contact points this near to the ground carry a robot, where one of their foot does \[m\].
+/// Contact points this near to the ground carry a robot, where one of their foot does and they
+/// rest \[m\].
 const NEAR_M: f64 = 1e-6;
-/// A foot whose points are slower is still [m/s].
+/// Points that are slower rest [m/s].
 const STILL_M_S: f64 = 1e-6;
 /// Without a hundredth of the weight no point is where it presses.
 const LOADED: f64 = 0.01;
@@ -71,7 +72,8 @@ impl Instant {
         let (n, points) = (at.q.len(), plant.model().contacts.len());
         let mut positions = vec![0.0; 3 * points];
         plant.contact_positions(at.q, &mut positions);
-        let (closed, feet) = carrying(plant, at, &positions);
+        let speeds = speeds(plant, at);
+        let (closed, feet) = carrying(plant, at, (&positions, &speeds));
         let support = {
             let places = closed.iter().map(|c| &positions[3 * c..3 * c + 3]);
             SupportPolygon::of(plant.model(), places)
@@ -86,7 +88,8 @@ impl Instant {
         let mut jacobian = vec![0.0; 3 * n];
         plant.center_of_mass_jacobian(at.q, &mut jacobian);
         let momentum = plant.momentum(at.q, at.qd);
-        let is_still = feet.len() == 1 && is_still(plant, at, &closed);
+        let is_still =
+            closed.len() > 1 && closed.iter().all(|contact| speeds[*contact] < STILL_M_S);
         let center_of_pressure_m = pressure(plant, at, &positions);
         let mut walking = plant.walking()?;
         let bias = walking.center_of_mass_bias(at.q, at.qd);
@@ -133,7 +136,11 @@ fn flat(plant: &dyn Plant) -> SupportForm {
 
 /// The contact points that carry the robot, and the links that they belong to. Points of a foot
 /// that stands count where they touch the ground, too: which of them have force is arbitrary.
-fn carrying(plant: &dyn Plant, at: &Moving<'_>, positions: &[f64]) -> (Vec<usize>, Vec<usize>) {
+fn carrying(
+    plant: &dyn Plant,
+    at: &Moving<'_>,
+    (positions, speeds): (&[f64], &[f64]),
+) -> (Vec<usize>, Vec<usize>) {
     let model = plant.model();
     let mut feet: Vec<usize> = Vec::new();
     for (contact, point) in model.contacts.iter().enumerate() {
@@ -144,19 +151,20 @@ fn carrying(plant: &dyn Plant, at: &Moving<'_>, positions: &[f64]) -> (Vec<usize
     let carries = |contact: &usize| {
         let height = model.ground.height(&positions[3 * contact..3 * contact + 3]);
         let stands = feet.contains(&model.contacts[*contact].link);
-        at.closed[*contact] || (stands && height.abs() < NEAR_M)
+        let rests = height.abs() < NEAR_M && speeds[*contact] < STILL_M_S;
+        at.closed[*contact] || (stands && rests)
     };
     ((0..model.contacts.len()).filter(carries).collect(), feet)
 }
 
-fn is_still(plant: &mut dyn Plant, at: &Moving<'_>, closed: &[usize]) -> bool {
+/// Speed of every contact point [m/s].
+fn speeds(plant: &mut dyn Plant, at: &Moving<'_>) -> Vec<f64> {
     let (n, points) = (at.q.len(), plant.model().contacts.len());
     let mut jacobian = vec![0.0; 3 * points * n];
     plant.contact_jacobian(at.q, &mut jacobian);
-    let is_flat = closed.len() > 1;
-    let speed = |row: &[f64]| row.iter().zip(at.qd).map(|(w, v)| w * v).sum::<f64>().abs();
-    let rows = closed.iter().flat_map(|c| jacobian[3 * c * n..3 * (c + 1) * n].chunks_exact(n));
-    is_flat && rows.map(speed).all(|speed| speed < STILL_M_S)
+    let along = |row: &[f64]| row.iter().zip(at.qd).map(|(w, v)| w * v).sum::<f64>();
+    let speed = |point: &[f64]| point.chunks_exact(n).map(|row| along(row).powi(2)).sum::<f64>();
+    jacobian.chunks_exact(3 * n).map(|point| speed(point).sqrt()).collect()
 }
 
 /// Where the contact forces have no moment but about the normal.

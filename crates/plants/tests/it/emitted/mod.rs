@@ -5,3 +5,4 @@ mod fused;
 mod golden;
 mod modules;
 mod outside;
+mod walking;

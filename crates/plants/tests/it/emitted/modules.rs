@@ -54,6 +54,13 @@ macro_rules! call {
                     contacts(p, function, [&q, &qd])
                 }
                 F::ContactDerivatives
+                | F::CenterOfMassBias
+                | F::CentroidalMomentumMatrix
+                | F::CentroidalMomentumBias
+                | F::ZeroMomentPoint
+                | F::CartTableZmp
+                | F::FootRotationIndicator
+                | F::CapturePoint
                 | F::StateRates
                 | F::Regressor
                 | F::BaseRegressor

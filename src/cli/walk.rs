@@ -2,6 +2,7 @@
 
 mod balance;
 mod poincare;
+mod robustness;
 
 use super::Answer;
 use super::failure::Failure;
@@ -49,6 +50,8 @@ Example:
   denavit walk momentum planar_biped_limit_cycle_gait")]
     Momentum(balance::Arguments),
     Poincare(poincare::Arguments),
+    Basin(robustness::BasinArguments),
+    Push(robustness::PushArguments),
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
@@ -58,5 +61,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Command::Capture(arguments) => balance::run(What::Capture, arguments, out),
         Command::Momentum(arguments) => balance::run(What::Momentum, arguments, out),
         Command::Poincare(arguments) => poincare::run(arguments, out),
+        Command::Basin(arguments) => robustness::run_basin(arguments, out),
+        Command::Push(arguments) => robustness::run_push(arguments, out),
     }
 }

@@ -12,7 +12,7 @@
 //!   estimate came about; [`IdentificationPage`]: all of it
 //! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
 //! - [`BalancePicture`]: points of balance and support polygon over time
-//! - [`UnitCircle`]: Floquet multipliers of a gait
+//! - [`UnitCircle`], [`HeatMap`]: Floquet multipliers of a gait, and what disturbances do to it
 //!
 //! Nothing here prints; text is handed to whoever does.
 
@@ -51,4 +51,4 @@ pub use run::{
 pub use table::{Align, Table};
 pub use two_stage::TwoStagePage;
 pub use values::Values;
-pub use walk::UnitCircle;
+pub use walk::{HeatMap, UnitCircle};

@@ -5,12 +5,14 @@
 //!   the other
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`poincare`]: cycles, and whether they are stable
+//! - [`robustness`]: basins of attraction, and the least push that fells
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod balance;
 pub mod inverse_kinematics;
 mod leg_exchange;
 pub mod poincare;
+pub mod robustness;
 mod scenario;
 pub mod weight_shift_step;
 

@@ -147,7 +147,7 @@ fn answer(scenario: &Scenario, found: &PoincareAnalysis) -> Value {
         "scenario": scenario.name,
         "model": model.name,
         "period_s": found.cycle.period_s,
-        "cycle": if found.exchanges_legs { "step" } else { "stride" },
+        "cycle": if found.cycle.exchange.is_some() { "step" } else { "stride" },
         "travel_m": found.cycle.travel_m,
         "section": section_text(scenario, found),
         "closed": found.cycle.closed.iter().map(|c| &model.contacts[*c].name).collect::<Vec<_>>(),
@@ -174,7 +174,7 @@ fn print(
     found: &PoincareAnalysis,
 ) -> Result<(), Failure> {
     let cycle = &found.cycle;
-    let name = if found.exchanges_legs { "step, legs exchanged" } else { "stride" };
+    let name = if found.cycle.exchange.is_some() { "step, legs exchanged" } else { "stride" };
     writeln!(
         out,
         "{}: a cycle of {:.6} s ({name}), {:.4} m",

@@ -51,8 +51,6 @@ pub struct PoincareAnalysis {
     pub cycle: FixedPoint,
     /// Where it was looked at.
     pub section: Section,
-    /// Whether the legs are exchanged after a cycle: then it is one step, else a stride.
-    pub exchanges_legs: bool,
     /// The multipliers by falling modulus, without those that are 0 because contacts forbid
     /// deviations.
     pub multipliers: Vec<Multiplier>,
@@ -122,7 +120,6 @@ pub fn analyse(
     let rhythm = Rhythm::of(plant, &scenario.control).map_err(|NotPeriodic(joint)| {
         PoincareError::NotPeriodic(plant.model().joints[joint].name.clone())
     })?;
-    let exchanges_legs = rhythm.exchange.is_some();
     let mut map = ReturnMap {
         plant,
         control: &scenario.control,
@@ -150,7 +147,6 @@ pub fn analyse(
     Ok(PoincareAnalysis {
         cycle,
         section,
-        exchanges_legs,
         multipliers: own,
         forbidden,
         methods_apart,

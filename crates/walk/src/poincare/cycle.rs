@@ -3,6 +3,7 @@
 use super::chart::Chart;
 use super::section::{ReturnError, ReturnMap, Returned, Section};
 use super::symmetry::{Symmetry, find};
+use crate::leg_exchange::LegExchange;
 use denavit_simulate::{Simulation, State, VariationError, simulate_varied};
 use nalgebra::{DMatrix, DVector};
 
@@ -13,6 +14,8 @@ pub struct FixedPoint {
     pub chart: Chart,
     /// The contacts that are closed in it.
     pub closed: Vec<usize>,
+    /// The exchange of the legs after a cycle, if a cycle is a step.
+    pub exchange: Option<LegExchange>,
     /// The time of a cycle \[s\].
     pub period_s: f64,
     /// How far the state is from itself a cycle later: the largest entry [rad, rad/s, m, m/s].
@@ -104,7 +107,8 @@ pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, 
     let returned = map.apply(&state).map_err(CycleError::Return)?;
     let chart = chart(map, &symmetries, &state, &returned);
     let travel_m = travel(map, &state, &returned);
-    Ok(FixedPoint { chart, closed: returned.closed, period_s: returned.took_s, residual, travel_m })
+    let (exchange, closed, period_s) = (map.exchange.clone(), returned.closed, returned.took_s);
+    Ok(FixedPoint { chart, closed, exchange, period_s, residual, travel_m })
 }
 
 /// The linearised map in the quicker way, where that can be gone.

@@ -134,8 +134,9 @@ fn flat(plant: &dyn Plant) -> SupportForm {
     if plant.model().planar { SupportForm::Line } else { SupportForm::Area }
 }
 
-/// The contact points that carry the robot, and the links that they belong to. Points of a foot
-/// that stands count where they touch the ground, too: which of them have force is arbitrary.
+/// The contact points that carry the robot, and the links that they belong to. In space, points of
+/// a foot that stands count where they touch the ground, too: which of them have force is
+/// arbitrary.
 fn carrying(
     plant: &dyn Plant,
     at: &Moving<'_>,
@@ -152,7 +153,7 @@ fn carrying(
         let height = model.ground.height(&positions[3 * contact..3 * contact + 3]);
         let stands = feet.contains(&model.contacts[*contact].link);
         let rests = height.abs() < NEAR_M && speeds[*contact] < STILL_M_S;
-        at.closed[*contact] || (stands && rests)
+        at.closed[*contact] || (stands && rests && !model.planar)
     };
     ((0..model.contacts.len()).filter(carries).collect(), feet)
 }

@@ -1,9 +1,24 @@
 //! Gaits: their postures meet their conditions, and the robot walks them.
 
+mod balance;
 mod event_driven_step;
 mod passive_walkers;
 mod poincare;
+mod robustness;
 mod weight_shift_step;
+
+use denavit_plants::shipped;
+use denavit_simulate::scenario::Scenario;
+
+/// A shipped scenario.
+fn scenario(name: &str) -> Scenario {
+    let load = |model: &str| {
+        let shipped = shipped::find_referred(model).ok_or("no such model")?;
+        Ok(shipped.text.as_bytes().to_vec())
+    };
+    let found = shipped::SCENARIOS.iter().find(|known| known.name == name).unwrap();
+    denavit_walk::read_scenario(name, found.text.as_bytes(), &load).unwrap()
+}
 
 #[track_caller]
 fn assert_near(found: f64, expected: f64, tolerance: f64) {

@@ -1,24 +1,13 @@
 //! Cycles of the planar biped: fixed points and multipliers of both shipped gaits against walking.md
 //! section 2, which another simulator found, and the two ways to a monodromy against each other.
 
-use super::assert_near;
-use denavit_plants::shipped;
+use super::{assert_near, scenario};
 use denavit_simulate::integrate::{Accuracy, Method};
-use denavit_simulate::scenario::Scenario;
 use denavit_simulate::{Simulation, State, simulate};
 use denavit_walk::LegExchange;
 use denavit_walk::poincare::{
     ReturnMap, Section, by_differences, by_variation, fixed_point, multipliers,
 };
-
-fn scenario(name: &str) -> Scenario {
-    let load = |model: &str| {
-        let shipped = shipped::find(model).ok_or("no such model")?;
-        Ok(shipped.text.as_bytes().to_vec())
-    };
-    let found = shipped::SCENARIOS.iter().find(|known| known.name == name).unwrap();
-    denavit_walk::read_scenario(name, found.text.as_bytes(), &load).unwrap()
-}
 
 /// The return map of a gait with this time of a step, looked at after a share of it.
 fn with_map<T>(

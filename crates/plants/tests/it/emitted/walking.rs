@@ -4,10 +4,28 @@ use super::flat::{Flat, Interpreted, bits, random_sample};
 use denavit_codegen::derive::Flavour;
 use denavit_codegen::function::FunctionName as F;
 
+/// What planar_biped's module has besides, as the build script asks for it.
+const OF_A_PLANT: [F; 12] = [
+    F::MassMatrix,
+    F::Bias,
+    F::LinkTransforms,
+    F::ContactPositions,
+    F::ContactJacobian,
+    F::ContactBias,
+    F::KineticEnergy,
+    F::PotentialEnergy,
+    F::CenterOfMass,
+    F::CenterOfMassJacobian,
+    F::Momentum,
+    F::InverseDynamicsDerivatives,
+];
+
 macro_rules! compare {
-    ($module:ident, $forces:literal) => {
+    ($module:ident, $forces:literal, $others:expr) => {
         use denavit_plants::emitted::$module as m;
-        let interpreted = Interpreted::new(stringify!($module), Flavour::Tunable, &F::WALKING);
+        // All functions of the module: they share nodes, whose order sums follow.
+        let functions = [&$others[..], &F::WALKING].concat();
+        let interpreted = Interpreted::new(stringify!($module), Flavour::Tunable, &functions);
         let p = &m::Parameters::default();
         assert_eq!(m::Foot::ALL.len(), 2);
         let call = |function: F, foot: Option<&str>, sample: &[Vec<f64>]| {
@@ -48,8 +66,10 @@ macro_rules! compare {
                 sample
             })
             .collect();
-        assert_eq!(interpreted.program.routines.len(), F::WALKING.len() + 1);
-        for routine in &interpreted.program.routines {
+        let routines = interpreted.program.routines.iter();
+        let routines: Vec<_> = routines.filter(|made| F::WALKING.contains(&made.name)).collect();
+        assert_eq!(routines.len(), F::WALKING.len() + 1);
+        for routine in routines {
             let lanes = interpreted.many(routine, &samples);
             for (sample, lane) in samples.iter().zip(&lanes) {
                 let arguments: Vec<&[f64]> =
@@ -66,10 +86,10 @@ macro_rules! compare {
 
 #[test]
 fn emitted_functions_for_walking_are_the_interpreters_on_planar_biped() {
-    compare!(planar_biped, 12);
+    compare!(planar_biped, 12, OF_A_PLANT);
 }
 
 #[test]
 fn emitted_functions_for_walking_are_the_interpreters_on_tulip() {
-    compare!(tulip, 24);
+    compare!(tulip, 24, F::ALL);
 }

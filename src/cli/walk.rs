@@ -1,6 +1,7 @@
 //! `denavit walk`: gaits, their stability, and what each criterion misses.
 
 mod balance;
+mod compare;
 mod poincare;
 mod robustness;
 
@@ -9,6 +10,10 @@ use super::failure::Failure;
 use balance::What;
 use clap::{Args, Subcommand};
 use std::io::Write;
+
+/// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots
+/// scuff, and runs would end there.
+const FALLBACK_FRICTION: f64 = 0.8;
 
 /// Walk: design gaits, and say whether they are stable
 ///
@@ -52,6 +57,7 @@ Example:
     Poincare(poincare::Arguments),
     Basin(robustness::BasinArguments),
     Push(robustness::PushArguments),
+    Compare(compare::Arguments),
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
@@ -63,5 +69,6 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Command::Poincare(arguments) => poincare::run(arguments, out),
         Command::Basin(arguments) => robustness::run_basin(arguments, out),
         Command::Push(arguments) => robustness::run_push(arguments, out),
+        Command::Compare(arguments) => compare::run(arguments, out),
     }
 }

@@ -4,11 +4,13 @@
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
+//! - [`comparison`]: what each criterion of stability says of runs, and what comes out
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`robustness`]: basins of attraction, and the least push that fells
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod balance;
+pub mod comparison;
 pub mod inverse_kinematics;
 mod leg_exchange;
 pub mod poincare;

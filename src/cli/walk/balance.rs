@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-fn period(text: &str) -> Result<f64, String> {
+pub(super) fn period(text: &str) -> Result<f64, String> {
     let period: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if (1e-6..=1.0).contains(&period) { Ok(period) } else { Err("not from 1e-6 to 1 s".into()) }
 }

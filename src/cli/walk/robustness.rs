@@ -19,10 +19,6 @@ use serde_json::json as value;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Friction that stands in where the no-slip law has no answer to an impact: starts off a cycle
-/// scuff, and would end there.
-const FALLBACK: f64 = 0.8;
-
 /// Walk from starts around the cycle of a gait: its basin of attraction as a map
 ///
 /// Two coordinates are varied on a grid, or all velocities at random (--noise). Where the no-slip
@@ -108,7 +104,7 @@ pub(crate) struct PushArguments {
 /// The scenario as disturbed runs need it.
 fn disturbed(path: &Path) -> Result<Scenario, Failure> {
     let mut scenario = open(path)?;
-    scenario.simulation.touching.fallback_friction.get_or_insert(FALLBACK);
+    scenario.simulation.touching.fallback_friction.get_or_insert(super::FALLBACK_FRICTION);
     Ok(scenario)
 }
 

@@ -6,9 +6,11 @@
 //! - [`Criterion`], [`Margins`], [`Shares`]: what they come to
 
 mod course;
+mod energy;
 mod instant;
 mod summary;
 
 pub use course::{BalanceError, Course, Over, course_of_log, course_of_scenario};
+pub use energy::Energy;
 pub use instant::{Instant, Phase};
 pub use summary::{Criterion, Margins, Shares};

@@ -88,7 +88,9 @@ pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, 
         if !improves {
             matrix = None;
         }
-        let jacobian = match matrix.take() {
+        // contacts that open or close make another chart
+        let known = matrix.take().filter(|known| known.nrows() == chart.len());
+        let jacobian = match known {
             Some(known) => known,
             None => linearised(map, &chart, returned.took_s)?,
         };
@@ -100,10 +102,10 @@ pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, 
         matrix = Some(jacobian);
         (state, returned) = advance(map, &chart, step.as_slice())?;
     }
-    let Some((residual, state)) = best.filter(|(least, _)| *least < NEARLY_FIXED) else {
-        let residual = f64::INFINITY;
+    let (residual, state) = best.unwrap_or_else(|| (f64::INFINITY, near.clone()));
+    if residual >= NEARLY_FIXED {
         return Err(CycleError::NotFound(residual));
-    };
+    }
     let returned = map.apply(&state).map_err(CycleError::Return)?;
     let chart = chart(map, &symmetries, &state, &returned);
     let travel_m = travel(map, &state, &returned);

@@ -8,35 +8,43 @@ use crate::expr::{Dag, ExprId};
 use crate::function::{FunctionName, Output};
 use crate::model::LinkId;
 
-const CENTER_OF_MASS_BIAS: &str = "(d/dt J) qd, J the Jacobian of the centre of mass: its acceleration at qdd = 0, world frame \
-     [m/s^2].";
+const CENTER_OF_MASS_BIAS: &str = "\
+    (d/dt J) qd, J the Jacobian of the centre of mass: its acceleration at qdd = 0, world frame \
+    [m/s^2].";
 
-const MOMENTUM_MATRIX: &str = "A(q): A qd is the momentum, world frame. Rows: linear x, y, z [kg m/s], then angular x, y, z \
-     about the centre of mass [kg m^2/s]; one column for each joint. Rotors of drives do not count.";
+const MOMENTUM_MATRIX: &str = "\
+    A(q): A qd is the momentum, world frame. Rows: linear x, y, z [kg m/s], then angular x, y, z \
+    about the centre of mass [kg m^2/s]; one column for each joint. Rotors of drives do not \
+    count.";
 
-const MOMENTUM_BIAS: &str = "(d/dt A) qd: the derivative of the momentum at qdd = 0, world frame. Linear x, y, z [N], then \
-     angular x, y, z about the centre of mass [N m].";
+const MOMENTUM_BIAS: &str = "\
+    (d/dt A) qd: the derivative of the momentum at qdd = 0, world frame. Linear x, y, z [N], \
+    then angular x, y, z about the centre of mass [N m].";
 
-const ZERO_MOMENT_POINT: &str = "The point of the ground plane about which gravity and inertia have no moment but along the \
-     plane's normal, world frame [m]. Rotors of drives do not count. Not finite where the ground \
-     need not press: in free flight.";
+const ZERO_MOMENT_POINT: &str = "\
+    The point of the ground plane about which gravity and inertia have no moment but along the \
+    plane's normal, world frame [m]. Rotors of drives do not count. Not finite where the ground \
+    need not press: in free flight.";
 
-const CART_TABLE_ZMP: &str = "The zero-moment point of the cart-table model, world frame [m]: the centre of mass on the \
-     ground plane, minus (a - g) h / gn, where a and g are acceleration of the centre of mass and \
-     gravity along the plane, h its height and gn gravity across the plane. On level ground \
-     x - xdd z / g.";
+const CART_TABLE_ZMP: &str = "\
+    The zero-moment point of the cart-table model, world frame [m]: the centre of mass on the \
+    ground plane, minus (a - g) h / gn, where a and g are acceleration of the centre of mass and \
+    gravity along the plane, h its height and gn gravity across the plane. On level ground x - \
+    xdd z / g.";
 
-const FOOT_ROTATION_INDICATOR: &str = "The point of the ground plane where the ground would have to act to keep the foot still \
-     (Goswami 1999), world frame [m]: the rigid body of the link has its weight but no \
-     acceleration, linear or angular, all others have those of the motion. It is the zero-moment \
-     point while the foot is still. It is not the fictitious zero-moment point for which the joints \
-     accelerate as they do with the foot held. Rotors of drives do not count. Not finite where the \
-     ground need not press.";
+const FOOT_ROTATION_INDICATOR: &str = "\
+    The point of the ground plane where the ground would have to act to keep the foot still \
+    (Goswami 1999), world frame [m]: the rigid body of the link has its weight but no \
+    acceleration, linear or angular, all others have those of the motion. It is the zero-moment \
+    point while the foot is still. It is not the fictitious zero-moment point for which the \
+    joints accelerate as they do with the foot held. Rotors of drives do not count. Not finite \
+    where the ground need not press.";
 
-const CAPTURE_POINT: &str = "The point of the ground plane above which the linear inverted pendulum comes to rest, world \
-     frame [m]: c + v sqrt(h / gn) with c the centre of mass, taken to the plane along gravity, v \
-     its velocity along the plane, h its height and gn gravity across the plane. Not a number where \
-     the centre of mass is below the plane.";
+const CAPTURE_POINT: &str = "\
+    The point of the ground plane above which the linear inverted pendulum comes to rest, world \
+    frame [m]: c + v sqrt(h / gn) with c the centre of mass, taken to the plane along gravity, v \
+    its velocity along the plane, h its height and gn gravity across the plane. Not a number \
+    where the centre of mass is below the plane.";
 
 /// The outputs of a function for walking.
 pub(super) fn outputs(dag: &mut Dag, candidate: &Candidate<'_>, name: FunctionName) -> Vec<Output> {

@@ -40,6 +40,72 @@ fn without_coulomb(model: &PlantModel, qd: &[f64], bias: &mut [f64]) {
     }
 }
 
+/// The functions that every module has.
+macro_rules! functions {
+    () => {
+        fn mass_matrix(&mut self, q: &[f64], mass: &mut [f64]) {
+            let rows = robot::mass_matrix(&self.parameters, sized(q));
+            mass.copy_from_slice(rows.as_flattened());
+        }
+
+        fn bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]) {
+            bias.copy_from_slice(&robot::bias(&self.parameters, sized(q), sized(qd)));
+            without_coulomb(&self.model, qd, bias);
+        }
+
+        fn center_of_mass_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]) {
+            let rows = robot::center_of_mass_jacobian(&self.parameters, sized(q));
+            jacobian.copy_from_slice(rows.as_flattened());
+        }
+
+        fn walking(&mut self) -> Option<WalkingFunctions<'_>> {
+            Some(WalkingFunctions::new(&self.model, &mut self.on_demand))
+        }
+
+        fn inverse_dynamics_derivatives(
+            &mut self,
+            q: &[f64],
+            qd: &[f64],
+            qdd: &[f64],
+            by_position: &mut [f64],
+            by_velocity: &mut [f64],
+        ) -> bool {
+            let found = robot::inverse_dynamics_derivatives(
+                &self.parameters,
+                sized(q),
+                sized(qd),
+                sized(qdd),
+            );
+            by_position.copy_from_slice(found.dtau_dq.as_flattened());
+            by_velocity.copy_from_slice(found.dtau_dqd.as_flattened());
+            true
+        }
+
+        fn kinetic_energy(&mut self, q: &[f64], qd: &[f64]) -> f64 {
+            robot::kinetic_energy(&self.parameters, sized(q), sized(qd))
+        }
+
+        fn potential_energy(&mut self, q: &[f64]) -> f64 {
+            robot::potential_energy(&self.parameters, sized(q))
+        }
+
+        fn center_of_mass(&mut self, q: &[f64]) -> [f64; 3] {
+            robot::center_of_mass(&self.parameters, sized(q))
+        }
+
+        fn momentum(&mut self, q: &[f64], qd: &[f64]) -> [f64; 6] {
+            let found = robot::momentum(&self.parameters, sized(q), sized(qd));
+            let ([x, y, z], [a, b, c]) = (found.linear_momentum, found.angular_momentum);
+            [x, y, z, a, b, c]
+        }
+
+        fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]) {
+            let links = robot::link_transforms(&self.parameters, sized(q));
+            transforms.copy_from_slice(links.as_flattened().as_flattened());
+        }
+    };
+}
+
 macro_rules! generated {
     ($(#[$doc:meta])* $robot:ident, [$($settable:ident),*], $contacts:ident) => {
         $(#[$doc])*
@@ -62,66 +128,7 @@ macro_rules! generated {
                     &self.model
                 }
 
-                fn mass_matrix(&mut self, q: &[f64], mass: &mut [f64]) {
-                    let rows = robot::mass_matrix(&self.parameters, sized(q));
-                    mass.copy_from_slice(rows.as_flattened());
-                }
-
-                fn bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]) {
-                    bias.copy_from_slice(&robot::bias(&self.parameters, sized(q), sized(qd)));
-                    without_coulomb(&self.model, qd, bias);
-                }
-
-                fn center_of_mass_jacobian(&mut self, q: &[f64], jacobian: &mut [f64]) {
-                    let rows = robot::center_of_mass_jacobian(&self.parameters, sized(q));
-                    jacobian.copy_from_slice(rows.as_flattened());
-                }
-
-                fn walking(&mut self) -> Option<WalkingFunctions<'_>> {
-                    Some(WalkingFunctions::new(&self.model, &mut self.on_demand))
-                }
-
-                fn inverse_dynamics_derivatives(
-                    &mut self,
-                    q: &[f64],
-                    qd: &[f64],
-                    qdd: &[f64],
-                    by_position: &mut [f64],
-                    by_velocity: &mut [f64],
-                ) -> bool {
-                    let found = robot::inverse_dynamics_derivatives(
-                        &self.parameters,
-                        sized(q),
-                        sized(qd),
-                        sized(qdd),
-                    );
-                    by_position.copy_from_slice(found.dtau_dq.as_flattened());
-                    by_velocity.copy_from_slice(found.dtau_dqd.as_flattened());
-                    true
-                }
-
-                fn kinetic_energy(&mut self, q: &[f64], qd: &[f64]) -> f64 {
-                    robot::kinetic_energy(&self.parameters, sized(q), sized(qd))
-                }
-
-                fn potential_energy(&mut self, q: &[f64]) -> f64 {
-                    robot::potential_energy(&self.parameters, sized(q))
-                }
-
-                fn center_of_mass(&mut self, q: &[f64]) -> [f64; 3] {
-                    robot::center_of_mass(&self.parameters, sized(q))
-                }
-
-                fn momentum(&mut self, q: &[f64], qd: &[f64]) -> [f64; 6] {
-                    let found = robot::momentum(&self.parameters, sized(q), sized(qd));
-                    let ([x, y, z], [a, b, c]) = (found.linear_momentum, found.angular_momentum);
-                    [x, y, z, a, b, c]
-                }
-
-                fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]) {
-                    let links = robot::link_transforms(&self.parameters, sized(q));
-                    transforms.copy_from_slice(links.as_flattened().as_flattened());
-                }
+                functions!();
 
                 $contacts!();
             }

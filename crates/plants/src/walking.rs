@@ -5,12 +5,13 @@ use super::PlantModel;
 use super::on_demand::OnDemand;
 use denavit_codegen::function::FunctionName;
 
-/// The functions of a plant for walking, in the world frame. Each is derived and compiled when it is
-/// called first.
+/// The functions of a plant for walking, in the world frame. Each is derived and compiled when it
+/// is called first.
 ///
 /// Momenta are those of the bodies; rotors of drives do not count, as in
-/// [`Plant::momentum`](super::Plant::momentum). Points of the ground are there where the base floats
-/// and the robot has contact points; positions, velocities and accelerations have n entries.
+/// [`Plant::momentum`](super::Plant::momentum). Points of the ground are there where the base
+/// floats and the robot has contact points; positions, velocities and accelerations have n
+/// entries.
 #[derive(Debug)]
 pub struct WalkingFunctions<'a> {
     model: &'a PlantModel,
@@ -46,15 +47,15 @@ impl<'a> WalkingFunctions<'a> {
     }
 
     /// The zero-moment point of the cart-table model \[m\]: the centre of mass on the ground plane,
-    /// minus (a - g) h / gn, with a and g its acceleration and gravity along the plane, h its height
-    /// and gn gravity across the plane.
+    /// minus (a - g) h / gn, with a and g its acceleration and gravity along the plane, h its
+    /// height and gn gravity across the plane.
     pub fn cart_table_zmp(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<[f64; 3]> {
         self.point(FunctionName::CartTableZmp, None, &[q, qd, qdd])
     }
 
-    /// The foot rotation indicator (Goswami 1999) of a link that carries contact points \[m\]: where
-    /// on the ground plane the ground would have to act to keep the link's body still, all others
-    /// in the motion given. `link` is a row of [`PlantModel::links`].
+    /// The foot rotation indicator (Goswami 1999) of a link that carries contact points \[m\]:
+    /// where on the ground plane the ground would have to act to keep the link's body still, all
+    /// others in the motion given. `link` is a row of [`PlantModel::links`].
     pub fn foot_rotation_indicator(
         &mut self,
         link: usize,
@@ -69,9 +70,9 @@ impl<'a> WalkingFunctions<'a> {
         self.point(FunctionName::FootRotationIndicator, Some(link), &[q, qd, qdd])
     }
 
-    /// The capture point of the linear inverted pendulum \[m\]: c + v sqrt(h / gn), with c the centre
-    /// of mass taken to the ground plane along gravity and v its velocity along the plane. Not a
-    /// number where the centre of mass is below the plane.
+    /// The capture point of the linear inverted pendulum \[m\]: c + v sqrt(h / gn), with c the
+    /// centre of mass taken to the ground plane along gravity and v its velocity along the plane.
+    /// Not a number where the centre of mass is below the plane.
     pub fn capture_point(&mut self, q: &[f64], qd: &[f64]) -> Option<[f64; 3]> {
         self.point(FunctionName::CapturePoint, None, &[q, qd])
     }

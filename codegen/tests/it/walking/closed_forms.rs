@@ -87,7 +87,8 @@ fn a_foot_that_tilts_under_a_pendulum() {
 
 #[test]
 fn the_capture_point_is_ahead_by_the_velocity_over_the_pendulums_frequency() {
-    // A block of 1 kg on a slope of 10 degrees, its centre of mass 0.6 m above, at 0.5 m/s along it.
+    // A block of 1 kg on a slope of 10 degrees, its centre of mass 0.6 m above, at 0.5 m/s along
+    // it.
     let angle = PI / 18.0;
     let (normal, along) = ([angle.sin(), angle.cos()], [angle.cos(), -angle.sin()]);
     let (height, speed, gravity) = (0.6, 0.5, 9.81);

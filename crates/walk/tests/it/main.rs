@@ -1,6 +1,7 @@
 //! Gaits: their postures meet their conditions, and the robot walks them.
 
 mod balance;
+mod comparison;
 mod event_driven_step;
 mod passive_walkers;
 mod poincare;

@@ -21,7 +21,7 @@ const FALLBACK_FRICTION: f64 = 0.8;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  denavit walk poincare planar_biped_limit_cycle_gait")]
+  denavit walk poincare compass_gait")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -21,9 +21,8 @@ use std::path::{Path, PathBuf};
 /// examples of the thesis's chapter 4 are run.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Examples:
-  denavit walk compare
-  denavit walk compare my_gait.json planar_biped_zmp_gait --html comparison.html")]
+Example:
+  denavit walk compare planar_biped_zmp_gait planar_biped_switched_off --html comparison.html")]
 pub(crate) struct Arguments {
     /// Paths of scenario files, or names of shipped scenarios
     #[arg(value_name = "SCENARIO")]

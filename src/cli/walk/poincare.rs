@@ -24,7 +24,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  denavit walk poincare planar_biped_limit_cycle_gait --svg circle.svg
+  denavit walk poincare planar_biped_limit_cycle_gait --unchecked --svg circle.svg
   denavit walk poincare compass_gait --section strike --json")]
 pub(crate) struct Arguments {
     /// The path of a scenario file, or the name of a shipped scenario

@@ -26,8 +26,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  denavit walk basin planar_biped_limit_cycle_gait --svg basin.svg
-  denavit walk basin planar_biped_limit_cycle_gait --noise 0.2 --starts 100 --seed 7")]
+  denavit walk basin planar_biped_limit_cycle_gait --grid 3 --steps 5 --svg basin.svg
+  denavit walk basin planar_biped_limit_cycle_gait --noise 0.2 --starts 10 --seed 7")]
 pub(crate) struct BasinArguments {
     /// The path of a scenario file, or the name of a shipped scenario
     #[arg(value_name = "SCENARIO")]
@@ -76,7 +76,7 @@ pub(crate) struct BasinArguments {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  denavit walk push planar_biped_zmp_gait --svg push.svg")]
+  denavit walk push planar_biped_limit_cycle_gait --times 2 --svg push.svg")]
 pub(crate) struct PushArguments {
     /// The path of a scenario file, or the name of a shipped scenario
     #[arg(value_name = "SCENARIO")]

@@ -20,6 +20,10 @@ const COMMANDS: [&str; 13] = [
     "diagnose",
 ];
 
+/// The commands of `walk`.
+const WALK: [&str; 8] =
+    ["zmp", "fri", "capture", "momentum", "poincare", "basin", "push", "compare"];
+
 /// The command lines of a help text's examples; three blanks begin a remark.
 fn examples(help: &str) -> Vec<Vec<String>> {
     let (_, examples) = help.split_once("Example").expect("a help text has an example");
@@ -35,7 +39,9 @@ fn examples(help: &str) -> Vec<Vec<String>> {
 fn every_example_of_every_help_text_runs() {
     let directory = Directory::new("examples");
     let helps = COMMANDS.map(|command| answer(&[command, "--help"])).into_iter();
-    for help in helps.chain([answer(&["--help"])]) {
+    let walk = [answer(&["walk", "--help"])].into_iter();
+    let walk = walk.chain(WALK.map(|command| answer(&["walk", command, "--help"])));
+    for help in helps.chain([answer(&["--help"])]).chain(walk) {
         let examples = examples(&help);
         assert!(!examples.is_empty(), "no example in:\n{help}");
         for example in examples {
@@ -57,7 +63,7 @@ fn every_example_of_every_help_text_runs() {
 #[test]
 fn the_overview_lists_every_command() {
     let help = answer(&["--help"]);
-    for command in COMMANDS {
+    for command in COMMANDS.into_iter().chain(["walk"]) {
         assert!(help.lines().any(|line| line.trim().starts_with(command)), "{command}:\n{help}");
     }
 }

@@ -190,7 +190,7 @@ pub struct Argument {
     pub symbols: Vec<ExprId>,
 }
 
-/// The name of the symbol of one coordinate (`x`, `y`, `z`) of the force on a contact point. No name
+/// The name of the symbol of one coordinate (`x`, `y`, `z`) of the force on a contact. No name
 /// of a model has a full stop.
 pub fn force_name(contact: &str, coordinate: &str) -> String {
     format!("f.{contact}.{coordinate}")

@@ -2,7 +2,7 @@
 //!
 //! A criterion is judged by its own terms: a point of the ground must be in the support polygon all
 //! the time, and so there must be one; angular momentum must be small; multipliers must be inside
-//! the unit circle. The exact zero moment point may be on the edge, where a foot begins to turn: the
+//! the unit circle. The exact zero moment point may be on the edge, where a foot begins to turn:
 //! forces of the ground have no other place. The outcome is that of the run.
 
 use crate::balance::{BalanceError, Course, Criterion, Energy, Over, course_of_scenario};

@@ -38,7 +38,13 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "model")]
     whole: bool,
     /// Distance of the instants that are looked at
-    #[arg(long, value_name = "SECONDS", default_value = "0.0005", value_parser = period, conflicts_with = "model")]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "0.0005",
+        value_parser = period,
+        conflicts_with = "model"
+    )]
     period: f64,
     /// Where the criteria go, row by row, as CSV; - is standard output
     #[arg(short, long, value_name = "FILE")]

@@ -28,7 +28,12 @@ pub(crate) struct Arguments {
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
     /// Distance of the instants that are looked at
-    #[arg(long, value_name = "SECONDS", default_value = "0.001", value_parser = super::balance::period)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "0.001",
+        value_parser = super::balance::period
+    )]
     period: f64,
     /// Write a page; - is standard output
     #[arg(long, value_name = "FILE")]

@@ -35,7 +35,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECTION", value_parser = section)]
     section: Option<WantedSection>,
     /// Steps from the start on before the cycle is looked for
-    #[arg(long, value_name = "STEPS", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(
+        long,
+        value_name = "STEPS",
+        default_value_t = 4,
+        value_parser = clap::value_parser!(u32).range(0..=1000)
+    )]
     approach: u32,
     /// Leave out the comparison with central differences and with other sections
     #[arg(long)]

@@ -45,19 +45,35 @@ pub(crate) struct BasinArguments {
     #[arg(long, value_name = "A,B", value_delimiter = ',', num_args = 1, default_value = "1,0.1")]
     reach: Vec<f64>,
     /// Starts along each coordinate
-    #[arg(long, value_name = "COUNT", default_value_t = 11, value_parser = clap::value_parser!(u32).range(2..=101))]
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 11,
+        value_parser = clap::value_parser!(u32).range(2..=101)
+    )]
     grid: u32,
     /// Vary all joint velocities instead: normal, with this standard deviation [rad/s]
     #[arg(long, value_name = "DEVIATION", conflicts_with_all = ["vary", "reach", "grid"])]
     noise: Option<f64>,
     /// How many random starts
-    #[arg(long, value_name = "COUNT", default_value_t = 100, requires = "noise", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 100,
+        requires = "noise",
+        value_parser = clap::value_parser!(u32).range(1..=100_000)
+    )]
     starts: u32,
     /// Seed of the random starts
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "noise")]
     seed: u64,
     /// Cycles that each start is to walk
-    #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 10,
+        value_parser = clap::value_parser!(u32).range(1..=10_000)
+    )]
     steps: u32,
     /// Where the starts go, row by row, as CSV; - is standard output
     #[arg(short, long, value_name = "FILE")]
@@ -85,7 +101,12 @@ pub(crate) struct PushArguments {
     #[arg(long, value_name = "LINK")]
     link: Option<String>,
     /// How many times in the cycle
-    #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 12,
+        value_parser = clap::value_parser!(u32).range(1..=1000)
+    )]
     times: u32,
     /// The strongest impulse that is tried [N s]
     #[arg(long, value_name = "NS", default_value_t = 20.0)]

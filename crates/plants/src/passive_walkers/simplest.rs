@@ -2,9 +2,10 @@
 
 use crate::{GroundModel, JointModel, Plant, PlantModel};
 
-/// The walker of Garcia, Chatterjee, Ruina, Coleman 1998: a hip and two legs of length 1, with feet without mass, so D is the unit matrix of the
-/// scaled equations and the heel strike is a guard. Scuffing is ignored by a declared rule: the
-/// guard looks only while the stance leg leans forward.
+/// The walker of Garcia, Chatterjee, Ruina, Coleman 1998: a hip and two legs of length 1, with feet
+/// without mass, so that D is the unit matrix of the scaled equations and the heel strike is a
+/// guard. Scuffing is ignored by a declared rule: the guard looks only while the stance leg leans
+/// forward.
 #[derive(Clone, Debug)]
 pub struct SimplestWalker {
     model: PlantModel,

@@ -1,4 +1,4 @@
-//! Points of balance over time, with the edges of the support polygon (thesis figures 4.4, 4.5, 4.7).
+//! Points of balance over time, with the edges of the support polygon (thesis figures 4.4 to 4.7).
 
 use super::axes::{Axes, Scale, TICK};
 use crate::svg::Svg;

@@ -1,8 +1,9 @@
 //! Coordinates of the states near one on a section, inside the manifold of its contacts.
 //!
 //! Deviations that move closed contacts are none that a walking robot can have: with them
-//! multipliers would depend on the section. Positions keep closed contacts on the ground, velocities
-//! keep them still, also where the positions deviate. Directions of symmetries are left out.
+//! multipliers would depend on the section. Positions keep closed contacts on the ground,
+//! velocities keep them still, also where the positions deviate. Directions of symmetries are left
+//! out.
 
 use super::symmetry::Symmetry;
 use denavit_plants::{GroundModel, Plant};

@@ -1,4 +1,5 @@
-//! Cycles of the planar biped: fixed points and multipliers of both shipped gaits against walking.md
+//! Cycles of the planar biped: fixed points and multipliers of both shipped gaits against
+//! walking.md
 //! section 2, which another simulator found, and the two ways to a monodromy against each other.
 
 use super::{assert_near, scenario};

@@ -126,6 +126,7 @@ pub fn analyse(
         simulation: accurate(&scenario.simulation),
         exchange: rhythm.exchange,
         section: Section::Clock { at_s: 0.0, period_s: 0.0 },
+        cycles: 1,
         patience_s: options.patience_s,
         clock_s: rhythm.clock_s,
     };

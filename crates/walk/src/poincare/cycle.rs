@@ -120,6 +120,7 @@ fn linearised(
     took_s: f64,
 ) -> Result<DMatrix<f64>, CycleError> {
     if matches!(map.section, Section::Clock { .. })
+        && map.cycles == 1
         && let Ok(matrix) = by_variation(map, chart, took_s)
     {
         return Ok(matrix);
@@ -189,7 +190,7 @@ pub fn by_differences(map: &mut ReturnMap<'_>, chart: &Chart) -> Result<DMatrix<
     Ok(matrix)
 }
 
-/// The same from the variational equation along the cycle, with saltation at its events: for
+/// The same from the variational equation along one cycle, with saltation at its events: for
 /// sections of the clock.
 ///
 /// # Errors

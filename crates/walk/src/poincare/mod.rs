@@ -5,10 +5,12 @@
 //! - [`fixed_point`]: the state that comes back to itself
 //! - [`by_differences`], [`by_variation`]: the linearised return map, in two independent ways
 //! - [`multipliers`]: its eigenvalues with their directions
+//! - [`doubling`]: where a cycle of twice the steps branches off
 
 mod analysis;
 mod chart;
 mod cycle;
+mod doubling;
 mod multipliers;
 mod rhythm;
 mod section;
@@ -18,6 +20,7 @@ mod wording;
 pub use analysis::{PoincareAnalysis, PoincareError, PoincareOptions, WantedSection, analyse};
 pub use chart::Chart;
 pub use cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
+pub use doubling::doubling;
 pub use multipliers::{Multiplier, multipliers};
 pub use rhythm::{NotPeriodic, Rhythm};
 pub use section::{ReturnError, ReturnMap, Returned, Section};

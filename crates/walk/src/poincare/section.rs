@@ -33,6 +33,8 @@ pub struct ReturnMap<'a> {
     pub exchange: Option<LegExchange>,
     /// Where it is looked at.
     pub section: Section,
+    /// After how many cycles it is looked at again: 2 for orbits of twice the period.
+    pub cycles: usize,
     /// A cycle that is not over after this time is none: only of sections of events \[s\].
     pub patience_s: f64,
     /// The time of the controller's clock that passes in one cycle; none if the control does not
@@ -83,11 +85,20 @@ impl std::error::Error for ReturnError {}
 const SAME_EVENT_S: f64 = 1e-7;
 
 impl ReturnMap<'_> {
-    /// One cycle from a state on the section.
+    /// The cycles from a state on the section.
     ///
     /// # Errors
     /// A run that stops, or that does not come back.
     pub fn apply(&mut self, start: &State) -> Result<Returned, ReturnError> {
+        let mut returned = self.one_cycle(start)?;
+        for _ in 1..self.cycles {
+            let next = self.one_cycle(&returned.state)?;
+            returned = Returned { took_s: returned.took_s + next.took_s, ..next };
+        }
+        Ok(returned)
+    }
+
+    fn one_cycle(&mut self, start: &State) -> Result<Returned, ReturnError> {
         match self.section {
             Section::Clock { period_s, .. } => {
                 let run = self.run(start, period_s)?;

@@ -7,7 +7,9 @@ use denavit_plants::{KneedWalker, LoadedPlant, Override, Plant, SimplestWalker};
 use denavit_simulate::integrate::{Accuracy, Method};
 use denavit_simulate::{Control, Scuffing, Simulation, State, Touching};
 use denavit_walk::LegExchange;
-use denavit_walk::poincare::{ReturnMap, Section, by_differences, fixed_point, multipliers};
+use denavit_walk::poincare::{
+    CycleError, Multiplier, ReturnMap, Section, by_differences, doubling, fixed_point, multipliers,
+};
 use std::path::Path;
 
 fn accurate() -> Simulation {
@@ -36,6 +38,7 @@ fn passive<'a>(
         simulation: accurate(),
         exchange: None,
         section,
+        cycles: 1,
         patience_s,
         clock_s: None,
     }
@@ -198,10 +201,57 @@ fn the_compass_has_its_published_multipliers() {
         let near = compass_state([start[0], swing, start[2], start[3]]);
         let fixed = assert_multipliers(&mut map, &near, &expected);
         // joints turn against the hip, which nothing turns
-        let from_vertical = |values: &[f64], leg: usize| -values[2] - values[leg];
-        let found = [3, 4].map(|leg| from_vertical(&fixed.q, leg));
-        let speeds = [3, 4].map(|leg| from_vertical(&fixed.qd, leg));
-        for (found, expected) in found.into_iter().chain(speeds).zip(cycle) {
+        for (found, expected) in from_vertical(&fixed).into_iter().zip(cycle) {
+            assert_near(found, expected, 1e-8);
+        }
+    }
+}
+
+/// Stance and swing angle from the vertical, and their velocities.
+fn from_vertical(state: &State) -> [f64; 4] {
+    let of = |values: &[f64], leg: usize| -values[2] - values[leg];
+    [of(&state.q, 3), of(&state.q, 4), of(&state.qd, 3), of(&state.qd, 4)]
+}
+
+#[test]
+fn the_compass_doubles_its_period_where_it_is_published_to() {
+    let mut near = compass_state(COMPASS[3].1);
+    let mut at = |degrees: f64| -> Result<Vec<Multiplier>, CycleError> {
+        let (mut walker, control) = (compass(degrees), Control::passive(5));
+        let mut map = compass_map(&mut walker, &control);
+        // the last cycle, with the swing foot on this slope
+        let [stance, _, stance_speed, swing_speed] = from_vertical(&near);
+        let swing = -2.0 * degrees.to_radians() - stance;
+        let start = compass_state([stance, swing, stance_speed, swing_speed]);
+        let cycle = fixed_point(&mut map, &start)?;
+        near = cycle.chart.base.clone();
+        Ok(multipliers(&by_differences(&mut map, &cycle.chart)?).unwrap())
+    };
+    let found = doubling(&mut at, [4.2, 4.5], 1e-9).unwrap().expect("a doubling");
+    assert_near(found, 4.39089825, 1e-7);
+}
+
+#[test]
+fn beyond_its_doubling_the_compass_limps() {
+    let degrees = 4.6;
+    let (mut walker, control) = (compass(degrees), Control::passive(5));
+    let mut map = compass_map(&mut walker, &control);
+    map.cycles = 2;
+    let swing = |stance: f64| -2.0 * f64::to_radians(degrees) - stance;
+    let near = compass_state([0.2453, swing(0.2453), -1.173, -0.092]);
+    let cycle = fixed_point(&mut map, &near).unwrap();
+    let first = cycle.chart.base.clone();
+    let found = multipliers(&by_differences(&mut map, &cycle.chart).unwrap()).unwrap();
+    assert!(found[0].modulus() < 1.0, "the orbit of two steps is stable: {:?}", found[0].value);
+    map.cycles = 1;
+    let second = map.apply(&first).unwrap().state;
+    for (state, expected) in [
+        // the note prints -0.0915918483, which differs in two digits; its other state agrees
+        (first, [0.2452871620, -1.1734013832, -0.0915919484]),
+        (second, [0.2196416020, -1.1504012099, -0.1595051611]),
+    ] {
+        let [stance, _, stance_speed, swing_speed] = from_vertical(&state);
+        for (found, expected) in [stance, stance_speed, swing_speed].into_iter().zip(expected) {
             assert_near(found, expected, 1e-8);
         }
     }

@@ -30,6 +30,7 @@ fn with_map<T>(
         simulation,
         exchange,
         section: Section::Clock { at_s, period_s: step_s },
+        cycles: 1,
         patience_s: 2.0,
         clock_s: Some(step_s),
     };

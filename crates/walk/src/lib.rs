@@ -6,6 +6,7 @@
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod inverse_kinematics;
+pub mod optimal;
 mod scenario;
 pub mod weight_shift_step;
 

@@ -38,6 +38,8 @@ pub enum FunctionName {
     ContactJacobian,
     /// (d/dt W^T) qd.
     ContactBias,
+    /// Derivatives of the contact points' velocities and accelerations, and of the torques W f.
+    ContactDerivatives,
     /// World position of the centre of mass of all that moves, without what is fixed to the base.
     CenterOfMass,
     /// d(centre of mass)/dq, of all that moves.
@@ -84,6 +86,9 @@ impl FunctionName {
         Self::StateRates,
     ];
 
+    /// The functions for walking, which are derived where they are asked for by name.
+    pub const WALKING: [Self; 1] = [Self::ContactDerivatives];
+
     /// The functions for identification, which are derived where they are asked for by name.
     pub const REGRESSORS: [Self; 3] = [Self::Regressor, Self::BaseRegressor, Self::BaseParameters];
 
@@ -105,6 +110,7 @@ impl FunctionName {
             Self::ContactPositions => "contact_positions",
             Self::ContactJacobian => "contact_jacobian",
             Self::ContactBias => "contact_bias",
+            Self::ContactDerivatives => "contact_derivatives",
             Self::CenterOfMass => "center_of_mass",
             Self::CenterOfMassJacobian => "center_of_mass_jacobian",
             Self::Momentum => "momentum",
@@ -119,7 +125,8 @@ impl FunctionName {
 
     /// The function of a name.
     pub fn parse(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().chain(Self::REGRESSORS).find(|function| function.as_str() == name)
+        let named = Self::WALKING.into_iter().chain(Self::REGRESSORS);
+        Self::ALL.into_iter().chain(named).find(|function| function.as_str() == name)
     }
 }
 
@@ -140,11 +147,12 @@ pub enum Form {
     Explicit,
 }
 
-/// An argument: a vector with one symbol for each joint variable, or for each state of added
-/// effects (`states`), or with the time alone (`t`).
+/// An argument: a vector with one symbol for each joint variable, for each state of added effects
+/// (`states`), for each coordinate of the forces on the contact points (`f`), or with the time
+/// alone (`t`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Argument {
-    /// `q`, `qd`, `qdd`, `tau`, `b`, `t` or `states`.
+    /// `q`, `qd`, `qdd`, `tau`, `b`, `f`, `t` or `states`.
     pub name: &'static str,
     /// The symbols, in the order of the joints.
     pub symbols: Vec<ExprId>,

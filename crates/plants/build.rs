@@ -5,7 +5,7 @@
 use denavit_codegen::build_script::{Request, emit, emit_with};
 use denavit_codegen::function::FunctionName;
 
-const OF_A_PLANT: [FunctionName; 10] = [
+const OF_A_PLANT: [FunctionName; 12] = [
     FunctionName::MassMatrix,
     FunctionName::Bias,
     FunctionName::LinkTransforms,
@@ -16,12 +16,14 @@ const OF_A_PLANT: [FunctionName; 10] = [
     FunctionName::PotentialEnergy,
     FunctionName::CenterOfMass,
     FunctionName::Momentum,
+    FunctionName::InverseDynamicsDerivatives,
+    FunctionName::ContactDerivatives,
 ];
 
 fn main() {
-    for model in ["puma560", "tulip"] {
-        emit(format!("models/{model}.json"));
-    }
+    emit("models/puma560.json");
+    let functions = [&FunctionName::ALL[..], &[FunctionName::ContactDerivatives]].concat();
+    emit_with("models/tulip.json", &Request { functions, ..Request::default() });
     let functions = [&FunctionName::ALL[..], &[FunctionName::BaseRegressor]].concat();
     emit_with("models/tulip_leg6.json", &Request { functions, fuses: true, ..Request::default() });
     let request = Request { functions: OF_A_PLANT.to_vec(), ..Request::default() };

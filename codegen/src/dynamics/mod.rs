@@ -7,6 +7,7 @@
 //! - `inverse`: inverse dynamics, bias, gravity (recursive Newton-Euler in pseudo-inertia form)
 //! - `composite`: composite inertias; D and G from them
 //! - `coriolis`: C (Christoffel) and the derivatives of inverse dynamics from composites
+//! - `contact_derivatives`: of the contact points' velocities, accelerations and torques
 //! - `forward`: forward dynamics by factorising D, and by articulated bodies
 //! - `explicit`: closed forms of small robots
 //! - `energy`: kinetic and potential energy, momentum
@@ -16,6 +17,7 @@
 mod articulated;
 mod candidate;
 mod composite;
+mod contact_derivatives;
 mod coriolis;
 mod energy;
 mod explicit;

@@ -1,6 +1,7 @@
 //! The outputs of every function, with shapes and one line of documentation each.
 
 use super::candidate::{Candidate, Solver};
+use super::contact_derivatives::contact_derivatives;
 use super::portfolio::Route;
 use crate::expr::{Dag, ExprId, SymbolClass};
 use crate::function::{FunctionName, Output};
@@ -60,6 +61,7 @@ pub(super) fn outputs(
         F::InverseDynamicsDerivatives | F::ForwardDynamicsDerivatives => {
             derivatives(dag, candidate, name, route)
         }
+        F::ContactDerivatives => contact_derivatives(dag, candidate),
         F::StateRates => vec![state_rates(dag, candidate)],
         _ => kinematics_and_energy(dag, candidate, name),
     }

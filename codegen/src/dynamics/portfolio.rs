@@ -1,6 +1,7 @@
 //! Every function of a model, each in its cheapest formulation.
 
 use super::candidate::Candidate;
+use super::contact_derivatives::forces;
 use super::explicit::explicit;
 use super::joint_torque::{JointTerms, joint_terms};
 use super::outputs;
@@ -38,12 +39,14 @@ impl<'a> Portfolio<'a> {
     /// points, the inverse of a mass matrix that has none), one for each link if it is of links.
     pub fn derive(&self, dag: &mut Dag, name: FunctionName) -> Vec<Function> {
         use FunctionName::{
-            ContactBias, ContactJacobian, ContactPositions, ForwardDynamics,
+            ContactBias, ContactDerivatives, ContactJacobian, ContactPositions, ForwardDynamics,
             ForwardDynamicsDerivatives, LinkJacobian, MassMatrixSolve,
         };
         let robot = self.robot;
         match name {
-            ContactPositions | ContactJacobian | ContactBias if robot.contacts.is_empty() => {
+            ContactPositions | ContactJacobian | ContactBias | ContactDerivatives
+                if robot.contacts.is_empty() =>
+            {
                 Vec::new()
             }
             FunctionName::StateRates if robot.law_states().next().is_none() => Vec::new(),
@@ -215,6 +218,7 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         | F::Momentum
         | F::KineticEnergy => &["q", "qd"],
         F::MassMatrixSolve => &["q", "b"],
+        F::ContactDerivatives => &["q", "qd", "qdd"],
         F::MassMatrix
         | F::GravityVector
         | F::LinkTransforms
@@ -238,6 +242,10 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
             Argument { name: argument, symbols: symbols.collect() }
         })
         .collect();
+    if name == F::ContactDerivatives {
+        let symbols = forces(dag, robot);
+        arguments.push(Argument { name: "f", symbols });
+    }
     let has_laws = matches!(
         name,
         F::InverseDynamics

@@ -12,12 +12,13 @@ const KEYWORDS: [&str; 54] = [
 ];
 
 /// Names that emitted functions give to arguments, to the parameters and to packs of values.
-const LOCALS: [&str; 15] = [
+const LOCALS: [&str; 16] = [
     "q",
     "qd",
     "qdd",
     "tau",
     "b",
+    "f",
     "t",
     "states",
     "p",

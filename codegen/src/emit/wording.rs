@@ -36,6 +36,10 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         FunctionName::ContactBias => {
             "Accelerations of the contact points without qdd: (d/dt W^T) qd."
         }
+        FunctionName::ContactDerivatives => {
+            "Derivatives of the contact points' velocities and accelerations by q and qd, and of \
+             the torques W f of forces on them by q."
+        }
         FunctionName::CenterOfMass => "Position of the centre of mass of all that moves.",
         FunctionName::CenterOfMassJacobian => "Jacobian of the centre of mass of all that moves.",
         FunctionName::Momentum => {
@@ -60,6 +64,7 @@ pub(super) fn argument(argument: &ArgumentShape) -> &'static str {
         "qdd" => "joint accelerations (rad/s^2, m/s^2)",
         "tau" => "joint torques (N m, N)",
         "t" => "time (s)",
+        "f" => "forces on the contact points, world frame: x, y, z of each in turn (N)",
         "states" => "states of the added effects",
         "b" => "a right-hand side, one entry for each joint",
         _ => "one entry for each joint",
@@ -144,6 +149,7 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         | FunctionName::ForwardDynamicsDerivatives => (true, true),
         FunctionName::LinkJacobian
         | FunctionName::ContactJacobian
+        | FunctionName::ContactDerivatives
         | FunctionName::CenterOfMassJacobian => (false, true),
         FunctionName::Regressor | FunctionName::BaseRegressor => (true, false),
         FunctionName::BaseParameters

@@ -40,6 +40,11 @@ impl<'a> World<'a> {
         }
     }
 
+    /// The axis of joint `j`.
+    pub fn axis(&self, j: usize) -> Vector {
+        self.axes[j][2]
+    }
+
     /// A free vector of a frame (none: frame 0) in frame 0.
     pub fn vector(&self, dag: &mut Dag, frame: Option<usize>, vector: Vector) -> Vector {
         let axes = self.axes_of(dag, frame);

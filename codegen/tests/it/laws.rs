@@ -9,38 +9,38 @@ use denavit_codegen::model::{JointVariables, Robot};
 use denavit_codegen::number::Residue;
 use rustc_hash::FxHashMap;
 
-const SEEDS: [u64; 2] = [1, 20_091_001];
+pub(crate) const SEEDS: [u64; 2] = [1, 20_091_001];
 
 /// A derived robot with what the laws need.
-struct Derived {
-    name: String,
-    derivation: Derivation,
-    joints: Vec<JointVariables>,
+pub(crate) struct Derived {
+    pub(crate) name: String,
+    pub(crate) derivation: Derivation,
+    pub(crate) joints: Vec<JointVariables>,
 }
 
 impl Derived {
-    fn new(robot: &Robot, wanted: &[FunctionName]) -> Self {
+    pub(crate) fn new(robot: &Robot, wanted: &[FunctionName]) -> Self {
         let derivation = derive(robot, Flavour::Tunable, wanted).unwrap();
         let joints = robot.joints().map(|(_, variables)| *variables).collect();
         Self { name: robot.name.clone(), derivation, joints }
     }
 
     /// Entries of one output of a function; of all outputs without a name.
-    fn entries(&self, function: FunctionName, output: &str) -> Vec<ExprId> {
+    pub(crate) fn entries(&self, function: FunctionName, output: &str) -> Vec<ExprId> {
         let function = self.derivation.functions.iter().find(|made| made.name == function).unwrap();
         function.outputs.iter().find(|made| made.name == output).unwrap().entries.clone()
     }
 
-    fn values(&self, entries: &[ExprId], seed: u64) -> Vec<Residue> {
+    pub(crate) fn values(&self, entries: &[ExprId], seed: u64) -> Vec<Residue> {
         evaluate(&self.derivation.dag, entries, &mut Residues::new(seed)).unwrap()
     }
 
-    fn symbols(&self, of: fn(&JointVariables) -> ExprId) -> Vec<ExprId> {
+    pub(crate) fn symbols(&self, of: fn(&JointVariables) -> ExprId) -> Vec<ExprId> {
         self.joints.iter().map(of).collect()
     }
 
     /// Derivatives of `entries` by every symbol of `by`: `result[j][i]` is d entry_i / d by_j.
-    fn gradient(&mut self, entries: &[ExprId], by: &[ExprId]) -> Vec<Vec<ExprId>> {
+    pub(crate) fn gradient(&mut self, entries: &[ExprId], by: &[ExprId]) -> Vec<Vec<ExprId>> {
         let dag = &mut self.derivation.dag;
         by.iter()
             .map(|&symbol| {
@@ -51,7 +51,7 @@ impl Derived {
     }
 
     /// The derivative with respect to time: q moves at qd, qd at qdd.
-    fn time_derivative(&mut self, entries: &[ExprId]) -> Vec<ExprId> {
+    pub(crate) fn time_derivative(&mut self, entries: &[ExprId]) -> Vec<ExprId> {
         let seeds =
             self.joints.iter().flat_map(|joint| [(joint.q, joint.qd), (joint.qd, joint.qdd)]);
         derivative(&mut self.derivation.dag, entries, &seeds.collect())
@@ -59,27 +59,27 @@ impl Derived {
 }
 
 /// Every shipped robot, and one with nothing but skew axes.
-fn robots() -> Vec<Robot> {
+pub(crate) fn robots() -> Vec<Robot> {
     let mut robots: Vec<Robot> = shipped().iter().map(|name| load(name)).collect();
     robots.push(fixture("general_6r.json"));
     robots
 }
 
 /// Runs `law` on every robot with the functions that it needs.
-fn for_each_robot(wanted: &[FunctionName], law: impl Fn(&mut Derived)) {
+pub(crate) fn for_each_robot(wanted: &[FunctionName], law: impl Fn(&mut Derived)) {
     robots().iter().for_each(|robot| law(&mut Derived::new(robot, wanted)));
 }
 
 /// `A x` for a row-major square matrix.
-fn apply(matrix: &[Residue], vector: &[Residue]) -> Vec<Residue> {
+pub(crate) fn apply(matrix: &[Residue], vector: &[Residue]) -> Vec<Residue> {
     matrix.chunks(vector.len()).map(|row| dot(row, vector)).collect()
 }
 
-fn dot(a: &[Residue], b: &[Residue]) -> Residue {
+pub(crate) fn dot(a: &[Residue], b: &[Residue]) -> Residue {
     a.iter().zip(b).fold(Residue::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-fn add(a: &[Residue], b: &[Residue]) -> Vec<Residue> {
+pub(crate) fn add(a: &[Residue], b: &[Residue]) -> Vec<Residue> {
     a.iter().zip(b).map(|(&x, &y)| x + y).collect()
 }
 
@@ -414,7 +414,7 @@ fn the_centre_of_mass_carries_the_momentum_and_the_potential_energy() {
 }
 
 /// The sum of the masses of all links that move.
-fn total_mass(robot: &mut Derived) -> ExprId {
+pub(crate) fn total_mass(robot: &mut Derived) -> ExprId {
     let model = robot.derivation.robot.clone();
     let dag = &mut robot.derivation.dag;
     let mut total = dag.zero();

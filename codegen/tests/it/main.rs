@@ -15,3 +15,4 @@ mod robots;
 mod singular_values;
 mod thesis;
 mod trees;
+mod walking;

@@ -1,7 +1,7 @@
 //! The modules that `build.rs` generated, as plants.
 
 use super::model::baked;
-use super::{LoadedPlant, Override, Plant, PlantError, PlantModel};
+use super::{ContactDerivatives, LoadedPlant, Override, Plant, PlantError, PlantModel};
 use crate::shipped;
 use denavit_codegen::model::{self, Robot};
 
@@ -67,6 +67,25 @@ macro_rules! generated {
                     without_coulomb(&self.model, qd, bias);
                 }
 
+                fn inverse_dynamics_derivatives(
+                    &mut self,
+                    q: &[f64],
+                    qd: &[f64],
+                    qdd: &[f64],
+                    by_position: &mut [f64],
+                    by_velocity: &mut [f64],
+                ) -> bool {
+                    let found = robot::inverse_dynamics_derivatives(
+                        &self.parameters,
+                        sized(q),
+                        sized(qd),
+                        sized(qdd),
+                    );
+                    by_position.copy_from_slice(found.dtau_dq.as_flattened());
+                    by_velocity.copy_from_slice(found.dtau_dqd.as_flattened());
+                    true
+                }
+
                 fn kinetic_energy(&mut self, q: &[f64], qd: &[f64]) -> f64 {
                     robot::kinetic_energy(&self.parameters, sized(q), sized(qd))
                 }
@@ -125,6 +144,26 @@ macro_rules! contacts {
             let rows = robot::contact_bias(&self.parameters, sized(q), sized(qd));
             bias.copy_from_slice(&rows);
         }
+
+        fn contact_derivatives(
+            &mut self,
+            q: &[f64],
+            qd: &[f64],
+            qdd: &[f64],
+            f: &[f64],
+            derivatives: &mut ContactDerivatives,
+        ) -> bool {
+            let f = f.try_into().expect("three entries for each contact point");
+            let (q, qd, qdd) = (sized(q), sized(qd), sized(qdd));
+            let found = robot::contact_derivatives(&self.parameters, q, qd, qdd, f);
+            derivatives.velocity_dq.copy_from_slice(found.contact_velocity_dq.as_flattened());
+            let accelerations = found.contact_acceleration_dq;
+            derivatives.acceleration_dq.copy_from_slice(accelerations.as_flattened());
+            let accelerations = found.contact_acceleration_dqd;
+            derivatives.acceleration_dqd.copy_from_slice(accelerations.as_flattened());
+            derivatives.torque_dq.copy_from_slice(found.contact_torque_dq.as_flattened());
+            true
+        }
     };
 }
 
@@ -135,6 +174,18 @@ macro_rules! no_contacts {
         fn contact_jacobian(&mut self, _q: &[f64], _jacobian: &mut [f64]) {}
 
         fn contact_bias(&mut self, _q: &[f64], _qd: &[f64], _bias: &mut [f64]) {}
+
+        fn contact_derivatives(
+            &mut self,
+            _q: &[f64],
+            _qd: &[f64],
+            _qdd: &[f64],
+            _f: &[f64],
+            derivatives: &mut ContactDerivatives,
+        ) -> bool {
+            derivatives.torque_dq.fill(0.0);
+            true
+        }
     };
 }
 

@@ -19,6 +19,7 @@
 
 pub mod batch;
 mod cradle;
+mod derivatives;
 pub mod effect;
 pub mod emitted;
 mod generated;
@@ -26,6 +27,7 @@ mod laws;
 mod loaded;
 mod model;
 mod native;
+mod on_demand;
 pub mod regression;
 mod regression_model;
 mod regression_parameter;
@@ -35,6 +37,7 @@ pub mod shipped;
 pub mod trajectory;
 
 pub use cradle::Cradle;
+pub use derivatives::ContactDerivatives;
 pub use generated::{planar_biped, plant_of, puma560, tulip};
 pub use laws::{DriveMoment, LawMoment, LawResponse};
 pub use loaded::LoadedPlant;
@@ -81,6 +84,37 @@ pub trait Plant {
 
     /// For each link the upper three rows of its homogeneous transform, 12 entries a link.
     fn link_transforms(&mut self, q: &[f64], transforms: &mut [f64]);
+
+    /// Derivatives of D qdd + bias, exactly those of [`Plant::mass_matrix`] and [`Plant::bias`]:
+    /// by q [N m/rad] and by qd [N m s/rad], n x n, row: torque. That by qdd is D. Answers whether
+    /// the plant has them; if not, the slices are left as they are, as by plants written by hand.
+    fn inverse_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        by_position: &mut [f64],
+        by_velocity: &mut [f64],
+    ) -> bool {
+        let _ = (q, qd, qdd, by_position, by_velocity);
+        false
+    }
+
+    /// Derivatives of the contact points' velocities and accelerations, and of the torques W f of
+    /// the forces `f` on them (3 c entries, world frame \[N\]). `derivatives` has the sizes of the
+    /// plant ([`ContactDerivatives::new`]). Answers whether the plant has them; if not,
+    /// `derivatives` are left as they are, as by plants written by hand.
+    fn contact_derivatives(
+        &mut self,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        f: &[f64],
+        derivatives: &mut ContactDerivatives,
+    ) -> bool {
+        let _ = (q, qd, qdd, f, derivatives);
+        false
+    }
 
     /// Number of states that laws of added effects have.
     fn law_states(&self) -> usize {

@@ -3,7 +3,8 @@
 use super::laws::{LawMoment, LawResponse, Laws};
 use super::model::baked;
 use super::native::NativeRoutine;
-use super::{Override, Plant, PlantError, PlantModel};
+use super::on_demand::OnDemand;
+use super::{ContactDerivatives, Override, Plant, PlantError, PlantModel};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::Robot;
@@ -30,6 +31,8 @@ pub struct LoadedPlant {
     evaluators: [Option<NativeRoutine>; FUNCTIONS.len()],
     /// Laws of added effects but for inertias, which the bias leaves out.
     laws: Option<Laws>,
+    /// What few users call.
+    on_demand: OnDemand,
 }
 
 impl LoadedPlant {
@@ -47,7 +50,7 @@ impl LoadedPlant {
         let derivation = derive(&robot, Flavour::Baked, &FUNCTIONS).map_err(PlantError::Bake)?;
         let program = lower(&derivation.dag, &derivation.functions).map_err(PlantError::Lower)?;
         let evaluators = FUNCTIONS.map(|function| evaluator(&program, function));
-        Ok(Self { model, evaluators, laws })
+        Ok(Self { model, evaluators, laws, on_demand: OnDemand::new(robot) })
     }
 
     fn call(&mut self, function: FunctionName, arguments: &[&[f64]], outputs: &mut [f64]) {
@@ -91,6 +94,34 @@ impl Plant for LoadedPlant {
 
     fn contact_bias(&mut self, q: &[f64], qd: &[f64], bias: &mut [f64]) {
         self.call(FunctionName::ContactBias, &[q, qd], bias);
+    }
+
+    fn inverse_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        by_position: &mut [f64],
+        by_velocity: &mut [f64],
+    ) -> bool {
+        let name = FunctionName::InverseDynamicsDerivatives;
+        self.on_demand.call(name, &[q, qd, qdd], &mut [by_position, by_velocity])
+    }
+
+    fn contact_derivatives(
+        &mut self,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+        f: &[f64],
+        derivatives: &mut ContactDerivatives,
+    ) -> bool {
+        let name = FunctionName::ContactDerivatives;
+        if self.model.contacts.is_empty() {
+            derivatives.torque_dq.fill(0.0);
+            return true;
+        }
+        self.on_demand.call(name, &[q, qd, qdd, f], &mut derivatives.arrays())
     }
 
     fn law_states(&self) -> usize {

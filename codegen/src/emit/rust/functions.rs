@@ -160,7 +160,7 @@ fn prologue(routine: &Routine) -> Vec<String> {
 fn arguments(routine: &Routine) -> Vec<String> {
     let vectors = routine.arguments.iter().map(|shape| match shape.name {
         "t" => "t: S".to_owned(),
-        "states" => format!("states: &[S; {}]", shape.len),
+        name @ ("states" | "f") => format!("{name}: &[S; {}]", shape.len),
         name => format!("{name}: &[S; DOF]"),
     });
     std::iter::once("parameters: &Parameters<S>".to_owned()).chain(vectors).collect()

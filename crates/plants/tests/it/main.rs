@@ -1,4 +1,6 @@
-//! Robots as numbers: effects as laws on numbers, emitted code against interpreters.
+//! Robots as numbers: effects as laws on numbers, emitted code against interpreters, derivatives
+//! against differences.
 
+mod derivatives;
 mod effect;
 mod emitted;

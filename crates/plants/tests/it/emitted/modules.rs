@@ -53,7 +53,11 @@ macro_rules! call {
                 F::ContactPositions | F::ContactJacobian | F::ContactBias => {
                     contacts(p, function, [&q, &qd])
                 }
-                F::StateRates | F::Regressor | F::BaseRegressor | F::BaseParameters => {
+                F::ContactDerivatives
+                | F::StateRates
+                | F::Regressor
+                | F::BaseRegressor
+                | F::BaseParameters => {
                     unreachable!("{function} is emitted on request, not in these modules")
                 }
             }

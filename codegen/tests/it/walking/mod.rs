@@ -1,0 +1,3 @@
+//! The functions for walking: exact laws modulo p, and closed forms.
+
+mod contact_derivatives;

@@ -32,6 +32,8 @@ pub(super) struct CostSettings {
     pub(super) torque_rate: f64,
     /// Weight of squared accelerations of joints.
     pub(super) acceleration: f64,
+    /// Weight of squared impulses: feet that land softly make a walk that forgives a wrong instant.
+    pub(super) impulse: f64,
 }
 
 /// A function of two variables: value, gradient, and a positive semidefinite model of the Hessian.
@@ -79,7 +81,23 @@ impl Step<'_> {
                 linear.gradient[self.layout.length] -= weight * effort / length;
             }
         }
-        total + self.torque_changes(x, linear)
+        total + self.impulses(x, linear.as_deref_mut()) + self.torque_changes(x, linear)
+    }
+
+    /// Squared impulses, over weight times time.
+    fn impulses(&self, x: &[f64], mut linear: Option<&mut Linearisation>) -> f64 {
+        let weight =
+            self.cost_settings.impulse / (self.units.force_n * self.units.time_s).powi(2);
+        let range = self.layout.durations + self.layout.phases.len()..self.layout.length;
+        let mut total = 0.0;
+        for index in range {
+            total += weight * x[index] * x[index];
+            if let Some(linear) = linear.as_deref_mut() {
+                linear.gradient[index] += 2.0 * weight * x[index];
+                linear.hessian.add(index, index, 2.0 * weight);
+            }
+        }
+        total
     }
 
     /// What is integrated, without dimension but for a length in the denominator.

@@ -168,7 +168,7 @@ impl Layout {
     }
 
     /// The scales of the variables.
-    pub fn scales(&self, plant: &dyn Plant, units: Units) -> Vec<f64> {
+    pub fn scales(&self, plant: &dyn Plant, units: Units, impulse_ns: f64) -> Vec<f64> {
         let slides: Vec<bool> = plant.model().joints.iter().map(|joint| joint.slides).collect();
         let size = |index: usize| if slides[index] { units.length_m } else { 1.0 };
         let mut scales = vec![0.0; self.variables];
@@ -193,7 +193,7 @@ impl Layout {
             scales[self.durations + phase] = units.time_s;
         }
         for entry in &mut scales[self.durations + self.phases.len()..self.length] {
-            *entry = units.force_n * units.time_s;
+            *entry = 20.0 * impulse_ns;
         }
         scales[self.length] = units.length_m;
         scales

@@ -1,6 +1,6 @@
 //! Dynamics and contacts of a plant at one moment, with their derivatives.
 
-use denavit_plants::Plant;
+use denavit_plants::{ContactDerivatives, Plant};
 
 /// Where a plant is, how it moves, and what the ground does to it.
 #[derive(Clone, Copy, Debug)]
@@ -31,12 +31,7 @@ pub(super) struct Mechanics {
     pub(super) residual_q: Vec<f64>,
     /// d residual / dqd, n x n.
     pub(super) residual_qd: Vec<f64>,
-    /// d velocity / dq, 3 c x n.
-    pub(super) velocity_q: Vec<f64>,
-    /// d acceleration / dq, 3 c x n.
-    pub(super) acceleration_q: Vec<f64>,
-    /// d acceleration / dqd, 3 c x n.
-    pub(super) acceleration_qd: Vec<f64>,
+    contacts: Option<ContactDerivatives>,
     scratch: Vec<f64>,
 }
 
@@ -72,46 +67,25 @@ impl Mechanics {
         }
     }
 
-    /// The functions and their derivatives.
+    /// The functions and their derivatives; all zeros for a plant without derivatives, of which no
+    /// step is made.
     pub(super) fn differentiate(&mut self, plant: &mut dyn Plant, moment: Moment<'_>) {
         let n = moment.q.len();
-        let rows = moment.forces.len();
-        let h = 1e-6;
-        for m in [&mut self.residual_q, &mut self.residual_qd] {
-            m.resize(n * n, 0.0);
-        }
-        for m in [&mut self.velocity_q, &mut self.acceleration_q, &mut self.acceleration_qd] {
-            m.resize(rows * n, 0.0);
-        }
-        for k in 0..n {
-            let mut sides = Vec::new();
-            for s in [h, -h] {
-                let mut q = moment.q.to_vec();
-                q[k] += s;
-                self.evaluate(plant, Moment { q: &q, ..moment });
-                sides.push((self.residual.clone(), self.velocity.clone(), self.acceleration.clone()));
-            }
-            for i in 0..n {
-                self.residual_q[i * n + k] = (sides[0].0[i] - sides[1].0[i]) / (2.0 * h);
-            }
-            for i in 0..rows {
-                self.velocity_q[i * n + k] = (sides[0].1[i] - sides[1].1[i]) / (2.0 * h);
-                self.acceleration_q[i * n + k] = (sides[0].2[i] - sides[1].2[i]) / (2.0 * h);
-            }
-            let mut sides = Vec::new();
-            for s in [h, -h] {
-                let mut qd = moment.qd.to_vec();
-                qd[k] += s;
-                self.evaluate(plant, Moment { qd: &qd, ..moment });
-                sides.push((self.residual.clone(), self.acceleration.clone()));
-            }
-            for i in 0..n {
-                self.residual_qd[i * n + k] = (sides[0].0[i] - sides[1].0[i]) / (2.0 * h);
-            }
-            for i in 0..rows {
-                self.acceleration_qd[i * n + k] = (sides[0].1[i] - sides[1].1[i]) / (2.0 * h);
-            }
-        }
         self.evaluate(plant, moment);
+        self.residual_q.resize(n * n, 0.0);
+        self.residual_qd.resize(n * n, 0.0);
+        let Moment { q, qd, qdd, forces } = moment;
+        let (by_q, by_qd) = (&mut self.residual_q, &mut self.residual_qd);
+        plant.inverse_dynamics_derivatives(q, qd, qdd, by_q, by_qd);
+        let contacts = self
+            .contacts
+            .get_or_insert_with(|| ContactDerivatives::new(plant.model()));
+        plant.contact_derivatives(q, qd, qdd, forces, contacts);
+        self.residual_q.iter_mut().zip(&contacts.torque_dq).for_each(|(r, w)| *r -= w);
+    }
+
+    /// Derivatives of the contact points by the last call of `differentiate`.
+    pub(super) fn contacts(&self) -> &ContactDerivatives {
+        self.contacts.as_ref().expect("derivatives were asked for")
     }
 }

@@ -2,7 +2,7 @@
 
 use super::layout::Point;
 use super::legs::Role;
-use super::mechanics::{Mechanics, Moment};
+use super::mechanics::Moment;
 use super::phases::Axis;
 use super::rows::{EQUAL, Label, POSITIVE, Sink};
 use super::step::Step;
@@ -12,6 +12,9 @@ use super::step::Step;
 pub(super) struct Clearance {
     pub(super) contact: usize,
     pub(super) height_m: f64,
+    /// Whether it closes at the end of the phase: until then it is as high as it comes down, at
+    /// least, in the time that is left.
+    pub(super) descends: bool,
 }
 
 impl Step<'_> {
@@ -46,7 +49,7 @@ impl Step<'_> {
         self.dynamics_rows(point, x, sink);
         self.contact_rows(point, sink);
         self.friction_rows(point, x, sink);
-        self.clearance_rows(point, sink);
+        self.clearance_rows(point, x, sink);
     }
 
     fn dynamics_rows(&self, point: &Point, x: &[f64], sink: &mut Sink<'_>) {
@@ -102,8 +105,8 @@ impl Step<'_> {
                 continue;
             }
             let at = row * n..(row + 1) * n;
-            sink.entries(self.layout.motion(point, 0), &mechanics.acceleration_q[at.clone()]);
-            sink.entries(self.layout.motion(point, 1), &mechanics.acceleration_qd[at.clone()]);
+            sink.entries(self.layout.motion(point, 0), &mechanics.contacts().acceleration_dq[at.clone()]);
+            sink.entries(self.layout.motion(point, 1), &mechanics.contacts().acceleration_dqd[at.clone()]);
             sink.entries(self.layout.motion(point, 2), &mechanics.jacobian[at]);
         }
     }
@@ -157,12 +160,16 @@ impl Step<'_> {
     }
 
     /// Contacts that are open stay above the ground.
-    fn clearance_rows(&self, point: &Point, sink: &mut Sink<'_>) {
+    fn clearance_rows(&self, point: &Point, x: &[f64], sink: &mut Sink<'_>) {
         let (n, mechanics) = (self.layout.n, &self.mechanics);
         let number = self.layout.first[point.phase] + point.index;
         for clearance in &self.clearances[number] {
             let row = 3 * clearance.contact + Axis::Up.index();
-            let height = mechanics.positions[row] - self.legs.ground_m - clearance.height_m;
+            let duration = self.layout.durations + point.phase;
+            let speed = if clearance.descends { self.limits.touchdown_m_s } else { 0.0 };
+            let descent = speed * (1.0 - point.fraction);
+            let least = clearance.height_m + descent * x[duration];
+            let height = mechanics.positions[row] - self.legs.ground_m - least;
             sink.row(height, POSITIVE, || Label {
                 what: "clearance",
                 part: self.contact_names[clearance.contact].clone(),
@@ -172,6 +179,7 @@ impl Step<'_> {
                 unit: "m",
             });
             sink.entries(self.layout.motion(point, 0), &mechanics.jacobian[row * n..(row + 1) * n]);
+            sink.entry(duration, -descent);
         }
     }
 
@@ -208,8 +216,8 @@ impl Step<'_> {
         for ((contact, axis), multiplier) in held.iter().zip(&multipliers[n..]) {
             let (row, weight) = (3 * contact + axis.index(), multiplier / self.legs.gravity);
             let at = row * n..(row + 1) * n;
-            add(weight, 0, &mechanics.acceleration_q[at.clone()]);
-            add(weight, n, &mechanics.acceleration_qd[at.clone()]);
+            add(weight, 0, &mechanics.contacts().acceleration_dq[at.clone()]);
+            add(weight, n, &mechanics.contacts().acceleration_dqd[at.clone()]);
             add(weight, 2 * n, &mechanics.jacobian[at]);
         }
         let number = self.layout.first[phase] + point.index;

@@ -139,6 +139,7 @@ impl Subproblem<'_> {
         .ok()?;
         solver.solve();
         let solution = &solver.solution;
+        if std::env::var("QPT").is_ok() { eprintln!("qp {count} rows {slacks} cols {} iterations {:?} {}", solution.iterations, solution.status, solution.solve_time); }
         let solved = [
             SolverStatus::Solved,
             SolverStatus::AlmostSolved,

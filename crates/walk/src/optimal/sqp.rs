@@ -129,7 +129,9 @@ impl<P: Program + ?Sized> Search<'_, P> {
         let mut fresh = true;
         while self.iterations < self.settings.iterations {
             if fresh {
+                let t0 = std::time::Instant::now();
                 self.program.linearise(&self.x, &self.multipliers, &mut self.linear);
+                if TRACE && self.iterations % 20 == 0 { eprintln!("linearise {:?}", t0.elapsed()); }
             }
             match self.advance() {
                 Outcome::Taken => fresh = true,
@@ -160,7 +162,10 @@ impl<P: Program + ?Sized> Search<'_, P> {
     /// Solves a subproblem and takes its step if it is good.
     fn advance(&mut self) -> Outcome {
         self.iterations += 1;
-        let Some(step) = self.subproblem(&self.constraints, &self.x) else {
+        let t0 = std::time::Instant::now();
+        let found = self.subproblem(&self.constraints, &self.x);
+        if TRACE && self.iterations % 20 == 0 { eprintln!("qp {:?}", t0.elapsed()); }
+        let Some(step) = found else {
             if TRACE { eprintln!("failed"); }
             return Outcome::Failed;
         };
@@ -184,6 +189,15 @@ impl<P: Program + ?Sized> Search<'_, P> {
             }
         }
         let length = self.length(&taken.change);
+        if TRACE && ratio < 0.3 && self.iterations % 5 == 0 {
+            let mut values = self.constraints.clone();
+            self.linear.jacobian.multiply(&taken.change, &mut values);
+            let mut worst: Vec<(f64, usize)> = values.iter().zip(&best.2).enumerate().map(|(i, (a, b))| ((a - b).abs(), i)).collect();
+            worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+            for (w, i) in &worst[..5] { eprintln!("      off {w:.1e} {}", self.program.describe(*i)); }
+            let f: f64 = self.linear.gradient.iter().zip(&taken.change).map(|(g, d)| g * d).sum::<f64>();
+            eprintln!("      cost predicted {:.2e} quad {:.2e} actual {:.2e}", f, 0.5 * self.linear.hessian.quadratic(&taken.change), best.1 - self.cost);
+        }
         if TRACE { eprintln!("{:3} cost {:.5} viol {:.2e} sum {:.2e} pen {:.0e} rad {:.1e} len {:.1e} ratio {:.2} pred {:.1e}", self.iterations, self.cost, self.largest_violation(&self.constraints), self.total_violation(&self.constraints), self.penalty, self.radius, length, ratio, predicted); }
         if !(ratio > 1e-3) {
             self.radius = 0.4 * self.radius.min(length);
@@ -196,7 +210,18 @@ impl<P: Program + ?Sized> Search<'_, P> {
         }
         (self.x, self.cost, self.constraints) = best;
         self.multipliers = taken.multipliers;
+        self.relax();
         Outcome::Taken
+    }
+
+    /// Lowers the weight of violations to what the multipliers ask for: a larger one keeps steps
+    /// along curved constraints short. Where a linearised constraint cannot be met, its multiplier
+    /// is the weight itself, which stays.
+    fn relax(&mut self) {
+        let largest = self.multipliers.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+        if largest < 0.4 * self.penalty {
+            self.penalty = (2.0 * largest).max(0.3 * self.penalty);
+        }
     }
 
     /// A second subproblem about what the constraints became after the first step: the correction

@@ -5,7 +5,7 @@ use super::layout::{Layout, Units};
 use super::legs::{Legs, Role};
 use super::limits::StepLimits;
 use super::mechanics::Mechanics;
-use super::phases::{Axis, Phase};
+use super::phases::{Axis, Phase, Transition};
 use super::point_rows::Clearance;
 use super::program::{Linearisation, Program};
 use super::rows::{Label, Shape, Sink};
@@ -24,6 +24,10 @@ pub(super) struct Step<'p> {
     pub(super) names: Vec<String>,
     pub(super) contact_names: Vec<String>,
     pub(super) contacts: usize,
+    /// Of each coordinate with straight legs, over the length that it moves by: [kg], [kg m].
+    pub(super) inertias: Vec<f64>,
+    /// What stops a shin that moves at the unit of speed \[N s\].
+    pub(super) impulse_ns: f64,
     /// Contacts that stay above the ground, for each point.
     pub(super) clearances: Vec<Vec<Clearance>>,
     pub(super) mechanics: Mechanics,
@@ -43,11 +47,18 @@ impl<'p> Step<'p> {
         cost_settings: CostSettings,
     ) -> Self {
         let (units, layout) = (Units::of(legs), Layout::new(legs, phases, intervals));
-        let scales = layout.scales(plant, units);
         let joints = &plant.model().joints;
-        let (slides, names) = joints.iter().map(|j| (j.slides, j.name.clone())).unzip();
+        let (slides, names): (Vec<bool>, Vec<String>) =
+            joints.iter().map(|j| (j.slides, j.name.clone())).unzip();
         let contact_names: Vec<String> =
             plant.model().contacts.iter().map(|contact| contact.name.clone()).collect();
+        let n = legs.coordinates;
+        let mut mass = vec![0.0; n * n];
+        plant.mass_matrix(&vec![0.0; n], &mut mass);
+        let over = |row: usize| if slides[row] { 1.0 } else { units.length_m };
+        let inertias: Vec<f64> = (0..n).map(|row| mass[row * (n + 1)] / over(row)).collect();
+        let impulse_ns = inertias[legs.stance.knee] / units.length_m * units.speed_m_s();
+        let scales = layout.scales(plant, units, impulse_ns);
         let clearances = clearances(legs, &layout, &limits);
         let mut step = Self {
             plant,
@@ -58,6 +69,8 @@ impl<'p> Step<'p> {
             slides,
             names,
             contacts: contact_names.len(),
+            inertias,
+            impulse_ns,
             contact_names,
             clearances,
             mechanics: Mechanics::default(),
@@ -207,6 +220,8 @@ impl Program for Step<'_> {
         &self.shape.ranges
     }
 
+    fn describe(&self, index: usize) -> String { let l = &self.shape.labels[index]; format!("{} {} {} {:.2}", l.what, l.part, l.phase, l.fraction) }
+
     fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64 {
         self.assemble(x, Sink::new(constraints, None, None));
         self.cost(x, None)
@@ -244,8 +259,10 @@ fn clearances(legs: &Legs, layout: &Layout, limits: &StepLimits) -> Vec<Vec<Clea
             return 0.0;
         }
         let share = (time(point) - time(first)) / (time(last) - time(first));
-        let ramp = (share.min(1.0 - share) / limits.clearance_ramp.max(1e-3)).min(1.0);
-        limits.clearance_m * ramp * ramp
+        let ramp = limits.clearance_ramp.max(1e-3);
+        // a foot leaves the ground from rest, and comes down to it
+        let rise = (share / ramp).powi(2);
+        limits.clearance_m * rise.min((1.0 - share) / ramp).min(1.0)
     };
     let of = |point: usize| {
         let phase = layout.points[point].phase;
@@ -253,10 +270,19 @@ fn clearances(legs: &Legs, layout: &Layout, limits: &StepLimits) -> Vec<Vec<Clea
         let clearance = |role: Role| Clearance {
             contact: legs.contact(role),
             height_m: if role.is_stance() { 0.0 } else { height(point) },
+            descends: closes(layout, phase, role),
         };
         open.filter(|role| !touches(layout, point, *role)).map(clearance).collect()
     };
     (0..layout.points.len()).map(of).collect()
+}
+
+/// Whether an open contact closes at the end of a phase.
+fn closes(layout: &Layout, phase: usize, role: Role) -> bool {
+    layout.transitions.iter().any(|transition| {
+        let after = if transition.swaps { role.swapped() } else { role };
+        transition.from == phase && transition.closing.contains(&after)
+    })
 }
 
 /// Whether an open contact is on the ground all the same: it has just opened, or is about to
@@ -264,16 +290,13 @@ fn clearances(legs: &Legs, layout: &Layout, limits: &StepLimits) -> Vec<Vec<Clea
 fn touches(layout: &Layout, point: usize, role: Role) -> bool {
     let at = &layout.points[point];
     let is_last = at.index == 2 * layout.intervals[at.phase];
-    layout.transitions.iter().any(|transition| {
-        let begins = transition.to == at.phase && at.index == 0;
-        let source = if transition.swaps { role.swapped() } else { role };
-        let ends = transition.from == at.phase && is_last;
-        (begins && transition.opening.contains(&role))
-            || (ends && transition.closing.contains(&source))
-    })
+    let opened = |transition: &Transition| {
+        transition.to == at.phase && at.index == 0 && transition.opening.contains(&role)
+    };
+    layout.transitions.iter().any(opened) || (is_last && closes(layout, at.phase, role))
 }
 
 /// Settings of a cost of this kind.
 pub(super) fn settings_of(kind: CostKind, rounding: f64) -> CostSettings {
-    CostSettings { kind, rounding, torque: 0.02, torque_rate: 1e-3, acceleration: 1e-5 }
+    CostSettings { kind, rounding, torque: 0.02, torque_rate: 1e-3, acceleration: 1e-5, impulse: 2.0 }
 }

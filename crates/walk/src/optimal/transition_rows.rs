@@ -103,10 +103,11 @@ impl Step<'_> {
         let mechanics = &self.mechanics;
         for row in 0..n {
             let label = || {
-                let force = self.dynamics_label_size(row) * self.units.time_s;
+                // a foot has little inertia: its row counts by the velocity that it means
+                let size = self.inertias[row] * self.units.speed_m_s();
                 let unit = if self.slides[row] { "N s" } else { "N m s" };
                 let part = self.names[row].clone();
-                Label { part, size: force, unit, ..self.transition_label(&transition, "impact") }
+                Label { part, size, unit, ..self.transition_label(&transition, "impact") }
             };
             sink.row(mechanics.residual[row] - gravity.0[row], EQUAL, label);
             for column in 0..n {
@@ -121,7 +122,7 @@ impl Step<'_> {
                 sink.entry(first + index, -w);
             }
         }
-        let size = self.units.force_n * self.units.time_s;
+        let size = self.impulse_ns;
         let label = |part: &str| Label {
             part: part.to_owned(),
             size,
@@ -129,10 +130,6 @@ impl Step<'_> {
             ..self.transition_label(&transition, "friction cone of an impact")
         };
         self.cones(transition.to, first, x, sink, &label);
-    }
-
-    fn dynamics_label_size(&self, row: usize) -> f64 {
-        if self.slides[row] { self.units.force_n } else { self.units.moment_nm() }
     }
 
     /// After an impact closed contacts are at rest, those that close are on the ground, and those
@@ -159,7 +156,7 @@ impl Step<'_> {
             let row = 3 * contact + axis.index();
             let what = "velocity of a closed contact";
             sink.row(mechanics.velocity[row], EQUAL, || label(what, *contact, speed, "m/s"));
-            sink.entries(q, &mechanics.velocity_q[row * n..(row + 1) * n]);
+            sink.entries(q, &mechanics.contacts().velocity_dq[row * n..(row + 1) * n]);
             sink.entries(qd, &mechanics.jacobian[row * n..(row + 1) * n]);
         }
         for role in &transition.closing {
@@ -174,9 +171,9 @@ impl Step<'_> {
             let contact = self.legs.contact(*role);
             let row = 3 * contact + Axis::Up.index();
             let what = "velocity of a contact that opens";
-            let range = [self.limits.touchdown_m_s, f64::INFINITY];
+            let range = POSITIVE;
             sink.row(mechanics.velocity[row], range, || label(what, contact, speed, "m/s"));
-            sink.entries(q, &mechanics.velocity_q[row * n..(row + 1) * n]);
+            sink.entries(q, &mechanics.contacts().velocity_dq[row * n..(row + 1) * n]);
             sink.entries(qd, &mechanics.jacobian[row * n..(row + 1) * n]);
         }
     }
@@ -207,7 +204,7 @@ impl Step<'_> {
             };
             sink.row(-mechanics.velocity[row] - self.limits.touchdown_m_s, POSITIVE, label);
             for column in 0..n {
-                sink.entry(q + column, -mechanics.velocity_q[row * n + column]);
+                sink.entry(q + column, -mechanics.contacts().velocity_dq[row * n + column]);
                 sink.entry(qd + column, -mechanics.jacobian[row * n + column]);
             }
         }

@@ -84,6 +84,23 @@ impl Step<'_> {
         total + self.impulses(x, linear.as_deref_mut()) + self.torque_changes(x, linear)
     }
 
+    /// Cost of transport and squared torques over the distance [N^2 m s] as they are, without
+    /// smoothing.
+    pub(super) fn plain_costs(&self, x: &[f64]) -> [f64; 2] {
+        let (layout, length) = (&self.layout, x[self.layout.length]);
+        let mut totals = [0.0; 2];
+        for point in &layout.points {
+            let weight = point.weight * x[layout.durations + point.phase] / length;
+            for (drive, joint) in self.legs.driven.iter().enumerate() {
+                let torque = x[layout.torques(point) + drive];
+                let power = torque * x[layout.motion(point, 1) + joint];
+                totals[0] += weight * power.abs() / self.units.force_n;
+                totals[1] += weight * torque * torque;
+            }
+        }
+        totals
+    }
+
     /// Squared impulses, over weight times time.
     fn impulses(&self, x: &[f64], mut linear: Option<&mut Linearisation>) -> f64 {
         let weight =

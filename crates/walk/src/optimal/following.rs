@@ -20,20 +20,20 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Gains by which every joint on its own would be a damped oscillator of this frequency and
-    /// damping: stiffness is frequency squared times what the joint moves at mid-swing.
-    pub fn of_frequency(
+    /// One stiffness for a leg that carries. In the air a joint is as stiff as that, but no stiffer
+    /// than damps it well: at touchdown velocities jump a little sooner or later than planned, and
+    /// a stiff ankle would throw its foot off the ground again.
+    pub fn of_stiffness(
         plant: &mut dyn Plant,
         step: &PlannedStep,
-        frequency_rad_s: f64,
-        damping: f64,
+        stiffness: f64,
+        damping_s: f64,
     ) -> Result<Self, FollowingError> {
         let inertia = moved_inertias(plant, step)?;
-        let of = |leg: Leg| {
-            [leg.hip, leg.knee, leg.ankle].map(|joint| frequency_rad_s.powi(2) * inertia[joint])
-        };
-        let damping_s = 2.0 * damping / frequency_rad_s;
-        Ok(Self { carrying: of(step.legs.stance), flying: of(step.legs.swing), damping_s })
+        let leg = step.legs.swing;
+        let flying = [leg.hip, leg.knee, leg.ankle]
+            .map(|joint| stiffness.min(inertia[joint] / (damping_s * damping_s)));
+        Ok(Self { carrying: [stiffness; 3], flying, damping_s })
     }
 }
 

@@ -42,7 +42,7 @@ impl Default for StepLimits {
             clearance_ramp: 0.3,
             torque_nm: None,
             contact_force: 0.1,
-            touchdown_m_s: 0.3,
+            touchdown_m_s: 0.1,
             phase_s: 0.05,
             position_margin_rad: 0.05,
             lean_rad: f64::INFINITY,

@@ -39,6 +39,8 @@ impl Cycle {
     }
 }
 
+/// A state that comes back as exactly as this is on the cycle [rad, rad/s].
+const EXACT: f64 = 1e-7;
 /// Perturbation of the central differences [rad, rad/s].
 const PERTURBATION: f64 = 1e-5;
 
@@ -75,18 +77,33 @@ impl<'a> Section<'a> {
     }
 
     /// Joint positions and velocities one step later, with the legs swapped; none if the walk
-    /// ended before.
+    /// ended before, or stands on other contacts.
     pub(super) fn map(&mut self, z: &[f64]) -> Result<Option<Vec<f64>>, FollowingError> {
+        self.repeat(z, 1)
+    }
+
+    /// As `map`, so many steps later.
+    pub(super) fn repeat(
+        &mut self,
+        z: &[f64],
+        steps: usize,
+    ) -> Result<Option<Vec<f64>>, FollowingError> {
         let state = self.state(z);
-        let simulation = simulation(self.t_s + self.step.period_s, 1.0);
-        let run = simulate(self.plant, &self.control, &state, &simulation);
+        let end_s = self.t_s + steps as f64 * self.step.period_s;
+        let run = simulate(self.plant, &self.control, &state, &simulation(end_s, end_s));
         // a perturbation that begins below the ground is no walk
         let Ok(run) = run else { return Ok(None) };
-        if run.stop != Stop::End {
+        let legs = &self.step.legs;
+        let is_swapped = steps % 2 == 1;
+        let closed = &self.step.phases[self.step.mid_swing().0].closed;
+        let expected = closed.iter().map(|role| if is_swapped { role.swapped() } else { *role });
+        let mut expected: Vec<usize> = expected.map(|role| legs.contact(role)).collect();
+        expected.sort_unstable();
+        if run.stop != Stop::End || run.closed != expected {
             return Ok(None);
         }
-        let legs = &self.step.legs;
-        let (q, qd) = (legs.swap(&run.end.q), legs.swap(&run.end.qd));
+        let part = |values: &[f64]| if is_swapped { legs.swap(values) } else { values.to_vec() };
+        let (q, qd) = (part(&run.end.q), part(&run.end.qd));
         let positions = legs.driven.iter().map(|joint| q[*joint]);
         Ok(Some(positions.chain(legs.driven.iter().map(|joint| qd[*joint])).collect()))
     }
@@ -111,31 +128,29 @@ impl<'a> Section<'a> {
         Ok(Some(matrix))
     }
 
-    /// The cycle near the plan, by Newton's method with the derivative of the map; none if there is
-    /// none nearby.
-    pub(super) fn cycle(&mut self, iterations: usize) -> Result<Option<Cycle>, FollowingError> {
-        let mut z = self.planned()?;
+    /// The cycle near a state, by Newton's method with the derivative of the map there; none if
+    /// there is none nearby.
+    pub(super) fn cycle(
+        &mut self,
+        mut z: Vec<f64>,
+        iterations: usize,
+    ) -> Result<Option<Cycle>, FollowingError> {
         let size = z.len();
-        let Some(mut matrix) = self.derivative(&z)? else { return Ok(None) };
-        for iteration in 0..=iterations {
+        let Some(matrix) = self.derivative(&z)? else { return Ok(None) };
+        let mut residual = f64::INFINITY;
+        for _ in 0..=iterations {
             let Some(after) = self.map(&z)? else { return Ok(None) };
             let error = DVector::from_fn(size, |row, _| after[row] - z[row]);
-            let residual = error.amax();
-            if residual < 1e-7 || iteration == iterations {
-                if iteration > 0 {
-                    match self.derivative(&z)? {
-                        Some(found) => matrix = found,
-                        None => return Ok(None),
-                    }
-                }
-                let start = self.state(&z);
-                return Ok(Some(Cycle { start, residual, multipliers: eigenvalues(&matrix) }));
+            residual = error.amax();
+            if residual < EXACT {
+                break;
             }
             let system = DMatrix::identity(size, size) - &matrix;
             let Some(change) = system.lu().solve(&error) else { return Ok(None) };
             z.iter_mut().zip(change.iter()).for_each(|(z, change)| *z += change);
         }
-        Ok(None)
+        let start = self.state(&z);
+        Ok(Some(Cycle { start, residual, multipliers: eigenvalues(&matrix) }))
     }
 }
 

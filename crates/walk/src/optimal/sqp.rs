@@ -62,7 +62,7 @@ pub struct Optimum {
     pub iterations: usize,
 }
 
-const TRACE: bool = true;
+const TRACE: bool = false;
 const LARGEST_PENALTY: f64 = 1e6;
 const SMALLEST_RADIUS: f64 = 1e-7;
 

@@ -1,6 +1,6 @@
 //! A planned step as a nonlinear program.
 
-use super::cost::{CostKind, CostSettings};
+use super::cost::CostSettings;
 use super::layout::{Layout, Units};
 use super::legs::{Legs, Role};
 use super::limits::StepLimits;
@@ -294,9 +294,4 @@ fn touches(layout: &Layout, point: usize, role: Role) -> bool {
         transition.to == at.phase && at.index == 0 && transition.opening.contains(&role)
     };
     layout.transitions.iter().any(opened) || (is_last && closes(layout, at.phase, role))
-}
-
-/// Settings of a cost of this kind.
-pub(super) fn settings_of(kind: CostKind, rounding: f64) -> CostSettings {
-    CostSettings { kind, rounding, torque: 0.02, torque_rate: 1e-3, acceleration: 1e-5, impulse: 2.0 }
 }

@@ -3,8 +3,11 @@
 //! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
+//! - [`optimal`]: limit cycles by periodic optimal control
+//! - [`gait_file`]: files that say what a gait is to be
 //! - [`read_scenario`]: scenarios whose gait is planned
 
+pub mod gait_file;
 pub mod inverse_kinematics;
 pub mod optimal;
 mod scenario;

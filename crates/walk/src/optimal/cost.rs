@@ -103,8 +103,7 @@ impl Step<'_> {
 
     /// Squared impulses, over weight times time.
     fn impulses(&self, x: &[f64], mut linear: Option<&mut Linearisation>) -> f64 {
-        let weight =
-            self.cost_settings.impulse / (self.units.force_n * self.units.time_s).powi(2);
+        let weight = self.cost_settings.impulse / (self.units.force_n * self.units.time_s).powi(2);
         let range = self.layout.durations + self.layout.phases.len()..self.layout.length;
         let mut total = 0.0;
         for index in range {
@@ -166,7 +165,11 @@ impl Step<'_> {
         let mut total = 0.0;
         let mut pairs = Vec::new();
         for (number, transition) in layout.transitions.iter().enumerate() {
-            pairs.push((*layout.last_of(transition.from), layout.points_of(number)[0], transition.swaps));
+            pairs.push((
+                *layout.last_of(transition.from),
+                layout.points_of(number)[0],
+                transition.swaps,
+            ));
             let points = layout.points_of(number);
             pairs.extend(points.windows(2).map(|pair| (pair[0], pair[1], false)));
         }
@@ -178,7 +181,8 @@ impl Step<'_> {
                 else {
                     continue;
                 };
-                let [from, to] = [(before, source), (after, drive)].map(|(p, d)| layout.torques(&p) + d);
+                let [from, to] =
+                    [(before, source), (after, drive)].map(|(p, d)| layout.torques(&p) + d);
                 let change = x[to] - x[from];
                 total += weight * change * change;
                 if let Some(linear) = linear.as_deref_mut() {

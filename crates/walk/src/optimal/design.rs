@@ -11,7 +11,7 @@ use super::phases::{Aspects, NoStep, Phase, check, phases_of};
 use super::planned::PlannedStep;
 use super::program::{Program, violation};
 use super::section::Cycle;
-use super::sqp::{Optimum, Settings, minimise};
+use super::sqp::{Ending, Optimum, Settings, minimise};
 use super::step::Step;
 use denavit_plants::Plant;
 use std::fmt;
@@ -245,14 +245,7 @@ impl Designer<'_> {
             Some(start) => start.to_vec(),
             None => step.guess(problem.guess),
         };
-        let first = Settings { iterations: 40, ..Settings::default() };
-        let mut found = minimise(&mut step, &guess, first);
-        if found.violation > FEASIBLE {
-            let again = Settings { iterations: 80, ..Settings::default() };
-            let iterations = found.iterations;
-            found = minimise(&mut step, &found.x, again);
-            found.iterations += iterations;
-        }
+        let found = search_plan(&mut step, &guess);
         self.stages.push(Stage {
             cost: kind,
             torque_weight: torque,
@@ -325,6 +318,26 @@ impl Designer<'_> {
     }
 }
 
+/// Subproblems of a search, and of each that goes on where it ended while a constraint is violated.
+const ITERATIONS: [usize; 2] = [40, 20];
+/// Searches at most.
+const SEARCHES: usize = 5;
+
+/// Minimises until all constraints are met.
+fn search_plan(step: &mut Step<'_>, start: &[f64]) -> Optimum {
+    let settings = |iterations| Settings { iterations, ..Settings::default() };
+    let mut found = minimise(step, start, settings(ITERATIONS[0]));
+    for _ in 1..SEARCHES {
+        if found.violation <= FEASIBLE || found.ending == Ending::Infeasible {
+            break;
+        }
+        let before = found.iterations;
+        found = minimise(step, &found.x, settings(ITERATIONS[1]));
+        found.iterations += before;
+    }
+    found
+}
+
 /// The torso of a gait that does not lean stays within this \[rad\].
 const UPRIGHT_RAD: f64 = 0.02;
 /// A stance knee that does not bend stays within this of the guess \[rad\].
@@ -347,9 +360,13 @@ fn limits_of(problem: &LimitCycleProblem) -> StepLimits {
 
 fn most_violated(step: &Step<'_>, found: &Optimum) -> Violated {
     let each = found.constraints.iter().zip(step.ranges()).map(|(v, range)| violation(*v, *range));
-    let worst = each.enumerate().fold((0, 0.0), |worst, (index, amount)| {
-        if amount > worst.1 { (index, amount) } else { worst }
-    });
+    let worst =
+        each.enumerate().fold(
+            (0, 0.0),
+            |worst, (index, amount)| {
+                if amount > worst.1 { (index, amount) } else { worst }
+            },
+        );
     let label = &step.labels()[worst.0];
     let durations = &found.x[step.layout.durations..];
     let before: f64 = durations[..label.phase].iter().sum();

@@ -95,9 +95,8 @@ pub fn control(
     let mut control = Control::passive(plant.model().joints.len());
     for joint in &step.legs.driven {
         let law = joint_gains(step, gains, *joint);
-        let factor = step.two_steps(|phase, number| {
-            Ok(Reference::Constant(law.factors[number][phase]))
-        })?;
+        let factor =
+            step.two_steps(|phase, number| Ok(Reference::Constant(law.factors[number][phase])))?;
         control.joints[*joint] = JointControl {
             reference: Some(step.reference(*joint)?),
             feed_forward: Some(step.feed_forward(*joint)?),

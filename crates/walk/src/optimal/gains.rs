@@ -29,7 +29,7 @@ const TRIED: [[f64; 2]; 14] = [
 
 /// Gains by which a step repeats itself, the cycle, and the walk that was simulated.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub(super) struct Found {
     /// The gains.
     pub gains: Gains,
     /// The cycle.

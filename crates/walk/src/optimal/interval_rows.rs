@@ -24,7 +24,8 @@ impl Step<'_> {
         let h = x[duration] * share;
         for derivative in 0..2 {
             for index in 0..layout.n {
-                let values = [0, 1, 2].map(|p: usize| layout.motion(&points[p], derivative) + index);
+                let values =
+                    [0, 1, 2].map(|p: usize| layout.motion(&points[p], derivative) + index);
                 let slopes = values.map(|value| value + layout.n);
                 let label = || self.collocation_label(index, derivative, phase, points[1].fraction);
                 let [from, middle, to] = values.map(|at| x[at]);
@@ -89,7 +90,8 @@ impl Step<'_> {
         };
         let (n, first) = (self.layout.n, self.layout.points[0].start);
         let q = &x[first..first + n];
-        let (mut places, mut rows) = (vec![0.0; 3 * self.contacts], vec![0.0; 3 * self.contacts * n]);
+        let (mut places, mut rows) =
+            (vec![0.0; 3 * self.contacts], vec![0.0; 3 * self.contacts * n]);
         self.plant.contact_positions(q, &mut places);
         self.plant.contact_jacobian(q, &mut rows);
         let name = &self.contact_names[*contact];

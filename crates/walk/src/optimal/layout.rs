@@ -6,7 +6,7 @@ use denavit_plants::Plant;
 
 /// Units in which a walker is of size 1: leg, weight, and the time of a fall from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Units {
+pub(super) struct Units {
     /// Leg \[m\].
     pub length_m: f64,
     /// sqrt(leg over gravity) \[s\].
@@ -17,7 +17,7 @@ pub struct Units {
 
 impl Units {
     /// Those of a walker.
-    pub fn of(legs: &Legs) -> Self {
+    pub(super) fn of(legs: &Legs) -> Self {
         Self {
             length_m: legs.leg_m,
             time_s: (legs.leg_m / legs.gravity).sqrt(),
@@ -26,24 +26,24 @@ impl Units {
     }
 
     /// Weight times leg [N m].
-    pub fn moment_nm(self) -> f64 {
+    pub(super) fn moment_nm(self) -> f64 {
         self.force_n * self.length_m
     }
 
     /// Leg over time [m/s].
-    pub fn speed_m_s(self) -> f64 {
+    pub(super) fn speed_m_s(self) -> f64 {
         self.length_m / self.time_s
     }
 
     /// Weight times speed \[W\].
-    pub fn power_w(self) -> f64 {
+    pub(super) fn power_w(self) -> f64 {
         self.force_n * self.speed_m_s()
     }
 }
 
 /// An instant of a phase at which the dynamics hold: an end or the middle of an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub(super) struct Point {
     /// Its phase.
     pub phase: usize,
     /// Its number in the phase; even ones are ends of intervals.
@@ -59,7 +59,7 @@ pub struct Point {
 /// Where variables stand: points one after the other, then durations of phases, impulses of
 /// impacts, and the length of the step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layout {
+pub(super) struct Layout {
     /// The phases.
     pub phases: Vec<Phase>,
     /// What lies between them.
@@ -88,7 +88,7 @@ pub struct Layout {
 
 impl Layout {
     /// The layout of a step with so many intervals in each phase.
-    pub fn new(legs: &Legs, phases: &[Phase], intervals: &[usize]) -> Self {
+    pub(super) fn new(legs: &Legs, phases: &[Phase], intervals: &[usize]) -> Self {
         let (n, drives) = (legs.coordinates, legs.driven.len());
         let of = |phase: &Phase| {
             phase.held().into_iter().map(|(role, axis)| (legs.contact(role), axis)).collect()
@@ -135,40 +135,40 @@ impl Layout {
     }
 
     /// Intervals of each phase: so many in all, by the phases' shares, two at least in each.
-    pub fn shared_out(phases: &[Phase], intervals: usize) -> Vec<usize> {
+    pub(super) fn shared_out(phases: &[Phase], intervals: usize) -> Vec<usize> {
         let total: f64 = phases.iter().map(|phase| phase.share).sum();
         let of = |phase: &Phase| ((intervals as f64 * phase.share / total).round() as usize).max(2);
         phases.iter().map(of).collect()
     }
 
     /// First variable of the positions, velocities and accelerations (0, 1, 2) at a point.
-    pub fn motion(&self, point: &Point, derivative: usize) -> usize {
+    pub(super) fn motion(&self, point: &Point, derivative: usize) -> usize {
         point.start + derivative * self.n
     }
 
     /// First variable of the torques at a point.
-    pub fn torques(&self, point: &Point) -> usize {
+    pub(super) fn torques(&self, point: &Point) -> usize {
         point.start + 3 * self.n
     }
 
     /// First variable of the forces at a point, in the order of the phase's held contacts.
-    pub fn forces(&self, point: &Point) -> usize {
+    pub(super) fn forces(&self, point: &Point) -> usize {
         point.start + 3 * self.n + self.drives
     }
 
     /// Points of a phase.
-    pub fn points_of(&self, phase: usize) -> &[Point] {
+    pub(super) fn points_of(&self, phase: usize) -> &[Point] {
         let first = self.first[phase];
         &self.points[first..=first + 2 * self.intervals[phase]]
     }
 
     /// Last point of a phase.
-    pub fn last_of(&self, phase: usize) -> &Point {
+    pub(super) fn last_of(&self, phase: usize) -> &Point {
         &self.points[self.first[phase] + 2 * self.intervals[phase]]
     }
 
     /// The scales of the variables.
-    pub fn scales(&self, plant: &dyn Plant, units: Units, impulse_ns: f64) -> Vec<f64> {
+    pub(super) fn scales(&self, plant: &dyn Plant, units: Units, impulse_ns: f64) -> Vec<f64> {
         let slides: Vec<bool> = plant.model().joints.iter().map(|joint| joint.slides).collect();
         let size = |index: usize| if slides[index] { units.length_m } else { 1.0 };
         let mut scales = vec![0.0; self.variables];

@@ -18,8 +18,7 @@ pub enum Role {
 
 impl Role {
     /// All roles, in the order of the enum.
-    pub const ALL: [Self; 4] =
-        [Self::StanceHeel, Self::StanceToe, Self::SwingHeel, Self::SwingToe];
+    pub const ALL: [Self; 4] = [Self::StanceHeel, Self::StanceToe, Self::SwingHeel, Self::SwingToe];
 
     /// What files call them, in the order of the enum.
     pub const WORDS: [&'static str; 4] = ["stance_heel", "stance_toe", "swing_heel", "swing_toe"];

@@ -41,7 +41,7 @@ impl Default for StepLimits {
             clearance_m: 0.02,
             clearance_ramp: 0.3,
             torque_nm: None,
-            contact_force: 0.1,
+            contact_force: 0.2,
             touchdown_m_s: 0.1,
             phase_s: 0.05,
             position_margin_rad: 0.05,

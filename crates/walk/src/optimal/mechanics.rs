@@ -77,9 +77,7 @@ impl Mechanics {
         let Moment { q, qd, qdd, forces } = moment;
         let (by_q, by_qd) = (&mut self.residual_q, &mut self.residual_qd);
         plant.inverse_dynamics_derivatives(q, qd, qdd, by_q, by_qd);
-        let contacts = self
-            .contacts
-            .get_or_insert_with(|| ContactDerivatives::new(plant.model()));
+        let contacts = self.contacts.get_or_insert_with(|| ContactDerivatives::new(plant.model()));
         plant.contact_derivatives(q, qd, qdd, forces, contacts);
         self.residual_q.iter_mut().zip(&contacts.torque_dq).for_each(|(r, w)| *r -= w);
     }

@@ -1,4 +1,15 @@
 //! Limit cycles by periodic optimal control.
+//!
+//! A step is a list of phases, each with its closed contacts, and impacts or releases between them;
+//! at its end the legs swap and it begins again. Direct collocation makes of it a sparse nonlinear
+//! program with exact derivatives, which sequential quadratic programming solves from straight
+//! legs. The plan is then followed in closed loop, and gains are searched by which its Floquet
+//! multipliers are as small as asked for.
+//!
+//! - [`design`](design()): from a [`LimitCycleProblem`] to a [`LimitCycle`] that walks
+//! - [`scenario_text`]: the scenario file of a gait
+//! - [`walk`]: a walk of a planned step in the simulator
+//! - [`minimise`]: the solver, for any [`Program`]
 
 mod cost;
 mod design;
@@ -16,6 +27,7 @@ mod point_rows;
 mod program;
 mod quadratic;
 mod rows;
+mod scenario_text;
 mod section;
 mod sparse;
 mod sqp;
@@ -23,26 +35,18 @@ mod stance_foot;
 mod step;
 mod transition_rows;
 
-pub mod trial {
-    use super::design::*;
-    use super::limits::StepLimits;
-    pub fn run(speed: f64) {
-        let mut plant = denavit_plants::planar_biped(&[]).unwrap();
-        let env = |name: &str, d: f64| std::env::var(name).ok().and_then(|t| t.parse().ok()).unwrap_or(d);
-        let aspects = super::phases::Aspects { retraction: env("RE", 1.0) > 0.0, heel_strike: env("HS", 1.0) > 0.0, push_off: env("PO", 1.0) > 0.0, lean: env("LE", 1.0) > 0.0, knee_flexion: env("KF", 1.0) > 0.0 };
-        let problem = LimitCycleProblem {
-            limits: StepLimits { speed_m_s: speed, contact_force: env("CF", 0.1), touchdown_m_s: env("TD", 0.1), phase_s: env("PH", 0.05), ..StepLimits::default() },
-            aspects, intervals: env("N", 24.0) as usize,
-            ..LimitCycleProblem::default()
-        };
-        let t0 = std::time::Instant::now();
-        match design(plant.as_mut(), &problem) {
-            Err(e) => println!("{speed}: {e} {:?}", t0.elapsed()),
-            Ok(g) => {
-                println!("{speed}: length {:.3} period {:.3} gains {:?} multipliers {:?} cot {:.3} (plan {:.3}) tau2 {:.0} (plan {:.0}) torque {:.1} steps {} speed {:.4} in {:?}", g.step.length_m, g.step.period_s, g.gains, &g.cycle.multipliers[..3], g.walk.cost_of_transport, g.planned_cost_of_transport, g.walk.torque_squared, g.planned_torque_squared, g.walk.torque_nm, g.walk.steps, g.walk.speed_m_s, t0.elapsed());
-                for s in &g.stages { println!("   {s:?}"); }
-                for p in &g.step.phases { println!("   {} {:.3}", p.name, p.duration_s); }
-            }
-        }
-    }
-}
+pub use cost::CostKind;
+pub use design::{DesignError, LimitCycle, LimitCycleProblem, Stage, Violated, design};
+pub use following::{FollowingError, Gains, Walk, control, simulation, walk};
+pub use guess::Guess;
+pub use legs::{Leg, Legs, NoWalker, Role};
+pub use limits::StepLimits;
+pub use phases::{
+    Aspects, Axis, NoStep, Phase, Transition, check as check_phases, phases_of, transitions,
+};
+pub use planned::{PlannedPhase, PlannedStep};
+pub use program::{Linearisation, Program};
+pub use scenario_text::{ScenarioHead, scenario_text};
+pub use section::Cycle;
+pub use sparse::Triplets;
+pub use sqp::{Ending, Optimum, Settings, minimise};

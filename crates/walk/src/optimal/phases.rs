@@ -155,7 +155,7 @@ pub fn check(phases: &[Phase]) -> Result<(), NoStep> {
 }
 
 /// The phase in which the stance foot alone stands flat.
-pub fn flat_phase(phases: &[Phase]) -> Option<usize> {
+pub(super) fn flat_phase(phases: &[Phase]) -> Option<usize> {
     phases.iter().position(|phase| phase.closed == [Role::StanceHeel, Role::StanceToe])
 }
 
@@ -217,8 +217,11 @@ mod tests {
     #[test]
     fn every_choice_of_aspects_makes_a_step() {
         for choice in 0..4 {
-            let aspects =
-                Aspects { heel_strike: choice & 1 == 1, push_off: choice & 2 == 2, ..Aspects::default() };
+            let aspects = Aspects {
+                heel_strike: choice & 1 == 1,
+                push_off: choice & 2 == 2,
+                ..Aspects::default()
+            };
             let phases = phases_of(aspects);
             assert_eq!(check(&phases), Ok(()));
             let end = &transitions(&phases)[0];

@@ -35,7 +35,8 @@ impl Step<'_> {
             &x[start..start + n]
         };
         let first = self.layout.forces(point);
-        let forces = self.spread(point.phase, &x[first..first + self.layout.held[point.phase].len()]);
+        let forces =
+            self.spread(point.phase, &x[first..first + self.layout.held[point.phase].len()]);
         let moment = Moment { q: part(0), qd: part(1), qdd: part(2), forces: &forces };
         match differentiates {
             true => self.mechanics.differentiate(self.plant, moment),
@@ -105,8 +106,14 @@ impl Step<'_> {
                 continue;
             }
             let at = row * n..(row + 1) * n;
-            sink.entries(self.layout.motion(point, 0), &mechanics.contacts().acceleration_dq[at.clone()]);
-            sink.entries(self.layout.motion(point, 1), &mechanics.contacts().acceleration_dqd[at.clone()]);
+            sink.entries(
+                self.layout.motion(point, 0),
+                &mechanics.contacts().acceleration_dq[at.clone()],
+            );
+            sink.entries(
+                self.layout.motion(point, 1),
+                &mechanics.contacts().acceleration_dqd[at.clone()],
+            );
             sink.entries(self.layout.motion(point, 2), &mechanics.jacobian[at]);
         }
     }

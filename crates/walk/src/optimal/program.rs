@@ -14,7 +14,6 @@ pub trait Program {
     /// without dimension and of the order of 1.
     fn ranges(&self) -> &[[f64; 2]];
 
-    fn describe(&self, index: usize) -> String { index.to_string() }
     /// Cost and constraints at a point.
     fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64;
 

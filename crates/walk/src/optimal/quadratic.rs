@@ -139,12 +139,8 @@ impl Subproblem<'_> {
         .ok()?;
         solver.solve();
         let solution = &solver.solution;
-        if std::env::var("QPT").is_ok() { eprintln!("qp {count} rows {slacks} cols {} iterations {:?} {}", solution.iterations, solution.status, solution.solve_time); }
-        let solved = [
-            SolverStatus::Solved,
-            SolverStatus::AlmostSolved,
-            SolverStatus::InsufficientProgress,
-        ];
+        let solved =
+            [SolverStatus::Solved, SolverStatus::AlmostSolved, SolverStatus::InsufficientProgress];
         if !solved.contains(&solution.status) || solution.x.iter().any(|x| !x.is_finite()) {
             return None;
         }

@@ -4,7 +4,7 @@ use super::sparse::Triplets;
 
 /// What a constraint says, and where in the step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Label {
+pub(super) struct Label {
     /// What it says: "friction cone".
     pub what: &'static str,
     /// Which joint or contact it is about; empty if none.

@@ -62,7 +62,6 @@ pub struct Optimum {
     pub iterations: usize,
 }
 
-const TRACE: bool = false;
 const LARGEST_PENALTY: f64 = 1e6;
 const SMALLEST_RADIUS: f64 = 1e-7;
 
@@ -129,9 +128,7 @@ impl<P: Program + ?Sized> Search<'_, P> {
         let mut fresh = true;
         while self.iterations < self.settings.iterations {
             if fresh {
-                let t0 = std::time::Instant::now();
                 self.program.linearise(&self.x, &self.multipliers, &mut self.linear);
-                if TRACE && self.iterations % 20 == 0 { eprintln!("linearise {:?}", t0.elapsed()); }
             }
             match self.advance() {
                 Outcome::Taken => fresh = true,
@@ -162,17 +159,12 @@ impl<P: Program + ?Sized> Search<'_, P> {
     /// Solves a subproblem and takes its step if it is good.
     fn advance(&mut self) -> Outcome {
         self.iterations += 1;
-        let t0 = std::time::Instant::now();
-        let found = self.subproblem(&self.constraints, &self.x);
-        if TRACE && self.iterations % 20 == 0 { eprintln!("qp {:?}", t0.elapsed()); }
-        let Some(step) = found else {
-            if TRACE { eprintln!("failed"); }
+        let Some(step) = self.subproblem(&self.constraints, &self.x) else {
             return Outcome::Failed;
         };
         let merit = self.cost + self.penalty * self.total_violation(&self.constraints);
         let predicted = merit - self.model(&step.change);
         if predicted <= self.settings.decrease * (self.cost.abs() + 1e-3) * self.radius.min(1.0) {
-            if TRACE { eprintln!("stationary pred {predicted:.1e} merit {merit:.4} pen {}", self.penalty); }
             self.multipliers = step.multipliers;
             return Outcome::Stationary;
         }
@@ -189,16 +181,6 @@ impl<P: Program + ?Sized> Search<'_, P> {
             }
         }
         let length = self.length(&taken.change);
-        if TRACE && ratio < 0.3 && self.iterations % 5 == 0 {
-            let mut values = self.constraints.clone();
-            self.linear.jacobian.multiply(&taken.change, &mut values);
-            let mut worst: Vec<(f64, usize)> = values.iter().zip(&best.2).enumerate().map(|(i, (a, b))| ((a - b).abs(), i)).collect();
-            worst.sort_by(|a, b| b.0.total_cmp(&a.0));
-            for (w, i) in &worst[..5] { eprintln!("      off {w:.1e} {}", self.program.describe(*i)); }
-            let f: f64 = self.linear.gradient.iter().zip(&taken.change).map(|(g, d)| g * d).sum::<f64>();
-            eprintln!("      cost predicted {:.2e} quad {:.2e} actual {:.2e}", f, 0.5 * self.linear.hessian.quadratic(&taken.change), best.1 - self.cost);
-        }
-        if TRACE { eprintln!("{:3} cost {:.5} viol {:.2e} sum {:.2e} pen {:.0e} rad {:.1e} len {:.1e} ratio {:.2} pred {:.1e}", self.iterations, self.cost, self.largest_violation(&self.constraints), self.total_violation(&self.constraints), self.penalty, self.radius, length, ratio, predicted); }
         if !(ratio > 1e-3) {
             self.radius = 0.4 * self.radius.min(length);
             return Outcome::Refused;
@@ -274,7 +256,8 @@ impl<P: Program + ?Sized> Search<'_, P> {
     fn try_step(&mut self, change: &[f64]) -> (Vec<f64>, f64, Vec<f64>) {
         let bounds = self.program.bounds().iter();
         let moved = self.x.iter().zip(change).zip(bounds);
-        let trial: Vec<f64> = moved.map(|((x, d), [low, high])| (x + d).clamp(*low, *high)).collect();
+        let trial: Vec<f64> =
+            moved.map(|((x, d), [low, high])| (x + d).clamp(*low, *high)).collect();
         let mut constraints = Vec::new();
         let cost = self.program.evaluate(&trial, &mut constraints);
         (trial, cost, constraints)

@@ -71,8 +71,10 @@ impl StanceFoot {
     fn move_base(&mut self, rows: &[f64], errors: &[f64], values: &mut [f64]) {
         let n = values.len();
         let row = |(contact, axis): &(usize, Axis)| 3 * contact + axis.index();
-        let entries =
-            self.held.iter().flat_map(|held| self.base.iter().map(move |b| rows[row(held) * n + b]));
+        let entries = self
+            .held
+            .iter()
+            .flat_map(|held| self.base.iter().map(move |b| rows[row(held) * n + b]));
         let matrix: Vec<f64> = entries.collect();
         self.system.factor(&matrix, self.base.len(), 1e-12);
         let mut change = vec![0.0; self.base.len()];

@@ -220,8 +220,6 @@ impl Program for Step<'_> {
         &self.shape.ranges
     }
 
-    fn describe(&self, index: usize) -> String { let l = &self.shape.labels[index]; format!("{} {} {} {:.2}", l.what, l.part, l.phase, l.fraction) }
-
     fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64 {
         self.assemble(x, Sink::new(constraints, None, None));
         self.cost(x, None)

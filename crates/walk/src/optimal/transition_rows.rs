@@ -47,11 +47,9 @@ impl Step<'_> {
         let derivatives = if transition.is_impact() { 0..1 } else { 0..2 };
         for derivative in derivatives {
             for index in 0..self.layout.n {
-                let from =
-                    self.layout.motion(before, derivative) + self.source(transition, index);
+                let from = self.layout.motion(before, derivative) + self.source(transition, index);
                 let to = self.layout.motion(after, derivative) + index;
-                let moves_on =
-                    derivative == 0 && transition.swaps && index == self.legs.base_x;
+                let moves_on = derivative == 0 && transition.swaps && index == self.legs.base_x;
                 let shift = if moves_on { x[self.layout.length] } else { 0.0 };
                 let label = || {
                     let (mut size, mut unit) = match self.slides[index] {
@@ -230,8 +228,7 @@ impl Step<'_> {
         let n = self.layout.n;
         let [q, qd] = [0, 1].map(|derivative| self.layout.motion(point, derivative));
         let (still, none) = (vec![0.0; n], vec![0.0; 3 * self.contacts]);
-        let moment =
-            Moment { q: &x[q..q + n], qd: &x[qd..qd + n], qdd: &still, forces: &none };
+        let moment = Moment { q: &x[q..q + n], qd: &x[qd..qd + n], qdd: &still, forces: &none };
         self.mechanics.differentiate(self.plant, moment);
     }
 }

@@ -3,14 +3,18 @@
 //! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
+//! - [`optimal`]: limit cycles by periodic optimal control
+//! - [`gait_file`]: files that say what a gait is to be
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`robustness`]: basins of attraction, and the least push that fells
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod balance;
+pub mod gait_file;
 pub mod inverse_kinematics;
 mod leg_exchange;
+pub mod optimal;
 pub mod poincare;
 pub mod robustness;
 mod scenario;

@@ -29,6 +29,7 @@ mod readme;
 mod simulate;
 mod simulate_summary;
 mod simulated_again;
+mod walk_design;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -83,7 +83,9 @@ pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
 /// Every shipped gait that is to be designed, by name.
 pub const GAITS: &[ShippedModel] = &shipped!["models/gaits":
     "planar_biped_fast_limit_cycle",
+    "planar_biped_inverted_pendulum",
     "planar_biped_limit_cycle",
+    "planar_biped_primitives",
 ];
 
 /// The shipped model of that name.

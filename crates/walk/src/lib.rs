@@ -4,6 +4,7 @@
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
 //! - [`optimal`]: limit cycles by periodic optimal control
+//! - [`gait_plan`]: walking primitives, and walks by the linear inverted pendulum
 //! - [`gait_file`]: files that say what a gait is to be
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`poincare`]: cycles, and whether they are stable
@@ -12,6 +13,7 @@
 
 pub mod balance;
 pub mod gait_file;
+pub mod gait_plan;
 pub mod inverse_kinematics;
 mod leg_exchange;
 pub mod optimal;

@@ -3,8 +3,12 @@
 //! One key says the kind; the gait's numbers stand under it. All faults of a file are found in one
 //! run, each with its place, its cause and what to do about it.
 
+mod inverted_pendulum;
+mod laws;
 mod limit_cycle;
+mod primitives;
 
+use crate::gait_plan::{InvertedPendulumProblem, PrimitivesProblem};
 use crate::optimal::LimitCycleProblem;
 use denavit_codegen::model::{Fields, Node, read_document};
 use denavit_simulate::scenario::{Report, ScenarioError, check_format};
@@ -17,9 +21,21 @@ pub fn schema() -> &'static str {
     include_str!("schema.json")
 }
 
-const KEYS: &[&str] = &["format", "name", "description", "source", "model", "limit_cycle"];
+const KEYS: &[&str] = &[
+    "format",
+    "name",
+    "description",
+    "source",
+    "model",
+    "primitives",
+    "inverted_pendulum",
+    "limit_cycle",
+];
 /// The kinds of gaits, each a key.
-const KINDS: &[&str] = &["limit_cycle"];
+const KINDS: &[&str] = &["primitives", "inverted_pendulum", "limit_cycle"];
+/// What a file without any of them lacks.
+const ANY_KIND: &str =
+    "an object with a kind of gait: `primitives`, `inverted_pendulum` or `limit_cycle`";
 
 /// A gait, to be designed.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +53,10 @@ pub struct GaitFile {
 /// What a gait is to be, by its kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GaitKind {
+    /// Statically stable postures, joined.
+    Primitives(PrimitivesProblem),
+    /// A walk by the linear inverted pendulum.
+    InvertedPendulum(InvertedPendulumProblem),
     /// A limit cycle by periodic optimal control.
     LimitCycle(Box<LimitCycleProblem>),
 }
@@ -62,12 +82,15 @@ pub fn read_gait(file: &str, source: &[u8]) -> Result<GaitFile, ScenarioError> {
 
 fn kind(root: Node<'_>, fields: &Fields<'_>, report: &mut Report) -> Option<GaitKind> {
     let mut kinds = KINDS.iter().filter_map(|kind| Some((*kind, fields.get(kind)?)));
-    let Some((_, node)) = kinds.next() else {
-        return root.wrong_kind("an object with a kind of gait: `limit_cycle`", report);
+    let Some((kind, node)) = kinds.next() else {
+        return root.wrong_kind(ANY_KIND, report);
     };
     if let Some((_, other)) = kinds.next() {
         other.wrong_kind::<(), _>("one kind of gait, not two", report);
     }
-    let problem = limit_cycle::read(node, report)?;
-    Some(GaitKind::LimitCycle(Box::new(problem)))
+    Some(match kind {
+        "primitives" => GaitKind::Primitives(primitives::read(node, report)?),
+        "inverted_pendulum" => GaitKind::InvertedPendulum(inverted_pendulum::read(node, report)?),
+        _ => GaitKind::LimitCycle(Box::new(limit_cycle::read(node, report)?)),
+    })
 }

@@ -2,6 +2,8 @@
 
 mod balance;
 mod event_driven_step;
+mod gait_plan;
+mod gait_schema;
 mod passive_walkers;
 mod poincare;
 mod robustness;

@@ -164,10 +164,8 @@ const TORQUE_WEIGHTS: [f64; 2] = [0.3, 0.1];
 const FIRMER: [[f64; 2]; 3] = [[1.0, 1.0], [1.5, 4.0], [2.0, 16.0]];
 /// Violations below this are none, in units of the walker.
 const FEASIBLE: f64 = 1e-4;
-/// Closed contacts of a plan stay within this of the ground between the points \[m\].
-const DRIFT_M: f64 = 5e-4;
-/// A plan with so many intervals is refined no more.
-const MOST_INTERVALS: usize = 48;
+/// Closed contacts of a plan drift by less than this between the points, in legs.
+const DRIFT: f64 = 5e-3;
 /// Powers below this share of weight times speed cost less than their absolute value.
 const ROUNDING: f64 = 0.01;
 
@@ -228,7 +226,7 @@ struct Designer<'a> {
 }
 
 impl Designer<'_> {
-    /// Plans a step, from the guess or from another plan; with more intervals, from the guess,
+    /// Plans a step, from the guess or from another plan; with twice the intervals, from the guess,
     /// where closed contacts drift between the points.
     fn plan(
         &mut self,
@@ -269,12 +267,12 @@ impl Designer<'_> {
                 return Err(DesignError::Infeasible(most_violated(&step, &found)));
             }
             let drift = step.drift(&found.x);
-            if drift.residual <= DRIFT_M {
+            if drift.residual <= DRIFT * step.units.length_m {
                 let [cost_of_transport, torque_squared] = step.plain_costs(&found.x);
                 let planned = PlannedStep::of(&step, &found.x);
                 return Ok((found.x, Plan { step: planned, cost_of_transport, torque_squared }));
             }
-            if self.intervals >= MOST_INTERVALS {
+            if self.intervals > problem.intervals {
                 return Err(DesignError::Infeasible(drift));
             }
             self.intervals *= 2;

@@ -65,7 +65,7 @@ fn a_cycle_from_straight_legs_walks_and_its_scenario_too() {
 fn a_step_longer_than_the_legs_allow_is_told_by_its_worst_constraint() {
     let mut plant = biped();
     let limits = StepLimits { speed_m_s: 0.7, step_length_m: Some(1.6), ..StepLimits::default() };
-    let problem = LimitCycleProblem { limits, intervals: 8, ..LimitCycleProblem::default() };
+    let problem = LimitCycleProblem { limits, intervals: 10, ..LimitCycleProblem::default() };
     match design(plant.as_mut(), &problem) {
         Err(DesignError::Infeasible(violated)) => {
             assert!(violated.residual > 0.0 && !violated.what.is_empty());

@@ -9,6 +9,7 @@
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`robustness`]: basins of attraction, and the least push that fells
+//! - [`ScenarioHead`]: what the scenario file of a designed gait says besides it
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod balance;
@@ -20,7 +21,9 @@ pub mod optimal;
 pub mod poincare;
 pub mod robustness;
 mod scenario;
+mod scenario_file;
 pub mod weight_shift_step;
 
 pub use leg_exchange::LegExchange;
 pub use scenario::read_scenario;
+pub use scenario_file::ScenarioHead;

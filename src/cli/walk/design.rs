@@ -11,11 +11,12 @@ use denavit::plants::trajectory::Reference;
 use denavit::plants::{Plant, PlantModel, plant_of};
 use denavit::report::{Align, GaitCurve, GaitPicture, Table};
 use denavit::shipped;
+use denavit::walk::ScenarioHead;
 use denavit::walk::gait_file::{GaitFile, GaitKind, read_gait};
 use denavit::walk::gait_plan::{
     GaitPlan, Knot, PlanError, plan_inverted_pendulum, plan_primitives,
 };
-use denavit::walk::optimal::{LimitCycle, ScenarioHead, design, scenario_text};
+use denavit::walk::optimal::{LimitCycle, design, scenario_text};
 use serde_json::{Map, Value, json as value};
 use std::io::Write;
 use std::path::{Path, PathBuf};

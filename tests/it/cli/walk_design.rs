@@ -18,10 +18,21 @@ fn a_designed_scenario_is_simulated() {
         &directory,
         &["planar_biped_primitives", "-o", "walk.json", "--trajectory", "t.json", "--svg", "g.svg"],
     );
-    for part in ["step length", "0.1000 m", "step time", "4.0000 s", "mean speed", "0.0250 m/s",
-        "largest residual of inverse kinematics", "least static margin", "95.0 mm",
-        "landed at 3.200 s", "wrote walk.json", "wrote t.json", "wrote g.svg"]
-    {
+    for part in [
+        "step length",
+        "0.1000 m",
+        "step time",
+        "4.0000 s",
+        "mean speed",
+        "0.0250 m/s",
+        "largest residual of inverse kinematics",
+        "least static margin",
+        "95.0 mm",
+        "landed at 3.200 s",
+        "wrote walk.json",
+        "wrote t.json",
+        "wrote g.svg",
+    ] {
         assert!(said.contains(part), "{part}:\n{said}");
     }
     let read = |file: &str| fs::read_to_string(directory.path.join(file)).unwrap();

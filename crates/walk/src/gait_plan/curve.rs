@@ -1,5 +1,6 @@
 //! What a joint follows in a plan: functions of time that files can hold.
 
+use crate::scenario_file::list;
 use denavit_plants::trajectory::{
     Bezier, CosineProfile, CubicSpline, EndCondition, Part, Reference, Sequence, TrajectoryError,
 };
@@ -55,16 +56,16 @@ impl Curve {
         match self {
             Self::Cubic { times_s, values } => format!(
                 "{{\"cubic\": {{\"times\": {}, \"values\": {}, \"end_rates\": [0.0, 0.0]}}}}",
-                list(times_s),
-                list(values)
+                list(times_s.iter().copied()),
+                list(values.iter().copied())
             ),
             Self::Cosine { duration_s, values } => format!(
                 "{{\"cosine\": {{\"times\": [0.0, {duration_s:?}], \"values\": {}}}}}",
-                list(values)
+                list(values.iter().copied())
             ),
             Self::Bezier { duration_s, controls } => format!(
                 "{{\"bezier\": {{\"times\": [0.0, {duration_s:?}], \"values\": {}}}}}",
-                list(controls)
+                list(controls.iter().copied())
             ),
         }
     }
@@ -100,10 +101,4 @@ impl JointPath {
         let parts = self.pieces.iter().map(part).collect::<Result<Vec<_>, TrajectoryError>>()?;
         Ok(Reference::Sequence(Sequence::new(parts, repeats)?))
     }
-}
-
-/// Numbers that read back as the same.
-fn list(values: &[f64]) -> String {
-    let numbers: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
-    format!("[{}]", numbers.join(", "))
 }

@@ -222,7 +222,8 @@ impl Planner<'_> {
     fn knots(&self, plant: &mut dyn Plant) -> Result<Vec<Knot>, PlanError> {
         let mut knots: Vec<Knot> = Vec::new();
         for phase in &self.course.phases {
-            let count = (phase.duration_s / self.problem.interval_s).ceil().max(1.0);
+            // an even number: in the middle of standing the centre of pressure turns around
+            let count = 2.0 * (0.5 * phase.duration_s / self.problem.interval_s).ceil().max(1.0);
             let is_last = phase.start_s + phase.duration_s >= self.course.end_s();
             for index in 0..count as usize + usize::from(is_last) {
                 let t_s = phase.start_s + phase.duration_s * (index as f64 / count);

@@ -9,11 +9,11 @@
 
 mod curve;
 mod fault;
+mod files;
 mod inverted_pendulum;
 mod pendulum;
 mod plan;
 mod primitives;
-mod scenario_text;
 mod walker;
 
 pub use curve::{Curve, JointPath, Piece};

@@ -7,7 +7,7 @@ use super::guess::Guess;
 use super::layout::Layout;
 use super::legs::{Legs, NoWalker};
 use super::limits::StepLimits;
-use super::phases::{Aspects, NoStep, Phase, check, phases_of};
+use super::phases::{Aspects, Axis, NoStep, Phase, check, phases_of};
 use super::planned::PlannedStep;
 use super::program::{Program, violation};
 use super::section::Cycle;
@@ -80,6 +80,8 @@ pub struct Stage {
     pub torque_weight: f64,
     /// Least normal force of closed contacts, in weights.
     pub contact_force: f64,
+    /// Intervals of the collocation over a step.
+    pub intervals: usize,
     /// Subproblems solved.
     pub iterations: usize,
     /// The largest violation of a constraint, in its unit of the walker.
@@ -162,6 +164,8 @@ const TORQUE_WEIGHTS: [f64; 2] = [0.3, 0.1];
 const FIRMER: [[f64; 2]; 3] = [[1.0, 1.0], [1.5, 4.0], [2.0, 16.0]];
 /// Violations below this are none, in units of the walker.
 const FEASIBLE: f64 = 1e-4;
+/// Closed contacts of a plan drift by less than this between the points, in legs.
+const DRIFT: f64 = 5e-3;
 /// Powers below this share of weight times speed cost less than their absolute value.
 const ROUNDING: f64 = 0.01;
 
@@ -176,7 +180,8 @@ pub fn design(
     if !has_derivatives(plant) {
         return Err(DesignError::NoDerivatives);
     }
-    let mut designer = Designer { plant, problem, legs, phases, stages: Vec::new() };
+    let intervals = problem.intervals;
+    let mut designer = Designer { plant, problem, legs, phases, intervals, stages: Vec::new() };
     let mut unstable = None;
     for firmness in FIRMER {
         let (x, plan) = designer.plan(CostKind::TorqueSquared, 1.0, firmness, None)?;
@@ -215,11 +220,14 @@ struct Designer<'a> {
     problem: &'a LimitCycleProblem,
     legs: Legs,
     phases: Vec<Phase>,
+    /// Intervals of the collocation over a step.
+    intervals: usize,
     stages: Vec<Stage>,
 }
 
 impl Designer<'_> {
-    /// Plans a step, from the guess or from another plan.
+    /// Plans a step, from the guess or from another plan; with twice the intervals, from the guess,
+    /// where closed contacts drift between the points.
     fn plan(
         &mut self,
         kind: CostKind,
@@ -228,7 +236,6 @@ impl Designer<'_> {
         start: Option<&[f64]>,
     ) -> Result<(Vec<f64>, Plan), DesignError> {
         let problem = self.problem;
-        let intervals = Layout::shared_out(&self.phases, problem.intervals);
         let contact_force = firmness * problem.limits.contact_force;
         let limits = StepLimits { contact_force, ..limits_of(problem) };
         let costs = CostSettings {
@@ -239,28 +246,37 @@ impl Designer<'_> {
             acceleration: 1e-5,
             impulse: 2.0 * softness,
         };
-        let parts = (&self.phases[..], &intervals[..]);
-        let mut step = Step::new(self.plant, &self.legs, parts, limits, costs);
-        let guess = match start {
-            Some(start) => start.to_vec(),
-            None => step.guess(problem.guess),
-        };
-        let found = search_plan(&mut step, &guess);
-        self.stages.push(Stage {
-            cost: kind,
-            torque_weight: torque,
-            contact_force,
-            iterations: found.iterations,
-            violation: found.violation,
-            largest_multiplier: None,
-            cost_of_transport: None,
-        });
-        if found.violation > FEASIBLE {
-            return Err(DesignError::Infeasible(most_violated(&step, &found)));
+        let mut start = start.map(<[f64]>::to_vec);
+        loop {
+            let shared = Layout::shared_out(&self.phases, self.intervals);
+            let parts = (&self.phases[..], &shared[..]);
+            let mut step = Step::new(self.plant, &self.legs, parts, limits, costs);
+            let guess = start.take().unwrap_or_else(|| step.guess(problem.guess));
+            let found = search_plan(&mut step, &guess);
+            self.stages.push(Stage {
+                cost: kind,
+                torque_weight: torque,
+                contact_force,
+                intervals: self.intervals,
+                iterations: found.iterations,
+                violation: found.violation,
+                largest_multiplier: None,
+                cost_of_transport: None,
+            });
+            if found.violation > FEASIBLE {
+                return Err(DesignError::Infeasible(most_violated(&step, &found)));
+            }
+            let drift = step.drift(&found.x);
+            if drift.residual <= DRIFT * step.units.length_m {
+                let [cost_of_transport, torque_squared] = step.plain_costs(&found.x);
+                let planned = PlannedStep::of(&step, &found.x);
+                return Ok((found.x, Plan { step: planned, cost_of_transport, torque_squared }));
+            }
+            if self.intervals > problem.intervals {
+                return Err(DesignError::Infeasible(drift));
+            }
+            self.intervals *= 2;
         }
-        let [cost_of_transport, torque_squared] = step.plain_costs(&found.x);
-        let planned = PlannedStep::of(&step, &found.x);
-        Ok((found.x, Plan { step: planned, cost_of_transport, torque_squared }))
     }
 
     /// Searches gains for a plan; the least of the largest multipliers if there are none.
@@ -356,6 +372,38 @@ fn limits_of(problem: &LimitCycleProblem) -> StepLimits {
         limits.thigh_rad_s = limits.thigh_rad_s.max(0.0);
     }
     limits
+}
+
+impl Step<'_> {
+    /// How far closed contacts leave the ground between the instants at which they close.
+    fn drift(&mut self, x: &[f64]) -> Violated {
+        let mut worst = Violated {
+            what: "drift of a closed contact".to_owned(),
+            phase: String::new(),
+            t_s: 0.0,
+            residual: 0.0,
+            unit: "m",
+        };
+        let mut places = vec![0.0; 3 * self.contacts];
+        let mut before = 0.0;
+        for phase in 0..self.layout.phases.len() {
+            let duration_s = x[self.layout.durations + phase];
+            for point in self.layout.points_of(phase) {
+                let first = self.layout.motion(point, 0);
+                self.plant.contact_positions(&x[first..first + self.layout.n], &mut places);
+                for (contact, axis) in &self.layout.held[phase] {
+                    let height = (places[3 * contact + 2] - self.legs.ground_m).abs();
+                    if *axis == Axis::Up && height > worst.residual {
+                        worst.residual = height;
+                        worst.phase.clone_from(&self.layout.phases[phase].name);
+                        worst.t_s = before + point.fraction * duration_s;
+                    }
+                }
+            }
+            before += duration_s;
+        }
+        worst
+    }
 }
 
 fn most_violated(step: &Step<'_>, found: &Optimum) -> Violated {

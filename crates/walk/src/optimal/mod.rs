@@ -35,6 +35,7 @@ mod stance_foot;
 mod step;
 mod transition_rows;
 
+pub use crate::scenario_file::ScenarioHead;
 pub use cost::CostKind;
 pub use design::{DesignError, LimitCycle, LimitCycleProblem, Stage, Violated, design};
 pub use following::{FollowingError, Gains, Walk, control, simulation, walk};
@@ -46,7 +47,7 @@ pub use phases::{
 };
 pub use planned::{PlannedPhase, PlannedStep};
 pub use program::{Linearisation, Program};
-pub use scenario_text::{ScenarioHead, scenario_text};
+pub use scenario_text::scenario_text;
 pub use section::Cycle;
 pub use sparse::Triplets;
 pub use sqp::{Ending, Optimum, Settings, minimise};

@@ -172,16 +172,17 @@ impl<P: Program + ?Sized> Search<'_, P> {
         let actual = merit - cost - self.penalty * self.total_violation(&constraints);
         let mut ratio = actual / predicted;
         let (mut best, mut taken) = ((trial, cost, constraints), step);
-        if ratio < 0.25 && ratio.is_finite() {
-            if let Some((corrected, step, gain)) = self.correct(&best.2, &taken, merit) {
-                if gain / predicted > ratio {
-                    ratio = gain / predicted;
-                    (best, taken) = (corrected, step);
-                }
-            }
+        if ratio < 0.25
+            && ratio.is_finite()
+            && let Some((corrected, step, gain)) = self.correct(&best.2, &taken, merit)
+            && gain / predicted > ratio
+        {
+            ratio = gain / predicted;
+            (best, taken) = (corrected, step);
         }
         let length = self.length(&taken.change);
-        if !(ratio > 1e-3) {
+        // a ratio that is no number is no step either
+        if ratio.is_nan() || ratio <= 1e-3 {
             self.radius = 0.4 * self.radius.min(length);
             return Outcome::Refused;
         }
@@ -275,5 +276,183 @@ impl<P: Program + ?Sized> Search<'_, P> {
     fn largest_violation(&self, values: &[f64]) -> f64 {
         let each = values.iter().zip(self.program.ranges()).map(|(v, range)| violation(*v, *range));
         each.fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optimal::sparse::Triplets;
+
+    /// A program of dense functions, with derivatives by hand.
+    struct Textbook {
+        scales: Vec<f64>,
+        bounds: Vec<[f64; 2]>,
+        ranges: Vec<[f64; 2]>,
+        evaluate: fn(&[f64], &mut Vec<f64>) -> f64,
+        linearise: fn(&[f64], &[f64], &mut Linearisation),
+    }
+
+    impl Program for Textbook {
+        fn scales(&self) -> &[f64] {
+            &self.scales
+        }
+
+        fn bounds(&self) -> &[[f64; 2]] {
+            &self.bounds
+        }
+
+        fn ranges(&self) -> &[[f64; 2]] {
+            &self.ranges
+        }
+
+        fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64 {
+            constraints.clear();
+            (self.evaluate)(x, constraints)
+        }
+
+        fn linearise(&mut self, x: &[f64], multipliers: &[f64], linear: &mut Linearisation) {
+            linear.clear(x.len());
+            (self.linearise)(x, multipliers, linear);
+            for index in 0..x.len() {
+                linear.hessian.add(index, index, 0.1);
+            }
+        }
+    }
+
+    const TIGHT: Settings =
+        Settings { iterations: 300, radius: 1.0, penalty: 10.0, feasible: 1e-8, decrease: 1e-9 };
+
+    #[test]
+    fn hock_and_schittkowskis_problem_71_is_solved() {
+        let mut program = Textbook {
+            scales: vec![1.0; 4],
+            bounds: vec![[1.0, 5.0]; 4],
+            ranges: vec![[25.0, f64::INFINITY], [40.0, 40.0]],
+            evaluate: |x, constraints| {
+                constraints.push(x.iter().product());
+                constraints.push(x.iter().map(|x| x * x).sum());
+                x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2]
+            },
+            linearise: |x, _, linear| {
+                let sum = x[0] + x[1] + x[2];
+                let ends = x[0] * x[3];
+                linear.gradient = vec![x[3] * (sum + x[0]), ends, ends + 1.0, x[0] * sum];
+                let all: f64 = x.iter().product();
+                for (index, x) in x.iter().enumerate() {
+                    linear.jacobian.add(0, index, all / x);
+                    linear.jacobian.add(1, index, 2.0 * x);
+                }
+            },
+        };
+        let found = minimise(&mut program, &[1.0, 5.0, 5.0, 1.0], TIGHT);
+        assert_eq!(found.ending, Ending::Converged);
+        // the published optimum
+        assert!((found.cost - 17.014_017_3).abs() < 1e-5, "{}", found.cost);
+        for (x, known) in found.x.iter().zip([1.0, 4.742_999_4, 3.821_149_8, 1.379_408_2]) {
+            assert!((x - known).abs() < 1e-3, "{:?}", found.x);
+        }
+        assert!(found.violation < 1e-8);
+    }
+
+    #[test]
+    fn what_cannot_be_is_infeasible_and_the_violation_is_the_least() {
+        // x^2 = -1
+        let mut program = Textbook {
+            scales: vec![1.0],
+            bounds: vec![[-10.0, 10.0]],
+            ranges: vec![[-1.0, -1.0]],
+            evaluate: |x, constraints| {
+                constraints.push(x[0] * x[0]);
+                0.0
+            },
+            linearise: |x, _, linear| linear.jacobian.add(0, 0, 2.0 * x[0]),
+        };
+        let found = minimise(&mut program, &[3.0], TIGHT);
+        assert!(matches!(found.ending, Ending::Infeasible | Ending::Stalled), "{found:?}");
+        assert!((found.violation - 1.0).abs() < 1e-3, "{found:?}");
+    }
+
+    /// The double integrator from rest to rest over unit time and distance, with least effort:
+    /// u = 6 - 12 t, integral of u^2 = 12. Trapezoidal collocation, whose own optimum differs by
+    /// 1/N^2.
+    #[test]
+    fn least_effort_of_a_double_integrator_is_that_of_the_closed_form() {
+        const N: usize = 40;
+        let h = 1.0 / N as f64;
+        struct Integrator {
+            h: f64,
+            scales: Vec<f64>,
+            bounds: Vec<[f64; 2]>,
+            ranges: Vec<[f64; 2]>,
+        }
+        impl Integrator {
+            fn rows(&self, x: &[f64], jacobian: &mut Triplets) -> Vec<f64> {
+                let half = 0.5 * self.h;
+                let mut values = Vec::new();
+                for k in 0..N {
+                    for (state, slope) in [(0, 1), (1, 2)] {
+                        let [a, b] = [3 * k, 3 * k + 3];
+                        let row = values.len();
+                        let rise = half * (x[a + slope] + x[b + slope]);
+                        values.push(x[b + state] - x[a + state] - rise);
+                        jacobian.add(row, b + state, 1.0);
+                        jacobian.add(row, a + state, -1.0);
+                        jacobian.add(row, a + slope, -half);
+                        jacobian.add(row, b + slope, -half);
+                    }
+                }
+                values
+            }
+
+            fn weight(&self, k: usize) -> f64 {
+                if k == 0 || k == N { 0.5 * self.h } else { self.h }
+            }
+        }
+        impl Program for Integrator {
+            fn scales(&self) -> &[f64] {
+                &self.scales
+            }
+
+            fn bounds(&self) -> &[[f64; 2]] {
+                &self.bounds
+            }
+
+            fn ranges(&self) -> &[[f64; 2]] {
+                &self.ranges
+            }
+
+            fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64 {
+                *constraints = self.rows(x, &mut Triplets::default());
+                (0..=N).map(|k| self.weight(k) * x[3 * k + 2].powi(2)).sum()
+            }
+
+            fn linearise(&mut self, x: &[f64], _: &[f64], linear: &mut Linearisation) {
+                linear.clear(x.len());
+                self.rows(x, &mut linear.jacobian);
+                for k in 0..=N {
+                    linear.gradient[3 * k + 2] = 2.0 * self.weight(k) * x[3 * k + 2];
+                    linear.hessian.add(3 * k + 2, 3 * k + 2, 2.0 * self.weight(k));
+                }
+            }
+        }
+        let free = [-100.0, 100.0];
+        let mut bounds = vec![free; 3 * (N + 1)];
+        for (index, value) in [(0, 0.0), (1, 0.0), (3 * N, 1.0), (3 * N + 1, 0.0)] {
+            bounds[index] = [value, value];
+        }
+        let mut program = Integrator {
+            h,
+            scales: vec![10.0; bounds.len()],
+            bounds,
+            ranges: vec![[0.0; 2]; 2 * N],
+        };
+        let found = minimise(&mut program, &vec![0.0; 3 * (N + 1)], TIGHT);
+        assert_eq!(found.ending, Ending::Converged);
+        assert!((found.cost - 12.0).abs() < 12.0 * 5.0 * h * h, "{}", found.cost);
+        for k in 1..N {
+            let exact = 6.0 - 12.0 * k as f64 * h;
+            assert!((found.x[3 * k + 2] - exact).abs() < 0.05, "{k}: {}", found.x[3 * k + 2]);
+        }
     }
 }

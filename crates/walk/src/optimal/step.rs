@@ -293,3 +293,106 @@ fn touches(layout: &Layout, point: usize, role: Role) -> bool {
     };
     layout.transitions.iter().any(opened) || (is_last && closes(layout, at.phase, role))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optimal::CostKind;
+    use crate::optimal::guess::Guess;
+    use crate::optimal::phases::{Aspects, phases_of};
+    use denavit_numerics::Random;
+
+    fn with_step(kind: CostKind, check: impl FnOnce(&mut Step<'_>)) {
+        let mut plant = denavit_plants::planar_biped(&[]).expect("a plant");
+        let legs = Legs::of(plant.as_mut()).expect("a walker");
+        let phases = phases_of(Aspects::default());
+        let limits = StepLimits { thigh_rad_s: 0.1, ..StepLimits::default() };
+        let costs = CostSettings {
+            kind,
+            rounding: 0.05,
+            torque: 0.3,
+            torque_rate: 1e-3,
+            acceleration: 1e-5,
+            impulse: 2.0,
+        };
+        let parts = (&phases[..], &[2, 2, 3, 2][..]);
+        check(&mut Step::new(plant.as_mut(), &legs, parts, limits, costs));
+    }
+
+    /// A point away from the guess: nothing is 0 by chance.
+    fn somewhere(step: &mut Step<'_>) -> Vec<f64> {
+        let mut random = Random::new(7);
+        let guess = step.guess(Guess::default());
+        let moved = guess.iter().zip(step.scales());
+        moved.map(|(x, scale)| x + 0.05 * scale * random.normal()).collect()
+    }
+
+    #[test]
+    fn derivatives_of_all_constraints_and_of_both_costs_are_those_of_differences() {
+        for kind in [CostKind::CostOfTransport, CostKind::TorqueSquared] {
+            with_step(kind, |step| {
+                let x = somewhere(step);
+                let mut linear = Linearisation::default();
+                let none = vec![0.0; step.ranges().len()];
+                step.linearise(&x, &none, &mut linear);
+                let (rows, columns) = (step.ranges().len(), x.len());
+                let mut dense = vec![0.0; rows * columns];
+                for (row, column, value) in &linear.jacobian.entries {
+                    dense[row * columns + column] += value;
+                }
+                let (mut plus, mut minus) = (Vec::new(), Vec::new());
+                for column in 0..columns {
+                    let h = 1e-6 * step.scales()[column];
+                    let mut moved = x.clone();
+                    moved[column] += h;
+                    let above = step.evaluate(&moved, &mut plus);
+                    moved[column] -= 2.0 * h;
+                    let below = step.evaluate(&moved, &mut minus);
+                    let slope = (above - below) / (2.0 * h);
+                    let size = step.scales()[column];
+                    let error = (slope - linear.gradient[column]).abs() * size;
+                    assert!(error < 1e-6, "cost by variable {column}: {error:e}");
+                    for row in 0..rows {
+                        let slope = (plus[row] - minus[row]) / (2.0 * h);
+                        let error = (slope - dense[row * columns + column]).abs() * size;
+                        let name = &step.labels()[row];
+                        assert!(error < 3e-5, "{name:?} by variable {column}: {error:e}");
+                    }
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn weighted_gradients_are_those_of_the_jacobian() {
+        with_step(CostKind::TorqueSquared, |step| {
+            let x = somewhere(step);
+            let mut linear = Linearisation::default();
+            let none = vec![0.0; step.ranges().len()];
+            step.linearise(&x, &none, &mut linear);
+            let mut random = Random::new(3);
+            for number in 0..step.layout.points.len() {
+                let point = step.layout.points[number];
+                let rows = step.firsts[number]..step.firsts[number + 1];
+                let weights: Vec<f64> = rows.clone().map(|_| random.normal()).collect();
+                let size =
+                    3 * step.layout.n + step.layout.drives + step.layout.held[point.phase].len();
+                let mut expected = vec![0.0; size];
+                for (row, column, value) in &linear.jacobian.entries {
+                    let own = (point.start..point.start + size).contains(column);
+                    if rows.contains(row) && own {
+                        expected[column - point.start] += weights[row - rows.start] * value;
+                    }
+                }
+                let mut gradient = vec![0.0; size];
+                step.weighted_gradient(&x, &point, &weights, &mut gradient);
+                // what is linear has no curvature and is left out: torques, and friction cones
+                let curved = 3 * step.layout.n;
+                for (entry, expected) in gradient[..curved].iter().zip(&expected) {
+                    let error = (entry - expected).abs();
+                    assert!(error < 1e-9 * (1.0 + expected.abs()), "{error:e}");
+                }
+            }
+        });
+    }
+}

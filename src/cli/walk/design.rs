@@ -125,13 +125,15 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
 const NO_TRAJECTORY: &str = "references alone do not walk a limit cycle, which has torques and \
                              gains of its own\n  hint: leave out --trajectory, and take -o";
 
+const MODEL: &str = "`model` is a shipped model, or a file from the gait file's directory";
+
 fn refused(name: &str, why: impl std::fmt::Display) -> Failure {
     Failure::Walk(name.to_owned(), why.to_string())
 }
 
 fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Designed, Failure> {
     let bytes = load_beside(&arguments.gait, &gait.model)
-        .map_err(|why| refused(name, format_args!("{}: {why}", gait.model)))?;
+        .map_err(|why| refused(name, format_args!("{}: {why}\n  hint: {MODEL}", gait.model)))?;
     let robot = effect::read_model(&gait.model, &bytes, &[]).map_err(Failure::Model)?;
     let mut plant = plant_of(&robot, &[]).map_err(|error| refused(&robot.name, error))?;
     let stem = arguments.gait.file_stem().unwrap_or_default().to_string_lossy();

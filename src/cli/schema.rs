@@ -36,6 +36,9 @@ enum Format {
     /// A simulation
     #[value(alias = denavit::simulate::scenario::FORMAT)]
     Scenario,
+    /// A gait to be designed
+    #[value(alias = denavit::walk::gait_file::FORMAT)]
+    Gait,
     /// What joints follow
     #[value(alias = denavit::simulate::scenario::TRAJECTORY_FORMAT)]
     Trajectory,
@@ -57,6 +60,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Format::Equations => denavit::model::equations::schema(),
         Format::Certificate => denavit::regressor::certificate::schema(),
         Format::Scenario => denavit::simulate::scenario::schema(),
+        Format::Gait => denavit::walk::gait_file::schema(),
         Format::Trajectory => &trajectory,
         Format::Controller => &controller,
         Format::Statics => &statics,

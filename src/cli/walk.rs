@@ -2,6 +2,7 @@
 
 mod balance;
 mod compare;
+mod design;
 mod poincare;
 mod robustness;
 
@@ -54,6 +55,7 @@ Example:
 Example:
   denavit walk momentum planar_biped_limit_cycle_gait")]
     Momentum(balance::Arguments),
+    Design(design::Arguments),
     Poincare(poincare::Arguments),
     Basin(robustness::BasinArguments),
     Push(robustness::PushArguments),
@@ -66,6 +68,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Command::Fri(arguments) => balance::run(What::Fri, arguments, out),
         Command::Capture(arguments) => balance::run(What::Capture, arguments, out),
         Command::Momentum(arguments) => balance::run(What::Momentum, arguments, out),
+        Command::Design(arguments) => design::run(arguments, out),
         Command::Poincare(arguments) => poincare::run(arguments, out),
         Command::Basin(arguments) => robustness::run_basin(arguments, out),
         Command::Push(arguments) => robustness::run_push(arguments, out),

@@ -30,6 +30,7 @@ mod simulate;
 mod simulate_summary;
 mod simulated_again;
 mod walk;
+mod walk_design;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShippedModel {
     /// The name; the file is `models/NAME.json`, or in `equations`, `bodies`, `trajectories`,
-    /// `controllers` or `scenarios` there.
+    /// `controllers`, `scenarios` or `gaits` there.
     pub name: &'static str,
     /// The content of the file.
     pub text: &'static str,
@@ -87,6 +87,14 @@ pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "tulip_step",
 ];
 
+/// Every shipped gait that is to be designed, by name.
+pub const GAITS: &[ShippedModel] = &shipped!["models/gaits":
+    "planar_biped_fast_limit_cycle",
+    "planar_biped_inverted_pendulum",
+    "planar_biped_limit_cycle",
+    "planar_biped_primitives",
+];
+
 /// The shipped model of that name.
 pub fn find(name: &str) -> Option<&'static ShippedModel> {
     MODELS.iter().find(|model| model.name == name)
@@ -122,6 +130,11 @@ pub fn find_scenario(name: &str) -> Option<&'static ShippedModel> {
     SCENARIOS.iter().find(|scenario| scenario.name == name)
 }
 
+/// The shipped gait of that name.
+pub fn find_gait(name: &str) -> Option<&'static ShippedModel> {
+    GAITS.iter().find(|gait| gait.name == name)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -150,6 +163,7 @@ mod tests {
         assert_eq!(names(SCENARIOS), stems("models/scenarios"));
         assert_eq!(names(TRAJECTORIES), stems("models/trajectories"));
         assert_eq!(names(CONTROLLERS), stems("models/controllers"));
+        assert_eq!(names(GAITS), stems("models/gaits"));
         assert!(names(MODELS).is_disjoint(&names(EQUATIONS)));
         assert!(names(MODELS).is_disjoint(&names(BODIES)));
         assert!(names(TRAJECTORIES).is_disjoint(&names(BODIES)));

@@ -12,6 +12,7 @@
 //!   estimate came about; [`IdentificationPage`]: all of it
 //! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
 //! - [`BalancePicture`]: points of balance and support polygon over time
+//! - [`GaitPicture`]: joint angles of a planned gait with its postures marked
 //! - [`UnitCircle`], [`HeatMap`]: Floquet multipliers of a gait, and what disturbances do to it
 //!
 //! Nothing here prints; text is handed to whoever does.
@@ -44,9 +45,9 @@ pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
 pub use run::{
-    BalanceCurve, BalancePicture, ExcitationPicture, RunPicture, TorquePicture,
-    convergence_picture, diagnosis_picture, excitation_picture, motion_picture, run_picture,
-    torque_picture,
+    BalanceCurve, BalancePicture, ExcitationPicture, GaitCurve, GaitPicture, RunPicture,
+    TorquePicture, convergence_picture, diagnosis_picture, excitation_picture, motion_picture,
+    run_picture, torque_picture,
 };
 pub use table::{Align, Table};
 pub use two_stage::TwoStagePage;

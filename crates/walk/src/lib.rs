@@ -3,20 +3,29 @@
 //! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
 //! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
 //!   the other
+//! - [`optimal`]: limit cycles by periodic optimal control
+//! - [`gait_plan`]: walking primitives, and walks by the linear inverted pendulum
+//! - [`gait_file`]: files that say what a gait is to be
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`comparison`]: what each criterion of stability says of runs, and what comes out
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`robustness`]: basins of attraction, and the least push that fells
+//! - [`ScenarioHead`]: what the scenario file of a designed gait says besides it
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod balance;
 pub mod comparison;
+pub mod gait_file;
+pub mod gait_plan;
 pub mod inverse_kinematics;
 mod leg_exchange;
+pub mod optimal;
 pub mod poincare;
 pub mod robustness;
 mod scenario;
+mod scenario_file;
 pub mod weight_shift_step;
 
 pub use leg_exchange::LegExchange;
 pub use scenario::read_scenario;
+pub use scenario_file::ScenarioHead;

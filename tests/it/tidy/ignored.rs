@@ -29,7 +29,7 @@ const fn ignored(test: &'static str, reason: &'static str, runs: Runs) -> Ignore
 
 const NO_MEASUREMENTS: &str = "needs the measurements, which are not part of the repository";
 
-const IGNORED: [Ignored; 6] = [
+const IGNORED: [Ignored; 7] = [
     ignored("what_is_left_out_of_a_real_axis_is_named", NO_MEASUREMENTS, Runs::Measurements),
     ignored("the_published_parameters_and_errors_are_reached", NO_MEASUREMENTS, Runs::Measurements),
     ignored("documents_compile_to_at_most_forty_pages", "needs pdflatex", Runs::Ci),
@@ -37,6 +37,11 @@ const IGNORED: [Ignored; 6] = [
     ignored(
         "intervals_of_friction_hold_over_many_seeds",
         "takes minutes: the figures are in the docs",
+        Runs::Long,
+    ),
+    ignored(
+        "shipped_gaits_cost_less_than_the_hand_made_one_and_repeat_to_the_byte",
+        "takes minutes: designs with costs of transport",
         Runs::Long,
     ),
     ignored("six_hundred_drops_do_not_depend_on_the_log", "takes a minute", Runs::Long),

@@ -136,6 +136,13 @@ impl Axes {
         }
     }
 
+    /// A dot at a place.
+    pub(super) fn mark(&self, svg: &mut Svg, at: [f64; 2], style: &str) {
+        if at.iter().all(|entry| entry.is_finite()) {
+            svg.circle(self.place(at), 3.2, style);
+        }
+    }
+
     /// A name at the left of the scale, written upwards.
     pub(super) fn name_y(&self, svg: &mut Svg, text: &str) {
         let [x, y] = [self.corner[0] - 46.0, self.corner[1] + 0.5 * self.size[1]];

@@ -7,11 +7,13 @@ mod compared;
 mod convergence;
 mod excitation;
 mod figures;
+mod gait;
 mod torques;
 
 pub use balance::{BalanceCurve, BalancePicture};
 pub use compared::diagnosis_picture;
 pub use convergence::convergence_picture;
+pub use gait::{GaitCurve, GaitPicture};
 pub use torques::{TorquePicture, motion_picture, torque_picture};
 
 pub use excitation::{ExcitationPicture, excitation_picture};

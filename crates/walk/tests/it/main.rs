@@ -3,6 +3,10 @@
 mod balance;
 mod comparison;
 mod event_driven_step;
+mod gait_file;
+mod gait_plan;
+mod gait_schema;
+mod limit_cycle;
 mod passive_walkers;
 mod poincare;
 mod robustness;

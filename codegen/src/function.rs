@@ -190,8 +190,8 @@ pub struct Argument {
     pub symbols: Vec<ExprId>,
 }
 
-/// The name of the symbol of one coordinate (`x`, `y`, `z`) of the force on a contact point. No name
-/// of a model has a full stop.
+/// The name of the symbol of one coordinate (`x`, `y`, `z`) of the force on a contact point. No
+/// name of a model has a full stop.
 pub fn force_name(contact: &str, coordinate: &str) -> String {
     format!("f.{contact}.{coordinate}")
 }

@@ -47,7 +47,8 @@ impl Selector {
     }
 }
 
-/// `Link` and `Foot`, if a function is chosen by them, and `Contact`, if the robot has contact points.
+/// `Link` and `Foot`, if a function is chosen by them, and `Contact`, if the robot has contact
+/// points.
 pub(super) fn items(context: &Context<'_>) -> Vec<String> {
     let mut items = Vec::new();
     for selector in [Selector::Link, Selector::Foot] {

@@ -208,10 +208,9 @@ fn closed(plant: &dyn Plant, forces: &[[f64; 3]], modes: Option<f64>) -> Vec<boo
         let digit = (modes / 10.0_f64.powi(contact as i32)) % 10.0;
         digit.floor() > 0.0
     };
-    let points = forces.iter().enumerate();
     match modes.filter(|modes| modes.is_finite()) {
-        Some(modes) => points.map(|(contact, _)| digit(modes, contact)).collect(),
-        None => points.map(|(_, force)| presses(force)).collect(),
+        Some(modes) => (0..forces.len()).map(|contact| digit(modes, contact)).collect(),
+        None => forces.iter().map(presses).collect(),
     }
 }
 

@@ -235,7 +235,7 @@ mod tests {
     fn lists_that_are_no_step_are_refused() {
         assert_eq!(check(&[]), Err(NoStep::Empty));
         let flat = Phase::new("flat", &[Role::StanceHeel, Role::StanceToe], 1.0);
-        assert_eq!(check(&[flat.clone()]), Ok(()));
+        assert_eq!(check(std::slice::from_ref(&flat)), Ok(()));
         assert_eq!(check(&[flat, Phase::new("none", &[], 1.0)]), Err(NoStep::Flight(1)));
         let toe = Phase::new("toe", &[Role::StanceToe], 1.0);
         assert_eq!(check(&[toe]), Err(NoStep::NeverFlat));

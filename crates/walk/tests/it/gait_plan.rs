@@ -278,7 +278,7 @@ fn impossible_primitives_are_refused_by_name() {
     let refused = |change: &dyn Fn(&mut PrimitivesProblem)| {
         let mut problem = primitives();
         change(&mut problem);
-        plan_primitives(biped().as_mut(), &problem).err().expect("a refusal")
+        plan_primitives(biped().as_mut(), &problem).expect_err("a refusal")
     };
     let high = refused(&|problem| problem.postures[2].hip_height_m = 0.7);
     let PlanError::OutOfReach { posture, t_s, residual } = &high else { panic!("{high}") };
@@ -313,7 +313,7 @@ fn impossible_pendulums_are_refused_by_name() {
     let refused = |change: &dyn Fn(&mut InvertedPendulumProblem)| {
         let mut problem = pendulum();
         change(&mut problem);
-        plan_inverted_pendulum(biped().as_mut(), &problem).err().expect("a refusal")
+        plan_inverted_pendulum(biped().as_mut(), &problem).expect_err("a refusal")
     };
     let overlap = refused(&|problem| problem.double_support_s = 0.8);
     assert_eq!(overlap, PlanError::Overlap { double_support_s: 0.8, step_s: 0.8 });

@@ -242,8 +242,8 @@ impl Program for Step<'_> {
 /// Contacts that stay above the ground, for each point but those where they may touch it.
 fn clearances(legs: &Legs, layout: &Layout, limits: &StepLimits) -> Vec<Vec<Clearance>> {
     let flight = |point: usize| layout.phases[layout.points[point].phase].is_in_flight(false);
-    let (first, last) = match (0..layout.points.len()).filter(|p| flight(*p)).collect::<Vec<_>>()[..]
-    {
+    let flown: Vec<usize> = (0..layout.points.len()).filter(|point| flight(*point)).collect();
+    let (first, last) = match flown[..] {
         [first, .., last] => (first, last),
         _ => (0, 0),
     };

@@ -193,7 +193,7 @@ fn unknown_scenarios_and_models_are_guessed() {
     let directory = Directory::new("names");
     for (name, said) in [
         ("bouncing_bal", "`bouncing_ball` is a shipped scenario"),
-        ("qqqqqqqqq", "or one of bouncing_ball, cradle"),
+        ("qqqqqqqqq", "or one of bouncing_ball, compass_gait, cradle, "),
     ] {
         let run = run_in(&directory.path, &["simulate", name]);
         assert_eq!(run.code, Some(2), "{}", run.stdout);

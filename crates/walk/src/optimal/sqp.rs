@@ -373,84 +373,87 @@ mod tests {
         assert!((found.violation - 1.0).abs() < 1e-3, "{found:?}");
     }
 
+    /// Pieces that the double integrator's unit of time is cut into.
+    const PIECES: usize = 40;
+
+    struct Integrator {
+        h: f64,
+        scales: Vec<f64>,
+        bounds: Vec<[f64; 2]>,
+        ranges: Vec<[f64; 2]>,
+    }
+    impl Integrator {
+        fn rows(&self, x: &[f64], jacobian: &mut Triplets) -> Vec<f64> {
+            let half = 0.5 * self.h;
+            let mut values = Vec::new();
+            for k in 0..PIECES {
+                for (state, slope) in [(0, 1), (1, 2)] {
+                    let [a, b] = [3 * k, 3 * k + 3];
+                    let row = values.len();
+                    let rise = half * (x[a + slope] + x[b + slope]);
+                    values.push(x[b + state] - x[a + state] - rise);
+                    jacobian.add(row, b + state, 1.0);
+                    jacobian.add(row, a + state, -1.0);
+                    jacobian.add(row, a + slope, -half);
+                    jacobian.add(row, b + slope, -half);
+                }
+            }
+            values
+        }
+
+        fn weight(&self, k: usize) -> f64 {
+            if k == 0 || k == PIECES { 0.5 * self.h } else { self.h }
+        }
+    }
+    impl Program for Integrator {
+        fn scales(&self) -> &[f64] {
+            &self.scales
+        }
+
+        fn bounds(&self) -> &[[f64; 2]] {
+            &self.bounds
+        }
+
+        fn ranges(&self) -> &[[f64; 2]] {
+            &self.ranges
+        }
+
+        fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64 {
+            *constraints = self.rows(x, &mut Triplets::default());
+            (0..=PIECES).map(|k| self.weight(k) * x[3 * k + 2].powi(2)).sum()
+        }
+
+        fn linearise(&mut self, x: &[f64], _: &[f64], linear: &mut Linearisation) {
+            linear.clear(x.len());
+            self.rows(x, &mut linear.jacobian);
+            for k in 0..=PIECES {
+                linear.gradient[3 * k + 2] = 2.0 * self.weight(k) * x[3 * k + 2];
+                linear.hessian.add(3 * k + 2, 3 * k + 2, 2.0 * self.weight(k));
+            }
+        }
+    }
+
     /// The double integrator from rest to rest over unit time and distance, with least effort:
     /// u = 6 - 12 t, integral of u^2 = 12. Trapezoidal collocation, whose own optimum differs by
-    /// 1/N^2.
+    /// the square of the step.
     #[test]
     fn least_effort_of_a_double_integrator_is_that_of_the_closed_form() {
-        const N: usize = 40;
-        let h = 1.0 / N as f64;
-        struct Integrator {
-            h: f64,
-            scales: Vec<f64>,
-            bounds: Vec<[f64; 2]>,
-            ranges: Vec<[f64; 2]>,
-        }
-        impl Integrator {
-            fn rows(&self, x: &[f64], jacobian: &mut Triplets) -> Vec<f64> {
-                let half = 0.5 * self.h;
-                let mut values = Vec::new();
-                for k in 0..N {
-                    for (state, slope) in [(0, 1), (1, 2)] {
-                        let [a, b] = [3 * k, 3 * k + 3];
-                        let row = values.len();
-                        let rise = half * (x[a + slope] + x[b + slope]);
-                        values.push(x[b + state] - x[a + state] - rise);
-                        jacobian.add(row, b + state, 1.0);
-                        jacobian.add(row, a + state, -1.0);
-                        jacobian.add(row, a + slope, -half);
-                        jacobian.add(row, b + slope, -half);
-                    }
-                }
-                values
-            }
-
-            fn weight(&self, k: usize) -> f64 {
-                if k == 0 || k == N { 0.5 * self.h } else { self.h }
-            }
-        }
-        impl Program for Integrator {
-            fn scales(&self) -> &[f64] {
-                &self.scales
-            }
-
-            fn bounds(&self) -> &[[f64; 2]] {
-                &self.bounds
-            }
-
-            fn ranges(&self) -> &[[f64; 2]] {
-                &self.ranges
-            }
-
-            fn evaluate(&mut self, x: &[f64], constraints: &mut Vec<f64>) -> f64 {
-                *constraints = self.rows(x, &mut Triplets::default());
-                (0..=N).map(|k| self.weight(k) * x[3 * k + 2].powi(2)).sum()
-            }
-
-            fn linearise(&mut self, x: &[f64], _: &[f64], linear: &mut Linearisation) {
-                linear.clear(x.len());
-                self.rows(x, &mut linear.jacobian);
-                for k in 0..=N {
-                    linear.gradient[3 * k + 2] = 2.0 * self.weight(k) * x[3 * k + 2];
-                    linear.hessian.add(3 * k + 2, 3 * k + 2, 2.0 * self.weight(k));
-                }
-            }
-        }
+        let h = 1.0 / PIECES as f64;
         let free = [-100.0, 100.0];
-        let mut bounds = vec![free; 3 * (N + 1)];
-        for (index, value) in [(0, 0.0), (1, 0.0), (3 * N, 1.0), (3 * N + 1, 0.0)] {
+        let mut bounds = vec![free; 3 * (PIECES + 1)];
+        for (index, value) in [(0, 0.0), (1, 0.0), (3 * PIECES, 1.0), (3 * PIECES + 1, 0.0)] {
             bounds[index] = [value, value];
         }
         let mut program = Integrator {
             h,
             scales: vec![10.0; bounds.len()],
             bounds,
-            ranges: vec![[0.0; 2]; 2 * N],
+            ranges: vec![[0.0; 2]; 2 * PIECES],
         };
-        let found = minimise(&mut program, &vec![0.0; 3 * (N + 1)], TIGHT);
+        let found = minimise(&mut program, &vec![0.0; 3 * (PIECES + 1)], TIGHT);
         assert_eq!(found.ending, Ending::Converged);
         assert!((found.cost - 12.0).abs() < 12.0 * 5.0 * h * h, "{}", found.cost);
-        for k in 1..N {
+        for k in 1..PIECES {
             let exact = 6.0 - 12.0 * k as f64 * h;
             assert!((found.x[3 * k + 2] - exact).abs() < 0.05, "{k}: {}", found.x[3 * k + 2]);
         }

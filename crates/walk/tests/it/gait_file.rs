@@ -22,8 +22,9 @@ fn shipped_gaits_are_read() {
 #[test]
 fn everything_that_is_said_is_read() {
     let text = r#"{"format": "denavit-gait/1", "name": "x", "model": "planar_biped",
-        "limit_cycle": {"speed_m_s": 0.5, "step_length_m": 0.3, "cost": "torque_squared", "friction": 0.4,
-        "clearance_m": 0.01, "torque_limit_nm": 40, "largest_multiplier": 0.5, "intervals": 30,
+        "limit_cycle": {"speed_m_s": 0.5, "step_length_m": 0.3, "cost": "torque_squared",
+        "friction": 0.4, "clearance_m": 0.01, "torque_limit_nm": 40, "largest_multiplier": 0.5,
+        "intervals": 30,
         "phases": [{"name": "flat", "closed": ["stance_toe", "stance_heel"], "share": 2}],
         "aspects": {"push_off": false, "lean": true}, "guess": {"knee_rad": 0.2}}}"#;
     let kind = read_gait("x", text.as_bytes()).expect("sound").kind;

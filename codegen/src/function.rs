@@ -46,6 +46,8 @@ pub enum FunctionName {
     CentroidalMomentumMatrix,
     /// (d/dt A) qd.
     CentroidalMomentumBias,
+    /// Angular momentum of the body on each joint about the centre of mass of all.
+    AngularMomenta,
     /// The point of the ground plane about which gravity and inertia have no moment but along the
     /// plane's normal.
     ZeroMomentPoint,
@@ -103,11 +105,12 @@ impl FunctionName {
     ];
 
     /// The functions for walking, which are derived where they are asked for by name.
-    pub const WALKING: [Self; 8] = [
+    pub const WALKING: [Self; 9] = [
         Self::ContactDerivatives,
         Self::CenterOfMassBias,
         Self::CentroidalMomentumMatrix,
         Self::CentroidalMomentumBias,
+        Self::AngularMomenta,
         Self::ZeroMomentPoint,
         Self::CartTableZmp,
         Self::FootRotationIndicator,
@@ -139,6 +142,7 @@ impl FunctionName {
             Self::CenterOfMassBias => "center_of_mass_bias",
             Self::CentroidalMomentumMatrix => "centroidal_momentum_matrix",
             Self::CentroidalMomentumBias => "centroidal_momentum_bias",
+            Self::AngularMomenta => "angular_momenta",
             Self::ZeroMomentPoint => "zero_moment_point",
             Self::CartTableZmp => "cart_table_zmp",
             Self::FootRotationIndicator => "foot_rotation_indicator",

@@ -30,8 +30,8 @@ pub(crate) struct FunctionList {
     /// Functions, separated by commas; if none are named, all that the model has but regressor,
     /// base_regressor and base_parameters, and, where code is emitted, those for walking:
     /// contact_derivatives, center_of_mass_bias, centroidal_momentum_matrix,
-    /// centroidal_momentum_bias, zero_moment_point, cart_table_zmp, foot_rotation_indicator,
-    /// capture_point
+    /// centroidal_momentum_bias, angular_momenta, zero_moment_point, cart_table_zmp,
+    /// foot_rotation_indicator, capture_point
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = function_names())]
     functions: Vec<FunctionName>,
 }

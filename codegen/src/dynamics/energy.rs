@@ -2,7 +2,7 @@
 
 use super::motion::{multiply, velocities};
 use crate::expr::{Dag, ExprId};
-use crate::kinematics::Frames;
+use crate::kinematics::{Frames, World};
 use crate::number::ratio;
 use crate::spatial::{PseudoInertia, Vector, add, cross, dot, scale, subtract, zero};
 
@@ -88,6 +88,21 @@ pub(super) fn center_of_mass(dag: &mut Dag, frames: &Frames) -> Vector {
     let fractions = per_total_mass(dag, frames);
     let composites = super::composite::composites(dag, &fractions);
     matter_in_base(dag, &fractions, &composites).1
+}
+
+/// Angular momentum of each body about the centre of mass of all, in frame 0 [kg m^2/s].
+pub(super) fn angular_momenta(dag: &mut Dag, frames: &Frames) -> Vec<Vector> {
+    let momenta = body_momenta(dag, frames);
+    let world = World::new(dag, frames);
+    let center = center_of_mass(dag, frames);
+    let about_center = |(i, [linear, angular, ..]): (usize, [Vector; 4])| {
+        let linear = world.vector(dag, Some(i), linear);
+        let spin = world.vector(dag, Some(i), angular);
+        let lever = subtract(dag, world.origin(i), center);
+        let orbital = cross(dag, lever, linear);
+        add(dag, spin, orbital)
+    };
+    momenta.into_iter().enumerate().map(about_center).collect()
 }
 
 /// Linear momentum [kg m/s] and angular momentum about the centre of mass [kg m^2/s], in frame 0.

@@ -241,6 +241,7 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         | F::ContactBias
         | F::CenterOfMassBias
         | F::CentroidalMomentumBias
+        | F::AngularMomenta
         | F::CapturePoint
         | F::Momentum
         | F::KineticEnergy => &["q", "qd"],

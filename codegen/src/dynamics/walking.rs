@@ -4,6 +4,7 @@ use super::balance;
 use super::candidate::Candidate;
 use super::centroidal;
 use super::contact_derivatives::contact_derivatives;
+use super::energy;
 use crate::expr::{Dag, ExprId};
 use crate::function::{FunctionName, Output};
 use crate::model::LinkId;
@@ -20,6 +21,10 @@ const MOMENTUM_MATRIX: &str = "\
 const MOMENTUM_BIAS: &str = "\
     (d/dt A) qd: the derivative of the momentum at qdd = 0, world frame. Linear x, y, z [N], \
     then angular x, y, z about the centre of mass [N m].";
+
+const ANGULAR_MOMENTA: &str = "\
+    Angular momentum of the body that each joint moves about the centre of mass of all bodies, \
+    world frame [kg m^2/s]; one row for each joint. Their sum is that of `momentum`.";
 
 const ZERO_MOMENT_POINT: &str = "\
     The point of the ground plane about which gravity and inertia have no moment but along the \
@@ -64,6 +69,10 @@ pub(super) fn outputs(dag: &mut Dag, candidate: &Candidate<'_>, name: FunctionNa
         F::CentroidalMomentumBias => {
             let bias = centroidal::momentum_bias(dag, frames);
             output("centroidal_momentum_bias", &[6], bias, MOMENTUM_BIAS)
+        }
+        F::AngularMomenta => {
+            let momenta = energy::angular_momenta(dag, frames);
+            output("angular_momenta", &[n, 3], momenta.concat(), ANGULAR_MOMENTA)
         }
         F::ZeroMomentPoint => {
             let point = balance::zero_moment_point(dag, candidate);

@@ -49,6 +49,9 @@ pub(super) fn summary(name: FunctionName) -> &'static str {
         FunctionName::CentroidalMomentumBias => {
             "Derivative of the momentum about the centre of mass without qdd: (d/dt A) qd."
         }
+        FunctionName::AngularMomenta => {
+            "Angular momentum of the body on each joint about the centre of mass of all that moves."
+        }
         FunctionName::ZeroMomentPoint => "Zero-moment point (ZMP) of a motion.",
         FunctionName::CartTableZmp => "Zero-moment point of the cart-table model.",
         FunctionName::FootRotationIndicator => "Foot rotation indicator (FRI) of a motion.",
@@ -164,6 +167,7 @@ pub(super) fn of_joints(name: FunctionName) -> (bool, bool) {
         | FunctionName::ContactJacobian
         | FunctionName::ContactDerivatives
         | FunctionName::CentroidalMomentumMatrix
+        | FunctionName::AngularMomenta
         | FunctionName::CenterOfMassJacobian => (false, true),
         FunctionName::Regressor | FunctionName::BaseRegressor => (true, false),
         FunctionName::BaseParameters

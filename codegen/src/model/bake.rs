@@ -103,8 +103,11 @@ fn for_each_expression(robot: &mut Robot, visit: &mut dyn FnMut(&mut ExprId)) {
             visit_drive(drive, visit);
         }
     }
-    for contact in robot.contacts.values_mut().chain(&mut robot.bodies_that_must_not_touch) {
+    for contact in robot.contacts.values_mut() {
         contact.position.iter_mut().for_each(&mut *visit);
+    }
+    for body in &mut robot.bodies_that_must_not_touch {
+        body.ends.iter_mut().flatten().chain([&mut body.radius]).for_each(&mut *visit);
     }
     for law in robot.laws.iter_mut().chain(robot.spring_laws.iter_mut().map(|own| &mut own.law)) {
         visit(&mut law.torque);

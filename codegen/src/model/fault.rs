@@ -240,6 +240,8 @@ pub enum Cause {
     ZeroGearRatio,
     /// The ground's normal has no direction.
     ZeroNormal,
+    /// A body that is said to be a point and a capsule.
+    PointOrCapsule,
     /// Mass properties that no body has.
     Unphysical(Unphysical),
     /// A triangle inequality is accepted as violated, and holds.

@@ -8,6 +8,9 @@ use super::entry::{Entry, Name, Scalar};
 use super::fault::Cause;
 use super::inertia::Violation;
 use super::message::EFFECT_PLACE;
+use super::place_file::{
+    FallBodyFile, GroundFile, PointFile, read_fall_body, read_ground, read_point,
+};
 use super::reader::{Fields, Node, Word};
 use super::report::Report;
 use super::robot::{About, Base, Convention, JointKind, Side, Terms, TorqueSide};
@@ -93,22 +96,6 @@ pub(super) struct DriveFile<'a> {
     pub(super) return_spring: Option<([Option<Entry<'a>>; 2], Side)>,
 }
 
-/// A point fixed in a link.
-#[derive(Clone, Debug)]
-pub(super) struct PointFile<'a> {
-    pub(super) name: Name<'a>,
-    pub(super) link: Name<'a>,
-    pub(super) position: Option<[Scalar<'a>; 3]>,
-}
-
-/// The ground's plane.
-#[derive(Clone, Debug, Default)]
-pub(super) struct GroundFile<'a> {
-    pub(super) point: Option<[Scalar<'a>; 3]>,
-    pub(super) normal: Option<[Scalar<'a>; 3]>,
-    pub(super) at: usize,
-}
-
 /// Where an effect acts.
 #[derive(Clone, Debug)]
 pub(super) enum PlaceFile<'a> {
@@ -148,7 +135,7 @@ pub(super) struct ModelFile<'a> {
     pub(super) drives: Vec<DriveFile<'a>>,
     pub(super) contacts: Vec<PointFile<'a>>,
     pub(super) ground: GroundFile<'a>,
-    pub(super) bodies_that_must_not_touch: Vec<PointFile<'a>>,
+    pub(super) bodies_that_must_not_touch: Vec<FallBodyFile<'a>>,
     pub(super) effects: Vec<EffectFile<'a>>,
 }
 
@@ -241,7 +228,7 @@ impl<'a> ModelFile<'a> {
             bodies_that_must_not_touch: fields.items(
                 "bodies_that_must_not_touch",
                 report,
-                read_point,
+                read_fall_body,
             ),
             effects: fields.items("effects", report, read_effect),
         })
@@ -409,26 +396,6 @@ fn read_drive<'a>(link: &'a str, node: Node<'a>, report: &mut Report) -> Option<
         series_elastic,
         return_spring,
     })
-}
-
-fn read_point<'a>(node: Node<'a>, report: &mut Report) -> Option<PointFile<'a>> {
-    let fields = node.fields(&["name", "link", "position"], report)?;
-    Some(PointFile {
-        name: fields.required_name("name", report),
-        link: fields.required_name("link", report),
-        position: fields.required_triple("position", report),
-    })
-}
-
-fn read_ground<'a>(node: Node<'a>, report: &mut Report) -> GroundFile<'a> {
-    let Some(fields) = node.fields(&["point", "normal"], report) else {
-        return GroundFile::default();
-    };
-    GroundFile {
-        point: fields.get("point").and_then(|node| node.scalars(report)),
-        normal: fields.get("normal").and_then(|node| node.scalars(report)),
-        at: node.at(),
-    }
 }
 
 /// A value, or an object of a value and its standard deviation.

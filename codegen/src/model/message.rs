@@ -146,6 +146,7 @@ impl Cause {
             }
             Self::ZeroGearRatio => write!(f, "the gear ratio is 0"),
             Self::ZeroNormal => write!(f, "the normal of the ground is the zero vector"),
+            Self::PointOrCapsule => write!(f, "a capsule has no `position`"),
             Self::Unphysical(reason) => write!(f, "{reason}"),
             Self::NothingToAccept => {
                 write!(f, "there is no violated triangle inequality to accept")
@@ -307,6 +308,9 @@ impl Cause {
             }
             Self::ZeroGearRatio => "leave it out for a direct drive; a reversing gear is negative",
             Self::ZeroNormal => "level ground has the normal [0, 0, 1]",
+            Self::PointOrCapsule => {
+                "a point has `position`; a capsule has `from`, `to` and `radius_m`"
+            }
             Self::NothingToAccept => "remove the key: the inertia is that of a real body",
             Self::NotRational(_) => "write the number as a decimal or a fraction",
             Self::NeverVanishes => {

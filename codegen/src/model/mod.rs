@@ -20,6 +20,7 @@ mod inertia;
 pub mod json;
 mod message;
 mod parameter;
+pub(crate) mod place_file;
 pub(crate) mod reader;
 mod remark;
 mod report;
@@ -37,8 +38,9 @@ pub use remark::{Remark, remarks};
 pub use report::Report;
 pub use robot::{
     About, AddedEffect, AddedValue, Base, Body, Contact, ContactId, Convention, Drive, EffectPlace,
-    Ground, Joint, JointKind, JointLaw, JointSpring, JointVariables, LawState, Limits, Link,
-    LinkId, ReturnSpring, Robot, SeriesElastic, Side, SpringLaw, SpringSide, Terms, TorqueSide,
+    FallBody, Ground, Joint, JointKind, JointLaw, JointSpring, JointVariables, LawState, Limits,
+    Link, LinkId, ReturnSpring, Robot, SeriesElastic, Side, SpringLaw, SpringSide, Terms,
+    TorqueSide,
 };
 pub use tree::Tree;
 pub use unit::{Dimension, Unit, UnitError};

@@ -260,6 +260,20 @@ pub struct Contact {
     pub position: [ExprId; 3],
 }
 
+/// A body whose touching the ground is a fall: a point, or a capsule, all points within a radius of
+/// the straight way between two places in a link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FallBody {
+    /// The body's name.
+    pub name: String,
+    /// The link that carries it.
+    pub link: LinkId,
+    /// The ends in the link frame: one or two (m).
+    pub ends: Vec<[ExprId; 3]>,
+    /// The radius (m).
+    pub radius: ExprId,
+}
+
 /// The ground: the half space below a plane in frame 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ground {
@@ -397,8 +411,8 @@ pub struct Robot {
     pub contacts: PrimaryMap<ContactId, Contact>,
     /// The ground.
     pub ground: Ground,
-    /// Points whose touching the ground is a fall (thesis 4.1).
-    pub bodies_that_must_not_touch: Vec<Contact>,
+    /// Bodies whose touching the ground is a fall (thesis 4.1).
+    pub bodies_that_must_not_touch: Vec<FallBody>,
     /// What was added to the rigid-body model, as the file says it.
     pub effects: Vec<AddedEffect>,
     /// Laws of those effects that add to the torque of a joint.

@@ -107,6 +107,7 @@ fn emitted(criterion: &mut Criterion) {
     measure(g, "center_of_mass_bias", |q, v, _| m::center_of_mass_bias(p, q, v));
     measure(g, "centroidal_momentum_matrix", |q, _, _| m::centroidal_momentum_matrix(p, q));
     measure(g, "centroidal_momentum_bias", |q, v, _| m::centroidal_momentum_bias(p, q, v));
+    measure(g, "angular_momenta", |q, v, _| m::angular_momenta(p, q, v));
     measure(g, "zero_moment_point", |q, v, x| m::zero_moment_point(p, q, v, x));
     measure(g, "cart_table_zmp", |q, v, x| m::cart_table_zmp(p, q, v, x));
     let foot = m::Foot::ALL[0];

@@ -29,6 +29,7 @@ impl Cradle {
             parents: vec![None; balls],
             contacts: (1..balls).map(|ball| point(ball - 1)).collect(),
             fall_points: Vec::new(),
+            fall_radii_m: Vec::new(),
             ground: GroundModel::default(),
         };
         Self { model }

@@ -47,7 +47,7 @@ pub use laws::{DriveMoment, LawMoment, LawResponse};
 pub use loaded::LoadedPlant;
 pub use model::{
     DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
-    SeriesElasticModel,
+    SeriesElasticModel, fall_points,
 };
 pub use native::{Native, NativeBatch, native_code};
 pub use passive_walkers::{KneedWalker, SimplestWalker};

@@ -29,8 +29,10 @@ pub struct PlantModel {
     pub parents: Vec<Option<usize>>,
     /// Points that may touch the ground.
     pub contacts: Vec<PointModel>,
-    /// Points whose touching the ground is a fall (thesis 4.1).
+    /// Points whose touching the ground is a fall (thesis 4.1): both ends of a capsule.
     pub fall_points: Vec<PointModel>,
+    /// The radius of what must not touch about each of these \[m\].
+    pub fall_radii_m: Vec<f64>,
     /// The ground.
     pub ground: GroundModel,
 }
@@ -271,6 +273,17 @@ fn check_signs(robot: &Robot, link: &Link) -> Result<(), PlantError> {
     Ok(())
 }
 
+/// Places that must stay off the ground by a radius \[m\], of a robot whose parameters are numbers.
+pub fn fall_points(robot: &Robot) -> impl Iterator<Item = (PointModel, f64)> {
+    robot.bodies_that_must_not_touch.iter().flat_map(move |body| {
+        let [radius_m] = values(robot, [body.radius]);
+        body.ends.iter().map(move |end| {
+            let (name, link) = (body.name.clone(), body.link.index());
+            (PointModel { name, link, position: values(robot, *end) }, radius_m)
+        })
+    })
+}
+
 impl PlantModel {
     /// The joint of a floating base in space whose quarter turn makes its coordinates singular: the
     /// second of three that turn, its roll.
@@ -288,6 +301,7 @@ impl PlantModel {
             link: contact.link.index(),
             position: values(robot, contact.position),
         };
+        let (fall_points, fall_radii_m) = fall_points(robot).unzip();
         let masses: Vec<ExprId> =
             robot.links.values().filter_map(|link| link.body.map(|body| body.mass)).collect();
         let normal = values(robot, robot.ground.normal);
@@ -302,7 +316,8 @@ impl PlantModel {
             links: robot.links.values().map(|link| link.name.clone()).collect(),
             parents: robot.links.values().map(|link| link.parent.map(Handle::index)).collect(),
             contacts: robot.contacts.values().map(point).collect(),
-            fall_points: robot.bodies_that_must_not_touch.iter().map(point).collect(),
+            fall_points,
+            fall_radii_m,
             ground: GroundModel {
                 point: values(robot, robot.ground.point),
                 normal: normal.map(|entry| entry / length),

@@ -40,6 +40,13 @@ impl<'a> WalkingFunctions<'a> {
         self.always(FunctionName::CentroidalMomentumBias, &[q, qd])
     }
 
+    /// Angular momentum of the body that each joint moves about the centre of mass of all, n x 3,
+    /// row-major [kg m^2/s]: what [`Plant::momentum`](super::Plant::momentum) adds up.
+    pub fn angular_momenta(&mut self, q: &[f64], qd: &[f64], momenta: &mut [f64]) {
+        let name = FunctionName::AngularMomenta;
+        assert!(self.functions.call(name, None, &[q, qd], &mut [momenta]), "every robot has it");
+    }
+
     /// The point of the ground plane about which gravity and inertia have no moment but along the
     /// plane's normal \[m\]. Not finite where the ground need not press: in free flight.
     pub fn zero_moment_point(&mut self, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<[f64; 3]> {

@@ -401,7 +401,10 @@ impl Watch {
         let parts = motion.layout.parts(y);
         match watched {
             Watched::Gap(contact) => motion.gap(contact) - self.level[contact],
-            Watched::FallPoint(point) => motion.ground.gap(&self.points[3 * point..3 * point + 3]),
+            Watched::FallPoint(point) => {
+                let radius_m = motion.plant.model().fall_radii_m[point];
+                motion.ground.gap(&self.points[3 * point..3 * point + 3]) - radius_m
+            }
             Watched::Guard(guard) => motion.plant.guard(guard, parts.q, parts.qd),
             Watched::SlipSpeed(index) => slip_speed(motion, index),
             Watched::QuarterTurn(joint) => quarter_turn_left(parts.q[joint]),

@@ -2,7 +2,7 @@
 
 use super::text::{kind_name, row_entries, term_names, total_mass};
 use denavit::expr::ExprId;
-use denavit::model::{Base, Contact, Convention, Link, ModelError, Robot, Side};
+use denavit::model::{Base, Contact, Convention, FallBody, Link, ModelError, Robot, Side};
 use denavit::report::Values;
 use serde_json::{Value, json};
 
@@ -33,7 +33,7 @@ pub(super) fn robot(robot: &Robot, values: &mut Values) -> Value {
     let must_not_touch: Vec<Value> = robot
         .bodies_that_must_not_touch
         .iter()
-        .map(|contact| point(robot, values, contact))
+        .map(|body| fall_body(robot, values, body))
         .collect();
     json!({
         "model": robot.name,
@@ -115,6 +115,19 @@ fn drive(values: &mut Values, link: &Link) -> Value {
             "side": match spring.side { Side::Above => "above", Side::Below => "below" },
         })),
     })
+}
+
+fn fall_body(robot: &Robot, values: &mut Values, body: &FallBody) -> Value {
+    let (name, link) = (&body.name, &robot.links[body.link].name);
+    let ends: Vec<_> =
+        body.ends.iter().map(|end| end.map(|component| values.number(component))).collect();
+    match ends.as_slice() {
+        [from, to] => {
+            let radius_m = values.number(body.radius);
+            json!({"name": name, "link": link, "from": from, "to": to, "radius_m": radius_m})
+        }
+        places => json!({"name": name, "link": link, "position": places.first()}),
+    }
 }
 
 fn point(robot: &Robot, values: &mut Values, point: &Contact) -> Value {

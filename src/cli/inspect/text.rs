@@ -2,9 +2,7 @@
 
 use crate::cli::failure::Failure;
 use denavit::expr::ExprId;
-use denavit::model::{
-    About, Base, Contact, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms,
-};
+use denavit::model::{About, Base, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms};
 use denavit::report::{Align, Table, Values, paragraph};
 use std::io::Write;
 
@@ -21,11 +19,8 @@ pub(super) fn write(
         ("standard deviations that the file states", deviation_table(robot, values)),
         ("limits", limit_table(robot, values)),
         ("drives, springs, damping", drive_table(robot, values)),
-        ("contacts", point_table(robot, values, &mut robot.contacts.values())),
-        (
-            "must not touch the ground",
-            point_table(robot, values, &mut robot.bodies_that_must_not_touch.iter()),
-        ),
+        ("contacts", contact_table(robot, values)),
+        ("must not touch the ground", body_table(robot, values)),
     ] {
         if !table.is_empty() {
             writeln!(out, "\n{title}")?;
@@ -321,16 +316,33 @@ fn springs(values: &mut Values, link: &Link) -> Vec<String> {
     springs
 }
 
-fn point_table(
-    robot: &Robot,
-    values: &mut Values,
-    points: &mut dyn Iterator<Item = &Contact>,
-) -> Table {
+fn contact_table(robot: &Robot, values: &mut Values) -> Table {
     let columns = [("point", Align::Left), ("link", Align::Left), ("position [m]", Align::Left)];
     let mut table = Table::new(&columns);
-    for point in points {
+    for point in robot.contacts.values() {
         let position = clip(point.position.map(|c| values.show(c)).join(", "));
         table.push(vec![point.name.clone(), robot.links[point.link].name.clone(), position]);
+    }
+    table
+}
+
+/// Bodies that must not touch the ground: a point has one place, a capsule two.
+fn body_table(robot: &Robot, values: &mut Values) -> Table {
+    let columns = [
+        ("body", Align::Left),
+        ("link", Align::Left),
+        ("position [m]", Align::Left),
+        ("to [m]", Align::Left),
+        ("radius [m]", Align::Right),
+    ];
+    let mut table = Table::new(&columns);
+    for body in &robot.bodies_that_must_not_touch {
+        let mut ends: Vec<String> =
+            body.ends.iter().map(|end| clip(end.map(|c| values.show(c)).join(", "))).collect();
+        let radius = if ends.len() > 1 { values.show(body.radius) } else { String::new() };
+        ends.resize(2, String::new());
+        let link = robot.links[body.link].name.clone();
+        table.push([vec![body.name.clone(), link], ends, vec![radius]].concat());
     }
     table
 }

@@ -140,6 +140,11 @@ fn series(judged: &Judged) -> Log {
         columns.push(format!("{name}_margin"));
     }
     columns.extend(["support_low", "support_high", "feet", "contacts"].map(str::to_owned));
+    let bodies = turning_bodies(judged);
+    for body in &bodies {
+        let name = &judged.model.joints[*body].name;
+        columns.extend(axes.map(|axis| format!("angular_momentum_{name}_{axis}")));
+    }
     let mut values = Vec::new();
     for instant in &judged.course.instants {
         values.push(instant.t_s);
@@ -153,6 +158,7 @@ fn series(judged: &Judged) -> Log {
         values.extend(instant.support.range().unwrap_or([f64::NAN; 2]));
         values.push(feet(instant));
         values.push(instant.closed as f64);
+        bodies.iter().for_each(|body| values.extend(instant.body_momenta[*body]));
     }
     let header = vec![
         ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
@@ -289,9 +295,15 @@ fn answer(what: What, judged: &Judged) -> Value {
         }
         What::Momentum => {
             for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                let [low, high] = momentum_range(course, axis);
+                let [low, high] = range(course, |instant| instant.angular_momentum[axis]);
                 set(&format!("angular_momentum_{name}"), value!([low, high]));
             }
+            let mut bodies = Map::new();
+            for body in turning_bodies(judged) {
+                let by_axis = [0, 1, 2].map(|a| range(course, |i| i.body_momenta[body][a]));
+                bodies.insert(judged.model.joints[body].name.clone(), value!(by_axis));
+            }
+            set("angular_momentum_of_bodies", Value::Object(bodies));
         }
         What::Capture => {}
     }
@@ -311,9 +323,41 @@ fn answer(what: What, judged: &Judged) -> Value {
     Value::Object(answer)
 }
 
-fn momentum_range(course: &Course, axis: usize) -> [f64; 2] {
-    let values = course.instants.iter().map(|instant| instant.angular_momentum[axis]);
-    [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)]
+fn range(course: &Course, value: impl Fn(&Instant) -> f64) -> [f64; 2] {
+    let values = course.instants.iter().map(value);
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// The joints whose bodies turn, or go round the centre of mass.
+fn turning_bodies(judged: &Judged) -> Vec<usize> {
+    let turns = |instant: &Instant, body: usize| instant.body_momenta[body] != [0.0; 3];
+    let instants = &judged.course.instants;
+    let all = 0..judged.model.joints.len();
+    all.filter(|body| instants.iter().any(|instant| turns(instant, *body))).collect()
+}
+
+/// The least and the largest angular momentum about each axis, of the robot and of its bodies.
+fn momentum_table(judged: &Judged) -> Table {
+    let course = &judged.course;
+    let axes: &[(&str, usize)] = match judged.model.planar {
+        true => &[("about y, to the left", 1)],
+        false => &[("about x, forward", 0), ("about y, to the left", 1), ("about z, up", 2)],
+    };
+    let mut columns = vec![("angular momentum [kg m^2/s]", Align::Left)];
+    columns.extend(axes.iter().map(|(name, _)| (*name, Align::Right)));
+    let mut table = Table::new(&columns);
+    let mut push = |name: &str, of: &dyn Fn(&Instant, usize) -> f64| {
+        let ranges = axes.iter().map(|(_, axis)| {
+            let [low, high] = range(course, |instant| of(instant, *axis));
+            format!("{low:.4} to {high:.4}")
+        });
+        table.push([name.to_owned()].into_iter().chain(ranges).collect());
+    };
+    push("robot, about its centre of mass", &|instant, axis| instant.angular_momentum[axis]);
+    for body in turning_bodies(judged) {
+        push(&judged.model.joints[body].name, &|instant, axis| instant.body_momenta[body][axis]);
+    }
+    table
 }
 
 fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure> {
@@ -322,19 +366,7 @@ fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure
     let over = course.over.word();
     writeln!(out, "{}: over one {over} of {:.4} s\n", judged.name, course.duration_s())?;
     if what == What::Momentum {
-        let columns = [
-            ("angular momentum [kg m^2/s]", Align::Left),
-            ("least", Align::Right),
-            ("largest", Align::Right),
-        ];
-        let mut table = Table::new(&columns);
-        for (axis, name) in
-            ["x, forward axis", "y, to the left", "z, upwards"].into_iter().enumerate()
-        {
-            let [low, high] = momentum_range(course, axis);
-            table.push(vec![name.to_owned(), format!("{low:.4}"), format!("{high:.4}")]);
-        }
-        writeln!(out, "{table}")?;
+        writeln!(out, "{}", momentum_table(judged))?;
     } else {
         let columns = [
             ("point", Align::Left),

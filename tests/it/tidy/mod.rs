@@ -1,6 +1,7 @@
 //! The rules of docs/ARCHITECTURE.md that a machine can hold, over the whole tree.
 
 mod circles;
+mod errata;
 mod ignored;
 mod reached;
 mod walls;

@@ -57,7 +57,7 @@ pub(super) fn check(file: &ModelFile, hash: u64, report: &mut Report) -> Robot {
     check.bodies(file);
     check.drives(file);
     let contacts = check.points(&file.contacts);
-    let bodies_that_must_not_touch = check.points(&file.bodies_that_must_not_touch);
+    let bodies_that_must_not_touch = check.fall_bodies(&file.bodies_that_must_not_touch);
     check.point_names(file);
     let ground = check.ground(&file.ground);
     let effects = check.effects(file);

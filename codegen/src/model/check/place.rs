@@ -3,11 +3,12 @@
 use super::{Check, level_ground};
 use crate::arena::Handle;
 use crate::expr::text::nearest;
-use crate::model::entry::Name;
+use crate::model::entry::{Name, Scalar};
 use crate::model::fault::Cause;
-use crate::model::file::{GroundFile, ModelFile, PlaceFile, PointFile};
+use crate::model::file::{ModelFile, PlaceFile};
+use crate::model::place_file::{FallBodyFile, GroundFile, PointFile};
 use crate::model::robot::{
-    AddedEffect, AddedValue, Contact, ContactId, EffectPlace, Ground, LinkId,
+    AddedEffect, AddedValue, Contact, ContactId, EffectPlace, FallBody, Ground, LinkId,
 };
 use crate::model::spelling::is_identifier;
 use crate::model::unit::Dimension;
@@ -27,11 +28,33 @@ impl Check<'_> {
             .collect()
     }
 
+    /// Bodies that must not touch the ground; one whose link is not known is left out.
+    pub(super) fn fall_bodies(&mut self, bodies: &[FallBodyFile]) -> Vec<FallBody> {
+        let mut checked = Vec::new();
+        for body in bodies {
+            let triple =
+                |end: &Option<[Scalar; 3]>| self.triple(end, "a position", Dimension::LENGTH);
+            let ends = body.ends.iter().map(triple).collect();
+            let mut radius = self.scope.dag.zero();
+            if let Some(scalar) = &body.radius {
+                radius = self.scope.expression(scalar, self.report);
+                let at = scalar.at;
+                self.scope.expect(radius, "a radius", Dimension::LENGTH, at, self.report);
+                self.require_not_negative(radius, "a radius", at);
+            }
+            let Some(link) = self.find_link(&body.link) else { continue };
+            let name = body.name.text.clone().into_owned();
+            checked.push(FallBody { name, link, ends, radius });
+        }
+        checked
+    }
+
     /// Checks that the names of all points are names and differ.
     pub(super) fn point_names(&mut self, file: &ModelFile) {
         let mut seen = FxHashSet::default();
-        for point in file.contacts.iter().chain(&file.bodies_that_must_not_touch) {
-            let name = &point.name;
+        let contacts = file.contacts.iter().map(|point| &point.name);
+        let bodies = file.bodies_that_must_not_touch.iter().map(|body| &body.name);
+        for name in contacts.chain(bodies) {
             let text = name.text.clone().into_owned();
             if !is_identifier(&text) {
                 // an empty name stands for a missing key, which was noted with the form

@@ -15,26 +15,6 @@ use denavit_codegen::fundamental::canonical_all;
 use denavit_codegen::model::Robot;
 use std::collections::HashMap;
 
-#[test]
-fn every_test_that_the_errata_name_exists() {
-    let errata = include_str!("../../../../docs/errata.md");
-    let modules = [
-        ("appendix_a", include_str!("appendix_a.rs")),
-        ("appendix_b", include_str!("appendix_b.rs")),
-        ("chapter_2", include_str!("chapter_2.rs")),
-        ("chapter_3", include_str!("chapter_3.rs")),
-        ("identification", include_str!("identification.rs")),
-    ];
-    let named = errata.split('`').filter_map(|word| word.split_once("::"));
-    let mut count = 0;
-    for (module, test) in named {
-        let (_, source) = modules.iter().find(|(name, _)| *name == module).expect(module);
-        assert!(source.contains(&format!("#[test]\nfn {test}() {{")), "{module}::{test}");
-        count += 1;
-    }
-    assert!(count >= 25, "only {count} tests named");
-}
-
 /// A robot with the graph in which its equations are written.
 struct Case {
     robot: Robot,

@@ -2,6 +2,7 @@
 
 use crate::laws::{SEEDS, apply, for_each_robot};
 use denavit_codegen::function::FunctionName::*;
+use denavit_codegen::number::Residue;
 
 #[test]
 fn the_centroidal_matrix_times_the_velocities_is_the_momentum() {
@@ -17,6 +18,21 @@ fn the_centroidal_matrix_times_the_velocities_is_the_momentum() {
             let qd = robot.values(&robot.symbols(|joint| joint.qd), seed);
             let found = apply(&robot.values(&matrix, seed), &qd);
             assert_eq!(found, robot.values(&momentum, seed), "{}", robot.name);
+        }
+    });
+}
+
+#[test]
+fn angular_momenta_of_bodies_add_up_to_that_of_the_robot() {
+    for_each_robot(&[AngularMomenta, Momentum], |robot| {
+        let momenta = robot.entries(AngularMomenta, "angular_momenta");
+        let angular = robot.entries(Momentum, "angular_momentum");
+        assert_eq!(momenta.len(), 3 * robot.joints.len());
+        for seed in SEEDS {
+            let found = robot.values(&momenta, seed);
+            let along = |axis| found.iter().skip(axis).step_by(3);
+            let sums = [0, 1, 2].map(|axis| along(axis).fold(Residue::ZERO, |sum, &h| sum + h));
+            assert_eq!(sums.to_vec(), robot.values(&angular, seed), "{}", robot.name);
         }
     });
 }

@@ -8,7 +8,7 @@ use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{Contact, Robot, bake};
 use denavit_codegen::program::{EvaluateBatch, constant_values, lower};
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
-use denavit_plants::{GroundModel, NativeBatch, PointModel, point_positions};
+use denavit_plants::{GroundModel, NativeBatch, PointModel, fall_points, point_positions};
 
 /// Which parameters the columns of the regressor belong to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,6 +67,8 @@ pub struct ExcitedModel {
     pub columns: Columns,
     /// Points that must stay clear of the ground.
     pub points: Vec<PointModel>,
+    /// The radius of what must stay clear about each \[m\].
+    radii_m: Vec<f64>,
     ground: GroundModel,
     links: usize,
     /// Inverse dynamics without Coulomb friction; none if no joint has a torque limit.
@@ -112,6 +114,7 @@ impl ExcitedModel {
             weights,
             columns,
             points: Vec::new(),
+            radii_m: Vec::new(),
             ground: GroundModel::default(),
             links: robot.links.len(),
             torques: None,
@@ -127,12 +130,10 @@ impl ExcitedModel {
         if with_points {
             made.transforms = Some(program(&baked, FunctionName::LinkTransforms)?);
             made.ground = ground(&baked);
-            let all = baked.contacts.values().chain(&baked.bodies_that_must_not_touch);
-            for contact in all {
-                let point = point(&baked, contact);
-                if !made.points.contains(&point) {
-                    made.points.push(point);
-                }
+            let contacts = baked.contacts.values().map(|contact| (point(&baked, contact), 0.0));
+            for (point, radius_m) in contacts.chain(fall_points(&baked)) {
+                made.points.push(point);
+                made.radii_m.push(radius_m);
             }
         }
         Ok(made)
@@ -196,9 +197,9 @@ impl ExcitedModel {
                 *place = evaluators.outputs[entry * samples + sample];
             }
             point_positions(&self.points, &transforms, &mut places);
-            for (gap, place) in gaps.iter_mut().zip(places.chunks_exact(3)) {
-                let GroundModel { point, normal } = &self.ground;
-                gap[sample] = (0..3).map(|axis| normal[axis] * (place[axis] - point[axis])).sum();
+            let radii = places.chunks_exact(3).zip(&self.radii_m);
+            for (gap, (place, radius_m)) in gaps.iter_mut().zip(radii) {
+                gap[sample] = self.ground.height(place) - radius_m;
             }
         }
         gaps

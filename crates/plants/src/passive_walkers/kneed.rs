@@ -44,6 +44,7 @@ impl KneedWalker {
             parents: Vec::new(),
             contacts: Vec::new(),
             fall_points: Vec::new(),
+            fall_radii_m: Vec::new(),
             ground: GroundModel::default(),
         };
         Self { model, slope, locked: false }

@@ -27,6 +27,7 @@ impl SimplestWalker {
             parents: Vec::new(),
             contacts: Vec::new(),
             fall_points: Vec::new(),
+            fall_radii_m: Vec::new(),
             ground: GroundModel::default(),
         };
         Self { model, slope }

@@ -2,6 +2,8 @@
 
 use crate::derivatives::{differences, numbers, robot};
 use denavit_plants::{Cradle, LoadedPlant, Plant, plant_of};
+use serde_json::Value;
+use std::path::Path;
 
 fn plants(names: &[&str]) -> Vec<Box<dyn Plant>> {
     let mut plants: Vec<Box<dyn Plant>> = Vec::new();
@@ -46,6 +48,36 @@ fn momentum_and_centre_of_mass_agree_with_the_plants_own() {
         let falling = plant.walking().unwrap().center_of_mass_bias(&q, &qd);
         let linear: Vec<f64> = falling.iter().map(|entry| mass * entry).collect();
         close(&name, &linear, &bias[..3], 1e-12);
+    }
+}
+
+/// The body of a joint alone turns about its own centre of mass by L, and goes round that of all
+/// with its momentum: L + (c_i - c) x p.
+#[test]
+fn angular_momenta_of_bodies_are_those_of_robots_without_the_others() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/tulip.json");
+    let whole: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    let mut tulip = plant_of(&robot("tulip"), &[]).unwrap();
+    let n = tulip.model().joints.len();
+    let [q, qd] = [1, 2].map(|seed| numbers(n, seed));
+    let mut momenta = vec![0.0; 3 * n];
+    tulip.walking().unwrap().angular_momenta(&q, &qd, &mut momenta);
+    let center = tulip.center_of_mass(&q);
+    for name in ["right_knee", "left_ankle_x", "left_hip_y"] {
+        let mut alone = whole.clone();
+        for link in alone["links"].as_array_mut().unwrap() {
+            if link["name"] != name {
+                link.as_object_mut().unwrap().remove("body");
+            }
+        }
+        let alone = denavit_codegen::model::read("alone", alone.to_string().as_bytes()).unwrap();
+        let mut alone = LoadedPlant::new(&alone, &[]).unwrap();
+        let [px, py, pz, lx, ly, lz] = alone.momentum(&q, &qd);
+        let own = alone.center_of_mass(&q);
+        let [x, y, z] = [0, 1, 2].map(|axis| own[axis] - center[axis]);
+        let expected = [lx + y * pz - z * py, ly + z * px - x * pz, lz + x * py - y * px];
+        let joint = tulip.model().joints.iter().position(|joint| joint.name == name).unwrap();
+        close(name, &momenta[3 * joint..3 * joint + 3], &expected, 1e-12);
     }
 }
 

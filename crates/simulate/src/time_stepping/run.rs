@@ -278,9 +278,10 @@ impl FallWatch {
         }
         let n = plant.model().joints.len();
         plant.link_transforms(&q[..n], &mut self.transforms);
-        let points = &plant.model().fall_points;
-        point_positions(points, &self.transforms, &mut self.positions);
-        let below = self.positions.chunks_exact(3).position(|at| ground.gap(at) < 0.0)?;
-        Some(points[below].name.clone())
+        let model = plant.model();
+        point_positions(&model.fall_points, &self.transforms, &mut self.positions);
+        let mut places = self.positions.chunks_exact(3).zip(&model.fall_radii_m);
+        let below = places.position(|(at, radius_m)| ground.gap(at) < *radius_m)?;
+        Some(model.fall_points[below].name.clone())
     }
 }

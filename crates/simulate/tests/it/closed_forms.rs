@@ -8,6 +8,8 @@ use denavit_simulate::{
     Breakdown, Control, Event, EventKind, Run, Simulation, StartError, State, Stop, Tolerances,
     Touching, simulate,
 };
+use serde_json::{Value, json};
+use std::path::Path;
 
 const G: f64 = 9.81;
 
@@ -169,6 +171,27 @@ fn a_cradle_obeys_newtons_law_for_all_pairs_at_once() {
         for (found, expected) in run.end.qd.iter().zip(after) {
             assert_near(*found, expected, 1e-9);
         }
+    }
+}
+
+/// A capsule about the rod is on the ground when its lower end is a radius above it:
+/// t = sqrt(2 (z - l/2 cos a - r) / g).
+#[test]
+fn a_capsule_touches_by_its_radius() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/bodies/rod.json");
+    let mut model: Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+    model["contacts"] = json!([]);
+    model["bodies_that_must_not_touch"] = json!([{"name": "shell", "link": "base_pitch",
+        "from": ["half", 0, 0], "to": ["-half", 0, 0], "radius_m": "half/5"}]);
+    let robot = denavit_codegen::model::read("rod", model.to_string().as_bytes()).unwrap();
+    for pitch in [0.5, -2.0] {
+        let mut rod = LoadedPlant::new(&robot, &[]).unwrap();
+        let control = Control::passive(3);
+        let initial = State::resting(vec![1.0, 0.0, pitch]);
+        let run = simulate(&mut rod, &control, &initial, &accurate()).unwrap();
+        assert_eq!(run.stop, Stop::Fall("shell".to_owned()));
+        let height = 1.0 - 0.5 * pitch.cos().abs() - 0.1;
+        assert_near(run.end.t_s, (2.0 * height / G).sqrt(), 1e-9);
     }
 }
 

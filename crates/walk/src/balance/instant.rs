@@ -35,6 +35,8 @@ pub struct Instant {
     pub capture_m: [f64; 3],
     /// Angular momentum about the centre of mass [kg m^2/s].
     pub angular_momentum: [f64; 3],
+    /// The part of the body on each joint in it [kg m^2/s].
+    pub body_momenta: Vec<[f64; 3]>,
     /// What carries the robot.
     pub support: SupportPolygon,
     /// The feet that it stands on.
@@ -98,6 +100,8 @@ impl Instant {
         };
         let velocity = [0, 1, 2].map(|row| along(row, at.qd));
         let acceleration = [0, 1, 2].map(|row| along(row, at.qdd) + bias[row]);
+        let mut body_momenta = vec![[0.0; 3]; n];
+        walking.angular_momenta(at.q, at.qd, body_momenta.as_flattened_mut());
         let foot_rotation_m = match feet[..] {
             [foot] => walking.foot_rotation_indicator(foot, at.q, at.qd, at.qdd),
             _ => None,
@@ -114,6 +118,7 @@ impl Instant {
             foot_rotation_m,
             capture_m: walking.capture_point(at.q, at.qd)?,
             angular_momentum: [momentum[3], momentum[4], momentum[5]],
+            body_momenta,
             support,
             phase,
             closed: closed.len(),

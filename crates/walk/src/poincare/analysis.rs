@@ -155,16 +155,17 @@ pub fn analyse(
     })
 }
 
-/// Differences of runs take more accuracy than runs.
+/// Differences of runs take more accuracy than runs: states are to be good to about 1e-11.
 fn accurate(simulation: &Simulation) -> Simulation {
-    let tighter = |accuracy: Accuracy| Accuracy {
-        relative: accuracy.relative.min(1e-11),
-        absolute: accuracy.absolute.min(1e-12),
+    let tighter = |accuracy: Accuracy, relative: f64| Accuracy {
+        relative: accuracy.relative.min(relative),
+        absolute: accuracy.absolute.min(0.1 * relative),
         ..accuracy
     };
     let method = match simulation.method {
-        Method::DormandPrince(accuracy) => Method::DormandPrince(tighter(accuracy)),
-        Method::Radau(accuracy) => Method::Radau(tighter(accuracy)),
+        Method::DormandPrince(accuracy) => Method::DormandPrince(tighter(accuracy, 1e-11)),
+        // its steps are as long as a relation of orders allows that holds for small errors
+        Method::Radau(accuracy) => Method::Radau(tighter(accuracy, 1e-13)),
         fixed @ Method::RungeKutta { .. } => fixed,
     };
     Simulation { method, ..simulation.clone() }

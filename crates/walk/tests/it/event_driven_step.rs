@@ -18,7 +18,7 @@ fn make_step(roll_stiffness: f64, actuated: bool) -> Run {
     };
     let control = Control::proportional((0..18).map(reference).collect(), 3000.0, 60.0);
     // rates, and with them the speeds of closed contacts, are off by about this
-    let accuracy = Accuracy { relative: 2e-8, absolute: 2e-9, max_step_s: 0.02 };
+    let accuracy = Accuracy { relative: 2e-9, absolute: 2e-10, max_step_s: 0.02 };
     let simulation = Simulation {
         end_s: END_S,
         method: Method::Radau(accuracy),

@@ -1,6 +1,5 @@
-//! Cycles of the planar biped: fixed points and multipliers of both shipped gaits against
-//! walking.md
-//! section 2, which another simulator found, and the two ways to a monodromy against each other.
+//! Cycles of the planar biped: fixed points and multipliers of both shipped gaits against those of
+//! another simulator (walking.md 2), and the two ways to a monodromy against each other.
 
 use super::{assert_near, scenario};
 use denavit_simulate::integrate::{Accuracy, Method};
@@ -17,7 +16,7 @@ fn with_map<T>(
     then: impl FnOnce(&mut ReturnMap<'_>, State) -> T,
 ) -> T {
     let mut scenario = scenario(name);
-    let accuracy = Accuracy { relative: 1e-11, absolute: 1e-12, max_step_s: 0.02 };
+    let accuracy = Accuracy { relative: 1e-13, absolute: 1e-14, max_step_s: 0.02 };
     let simulation = Simulation { method: Method::Radau(accuracy), ..scenario.simulation.clone() };
     let (plant, at_s) = (scenario.plant.as_mut(), share * step_s);
     let exchange = LegExchange::find(plant);

@@ -57,6 +57,7 @@ macro_rules! call {
                 | F::CenterOfMassBias
                 | F::CentroidalMomentumMatrix
                 | F::CentroidalMomentumBias
+                | F::AngularMomenta
                 | F::ZeroMomentPoint
                 | F::CartTableZmp
                 | F::FootRotationIndicator

@@ -47,6 +47,7 @@ macro_rules! compare {
                 F::CenterOfMassBias => m::center_of_mass_bias(p, &q, &qd).flat(),
                 F::CentroidalMomentumMatrix => m::centroidal_momentum_matrix(p, &q).flat(),
                 F::CentroidalMomentumBias => m::centroidal_momentum_bias(p, &q, &qd).flat(),
+                F::AngularMomenta => m::angular_momenta(p, &q, &qd).flat(),
                 F::ZeroMomentPoint => m::zero_moment_point(p, &q, &qd, &qdd).flat(),
                 F::CartTableZmp => m::cart_table_zmp(p, &q, &qd, &qdd).flat(),
                 F::FootRotationIndicator => {

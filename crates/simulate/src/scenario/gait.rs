@@ -4,6 +4,7 @@
 use super::fault::Cause;
 use super::reader::Report;
 use crate::control::Control;
+use crate::planner::Planning;
 use denavit_codegen::model::{Fields, Node};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::Reference;
@@ -19,6 +20,8 @@ pub struct PlannedGait {
     pub damping: f64,
     /// Where all coordinates are at the beginning [rad, m].
     pub start: Option<Vec<f64>>,
+    /// What plans references during the run.
+    pub planning: Option<Planning>,
 }
 
 /// Plans what stands under the key `gait` for a plant; faults go into the report.
@@ -50,5 +53,6 @@ pub(super) fn gait(
             (law.stiffness, law.damping) = (gait.stiffness, gait.damping);
         }
     }
+    control.planning = gait.planning;
     gait.start
 }

@@ -117,6 +117,11 @@ impl Walker {
         })
     }
 
+    /// The coordinate that is the pitch of the torso, positive forward.
+    pub(crate) fn pitch(&self) -> usize {
+        self.base[2]
+    }
+
     /// The middle of a sole, forward from its ankle \[m\].
     pub fn middle_m(&self) -> f64 {
         0.5 * (self.feet[0].ankle_to_toe_m - self.feet[0].heel_to_ankle_m)

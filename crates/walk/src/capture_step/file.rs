@@ -32,10 +32,11 @@ pub(crate) fn read(
     let given = node.fields(KEYS, report)?;
     let before = report.count();
     let absent = CaptureStep::default();
+    let height_m = given.required_number("center_of_mass_height_m", HEIGHT_M, report);
     let mut number =
         |key: &str, range: Range, absent: f64| given.number(key, range, absent, report);
     let numbers = CaptureStep {
-        height_m: number("center_of_mass_height_m", HEIGHT_M, absent.height_m),
+        height_m,
         step_s: number("step_s", STEP_S, absent.step_s),
         longest_m: number("longest_step_m", LENGTH_M, absent.longest_m),
         lift_m: number("lift_m", LENGTH_M, absent.lift_m),

@@ -23,14 +23,15 @@ pub struct CaptureStep {
     pub period_s: f64,
 }
 
+/// What suits the shipped planar biped.
 impl Default for CaptureStep {
     fn default() -> Self {
         Self {
-            height_m: 0.62,
+            height_m: 0.57,
             step_s: 0.3,
             longest_m: 0.3,
             lift_m: 0.03,
-            margin_m: 0.01,
+            margin_m: 0.02,
             period_s: 0.005,
         }
     }

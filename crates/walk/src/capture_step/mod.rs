@@ -22,6 +22,7 @@ mod measured;
 mod motion;
 mod pendulum;
 mod planner;
+mod reach;
 mod torques;
 
 pub(crate) use file::read;

@@ -2,6 +2,7 @@
 
 use super::measured::{Measured, Moving};
 use super::pendulum::Pressure;
+use super::reach::Reach;
 use super::torques::torques;
 use crate::gait_plan::{Height, Pose, Walker};
 use denavit_plants::Plant;
@@ -26,6 +27,7 @@ pub(super) struct Motion<'a> {
     pub(super) walker: &'a Walker,
     pub(super) measured: &'a Measured,
     pub(super) pressure: Pressure,
+    pub(super) reach: Reach,
     pub(super) height_m: f64,
     pub(super) swing: Option<Swing>,
     /// For so long \[s\].
@@ -79,10 +81,13 @@ impl Motion<'_> {
 
     fn pose(&self, t_s: f64) -> Pose {
         let pendulum = self.measured.pendulum(self.pressure.omega).after(&self.pressure, t_s);
+        let feet_m = [0, 1].map(|side| self.foot_m(side, t_s));
+        let height_m = self.to(self.measured.center[1], self.height_m, t_s);
+        let highest_m = self.reach.height_m(pendulum.center_m, feet_m);
         Pose {
-            feet_m: [0, 1].map(|side| self.foot_m(side, t_s)),
+            feet_m,
             center_m: pendulum.center_m,
-            height: Height::CenterOfMass(self.to(self.measured.center[1], self.height_m, t_s)),
+            height: Height::CenterOfMass(height_m.min(highest_m)),
             pitch_rad: self.left(self.measured.pitch, t_s),
         }
     }

@@ -4,6 +4,7 @@ use super::law::CaptureStepLaw;
 use super::measured::Measured;
 use super::motion::{Motion, Swing};
 use super::pendulum::{Pendulum, Pressure};
+use super::reach::Reach;
 use denavit_plants::Plant;
 use denavit_simulate::{JointPlan, ReferencePlanner, Sensed};
 
@@ -78,6 +79,7 @@ impl CaptureStepper {
             walker: &self.law.walker,
             measured,
             pressure,
+            reach: Reach::of(plant, &self.law.walker, &measured.q),
             height_m: self.law.numbers.height_m,
             swing: None,
             duration_s: STANDING_S,
@@ -112,6 +114,7 @@ impl CaptureStepper {
             walker: &self.law.walker,
             measured,
             pressure,
+            reach: Reach::of(plant, &self.law.walker, &measured.q),
             height_m: numbers.height_m,
             swing: Some(Swing { side, landing_m, step_s, lift_m }),
             duration_s: step_s + LATE_S,

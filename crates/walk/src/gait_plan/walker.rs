@@ -117,6 +117,11 @@ impl Walker {
         })
     }
 
+    /// Where the hips are: along x, and up \[m\].
+    pub(crate) fn hips_m(&self, q: &[f64]) -> [f64; 2] {
+        [q[self.base[0]], q[self.base[1]]]
+    }
+
     /// The coordinate that is the pitch of the torso, positive forward.
     pub(crate) fn pitch(&self) -> usize {
         self.base[2]

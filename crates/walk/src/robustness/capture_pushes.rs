@@ -155,8 +155,9 @@ fn ankles_m(plant: &mut dyn Plant, walker: &Walker, q: &[f64]) -> [f64; 2] {
     })
 }
 
-/// A foot that lands nearer than this to where it left the ground has made no step \[m\].
-const MOVED_M: f64 = 0.01;
+/// A foot that lands nearer than this share of its sole to where it left the ground has made no
+/// step.
+const MOVED: f64 = 0.25;
 
 /// The steps of a run: feet that leave the ground with all points, and land elsewhere.
 pub fn steps_taken(plant: &mut dyn Plant, walker: &Walker, events: &[Event]) -> usize {
@@ -171,7 +172,8 @@ pub fn steps_taken(plant: &mut dyn Plant, walker: &Walker, events: &[Event]) -> 
                 (true, false) => left_m[side] = Some(ankles[side]),
                 (false, true) => {
                     let way = left_m[side].map_or(0.0, |left: f64| (ankles[side] - left).abs());
-                    steps += usize::from(way > MOVED_M);
+                    steps +=
+                        usize::from(way > MOVED * (foot.heel_to_ankle_m + foot.ankle_to_toe_m));
                 }
                 _ => {}
             }

@@ -43,7 +43,13 @@ pub(super) fn gait(
         return None;
     };
     let gait = planner(node, plant, report)?;
-    for (law, reference) in control.joints.iter_mut().zip(gait.references) {
+    for (index, (law, reference)) in control.joints.iter_mut().zip(gait.references).enumerate() {
+        let has_own = law.reference.is_some() || law.feed_forward.is_some();
+        if gait.planning.is_some() && reference.is_some() && has_own {
+            let joint = &plant.model().joints[index].name;
+            let why = format!("`{joint}` is planned during the run, and `control` says otherwise");
+            report.push(node.at(), Cause::Gait(why, "leave it out of `control`, but for gains"));
+        }
         // what the scenario says of a joint itself goes before
         if law.reference.is_some() || reference.is_none() {
             continue;

@@ -14,10 +14,11 @@
 //!
 //! - [`CaptureStep`]: the numbers of the law
 //! - [`capture_step`]: the law for a robot, with the posture in which it starts
-//! - [`CaptureStep::limits`]: what it can do, for [`crate::capturability`]
+//! - [`step_limits`]: what the robot of a scenario can do, for [`crate::capturability`]
 
 mod file;
 mod law;
+mod limits;
 mod measured;
 mod motion;
 mod pendulum;
@@ -27,3 +28,4 @@ mod torques;
 
 pub(crate) use file::read;
 pub use law::{CaptureStep, CaptureStepLaw, Prepared, capture_step};
+pub use limits::{law_of, step_limits};

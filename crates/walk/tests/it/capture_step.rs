@@ -4,15 +4,13 @@
 use super::{assert_near, scenario};
 use denavit_simulate::{StartError, Stop};
 use denavit_walk::capturability::{Capturability, Steps};
-use denavit_walk::capture_step::CaptureStepLaw;
+use denavit_walk::capture_step::step_limits;
 use denavit_walk::robustness::{CapturePush, CapturePushOptions, capture_pushes};
 
 const NAME: &str = "planar_biped_capture_step";
 
 fn capturability() -> Capturability {
-    let scenario = scenario(NAME);
-    let law = scenario.control.planning.as_ref().unwrap().law::<CaptureStepLaw>().unwrap();
-    Capturability::new(law.limits()).unwrap()
+    Capturability::new(step_limits(&mut scenario(NAME)).unwrap()).unwrap()
 }
 
 fn pushed(impulses_ns: &[f64]) -> Vec<CapturePush> {

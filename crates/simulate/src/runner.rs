@@ -108,8 +108,11 @@ impl<'a> Runner<'a> {
     fn advance(&mut self) -> Result<Stop, Breakdown> {
         loop {
             let t = self.t_s;
-            self.plan(t);
+            let planned = self.plan(t);
             self.sample_control(t);
+            if planned && !self.motion.closed.is_empty() {
+                self.happen(EventKind::Plan, t, &[])?;
+            }
             self.push(t)?;
             self.write_rows(t)?;
             if t >= self.simulation.end_s {
@@ -392,15 +395,16 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
-    /// Has references planned, if a look at the state is due.
-    fn plan(&mut self, t_s: f64) {
-        let Some(looks) = &mut self.looks else { return };
+    /// Has references planned, if a look at the state is due; says if there are new ones.
+    fn plan(&mut self, t_s: f64) -> bool {
+        let Some(looks) = &mut self.looks else { return false };
         let parts = self.motion.layout.parts(&self.y);
         let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
         let sensed = Sensed { t_s, q: parts.q, qd: parts.qd, closed: &closed };
-        if let Some(plans) = looks.look(self.motion.plant, &sensed) {
-            self.motion.control.to_mut().follow(plans);
-        }
+        let plans = looks.look(self.motion.plant, &sensed);
+        let is_new = plans.is_some();
+        plans.into_iter().for_each(|plans| self.motion.control.to_mut().follow(plans));
+        is_new
     }
 
     /// Takes the samples of the controller that are due.

@@ -69,6 +69,7 @@ fn what_cannot_be_judged_is_refused() {
         (&["walk", "zmp", "tulip_leg_tracking"][..], "floating base"),
         (&["walk", "poincare", "tulip_leg_tracking"], "does not repeat"),
         (&["walk", "poincare", GAIT, "--section", "1.5"], "share of the cycle"),
+        (&["walk", "poincare", "planar_biped_capture_step"], "does not repeat"),
         (&["walk", "poincare", "no_such_gait"], "no shipped scenario"),
         (&["walk", "basin", GAIT, "--vary", "q_nose,q_base_pitch"], "q_nose"),
         (&["walk", "basin", GAIT, "--noise", "0"], "positive"),

@@ -32,10 +32,13 @@ pub(super) struct Motion<'a> {
     pub(super) swing: Option<Swing>,
     /// For so long \[s\].
     pub(super) duration_s: f64,
-    /// So long after the start nothing is left of what was measured beside the plan \[s\].
-    pub(super) settled_s: f64,
 }
 
+/// What is measured beside the plan fades so fast \[1/s\].
+const FADES_PER_S: f64 = 15.0;
+/// The torso comes upright so fast: it takes angular momentum, which moves the centre of pressure
+/// \[1/s\].
+const RIGHTS_PER_S: f64 = 8.0;
 /// Distance of knots at most \[s\].
 const INTERVAL_S: f64 = 0.03;
 /// Velocities of the first posture are differences over this time \[s\].
@@ -51,17 +54,18 @@ fn smooth(share: f64) -> f64 {
     u * u * u * (10.0 - u * (15.0 - 6.0 * u))
 }
 
+/// What is left after a time of what was measured beside the plan: it fades at a rate \[1/s\] with
+/// critical damping, so that a plan made on the way goes on alike.
+fn left(apart: Moving, rate: f64, t_s: f64) -> f64 {
+    (apart.value + (apart.rate + rate * apart.value) * t_s) * (-rate * t_s).exp()
+}
+
+/// The way from where something is, with its velocity, to a place.
+fn to(from: Moving, place: f64, t_s: f64) -> f64 {
+    place + left(Moving { value: from.value - place, rate: from.rate }, FADES_PER_S, t_s)
+}
+
 impl Motion<'_> {
-    /// What is left after a time of what was measured beside the plan.
-    fn left(&self, apart: Moving, t_s: f64) -> f64 {
-        (apart.value + apart.rate * t_s) * (1.0 - smooth(t_s / self.settled_s))
-    }
-
-    /// The way from where something is, with its velocity, to a place.
-    fn to(&self, from: Moving, place: f64, t_s: f64) -> f64 {
-        place + self.left(Moving { value: from.value - place, rate: from.rate }, t_s)
-    }
-
     fn foot_m(&self, side: usize, t_s: f64) -> [f64; 2] {
         let [along, height] = self.measured.feet[side];
         match &self.swing {
@@ -73,22 +77,22 @@ impl Motion<'_> {
                 let late_s = (t_s - swing.step_s).max(0.0);
                 let lift = swing.lift_m * sine * sine - SINK_M_S * late_s;
                 let moving = Moving { value: 0.0, rate: along.rate };
-                [x + self.left(moving, t_s), lift + self.left(height, t_s)]
+                [x + left(moving, FADES_PER_S, t_s), lift + left(height, FADES_PER_S, t_s)]
             }
-            _ => [along.value, self.to(height, 0.0, t_s)],
+            _ => [along.value, to(height, 0.0, t_s)],
         }
     }
 
     fn pose(&self, t_s: f64) -> Pose {
         let pendulum = self.measured.pendulum(self.pressure.omega).after(&self.pressure, t_s);
         let feet_m = [0, 1].map(|side| self.foot_m(side, t_s));
-        let height_m = self.to(self.measured.center[1], self.height_m, t_s);
+        let height_m = to(self.measured.center[1], self.height_m, t_s);
         let highest_m = self.reach.height_m(pendulum.center_m, feet_m);
         Pose {
             feet_m,
             center_m: pendulum.center_m,
             height: Height::CenterOfMass(height_m.min(highest_m)),
-            pitch_rad: self.left(self.measured.pitch, t_s),
+            pitch_rad: left(self.measured.pitch, RIGHTS_PER_S, t_s),
         }
     }
 
@@ -115,7 +119,8 @@ impl Motion<'_> {
         for index in 0..=count as usize {
             let t_s = self.duration_s * index as f64 / count;
             let Some(posture) = self.posture(plant, t_s, &near) else { break };
-            let faded = posture.iter().zip(&apart).map(|(q, apart)| q + self.left(*apart, t_s));
+            let faded =
+                posture.iter().zip(&apart).map(|(q, apart)| q + left(*apart, FADES_PER_S, t_s));
             knots.push((t_s, faded.collect()));
             near = posture;
         }

@@ -27,8 +27,6 @@ pub(super) struct CaptureStepper {
 
 /// Standing is planned for so long \[s\].
 const STANDING_S: f64 = 1.5;
-/// What was measured beside the plan has gone after this time of standing \[s\].
-const SETTLED_S: f64 = 0.4;
 /// A capture point that is farther from the planned one makes a new plan of standing \[m\]; not
 /// sooner than a time after the last one \[s\].
 const APART_M: f64 = 5e-3;
@@ -83,7 +81,6 @@ impl CaptureStepper {
             height_m: self.law.numbers.height_m,
             swing: None,
             duration_s: STANDING_S,
-            settled_s: SETTLED_S,
         };
         motion.plans(plant)
     }
@@ -118,7 +115,6 @@ impl CaptureStepper {
             height_m: numbers.height_m,
             swing: Some(Swing { side, landing_m, step_s, lift_m }),
             duration_s: step_s + LATE_S,
-            settled_s: step_s,
         };
         motion.plans(plant)
     }

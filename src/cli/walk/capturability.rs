@@ -124,7 +124,10 @@ fn answer(
     wanted: Option<&Wanted>,
 ) -> Value {
     let limits = found.limits();
-    let one = |(steps, [back, forward]): (usize, [f64; 2])| value!({ "steps": steps, "backward_m": -back, "forward_m": forward });
+    let one = |(steps, [back, forward]): (usize, [f64; 2])| {
+        let backward_m = -back;
+        value!({ "steps": steps, "backward_m": backward_m, "forward_m": forward })
+    };
     let reach: Vec<Value> = reaches(arguments, found).into_iter().enumerate().map(one).collect();
     let [back, forward] = found.limit_m();
     let capture = wanted.map(|wanted| {

@@ -1,6 +1,8 @@
 //! `denavit walk`: gaits, their stability, and what each criterion misses.
 
 mod balance;
+mod capturability;
+mod capture_steps;
 mod compare;
 mod design;
 mod poincare;
@@ -59,6 +61,8 @@ Example:
     Poincare(poincare::Arguments),
     Basin(robustness::BasinArguments),
     Push(robustness::PushArguments),
+    Capturability(capturability::Arguments),
+    CaptureSteps(capture_steps::Arguments),
     Compare(compare::Arguments),
 }
 
@@ -72,6 +76,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Command::Poincare(arguments) => poincare::run(arguments, out),
         Command::Basin(arguments) => robustness::run_basin(arguments, out),
         Command::Push(arguments) => robustness::run_push(arguments, out),
+        Command::Capturability(arguments) => capturability::run(arguments, out),
+        Command::CaptureSteps(arguments) => capture_steps::run(arguments, out),
         Command::Compare(arguments) => compare::run(arguments, out),
     }
 }

@@ -69,12 +69,14 @@ pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "cradle",
     "double_pendulum",
     "falling_rod",
+    "planar_biped_capture_step",
     "planar_biped_dropped",
     "planar_biped_hopping",
     "planar_biped_landing",
     "planar_biped_limit_cycle_gait",
     "planar_biped_lunge",
     "planar_biped_pushed",
+    "planar_biped_start_stop",
     "planar_biped_switched_off",
     "planar_biped_trunk_swing",
     "planar_biped_zmp_gait",
@@ -93,6 +95,7 @@ pub const GAITS: &[ShippedModel] = &shipped!["models/gaits":
     "planar_biped_inverted_pendulum",
     "planar_biped_limit_cycle",
     "planar_biped_primitives",
+    "planar_biped_start_stop",
 ];
 
 /// The shipped model of that name.

@@ -1,5 +1,6 @@
 //! Controllers: from what is measured to the torque that is commanded.
 
+use super::planner::Planning;
 use denavit_plants::trajectory::{Reference, Setpoint};
 use denavit_plants::{Plant, PlantModel};
 
@@ -69,6 +70,8 @@ pub struct Control {
     /// Commands are computed at multiples of this period from delayed, quantised and noisy
     /// measurements, and held in between; none controls continuously.
     pub period_s: Option<f64>,
+    /// What plans references during a run; the event-driven scheme alone has it.
+    pub planning: Option<Planning>,
 }
 
 impl Control {

@@ -19,6 +19,7 @@ use super::laws::LawForces;
 use super::push::{self, Push};
 use super::state::{INTEGRALS, Layout};
 use denavit_plants::Plant;
+use std::borrow::Cow;
 
 /// A contact that carries force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +55,8 @@ pub(super) struct Holding {
 /// The smooth motion of a plant under control, with the contacts as they are.
 pub(super) struct Motion<'a> {
     pub(super) plant: &'a mut dyn Plant,
-    pub(super) control: &'a Control,
+    /// Borrowed until references are planned anew.
+    pub(super) control: Cow<'a, Control>,
     /// The model that the controller computes with, if it is not the plant itself.
     pub(super) believed: Option<&'a mut (dyn Plant + 'static)>,
     pub(super) drives: Drives,
@@ -143,7 +145,7 @@ impl<'a> Motion<'a> {
         let layout = Layout { joints: n, motors: drives.elastic.len(), laws };
         Self {
             plant,
-            control,
+            control: Cow::Borrowed(control),
             believed: None,
             drives,
             ground,

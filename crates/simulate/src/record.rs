@@ -33,7 +33,7 @@ impl Recorder {
     pub(super) fn new(motion: &mut Motion<'_>, simulation: &Simulation, y: &[f64]) -> Self {
         let start_energy = motion.energy(y);
         let model = motion.plant.model();
-        let mut columns = columns(model, motion.control, &motion.drives.elastic);
+        let mut columns = columns(model, &motion.control, &motion.drives.elastic);
         if simulation.logs_accelerations {
             columns.extend(model.joints.iter().map(|joint| format!("qdd_{}", joint.name)));
         }
@@ -41,7 +41,7 @@ impl Recorder {
             log: Log { columns, ..Log::default() },
             accelerations: simulation.logs_accelerations,
             audit: Audit::new(model),
-            joints: JointObserver::new(model, motion.control),
+            joints: JointObserver::new(model, &motion.control),
             passing: vec![false; model.contacts.len()],
             free: model.joints.first().is_some_and(|joint| !joint.drivable),
             start_energy,
@@ -140,7 +140,7 @@ impl Recorder {
         let parts = motion.layout.parts(y);
         self.joints.commanded_until(t_s);
         let times = (t_s, motion.reference_time(t_s));
-        self.joints.see(motion.control, times, [parts.q, parts.qd]);
+        self.joints.see(&motion.control, times, [parts.q, parts.qd]);
     }
 
     fn audit_contacts(&mut self, motion: &Motion<'_>) {

@@ -35,6 +35,8 @@ pub enum EventKind {
     Jump(usize),
     /// An impulse from outside.
     Push,
+    /// References were planned anew: torques jump, and contacts with them.
+    Plan,
 }
 
 /// An event of a run.

@@ -7,6 +7,7 @@ use super::ground::TOUCH_M;
 use super::integrate::Stepper;
 use super::measure::Instrument;
 use super::motion::Motion;
+use super::planner::{Looks, Sensed};
 use super::push::Shove;
 use super::record::Recorder;
 use super::run::{Event, EventKind, Run, stand};
@@ -37,6 +38,8 @@ pub(super) struct Runner<'a> {
     events: Vec<Event>,
     /// Times of the last events.
     recent: Vec<f64>,
+    /// What plans references, if anything does.
+    looks: Option<Looks>,
     /// Number of the controller's next sample, and of the log's next row.
     sample: u64,
     /// Number of the next push.
@@ -72,6 +75,7 @@ impl<'a> Runner<'a> {
             variation,
             events: Vec::new(),
             recent: Vec::new(),
+            looks: Looks::of(&motion.control, start_s),
             sample: 0,
             pushed: 0,
             row: 0,
@@ -83,6 +87,7 @@ impl<'a> Runner<'a> {
             motion,
             y,
         };
+        runner.plan(start_s);
         runner.sample_control(start_s);
         if !standing.is_empty() {
             let happened = runner.happen(EventKind::Start, start_s, &standing);
@@ -103,7 +108,11 @@ impl<'a> Runner<'a> {
     fn advance(&mut self) -> Result<Stop, Breakdown> {
         loop {
             let t = self.t_s;
+            let planned = self.plan(t);
             self.sample_control(t);
+            if planned && !self.motion.closed.is_empty() {
+                self.happen(EventKind::Plan, t, &[])?;
+            }
             self.push(t)?;
             self.write_rows(t)?;
             if t >= self.simulation.end_s {
@@ -386,6 +395,18 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
+    /// Has references planned, if a look at the state is due; says if there are new ones.
+    fn plan(&mut self, t_s: f64) -> bool {
+        let Some(looks) = &mut self.looks else { return false };
+        let parts = self.motion.layout.parts(&self.y);
+        let closed: Vec<usize> = self.motion.closed.iter().map(|c| c.contact).collect();
+        let sensed = Sensed { t_s, q: parts.q, qd: parts.qd, closed: &closed };
+        let plans = looks.look(self.motion.plant, &sensed);
+        let is_new = plans.is_some();
+        plans.into_iter().for_each(|plans| self.motion.control.to_mut().follow(plans));
+        is_new
+    }
+
     /// Takes the samples of the controller that are due.
     fn sample_control(&mut self, t_s: f64) {
         let Some(period_s) = self.motion.control.period_s else { return };
@@ -415,8 +436,9 @@ impl<'a> Runner<'a> {
         let end_s = self.simulation.end_s;
         let pushes = self.simulation.pushes.iter().flat_map(|push| [push.at_s, push.end_s()]);
         let push = pushes.filter(|at_s| *at_s > t_s + SAME_TIME_S).reduce(f64::min);
+        let look = self.looks.as_ref().map(Looks::next_s);
         let before = |stop_s: &f64| *stop_s < end_s - SAME_TIME_S;
-        [sample, jump, push].into_iter().flatten().filter(before).fold(end_s, f64::min)
+        [sample, jump, push, look].into_iter().flatten().filter(before).fold(end_s, f64::min)
     }
 
     /// The time of the log's next row.

@@ -102,6 +102,9 @@ pub(super) fn check(
     if control.period_s.is_some_and(|period| !positive(period)) {
         return Err(StartError::Number("the period of the controller"));
     }
+    if control.planning.as_ref().is_some_and(|planning| !positive(planning.period_s())) {
+        return Err(StartError::Number("the period of the planner"));
+    }
     if !(simulation.end_s >= state.t_s && simulation.end_s.is_finite()) {
         return Err(StartError::Number("the end of the run"));
     }

@@ -22,7 +22,7 @@ pub enum VariationError {
     Start(StartError),
     /// The run stops before its end.
     Stopped(Stop, f64),
-    /// A sampled controller holds torques between samples.
+    /// A sampled controller holds torques between samples, or plans references at them.
     Sampled,
     /// The plant has jumps of its own, which may change it.
     Jumps,
@@ -128,7 +128,7 @@ impl Variation {
         stepper: &mut Stepper,
         end_s: f64,
     ) -> Result<(), Breakdown> {
-        if motion.held.is_some() {
+        if motion.held.is_some() || motion.control.planning.is_some() {
             self.failure.get_or_insert(VariationError::Sampled);
         }
         let (start_s, size) = (stepper.start_time(), self.columns.nrows());

@@ -23,6 +23,7 @@ pub struct Case {
 pub const CASES: &[Case] = &[
     Case { scenario: "planar_biped_zmp_gait", shows: "a gait that meets every criterion but one" },
     Case { scenario: "planar_biped_limit_cycle_gait", shows: "a gait that no static one allows" },
+    Case { scenario: "planar_biped_start_stop", shows: "start, stop: no period, and it walks" },
     Case { scenario: "planar_biped_switched_off", shows: "motors off: it collapses on its feet" },
     Case { scenario: "planar_biped_hopping", shows: "flight has no zero moment point, no fall" },
     Case { scenario: "planar_biped_landing", shows: "a drop onto bent legs" },

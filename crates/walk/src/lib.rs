@@ -7,6 +7,8 @@
 //! - [`gait_plan`]: walking primitives, and walks by the linear inverted pendulum
 //! - [`gait_file`]: files that say what a gait is to be
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
+//! - [`capturability`]: in how many steps the linear inverted pendulum comes to rest
+//! - [`capture_step`]: a controller that steps onto the capture point
 //! - [`comparison`]: what each criterion of stability says of runs, and what comes out
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`robustness`]: basins of attraction, and the least push that fells
@@ -14,6 +16,8 @@
 //! - [`read_scenario`]: scenarios whose gait is planned
 
 pub mod balance;
+pub mod capturability;
+pub mod capture_step;
 pub mod comparison;
 pub mod gait_file;
 pub mod gait_plan;

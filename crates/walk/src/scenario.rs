@@ -1,5 +1,6 @@
 //! Scenarios with gaits: the key `gait` is planned here, then the simulation sees references.
 
+use crate::capture_step::read as read_capture_step;
 use crate::weight_shift_step::{Gait, GaitError, WeightShiftStep, plan};
 use denavit_codegen::model::{Fields, Node};
 use denavit_plants::Plant;
@@ -42,8 +43,17 @@ pub fn read_scenario(
 
 /// Plans what stands under the key `gait`.
 fn planned(gait: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option<PlannedGait> {
-    let kinds = gait.fields(&["weight_shift_step"], report)?;
-    let node = kinds.require("weight_shift_step", report)?;
+    let kinds = gait.fields(&["weight_shift_step", "capture_step"], report)?;
+    match (kinds.get("weight_shift_step"), kinds.get("capture_step")) {
+        (Some(node), None) => planned_step(node, plant, report),
+        (None, Some(node)) => read_capture_step(node, plant, report),
+        (Some(_), Some(other)) => other.wrong_kind("one kind of gait, not two", report),
+        (None, None) => gait.wrong_kind("`weight_shift_step` or `capture_step`", report),
+    }
+}
+
+/// Plans the step of the thesis.
+fn planned_step(node: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option<PlannedGait> {
     let given = node.fields(KEYS, report)?;
     let before = report.count();
     let step = step(&given, report);
@@ -58,7 +68,7 @@ fn planned(gait: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option
     match references {
         Ok((references, gait)) => {
             let start = gait.postures.into_iter().next();
-            Some(PlannedGait { references, stiffness, damping, start })
+            Some(PlannedGait { references, stiffness, damping, start, planning: None })
         }
         Err(error) => {
             report.push(node.at(), Cause::Gait(error.to_string(), hint(&error)));

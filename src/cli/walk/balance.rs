@@ -201,6 +201,7 @@ fn events(judged: &Judged) -> Log {
             EventKind::SlipEnds(_) => 3.0,
             EventKind::Jump(_) => 4.0,
             EventKind::Push => 5.0,
+            EventKind::Plan => 6.0,
         });
         values.push(event.energy_j);
         let contacts = 0..model.contacts.len();
@@ -213,11 +214,11 @@ fn events(judged: &Judged) -> Log {
         }
         [&event.q, &event.before, &event.after].into_iter().for_each(|part| values.extend(part));
     }
-    let kinds = "0 start, 1 touch, 2 limit of forces, 3 end of slipping, 4 jump, 5 push".to_owned();
+    let kinds = "0 start, 1 touch, 2 limit of forces, 3 end of slipping, 4 jump, 5 push, 6 plan";
     let header = [
         ("denavit".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
         ("events_of".to_owned(), judged.name.clone()),
-        ("kinds".to_owned(), kinds),
+        ("kinds".to_owned(), kinds.to_owned()),
     ];
     Log { header: header.to_vec(), columns, values }
 }

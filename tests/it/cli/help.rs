@@ -21,8 +21,18 @@ const COMMANDS: [&str; 13] = [
 ];
 
 /// The commands of `walk`.
-const WALK: [&str; 8] =
-    ["zmp", "fri", "capture", "momentum", "poincare", "basin", "push", "compare"];
+const WALK: [&str; 10] = [
+    "zmp",
+    "fri",
+    "capture",
+    "momentum",
+    "poincare",
+    "basin",
+    "push",
+    "capturability",
+    "capture-steps",
+    "compare",
+];
 
 /// The command lines of a help text's examples; three blanks begin a remark.
 fn examples(help: &str) -> Vec<Vec<String>> {

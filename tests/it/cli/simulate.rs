@@ -168,6 +168,23 @@ fn numbers_beyond_their_range_are_refused() {
         &gait(r#""interval_s": 0.001, "phases_s": [1, 2, 3, 999]"#),
         &["/gait/weight_shift_step: the gait would have more than 20000 postures"],
     );
+    let steps = |entries: &str, more: &str| {
+        format!(
+            r#"{{"format": "denavit-scenario/1", "model": "planar_biped", "duration_s": 1,
+ "gait": {{"capture_step": {{{entries}}}}}{more}}}"#
+        )
+    };
+    let height = r#""center_of_mass_height_m": 0.57"#;
+    refused(&steps("", ""), &["bad.json:2:", "center_of_mass_height_m"]);
+    refused(&steps(r#""center_of_mass_height_m": 2"#, ""), &["/gait/capture_step", "`start`"]);
+    let margin = format!(r#"{height}, "margin_m": 0.2"#);
+    refused(&steps(&margin, ""), &["/gait/capture_step", "margin of 200.0 mm"]);
+    let period = format!(r#"{height}, "period_s": 0"#);
+    refused(&steps(&period, ""), &["/gait/capture_step/period_s: the number must be from"]);
+    let own = r#", "control": {"joints": {"left_knee": {"kp": 1, "reference": 0.1}}}"#;
+    refused(&steps(height, own), &["/gait", "`left_knee` is planned during the run"]);
+    let both = format!(r#"{height}}}, "weight_shift_step": {{"#);
+    refused(&steps(&both, ""), &["one kind of gait, not two"]);
 }
 
 /// What cannot be written is said before the run, not after it.

@@ -69,14 +69,55 @@ fn what_cannot_be_judged_is_refused() {
         (&["walk", "zmp", "tulip_leg_tracking"][..], "floating base"),
         (&["walk", "poincare", "tulip_leg_tracking"], "does not repeat"),
         (&["walk", "poincare", GAIT, "--section", "1.5"], "share of the cycle"),
+        (&["walk", "poincare", "planar_biped_capture_step"], "does not repeat"),
         (&["walk", "poincare", "no_such_gait"], "no shipped scenario"),
         (&["walk", "basin", GAIT, "--vary", "q_nose,q_base_pitch"], "q_nose"),
         (&["walk", "basin", GAIT, "--noise", "0"], "positive"),
         (&["walk", "push", GAIT, "--link", "nose"], "nose"),
+        (&["walk", "capturability", GAIT, "--step-time", "0"], "least step time cannot be 0"),
+        (&["walk", "capturability", GAIT, "--height", "nan"], "height of the centre of mass"),
+        (&["walk", "capturability", "tulip_standing"], "planar robots with two legs"),
+        (&["walk", "capture-steps", GAIT], "capture_step"),
+        (&["walk", "capture-steps", "planar_biped_capture_step", "--most", "0"], "positive"),
         (&["walk", "zmp", "Cargo.toml", "--model", "planar_biped"], "Cargo.toml"),
     ] {
         let refused = run(words);
         assert_eq!(refused.code, Some(2), "{words:?}: {}", refused.stdout);
         assert!(refused.stderr.contains(said), "{words:?}: {}", refused.stderr);
     }
+}
+
+#[test]
+fn capturability_answers_with_the_reach_of_each_number_of_steps() {
+    let words =
+        ["walk", "capturability", "planar_biped_capture_step", "--capture", "0.2", "--json"];
+    let found = json(&words);
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    // the recursion of the pendulum, by hand
+    let decay = (-number(&found["omega_per_s"]) * number(&found["step_s"])).exp();
+    let (toe, longest) = (number(&found["toe_m"]), number(&found["longest_step_m"][1]));
+    let mut reach = toe;
+    for row in found["reach"].as_array().expect("rows") {
+        assert!((number(&row["forward_m"]) - reach).abs() < 1e-12, "{row}");
+        reach = toe + (longest + reach - toe) * decay;
+    }
+    let limit = toe + longest * decay / (1.0 - decay);
+    assert!((number(&found["limit"]["forward_m"]) - limit).abs() < 1e-12, "{found}");
+    assert_eq!(found["capture"]["steps"], 1);
+    assert!(found["capture"]["region_m"][0].is_number(), "{found}");
+    let falls = json(&["walk", "capturability", GAIT, "--capture", "-0.9", "--json"]);
+    assert!(falls["capture"]["steps"].is_null(), "{falls}");
+}
+
+#[test]
+fn capture_steps_compares_predicted_and_made_steps() {
+    let name = "planar_biped_capture_step";
+    let found = json(&["walk", "capture-steps", name, "--impulses", "-6,14,28", "--json"]);
+    let pushes = found["pushes"].as_array().expect("pushes");
+    let steps: Vec<_> = pushes.iter().map(|push| push["predicted_steps"].as_u64()).collect();
+    assert_eq!(steps, [Some(0), Some(1), None]);
+    assert_eq!(pushes[1]["steps"], 1);
+    assert_eq!(pushes[1]["outcome"], "stands");
+    assert_eq!(pushes[2]["outcome"], "fell");
+    assert_eq!(found["agree"], 3);
 }

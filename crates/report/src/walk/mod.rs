@@ -1,7 +1,9 @@
 //! Pictures of gaits and their stability.
 
+mod capture_reach;
 mod heat_map;
 mod unit_circle;
 
+pub use capture_reach::CaptureReach;
 pub use heat_map::HeatMap;
 pub use unit_circle::UnitCircle;

@@ -4,6 +4,7 @@
 use super::fault::Cause;
 use super::reader::Report;
 use crate::control::Control;
+use crate::planner::Planning;
 use denavit_codegen::model::{Fields, Node};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::Reference;
@@ -19,6 +20,8 @@ pub struct PlannedGait {
     pub damping: f64,
     /// Where all coordinates are at the beginning [rad, m].
     pub start: Option<Vec<f64>>,
+    /// What plans references during the run.
+    pub planning: Option<Planning>,
 }
 
 /// Plans what stands under the key `gait` for a plant; faults go into the report.
@@ -40,7 +43,13 @@ pub(super) fn gait(
         return None;
     };
     let gait = planner(node, plant, report)?;
-    for (law, reference) in control.joints.iter_mut().zip(gait.references) {
+    for (index, (law, reference)) in control.joints.iter_mut().zip(gait.references).enumerate() {
+        let has_own = law.reference.is_some() || law.feed_forward.is_some();
+        if gait.planning.is_some() && reference.is_some() && has_own {
+            let joint = &plant.model().joints[index].name;
+            let why = format!("`{joint}` is planned during the run, and `control` says otherwise");
+            report.push(node.at(), Cause::Gait(why, "leave it out of `control`, but for gains"));
+        }
         // what the scenario says of a joint itself goes before
         if law.reference.is_some() || reference.is_none() {
             continue;
@@ -50,5 +59,6 @@ pub(super) fn gait(
             (law.stiffness, law.damping) = (gait.stiffness, gait.damping);
         }
     }
+    control.planning = gait.planning;
     gait.start
 }

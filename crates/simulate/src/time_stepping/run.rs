@@ -32,6 +32,9 @@ pub fn simulate_by_steps(
     let mut state = initial.clone();
     let drives = Drives::new(plant.model(), simulation.drives);
     check(plant, control, &mut state, simulation, &drives)?;
+    if control.planning.is_some() {
+        return Err(StartError::EventSchemeOnly("references that are planned during a run"));
+    }
     check_stepping(simulation, stepping)?;
     check_steps(&state, simulation, "time_stepping", (stepping.step_s, 1.0))?;
     if plant.law_states() > 0 || plant.has_accelerated_laws() {

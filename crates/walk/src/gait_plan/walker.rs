@@ -117,6 +117,16 @@ impl Walker {
         })
     }
 
+    /// Where the hips are: along x, and up \[m\].
+    pub(crate) fn hips_m(&self, q: &[f64]) -> [f64; 2] {
+        [q[self.base[0]], q[self.base[1]]]
+    }
+
+    /// The coordinate that is the pitch of the torso, positive forward.
+    pub(crate) fn pitch(&self) -> usize {
+        self.base[2]
+    }
+
     /// The middle of a sole, forward from its ankle \[m\].
     pub fn middle_m(&self) -> f64 {
         0.5 * (self.feet[0].ankle_to_toe_m - self.feet[0].heel_to_ankle_m)

@@ -28,8 +28,12 @@ impl Rhythm {
     /// The rhythm of a controller of a robot.
     ///
     /// # Errors
-    /// A reference that does not repeat itself.
+    /// A reference that does not repeat itself, or is planned during the run.
     pub fn of(plant: &mut dyn Plant, control: &Control) -> Result<Self, NotPeriodic> {
+        if control.planning.is_some() {
+            let planned = control.joints.iter().position(|law| law.reference.is_some());
+            return Err(NotPeriodic(planned.unwrap_or(0)));
+        }
         let mut stride_s: f64 = 0.0;
         for (joint, law) in control.joints.iter().enumerate() {
             for reference in followed(law) {

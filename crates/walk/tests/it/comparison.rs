@@ -38,6 +38,15 @@ fn a_limit_cycle_walks_without_static_criteria() {
     assert_wrong("planar_biped_zmp_gait", false, &[]);
 }
 
+/// From standing to standing there is no period to judge by.
+#[test]
+fn a_walk_that_starts_and_stops_has_no_cycle() {
+    let run = compared("planar_biped_start_stop");
+    assert!(!run.fell());
+    assert_eq!(run.poincare, Verdict::Silent);
+    assert_eq!(run.largest_multiplier, None);
+}
+
 #[test]
 fn the_zero_moment_point_stays_inside_while_the_robot_collapses() {
     let run = assert_wrong("planar_biped_switched_off", true, &["zero_moment"]);

@@ -1,11 +1,14 @@
 //! Gaits: their postures meet their conditions, and the robot walks them.
 
 mod balance;
+mod capturability;
+mod capture_step;
 mod comparison;
 mod event_driven_step;
 mod gait_file;
 mod gait_plan;
 mod gait_schema;
+mod held_joints;
 mod limit_cycle;
 mod passive_walkers;
 mod poincare;

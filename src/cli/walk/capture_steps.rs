@@ -1,0 +1,171 @@
+//! `denavit walk capture-steps`: pushes, the steps predicted, and the steps made.
+
+use super::super::Answer;
+use super::super::failure::Failure;
+use super::super::json::write_json;
+use super::super::progress::Progress;
+use super::super::simulate::open;
+use super::capturability::steps_value;
+use clap::Args;
+use denavit::report::{Align, Table};
+use denavit::simulate::scenario::Scenario;
+use denavit::walk::capturability::{Capturability, Steps};
+use denavit::walk::capture_step::{law_of, step_limits};
+use denavit::walk::robustness::{CapturePush, CapturePushOptions, capture_pushes};
+use serde_json::{Value, json as value};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Push a robot that steps onto its capture point: the steps predicted, and the steps it makes
+///
+/// Impulses along x, at the point and the time of the scenario's first push, which they replace.
+/// The prediction is that of the linear inverted pendulum with sole, step time and longest step of
+/// the controller (`walk capturability`), from the capture point just after the push.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  denavit walk capture-steps planar_biped_capture_step --most 20 --pushes 5
+  denavit walk capture-steps planar_biped_capture_step --impulses 6,14,-12")]
+pub(crate) struct Arguments {
+    /// The path of a scenario file, or the name of a shipped scenario
+    #[arg(value_name = "SCENARIO")]
+    scenario: PathBuf,
+    /// The strongest impulse, forward and backward [N s]
+    #[arg(long, value_name = "NS", default_value_t = 28.0)]
+    most: f64,
+    /// How many impulses, from the strongest backward to the strongest forward
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 15,
+        value_parser = clap::value_parser!(u32).range(2..=1001)
+    )]
+    pushes: u32,
+    /// These impulses instead, backward negative [N s]
+    #[arg(
+        long,
+        value_name = "NS,..",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with_all = ["most", "pushes"]
+    )]
+    impulses: Vec<f64>,
+    /// How long the robot has to come to rest after the push
+    #[arg(long, value_name = "SECONDS", default_value_t = 4.0)]
+    after: f64,
+    /// The answer as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if !positive(arguments.most) || !positive(arguments.after) {
+        return Err(Failure::Walk("--most, --after".to_owned(), "positive numbers".to_owned()));
+    }
+    if !arguments.impulses.iter().all(|impulse| impulse.is_finite()) {
+        return Err(Failure::Walk("--impulses".to_owned(), "finite numbers".to_owned()));
+    }
+    let mut scenario = open(&arguments.scenario)?;
+    let name = scenario.name.clone();
+    let options = options(arguments, &scenario)?;
+    let failure = |why: String| Failure::Walk(name.clone(), why);
+    let limits = step_limits(&mut scenario).map_err(|error| failure(error.to_string()))?;
+    let found = Capturability::new(limits).map_err(|error| failure(error.to_string()))?;
+    let progress = Progress::new();
+    let pushes =
+        capture_pushes(&|| open(&arguments.scenario).ok(), &found, &options, &|done, all| {
+            progress.show(&format!("{done} of {all} pushes"))
+        });
+    progress.clear();
+    match arguments.json {
+        true => write_json(out, &answer(&name, &pushes))?,
+        false => print(out, &name, &pushes)?,
+    }
+    Ok(Answer::Done)
+}
+
+/// The pushes, in place of those of the scenario.
+fn options(arguments: &Arguments, scenario: &Scenario) -> Result<CapturePushOptions, Failure> {
+    let lacks = |what: &str| Failure::Walk(scenario.name.clone(), what.to_owned());
+    if law_of(scenario).is_none() {
+        return Err(lacks("no controller that steps: `\"gait\": {\"capture_step\": {..}}`"));
+    }
+    let push = scenario.simulation.pushes.first();
+    let push = push.ok_or_else(|| lacks("no push, whose point and time are taken: `pushes`"))?;
+    let last = f64::from(arguments.pushes - 1);
+    let graded = (0..arguments.pushes)
+        .map(|index| arguments.most * (2.0 * f64::from(index) / last - 1.0))
+        .collect();
+    Ok(CapturePushOptions {
+        point: push.point.clone(),
+        at_s: push.at_s - scenario.initial.t_s,
+        impulses_ns: match arguments.impulses.is_empty() {
+            true => graded,
+            false => arguments.impulses.clone(),
+        },
+        after_s: arguments.after,
+    })
+}
+
+fn agreeing(pushes: &[CapturePush]) -> usize {
+    pushes.iter().filter(|push| push.agrees()).count()
+}
+
+fn outcome_word(push: &CapturePush) -> &'static str {
+    match push.outcome.walks() {
+        true if push.stands() => "stands",
+        true => "moves",
+        false => push.outcome.word(),
+    }
+}
+
+fn answer(name: &str, pushes: &[CapturePush]) -> Value {
+    let one = |push: &CapturePush| {
+        value!({
+            "impulse_ns": push.impulse_ns,
+            "capture_m": push.capture_m,
+            "predicted_steps": push.predicted.map(steps_value),
+            "steps": push.steps,
+            "outcome": outcome_word(push),
+            "agrees": push.agrees(),
+        })
+    };
+    value!({
+        "scenario": name,
+        "pushes": pushes.iter().map(one).collect::<Vec<Value>>(),
+        "agree": agreeing(pushes),
+    })
+}
+
+fn print(out: &mut dyn Write, name: &str, pushes: &[CapturePush]) -> Result<(), Failure> {
+    writeln!(out, "{name}: steps after a push, predicted and made\n")?;
+    let columns = [
+        ("impulse [N s]", Align::Right),
+        ("capture point [m]", Align::Right),
+        ("predicted", Align::Right),
+        ("steps", Align::Right),
+        ("then", Align::Left),
+        ("", Align::Left),
+    ];
+    let mut table = Table::new(&columns);
+    for push in pushes {
+        let predicted = match push.predicted {
+            Some(Steps::Least(steps)) => steps.to_string(),
+            Some(Steps::Falls) => "fall".to_owned(),
+            None => "-".to_owned(),
+        };
+        let other = if push.agrees() { "" } else { "other than predicted" };
+        table.push(vec![
+            format!("{:.2}", push.impulse_ns),
+            format!("{:.4}", push.capture_m),
+            predicted,
+            push.steps.to_string(),
+            outcome_word(push).to_owned(),
+            other.to_owned(),
+        ]);
+    }
+    writeln!(out, "{table}")?;
+    writeln!(out, "{} of {} as predicted", agreeing(pushes), pushes.len())?;
+    Ok(())
+}

@@ -93,6 +93,8 @@ pub const GAITS: &[ShippedModel] = &shipped!["models/gaits":
     "planar_biped_inverted_pendulum",
     "planar_biped_limit_cycle",
     "planar_biped_primitives",
+    "tulip_turn",
+    "tulip_walk",
 ];
 
 /// The shipped model of that name.

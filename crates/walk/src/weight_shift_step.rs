@@ -232,7 +232,7 @@ impl Body {
         let (sine, _) = pitch.sincos();
         let behind = heel[0] - toe[0];
         let mut add = |place: usize, axis, value| {
-            conditions.push(Condition::Point { contact: sole.points[place], axis, value });
+            conditions.push(Condition::point(sole.points[place], axis, value));
         };
         add(0, 0, toe[0] + forward);
         add(0, 1, toe[1]);

@@ -14,7 +14,7 @@ use denavit::shipped;
 use denavit::walk::ScenarioHead;
 use denavit::walk::gait_file::{GaitFile, GaitKind, read_gait};
 use denavit::walk::gait_plan::{
-    GaitPlan, Knot, PlanError, plan_inverted_pendulum, plan_primitives,
+    GaitPlan, Knot, PlanError, plan_divergent_component, plan_inverted_pendulum, plan_primitives,
 };
 use denavit::walk::optimal::{LimitCycle, design, scenario_text};
 use serde_json::{Map, Value, json as value};
@@ -135,7 +135,7 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
     let bytes = load_beside(&arguments.gait, &gait.model)
         .map_err(|why| refused(name, format_args!("{}: {why}\n  hint: {MODEL}", gait.model)))?;
     let robot = effect::read_model(&gait.model, &bytes, &[]).map_err(Failure::Model)?;
-    let mut plant = plant_of(&robot, &[]).map_err(|error| refused(&robot.name, error))?;
+    let mut plant = plant_of(&robot, &gait.parameters).map_err(|error| refused(name, error))?;
     let stem = arguments.gait.file_stem().unwrap_or_default().to_string_lossy();
     let own = if gait.name.is_empty() { stem.into_owned() } else { gait.name.clone() };
     let model = model_from(arguments, &gait.model);
@@ -145,6 +145,7 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
         description: &gait.description,
         source: &source,
         model: &model,
+        parameters: &gait.parameters,
         steps: 0,
     };
     let refuse =
@@ -158,6 +159,10 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
         GaitKind::InvertedPendulum(problem) => {
             let plan = plan_inverted_pendulum(plant, problem).map_err(refuse)?;
             Ok(planned("linear inverted pendulum", plan, plant, &head).map_err(refuse)?)
+        }
+        GaitKind::DivergentComponent(problem) => {
+            let plan = plan_divergent_component(plant, problem).map_err(refuse)?;
+            Ok(planned("divergent component of motion", plan, plant, &head).map_err(refuse)?)
         }
         GaitKind::LimitCycle(problem) => {
             let found = design(plant, problem).map_err(|error| refused(name, error))?;

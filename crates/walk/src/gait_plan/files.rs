@@ -23,7 +23,7 @@ impl GaitPlan {
             duration_s: self.duration_s,
             start: &State::resting(self.start.clone()),
             laws: &laws,
-            fallback_friction: self.gains.fallback_friction,
+            friction: self.gains.friction,
         };
         scenario_file(model, head, &run)
     }

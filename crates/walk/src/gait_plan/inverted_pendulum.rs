@@ -4,9 +4,11 @@
 
 use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
+use super::footsteps::smooth;
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, JointGains, Knot};
-use super::walker::{Height, Pose, Posture, Walker};
+use super::posture::Posture;
+use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
 use denavit_runtime::Scalar;
 use std::f64::consts::PI;
@@ -140,12 +142,6 @@ impl Phase {
         }
         feet_m
     }
-}
-
-/// From 0 to 1 without velocity and acceleration at the ends.
-fn smooth(share: f64) -> f64 {
-    let u = share.clamp(0.0, 1.0);
-    u * u * u * (10.0 - u * (15.0 - 6.0 * u))
 }
 
 /// A walk that is being planned.

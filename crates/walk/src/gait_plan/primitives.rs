@@ -4,7 +4,8 @@
 use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
 use super::plan::{GaitPlan, JointGains, Knot};
-use super::walker::{Height, Pose, Posture, Walker};
+use super::posture::Posture;
+use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
 
 /// How joint positions go from a posture to the next.

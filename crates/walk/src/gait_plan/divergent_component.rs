@@ -13,8 +13,9 @@ use super::footsteps::{AnkleRolls, DivergentComponentProblem, Phase, phases};
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, Knot};
 use super::posture::Posture;
-use denavit_plants::Plant;
-use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
+use super::torque::{Moment, torques};
+use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
+use denavit_plants::{Plant, PlantModel};
 
 /// A plan with more knots is one for longer than anybody waits.
 const MAX_KNOTS: usize = 20_000;
@@ -49,7 +50,7 @@ pub fn plan_divergent_component(
         steps: problem.footsteps.len() + 1,
         duration_s: planner.end_s(),
         distance_m: planner.mean_step_m() * problem.footsteps.len() as f64,
-        paths: planner.joint_paths(&motion),
+        paths: planner.joint_paths(plant, &motion),
         repeats: false,
         start: motion.postures.first().map(|posture| posture.q.clone()).unwrap_or_default(),
         gains: problem.gains,
@@ -99,13 +100,18 @@ struct Motion {
 }
 
 impl Motion {
+    fn moment(&self, t_s: f64) -> Moment {
+        let points: Vec<Setpoint> = self.splines.iter().map(|spline| spline.at(t_s)).collect();
+        Moment {
+            q: points.iter().map(|point| point.position).collect(),
+            qd: points.iter().map(|point| point.rate).collect(),
+            qdd: points.iter().map(|point| point.acceleration).collect(),
+        }
+    }
+
     /// The zero moment point of all bodies \[m\].
     fn zero_moment_point(&self, plant: &mut dyn Plant, t_s: f64) -> Result<[f64; 2], PlanError> {
-        let points = self.splines.iter().map(|spline| spline.at(t_s));
-        let points: Vec<_> = points.collect();
-        let q: Vec<f64> = points.iter().map(|point| point.position).collect();
-        let qd: Vec<f64> = points.iter().map(|point| point.rate).collect();
-        let qdd: Vec<f64> = points.iter().map(|point| point.acceleration).collect();
+        let Moment { q, qd, qdd } = self.moment(t_s);
         let lacks = || PlanError::NoBiped("zero moment point of its bodies".to_owned());
         let mut walking = plant.walking().ok_or_else(lacks)?;
         let [x, y, _] = walking.zero_moment_point(&q, &qd, &qdd).ok_or_else(lacks)?;
@@ -223,18 +229,39 @@ impl Planner<'_> {
         }
     }
 
-    fn joint_paths(&self, motion: &Motion) -> Vec<JointPath> {
+    fn joint_paths(&self, plant: &mut dyn Plant, motion: &Motion) -> Vec<JointPath> {
         let times_s: Vec<f64> = self.times.iter().map(|time| time.t_s).collect();
+        let planned: Vec<Vec<f64>> = self
+            .times
+            .iter()
+            .map(|time| {
+                let weights = self.weights(plant.model(), *time);
+                torques(plant, &motion.moment(time.t_s), &weights)
+            })
+            .collect();
         let rolls = self.biped.rolls().filter(|_| self.problem.ankle_rolls == AnkleRolls::Passive);
         let is_free =
             |joint: usize| rolls.is_some_and(|rolls| rolls.iter().any(|roll| roll.joint == joint));
         let driven = self.biped.drivable.iter().filter(|joint| !is_free(**joint));
         let path = |joint: &usize| {
-            let values = motion.postures.iter().map(|posture| posture.q[*joint]).collect();
-            let curve = Curve::Cubic { times_s: times_s.clone(), values };
-            JointPath { joint: *joint, pieces: vec![Piece { duration_s: self.end_s(), curve }] }
+            let cubic = |values| Curve::Cubic { times_s: times_s.clone(), values };
+            let curve = cubic(motion.postures.iter().map(|posture| posture.q[*joint]).collect());
+            let torque = cubic(planned.iter().map(|torques| torques[*joint]).collect());
+            let pieces = vec![Piece { duration_s: self.end_s(), curve }];
+            JointPath { joint: *joint, pieces, feed_forward: Some(torque) }
         };
         driven.map(path).collect()
+    }
+
+    /// The share of each contact point in the load.
+    fn weights(&self, model: &PlantModel, time: Time) -> Vec<f64> {
+        let (phase, share) = self.phase(time);
+        let left = phase.load_at(share);
+        let mut weights = vec![0.0; model.contacts.len()];
+        for (sole, load) in self.biped.soles.iter().zip([1.0 - left, left]) {
+            sole.points.iter().for_each(|point| weights[*point] = load);
+        }
+        weights
     }
 
     /// The knots with the times halfway between them, where curves pass, and all margins checked.

@@ -3,7 +3,6 @@
 
 use super::biped::{AnkleRoll, SolePlace};
 use super::plan::JointGains;
-use std::f64::consts::PI;
 
 /// A leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,13 +145,11 @@ impl Phase {
         if let Some((side, landing)) = self.swing {
             let way = smooth((share - ONWARD[0]) / (ONWARD[1] - ONWARD[0]));
             let between = |from: f64, to: f64| from + (to - from) * way;
-            let (sine, _) = (PI * share).sin_cos();
             let from = soles[side];
             soles[side] = SolePlace {
                 middle_m: [0, 1].map(|axis| between(from.middle_m[axis], landing.middle_m[axis])),
                 yaw_rad: between(from.yaw_rad, landing.yaw_rad),
-                // sin^2 would leave 1e-33 at the end
-                lift_m: if share >= 1.0 { 0.0 } else { lift_m * sine * sine },
+                lift_m: lift_m * hump(share),
             };
         }
         soles
@@ -179,6 +176,12 @@ impl Phase {
 pub(super) fn smooth(share: f64) -> f64 {
     let u = share.clamp(0.0, 1.0);
     u * u * u * (10.0 - u * (15.0 - 6.0 * u))
+}
+
+/// From 0 to 1 and back to 0, without velocity and acceleration at the ends.
+fn hump(share: f64) -> f64 {
+    let u = share.clamp(0.0, 1.0);
+    (4.0 * u * (1.0 - u)).powi(3)
 }
 
 /// Phases from standing to standing.

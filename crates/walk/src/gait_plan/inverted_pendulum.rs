@@ -255,7 +255,7 @@ impl Planner<'_> {
             let values = knots.iter().map(|knot| knot.q[*joint]).collect();
             let curve = Curve::Cubic { times_s: times_s.clone(), values };
             let pieces = vec![Piece { duration_s: self.course.end_s(), curve }];
-            JointPath { joint: *joint, pieces }
+            JointPath { joint: *joint, pieces, feed_forward: None }
         };
         self.walker.driven.iter().map(path).collect()
     }

@@ -20,6 +20,7 @@ mod pendulum;
 mod plan;
 mod posture;
 mod primitives;
+mod torque;
 mod walker;
 
 pub use crate::scenario_file::ContactFriction;

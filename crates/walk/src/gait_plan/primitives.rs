@@ -257,7 +257,7 @@ impl Step<'_> {
         let path = |joint: &usize| {
             let roles = [*joint, self.walker.exchange.coordinates[*joint]];
             let pieces = roles.iter().flat_map(|role| self.pieces(*role)).collect();
-            JointPath { joint: *joint, pieces }
+            JointPath { joint: *joint, pieces, feed_forward: None }
         };
         self.walker.driven.iter().map(path).collect()
     }

@@ -13,7 +13,7 @@ use super::footsteps::{AnkleRolls, DivergentComponentProblem, Phase, phases};
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, Knot};
 use super::posture::Posture;
-use super::torque::{Moment, torques};
+use super::torque::{Bearing, Moment, torques};
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
 use denavit_plants::{Plant, PlantModel};
 
@@ -231,18 +231,15 @@ impl Planner<'_> {
 
     fn joint_paths(&self, plant: &mut dyn Plant, motion: &Motion) -> Vec<JointPath> {
         let times_s: Vec<f64> = self.times.iter().map(|time| time.t_s).collect();
-        let planned: Vec<Vec<f64>> = self
-            .times
-            .iter()
-            .map(|time| {
-                let weights = self.weights(plant.model(), *time);
-                torques(plant, &motion.moment(time.t_s), &weights)
-            })
-            .collect();
         let rolls = self.biped.rolls().filter(|_| self.problem.ankle_rolls == AnkleRolls::Passive);
-        let is_free =
-            |joint: usize| rolls.is_some_and(|rolls| rolls.iter().any(|roll| roll.joint == joint));
-        let driven = self.biped.drivable.iter().filter(|joint| !is_free(**joint));
+        let free: Vec<usize> = rolls.iter().flatten().map(|roll| roll.joint).collect();
+        let mut needed = |time: &Time| {
+            let weights = self.weights(plant.model(), *time);
+            let bearing = Bearing { weights: &weights, free: &free };
+            torques(plant, &motion.moment(time.t_s), bearing)
+        };
+        let planned: Vec<Vec<f64>> = self.times.iter().map(&mut needed).collect();
+        let driven = self.biped.drivable.iter().filter(|joint| !free.contains(joint));
         let path = |joint: &usize| {
             let cubic = |values| Curve::Cubic { times_s: times_s.clone(), values };
             let curve = cubic(motion.postures.iter().map(|posture| posture.q[*joint]).collect());

@@ -23,15 +23,16 @@ use std::path::{Path, PathBuf};
 
 /// Design a gait: from a file of a few lines to a scenario that walks (thesis 4.4.2, 4.4.3)
 ///
-/// Gaits are walking primitives, walks by the linear inverted pendulum, and limit cycles;
-/// docs/gait.md describes their files. Residuals of inverse kinematics and margins are reported at
+/// Gaits are walking primitives, walks by the linear inverted pendulum, walks in space on planned
+/// footsteps, and limit cycles; docs/gait.md describes their files. Residuals of inverse kinematics and margins are reported at
 /// every posture and between. A gait that cannot be exits with 2, and is named with posture, time
 /// and residual.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   denavit walk design planar_biped_primitives -o primitives.json --svg joints.svg
-  denavit walk design planar_biped_inverted_pendulum -o pendulum.json")]
+  denavit walk design planar_biped_inverted_pendulum -o pendulum.json
+  denavit walk design tulip_walk -o walk.json")]
 pub(crate) struct Arguments {
     /// The path of a gait file, or the name of a shipped gait
     #[arg(value_name = "GAIT")]

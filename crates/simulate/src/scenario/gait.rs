@@ -13,6 +13,8 @@ use denavit_plants::trajectory::Reference;
 pub struct PlannedGait {
     /// What each joint follows; none where no drive is to follow.
     pub references: Vec<Option<Reference>>,
+    /// Planned torques of each joint [N m, N]; none where none are planned.
+    pub torques: Vec<Option<Reference>>,
     /// Stiffness of the joints' laws [N m/rad, N/m].
     pub stiffness: f64,
     /// Damping of the joints' laws [N m s/rad, N s/m].
@@ -40,12 +42,14 @@ pub(super) fn gait(
         return None;
     };
     let gait = planner(node, plant, report)?;
-    for (law, reference) in control.joints.iter_mut().zip(gait.references) {
+    let planned = gait.references.into_iter().zip(gait.torques);
+    for (law, (reference, torque)) in control.joints.iter_mut().zip(planned) {
         // what the scenario says of a joint itself goes before
         if law.reference.is_some() || reference.is_none() {
             continue;
         }
         law.reference = reference;
+        law.feed_forward = law.feed_forward.take().or(torque);
         if law.stiffness == 0.0 && law.damping == 0.0 {
             (law.stiffness, law.damping) = (gait.stiffness, gait.damping);
         }

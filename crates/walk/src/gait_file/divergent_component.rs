@@ -3,7 +3,7 @@
 use super::laws;
 use super::primitives::{DURATION_S, HEIGHT_M, LIFT_M, MARGIN_M, PITCH_RAD, PLACE_M, STEPS};
 use crate::gait_plan::{
-    AnkleRolls, ContactFriction, DivergentComponentProblem, Footstep, JointGains, Side,
+    AnkleRolls, ContactFriction, DivergentComponentProblem, Ending, Footstep, JointGains, Side,
 };
 use denavit_codegen::model::{Fields, Node};
 use denavit_simulate::scenario::{Cause, FieldsNumbers, NodeNumbers, Range, Report};
@@ -13,6 +13,7 @@ const KEYS: &[&str] = &[
     "steps",
     "turn_rad",
     "footsteps",
+    "ends",
     "step_s",
     "double_support_s",
     "standing_s",
@@ -40,17 +41,20 @@ const GAINS: JointGains =
     JointGains { kp: 3000.0, kd: 60.0, friction: ContactFriction::Coulomb(0.8) };
 
 /// Reads what the walk is to be.
-pub(super) fn read(node: Node<'_>, report: &mut Report) -> Option<DivergentComponentProblem> {
+pub(crate) fn read(node: Node<'_>, report: &mut Report) -> Option<DivergentComponentProblem> {
     let given = &node.fields(KEYS, report)?;
     let before = report.count();
     let inward = given.get("pressure_inward_m");
     let rolls = given.get("ankle_rolls");
     let rolls = rolls.and_then(|node| node.choice(&AnkleRolls::WORDS, &AnkleRolls::ALL, report));
+    let ends = given.get("ends");
+    let ends = ends.and_then(|node| node.choice(&Ending::WORDS, &Ending::ALL, report));
     let first = given.get("first_swing");
     let first = first.and_then(|node| node.choice(&Side::WORDS, &Side::ALL, report));
     let width = given.get("step_width_m");
     let problem = DivergentComponentProblem {
         footsteps: footsteps(given, report),
+        ends: ends.unwrap_or_default(),
         step_s: given.required_number("step_s", DURATION_S, report),
         double_support_s: given.number("double_support_s", DURATION_S, 0.2, report),
         standing_s: given.array("standing_s", DURATION_S, [1.0; 2], report),
@@ -70,7 +74,7 @@ pub(super) fn read(node: Node<'_>, report: &mut Report) -> Option<DivergentCompo
     (report.count() == before).then_some(problem)
 }
 
-/// Steps one by one, or all alike.
+/// Steps one by one, or all alike, of which the last puts the feet side by side.
 fn footsteps(given: &Fields<'_>, report: &mut Report) -> Vec<Footstep> {
     if let Some(node) = given.get("footsteps") {
         for key in ["step_length_m", "steps", "turn_rad"] {
@@ -79,16 +83,21 @@ fn footsteps(given: &Fields<'_>, report: &mut Report) -> Vec<Footstep> {
             }
         }
         let items = node.items(report);
+        if items.is_empty() {
+            report.push(node.at(), Cause::Gait("there are no steps".to_owned(), "list one"));
+        }
         return items.into_iter().filter_map(|item| footstep(item, report)).collect();
     }
+    if let Some(node) = given.get("ends") {
+        report.push(node.at(), Cause::Gait(ALIKE.to_owned(), "list the `footsteps`"));
+    }
     let forward_m = given.required_number("step_length_m", PLACE_M, report);
-    let steps = given.count("steps", STEPS, 10, report).max(1);
-    let turn_rad = given.number("turn_rad", TURN_RAD, 0.0, report);
-    let others = steps - 1;
-    let turn_rad = turn_rad / others.max(1) as f64;
-    vec![Footstep { forward_m, left_m: 0.0, turn_rad, width_m: None }; others]
+    let onward = given.count("steps", STEPS, 10, report).saturating_sub(1);
+    let turn_rad = given.number("turn_rad", TURN_RAD, 0.0, report) / onward.max(1) as f64;
+    vec![Footstep { forward_m, left_m: 0.0, turn_rad, width_m: None }; onward]
 }
 
+const ALIKE: &str = "steps that are all alike end side by side";
 const TWICE: &str = "`footsteps` say all steps one by one";
 const ONE: &str = "leave out `footsteps`, or this key";
 

@@ -3,7 +3,7 @@
 //! One key says the kind; the gait's numbers stand under it. All faults of a file are found in one
 //! run, each with its place, its cause and what to do about it.
 
-mod divergent_component;
+pub(crate) mod divergent_component;
 mod inverted_pendulum;
 mod laws;
 mod limit_cycle;

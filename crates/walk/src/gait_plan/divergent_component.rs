@@ -47,7 +47,7 @@ pub fn plan_divergent_component(
     Ok(GaitPlan {
         step_s,
         step_length_m: planner.mean_step_m(),
-        steps: problem.footsteps.len() + 1,
+        steps: problem.swings(),
         duration_s: planner.end_s(),
         distance_m: planner.mean_step_m() * problem.footsteps.len() as f64,
         paths: planner.joint_paths(plant, &motion),

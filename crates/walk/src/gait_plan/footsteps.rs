@@ -38,6 +38,23 @@ impl AnkleRolls {
     pub const ALL: [Self; 2] = [Self::Driven, Self::Passive];
 }
 
+/// How a walk ends; at rest in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ending {
+    /// With one more step, which puts the feet side by side.
+    #[default]
+    SideBySide,
+    /// With the weight over the foot that has stepped last.
+    OnLastFoot,
+}
+
+impl Ending {
+    /// What files call them, in the order of the enum.
+    pub const WORDS: [&'static str; 2] = ["side_by_side", "on_last_foot"];
+    /// Both of them, in the order of the enum.
+    pub const ALL: [Self; 2] = [Self::SideBySide, Self::OnLastFoot];
+}
+
 /// A step: where the middle between the feet goes, seen from where it was, and its foot with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footstep {
@@ -54,8 +71,10 @@ pub struct Footstep {
 /// What the walk is to be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DivergentComponentProblem {
-    /// The steps; one more after them puts the feet side by side.
+    /// The steps, but for one that puts the feet side by side.
     pub footsteps: Vec<Footstep>,
+    /// How the walk ends.
+    pub ends: Ending,
     /// From a foot's landing to the next one's, single and double support \[s\].
     pub step_s: f64,
     /// Double support in it \[s\].
@@ -91,6 +110,11 @@ pub struct DivergentComponentProblem {
 }
 
 impl DivergentComponentProblem {
+    /// How often a foot swings.
+    pub fn swings(&self) -> usize {
+        self.footsteps.len() + usize::from(self.ends == Ending::SideBySide)
+    }
+
     /// How far the centre of pressure is from the middle of a sole, forward and to the left, at the
     /// beginning and at the end of single support \[m\].
     fn pressures_m(&self, side: usize, rolls: Option<[AnkleRoll; 2]>) -> [[f64; 2]; 2] {
@@ -198,7 +222,7 @@ pub(super) fn phases(
     let pressures_m = [course.middle_m(), course.pressures_m(1 - first)[0]];
     let [begin_s, end_s] = problem.standing_s;
     course.push("start".to_owned(), begin_s, None, (pressures_m, stance_load(1 - first)));
-    for step in 0..=problem.footsteps.len() {
+    for step in 0..problem.swings() {
         let side = (first + step) % 2;
         if let Some(footstep) = problem.footsteps.get(step) {
             width = footstep.width_m.or(problem.step_width_m).unwrap_or(width_m);
@@ -211,9 +235,12 @@ pub(super) fn phases(
         let swing = Some((side, beside(&frame, side, width)));
         let name = format!("step {}, swing", step + 1);
         course.push(name, swing_s, swing, (pressures_m, stance_load(1 - side)));
-        if step == problem.footsteps.len() {
-            let pressures_m = [to, course.middle_m()];
-            course.push("stop".to_owned(), end_s, None, (pressures_m, 0.5));
+        if step + 1 == problem.swings() {
+            let (last_m, load) = match problem.ends {
+                Ending::SideBySide => (course.middle_m(), 0.5),
+                Ending::OnLastFoot => (course.pressures_m(side)[1], stance_load(side)),
+            };
+            course.push("stop".to_owned(), end_s, None, ([to, last_m], load));
         } else {
             let pressures_m = [to, course.pressures_m(side)[0]];
             let name = format!("step {}, double support", step + 1);

@@ -28,7 +28,7 @@ pub use biped::{AnkleRoll, Biped, BipedPose, RollCondition, Sole, SolePlace};
 pub use curve::{Curve, JointPath, Piece};
 pub use divergent_component::plan_divergent_component;
 pub use fault::PlanError;
-pub use footsteps::{AnkleRolls, DivergentComponentProblem, Footstep, Side};
+pub use footsteps::{AnkleRolls, DivergentComponentProblem, Ending, Footstep, Side};
 pub use inverted_pendulum::{InvertedPendulumProblem, plan_inverted_pendulum};
 pub use pendulum::{PendulumPath, PendulumState, PressureSegment};
 pub use plan::{GaitPlan, JointGains, Knot};

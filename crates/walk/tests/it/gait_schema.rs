@@ -31,6 +31,8 @@ fn schema_and_reader_agree() {
     let posture = json!({"center_of_mass_m": 0.0, "swing_foot_m": [0.1, 0]});
     let primitives = json!({"hip_height_m": 0.5, "postures": [posture, posture]});
     let pendulum = json!({"step_length_m": 0.1, "step_s": 0.8, "center_of_mass_height_m": 0.6});
+    let space = json!({"step_length_m": 0.1, "step_s": 0.8, "center_of_mass_height_m": 0.6});
+    let listed = |footsteps: Value| json!({"footsteps": footsteps, "step_s": 0.8, "center_of_mass_height_m": 0.6});
     let with = |gait: &Value, pointer: &str, value: Value| {
         let mut gait = gait.clone();
         let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -51,10 +53,24 @@ fn schema_and_reader_agree() {
         ("inverted_pendulum", json!({"step_length_m": 0.1, "step_s": 0.8}), false),
         ("inverted_pendulum", with(&pendulum, "/standing_s", json!([1, 2, 3])), false),
         ("inverted_pendulum", with(&pendulum, "/steps", json!(2.5)), false),
+        ("divergent_component", space.clone(), true),
+        ("divergent_component", with(&space, "/footsteps", json!([{}])), false),
+        ("divergent_component", with(&space, "/ends", json!("on_last_foot")), false),
+        ("divergent_component", listed(json!([{}])), true),
+        ("divergent_component", listed(json!([])), false),
+        ("divergent_component", listed(json!([{"width_m": 0}])), false),
+        ("divergent_component", with(&listed(json!([{}])), "/steps", json!(3)), false),
+        ("divergent_component", with(&space, "/corrections", json!(11)), false),
+        ("divergent_component", with(&space, "/first_swing", json!("both")), false),
         ("march", json!({}), false),
     ];
     let schema: Value = serde_json::from_str(schema()).expect("JSON");
-    for (kind, own) in [("primitives", &primitives), ("inverted_pendulum", &pendulum)] {
+    let kinds = [
+        ("primitives", &primitives),
+        ("inverted_pendulum", &pendulum),
+        ("divergent_component", &space),
+    ];
+    for (kind, own) in kinds {
         let properties = schema["properties"][kind]["properties"].as_object().unwrap();
         let mut count = 0;
         for (key, stated) in properties {
@@ -65,7 +81,7 @@ fn schema_and_reader_agree() {
             for (value, is_right) in
                 [(least, true), (most, true), (below, false), (2.0 * most, false)]
             {
-                let value = if key == "steps" && value.fract() == 0.0 {
+                let value = if (key == "steps" || key == "corrections") && value.fract() == 0.0 {
                     json!(value as i64)
                 } else {
                     json!(value)

@@ -214,29 +214,35 @@ fn passive(step_s: f64) -> DivergentComponentProblem {
     }
 }
 
-/// How a walk on springs of this stiffness ends, from event to event.
-fn stop(step_s: f64, stiffness: f64) -> Stop {
+/// Whether a walk on springs of this stiffness is walked from event to event: no fall, and both feet
+/// within 2 cm of where they were planned.
+fn walks(step_s: f64, stiffness: f64) -> bool {
     let springs = springs(stiffness);
-    let plan = plan_divergent_component(tulip(&springs).as_mut(), &passive(step_s)).unwrap();
+    let mut plant = tulip(&springs);
+    let plan = plan_divergent_component(plant.as_mut(), &passive(step_s)).unwrap();
     assert!(plan.paths.iter().all(|path| ![11, 17].contains(&path.joint)), "no motors there");
-    scenario(&plan, &springs).run().unwrap().stop
+    let run = scenario(&plan, &springs).run().unwrap();
+    let last = &plan.knots.last().unwrap().q;
+    let [placed, wanted] = [&run.end.q, last].map(|q| soles(plant.as_mut(), q));
+    let mut pairs = placed.iter().flatten().zip(wanted.iter().flatten());
+    run.stop == Stop::End && pairs.all(|(placed, wanted)| (placed - wanted).abs() < 0.02)
 }
 
 #[test]
 fn springs_walk_where_they_are_stiff_enough_or_steps_short() {
-    assert_eq!(stop(0.8, 400.0), Stop::End);
-    assert_ne!(stop(0.8, 150.0), Stop::End);
+    assert!(walks(0.8, 400.0));
+    assert!(!walks(0.8, 150.0));
     // a step of half a second is over before the robot has tilted
-    assert_eq!(stop(0.5, 0.0), Stop::End);
+    assert!(walks(0.5, 0.0));
 }
 
-/// The least stiffness: from 600 N m/rad down, the last one before the first fall.
+/// The least stiffness: from 600 N m/rad down, the last one before the first that does not walk.
 #[test]
 #[ignore = "takes minutes: the figures are in the docs"]
 fn least_stiffness_of_passive_ankle_rolls() {
     for step_s in [0.5, 0.6, 0.7, 0.8, 1.0] {
         let stiffnesses = (0..=60).map(|index| 600.0 - 10.0 * f64::from(index));
-        let walked = stiffnesses.take_while(|stiffness| stop(step_s, *stiffness) == Stop::End);
+        let walked = stiffnesses.take_while(|stiffness| walks(step_s, *stiffness));
         let least = walked.last().expect("600 N m/rad are enough");
         println!("steps of {step_s} s: {least} N m/rad");
         assert!(least < 500.0 && (step_s > 0.5 || least == 0.0), "{step_s} s: {least}");
@@ -260,7 +266,7 @@ fn walks_that_cannot_be_are_refused_by_name() {
     let long = refused(&|problem| {
         problem.footsteps.iter_mut().for_each(|step| step.forward_m = 0.6);
     });
-    let PlanError::Limit { posture, t_s, .. } = &long else { panic!("{long}") };
+    let PlanError::OutOfReach { posture, t_s, .. } = &long else { panic!("{long}") };
     assert!(posture.starts_with("step ") && *t_s > 1.0, "{long}");
     // soles are 0.15 m wide
     let narrow = refused(&|problem| problem.step_width_m = Some(0.14));

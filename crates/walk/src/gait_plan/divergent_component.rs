@@ -3,8 +3,8 @@
 //! inverse kinematics makes joint positions of both.
 //!
 //! The pendulum is one point. The zero moment point of all bodies in the planned motion is
-//! elsewhere; by how much is taken off the centre of pressure that the pendulum is planned with, and
-//! the motion planned again (the second stage of preview control, Kajita 2003).
+//! elsewhere; by how much is taken off the centre of pressure that the pendulum is planned with,
+//! and the motion planned again (the second stage of preview control, Kajita 2003).
 
 use super::biped::{Biped, BipedPose, RollCondition};
 use super::curve::{Curve, JointPath, Piece};
@@ -298,8 +298,7 @@ impl Planner<'_> {
         let [x, y, _] = pose.center_m;
         let margin_m = self.biped.margin_m(plant.model(), feet, pressure);
         let least_m = self.problem.margin_m;
-        // written so that NaN fails as well
-        if !(margin_m >= least_m) {
+        if margin_m < least_m || margin_m.is_nan() {
             let point = "planned zero moment point";
             return Err(PlanError::Margin { point, posture: name, t_s, margin_m, least_m });
         }

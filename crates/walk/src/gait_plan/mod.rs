@@ -2,8 +2,8 @@
 //!
 //! - [`plan_primitives`]: statically stable postures, joined (thesis 4.4.2)
 //! - [`plan_inverted_pendulum`]: the linear inverted pendulum, from standing to standing
-//! - [`plan_divergent_component`]: a walk in space on planned footsteps, by the pendulum's divergent
-//!   component
+//! - [`plan_divergent_component`]: a walk in space on planned footsteps, by the divergent component
+//!   of the pendulum
 //! - [`GaitPlan`]: what all make; its files are [`GaitPlan::scenario_text`] and
 //!   [`GaitPlan::trajectory_text`]
 //! - [`PendulumPath`]: the centre of mass of the pendulum in closed form

@@ -32,7 +32,11 @@ fn schema_and_reader_agree() {
     let primitives = json!({"hip_height_m": 0.5, "postures": [posture, posture]});
     let pendulum = json!({"step_length_m": 0.1, "step_s": 0.8, "center_of_mass_height_m": 0.6});
     let space = json!({"step_length_m": 0.1, "step_s": 0.8, "center_of_mass_height_m": 0.6});
-    let listed = |footsteps: Value| json!({"footsteps": footsteps, "step_s": 0.8, "center_of_mass_height_m": 0.6});
+    let listed = |footsteps: Value| {
+        let mut listed = json!({"step_s": 0.8, "center_of_mass_height_m": 0.6});
+        listed["footsteps"] = footsteps;
+        listed
+    };
     let with = |gait: &Value, pointer: &str, value: Value| {
         let mut gait = gait.clone();
         let (parent, key) = pointer.rsplit_once('/').unwrap();

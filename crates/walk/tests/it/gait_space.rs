@@ -1,5 +1,5 @@
-//! Walks in space: knots against forward kinematics and the pendulum's equation, and what is planned
-//! is walked from event to event and by time stepping.
+//! Walks in space: knots against forward kinematics; and what is planned is walked, from event to
+//! event and by time stepping.
 
 use super::assert_near;
 use denavit_codegen::model;
@@ -153,8 +153,8 @@ fn feet_are_placed_one_by_one() {
     assert_near((left[0] - right[0]).hypot(left[1] - right[1]), own, 1e-9);
 }
 
-/// By forward kinematics and differences, whatever the planner says: soles level, one at rest on the
-/// ground, height as asked for, torso upright, torques that leave the base free.
+/// By forward kinematics, whatever the planner says: soles level, one on the ground, height as asked
+/// for, torso upright.
 #[test]
 fn knots_meet_their_conditions() {
     let (mut plant, problem) = (tulip(&[]), problem("tulip_turn"));
@@ -214,8 +214,8 @@ fn passive(step_s: f64) -> DivergentComponentProblem {
     }
 }
 
-/// Whether a walk on springs of this stiffness is walked from event to event: no fall, and both feet
-/// within 2 cm of where they were planned.
+/// Whether a walk on springs of this stiffness is walked from event to event: no fall, and both
+/// feet within 2 cm of where they were planned.
 fn walks(step_s: f64, stiffness: f64) -> bool {
     let springs = springs(stiffness);
     let mut plant = tulip(&springs);
@@ -271,7 +271,7 @@ fn walks_that_cannot_be_are_refused_by_name() {
     // soles are 0.15 m wide
     let narrow = refused(&|problem| problem.step_width_m = Some(0.14));
     assert!(matches!(narrow, PlanError::Collision { t_s: 0.0, .. }), "{narrow}");
-    let outside = refused(&|problem| problem.center_of_pressure_m = [0.0, 0.2]);
+    let outside = refused(&|problem| problem.pressure_inward_m = Some(0.08));
     assert!(matches!(outside, PlanError::Margin { .. }), "{outside}");
     let brief = refused(&|problem| problem.standing_s = [0.05; 2]);
     assert!(matches!(brief, PlanError::Margin { .. } | PlanError::OutOfReach { .. }), "{brief}");

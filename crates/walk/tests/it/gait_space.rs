@@ -153,8 +153,8 @@ fn feet_are_placed_one_by_one() {
     assert_near((left[0] - right[0]).hypot(left[1] - right[1]), own, 1e-9);
 }
 
-/// By forward kinematics, whatever the planner says: soles level, one on the ground, height as asked
-/// for, torso upright.
+/// By forward kinematics, whatever the planner says: soles level, one on the ground, height
+/// and torso as asked for.
 #[test]
 fn knots_meet_their_conditions() {
     let (mut plant, problem) = (tulip(&[]), problem("tulip_turn"));

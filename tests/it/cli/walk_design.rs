@@ -162,9 +162,9 @@ fn gaits_that_cannot_be_are_named() {
             (
                 "tulip_walk",
                 "\"model\": \"tulip\"",
-                "\"model\": \"tulip\", \"parameters\": {\"ks\": 1}",
+                "\"model\": \"tulip\", \"parameters\": {\"ks_left_ankle\": 1}",
             ),
-            ["gait.json", "the model has no parameter `ks`", "hint"],
+            ["gait.json", "the model has no parameter `ks_left_ankle`", "hint"],
         ),
         (
             ("tulip_walk", "\"model\": \"tulip\"", "\"model\": \"planar_biped\""),

@@ -12,12 +12,13 @@ use denavit::shipped;
 use denavit::simulate::Control;
 use denavit::simulate::contact::Space;
 use denavit::simulate::contact::gauss_seidel::SweepLimits;
-use denavit::simulate::scenario::{self, RunScheme};
+use denavit::simulate::scenario::RunScheme;
 use denavit::simulate::time_stepping::{
     ControlledPlant, Instant, Scheme, StepLaw, StepReport, StepSolver, Stepping, Terms,
     TimeStepper, TimeSteppingModel,
 };
 use denavit::trajectory::{Fourier, Part, Reference, Sequence};
+use denavit::walk::read_scenario;
 use std::f64::consts::TAU;
 
 const N: usize = denavit::tulip::DOF;
@@ -159,7 +160,7 @@ fn events(criterion: &mut Criterion) {
     ] {
         let file = shipped::find_scenario(name).expect("it is shipped");
         let mut scenario =
-            scenario::read(name, file.text.as_bytes(), &load).expect("shipped scenarios are sound");
+            read_scenario(name, file.text.as_bytes(), &load).expect("shipped scenarios are sound");
         scenario.scheme = RunScheme::Event;
         scenario.simulation.end_s = duration_s;
         let run = scenario.run().expect("it begins");

@@ -96,6 +96,8 @@ pub const GAITS: &[ShippedModel] = &shipped!["models/gaits":
     "planar_biped_limit_cycle",
     "planar_biped_primitives",
     "planar_biped_start_stop",
+    "tulip_turn",
+    "tulip_walk",
 ];
 
 /// The shipped model of that name.

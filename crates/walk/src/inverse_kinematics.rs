@@ -10,12 +10,22 @@ use denavit_plants::Plant;
 pub enum Condition {
     /// A coordinate has this value [rad, m].
     Coordinate(usize, f64),
-    /// A contact point has this world coordinate (0 to 2) \[m\].
+    /// Two coordinates, weighted, have this value together: (1 - share) of the first and share of
+    /// the second [rad, m].
+    Blend {
+        /// The two.
+        coordinates: [usize; 2],
+        /// 0 to 1.
+        share: f64,
+        /// [rad, m].
+        value: f64,
+    },
+    /// A contact point has this place along a direction of the world \[m\].
     Point {
         /// Number of the contact point.
         contact: usize,
-        /// 0 to 2.
-        axis: usize,
+        /// A unit vector.
+        along: [f64; 3],
         /// \[m\].
         value: f64,
     },
@@ -26,6 +36,14 @@ pub enum Condition {
         /// \[m\].
         value: f64,
     },
+}
+
+impl Condition {
+    /// A contact point has this world coordinate (axis 0 to 2) \[m\].
+    pub fn point(contact: usize, axis: usize, value: f64) -> Self {
+        let along = [0, 1, 2].map(|of| f64::from(u8::from(of == axis)));
+        Self::Point { contact, along, value }
+    }
 }
 
 /// Why there is no posture.
@@ -80,7 +98,7 @@ pub fn solve(
     let mut best = f64::INFINITY;
     for _ in 0..ITERATIONS {
         let (matrix, errors) = linearise(plant, conditions, q);
-        let residual = errors.iter().fold(0.0_f64, |sum, error| sum.max(error.abs()));
+        let residual = largest(&errors);
         best = best.min(residual);
         if residual <= EXACT {
             return Ok(());
@@ -88,14 +106,24 @@ pub fn solve(
         system.factor(&matrix, n, 1e-12);
         let mut change = vec![0.0; n];
         system.solve(&errors, &mut change);
-        let largest = change.iter().fold(0.0_f64, |sum, entry| sum.max(entry.abs()));
-        if !largest.is_finite() {
+        let stride = largest(&change);
+        if !stride.is_finite() {
             break;
         }
-        let share = (STRIDE / largest).min(1.0);
+        let share = (STRIDE / stride).min(1.0);
         q.iter_mut().zip(&change).for_each(|(q, change)| *q += share * change);
     }
     Err(PostureError::OutOfReach { residual: best })
+}
+
+/// The largest error of conditions at a position, by forward kinematics [m, rad].
+pub fn largest_error(plant: &mut dyn Plant, conditions: &[Condition], q: &[f64]) -> f64 {
+    let (_, errors) = linearise(plant, conditions, q);
+    largest(&errors)
+}
+
+fn largest(entries: &[f64]) -> f64 {
+    entries.iter().fold(0.0, |sum: f64, entry| sum.max(entry.abs()))
 }
 
 /// Derivatives of the conditions, row-major, and what is missing.
@@ -114,10 +142,23 @@ fn linearise(plant: &mut dyn Plant, conditions: &[Condition], q: &[f64]) -> (Vec
                 matrix.extend((0..n).map(|column| f64::from(u8::from(column == index))));
                 errors.push(value - q[index]);
             }
-            Condition::Point { contact, axis, value } => {
-                let row = 3 * contact + axis;
-                matrix.extend_from_slice(&rows[row * n..(row + 1) * n]);
-                errors.push(value - positions[row]);
+            Condition::Blend { coordinates: [a, b], share, value } => {
+                let weight = |column: usize| {
+                    let of = |own: usize, weight: f64| if column == own { weight } else { 0.0 };
+                    of(a, 1.0 - share) + of(b, share)
+                };
+                matrix.extend((0..n).map(weight));
+                errors.push(value - (1.0 - share) * q[a] - share * q[b]);
+            }
+            Condition::Point { contact, along, value } => {
+                let part = |axis: usize, column: usize| {
+                    along[axis] * rows[(3 * contact + axis) * n + column]
+                };
+                let entry = |column| (0..3).map(|axis| part(axis, column)).sum::<f64>();
+                matrix.extend((0..n).map(entry));
+                let place: f64 =
+                    (0..3).map(|axis| along[axis] * positions[3 * contact + axis]).sum();
+                errors.push(value - place);
             }
             Condition::CenterOfMass { axis, value } => {
                 matrix.extend_from_slice(&center_rows[axis * n..(axis + 1) * n]);

@@ -1,8 +1,6 @@
 //! Walking: how a robot is to move so that it makes steps.
 //!
 //! - [`inverse_kinematics`]: joint positions for given places of feet and centre of mass
-//! - [`weight_shift_step`]: the step of thesis 2.3.5, one foot forward while the weight rests on
-//!   the other
 //! - [`optimal`]: limit cycles by periodic optimal control
 //! - [`gait_plan`]: walking primitives, and walks by the linear inverted pendulum
 //! - [`gait_file`]: files that say what a gait is to be
@@ -28,7 +26,6 @@ pub mod poincare;
 pub mod robustness;
 mod scenario;
 mod scenario_file;
-pub mod weight_shift_step;
 
 pub use leg_exchange::LegExchange;
 pub use scenario::read_scenario;

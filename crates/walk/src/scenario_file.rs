@@ -1,7 +1,7 @@
 //! Scenario files (`"denavit-scenario/1"`) of designed gaits, complete: what `simulate` walks. The
 //! same gait gives the same bytes.
 
-use denavit_plants::PlantModel;
+use denavit_plants::{Override, PlantModel};
 use denavit_simulate::State;
 use serde_json::Value;
 use std::fmt::Write;
@@ -17,8 +17,19 @@ pub struct ScenarioHead<'a> {
     pub source: &'a str,
     /// The model: a shipped name or a file.
     pub model: &'a str,
+    /// Values in place of the model's.
+    pub parameters: &'a [Override],
     /// Steps of the run, of gaits that do not say themselves how many they have.
     pub steps: usize,
+}
+
+/// The friction of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactFriction {
+    /// No slip, and this coefficient where that has no answer to an impact.
+    Fallback(f64),
+    /// This coefficient everywhere.
+    Coulomb(f64),
 }
 
 /// The law of a joint.
@@ -39,8 +50,7 @@ pub(crate) struct ScenarioRun<'a> {
     /// Where it starts.
     pub(crate) start: &'a State,
     pub(crate) laws: &'a [JointLaw],
-    /// Friction where no-slip contact has no answer to an impact.
-    pub(crate) fallback_friction: f64,
+    pub(crate) friction: ContactFriction,
 }
 
 /// The text of a scenario file.
@@ -59,6 +69,14 @@ pub(crate) fn scenario_file(
             ("model", head.model),
         ],
     );
+    if !head.parameters.is_empty() {
+        text.push_str("  \"parameters\": {\n");
+        for (index, given) in head.parameters.iter().enumerate() {
+            let goes_on = index + 1 < head.parameters.len();
+            line(&mut text, 2, &given.parameter, &number(given.value), goes_on);
+        }
+        text.push_str("  },\n");
+    }
     line(&mut text, 1, "duration_s", &number(run.duration_s), true);
     text.push_str("  \"initial\": {\n");
     line(&mut text, 2, "t_s", &number(run.start.t_s), true);
@@ -81,8 +99,11 @@ pub(crate) fn scenario_file(
         text.push_str(if index + 1 < run.laws.len() { "      },\n" } else { "      }\n" });
     }
     text.push_str("    }\n  },\n");
-    let friction = number(run.fallback_friction);
-    let _ = writeln!(text, "  \"contact\": {{\"fallback_friction\": {friction}}},");
+    let (key, friction) = match run.friction {
+        ContactFriction::Fallback(friction) => ("fallback_friction", friction),
+        ContactFriction::Coulomb(friction) => ("friction", friction),
+    };
+    let _ = writeln!(text, "  \"contact\": {{\"{key}\": {}}},", number(friction));
     text.push_str("  \"integrator\": {\n    \"method\": \"radau\",\n    \"relative\": 1e-07,\n");
     text.push_str("    \"absolute\": 1e-08,\n    \"max_step_s\": 0.02\n  },\n");
     text.push_str("  \"log_period_s\": 0.01,\n  \"tolerances\": {\"energy_j\": 0.001}\n}\n");

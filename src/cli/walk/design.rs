@@ -14,7 +14,7 @@ use denavit::shipped;
 use denavit::walk::ScenarioHead;
 use denavit::walk::gait_file::{GaitFile, GaitKind, read_gait};
 use denavit::walk::gait_plan::{
-    GaitPlan, Knot, PlanError, plan_inverted_pendulum, plan_primitives,
+    GaitPlan, Knot, PlanError, plan_divergent_component, plan_inverted_pendulum, plan_primitives,
 };
 use denavit::walk::optimal::{LimitCycle, design, scenario_text};
 use serde_json::{Map, Value, json as value};
@@ -23,15 +23,16 @@ use std::path::{Path, PathBuf};
 
 /// Design a gait: from a file of a few lines to a scenario that walks (thesis 4.4.2, 4.4.3)
 ///
-/// Gaits are walking primitives, walks by the linear inverted pendulum, and limit cycles;
-/// docs/gait.md describes their files. Residuals of inverse kinematics and margins are reported at
-/// every posture and between. A gait that cannot be exits with 2, and is named with posture, time
-/// and residual.
+/// Gaits are walking primitives, walks by the linear inverted pendulum, walks in space on planned
+/// footsteps, and limit cycles; docs/gait.md describes their files. Residuals of inverse kinematics
+/// and margins are reported at every posture and between. A gait that cannot be exits with 2, and
+/// is named with posture, time and residual.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   denavit walk design planar_biped_primitives -o primitives.json --svg joints.svg
-  denavit walk design planar_biped_inverted_pendulum -o pendulum.json")]
+  denavit walk design planar_biped_inverted_pendulum -o pendulum.json
+  denavit walk design tulip_walk -o walk.json")]
 pub(crate) struct Arguments {
     /// The path of a gait file, or the name of a shipped gait
     #[arg(value_name = "GAIT")]
@@ -135,7 +136,7 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
     let bytes = load_beside(&arguments.gait, &gait.model)
         .map_err(|why| refused(name, format_args!("{}: {why}\n  hint: {MODEL}", gait.model)))?;
     let robot = effect::read_model(&gait.model, &bytes, &[]).map_err(Failure::Model)?;
-    let mut plant = plant_of(&robot, &[]).map_err(|error| refused(&robot.name, error))?;
+    let mut plant = plant_of(&robot, &gait.parameters).map_err(|error| refused(name, error))?;
     let stem = arguments.gait.file_stem().unwrap_or_default().to_string_lossy();
     let own = if gait.name.is_empty() { stem.into_owned() } else { gait.name.clone() };
     let model = model_from(arguments, &gait.model);
@@ -145,6 +146,7 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
         description: &gait.description,
         source: &source,
         model: &model,
+        parameters: &gait.parameters,
         steps: 0,
     };
     let refuse =
@@ -158,6 +160,10 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
         GaitKind::InvertedPendulum(problem) => {
             let plan = plan_inverted_pendulum(plant, problem).map_err(refuse)?;
             Ok(planned("linear inverted pendulum", plan, plant, &head).map_err(refuse)?)
+        }
+        GaitKind::DivergentComponent(problem) => {
+            let plan = plan_divergent_component(plant, problem).map_err(refuse)?;
+            Ok(planned("divergent component of motion", plan, plant, &head).map_err(refuse)?)
         }
         GaitKind::LimitCycle(problem) => {
             let found = design(plant, problem).map_err(|error| refused(name, error))?;

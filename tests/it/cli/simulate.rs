@@ -159,14 +159,18 @@ fn numbers_beyond_their_range_are_refused() {
     let gait = |entries: &str| {
         format!(
             r#"{{"format": "denavit-scenario/1", "model": "tulip", "duration_s": 1,
- "gait": {{"weight_shift_step": {{{entries}}}}}}}"#
+ "gait": {{"divergent_component": {{"step_length_m": 0.1, "step_s": 0.8,
+ "center_of_mass_height_m": 0.65, {entries}}}}}}}"#
         )
     };
-    refused(&gait(r#""interval_s": 1e-12"#), &["/interval_s: the number must be from 0.001 to 10"]);
-    refused(&gait(r#""phases_s": [1, 2, 3, 1e9]"#), &["/phases_s/3: the number must be from 0 to"]);
+    refused(&gait(r#""interval_s": 1e-12"#), &["/interval_s: the number must be from 0.001 to 1"]);
     refused(
-        &gait(r#""interval_s": 0.001, "phases_s": [1, 2, 3, 999]"#),
-        &["/gait/weight_shift_step: the gait would have more than 20000 postures"],
+        &gait(r#""standing_s": [1, 1e9]"#),
+        &["/standing_s/1: the number must be from 0.001 to"],
+    );
+    refused(
+        &gait(r#""interval_s": 0.001, "standing_s": [99, 1]"#),
+        &["/gait/divergent_component: the plan would have more than 20000 knots"],
     );
     let steps = |entries: &str, more: &str| {
         format!(
@@ -183,7 +187,7 @@ fn numbers_beyond_their_range_are_refused() {
     refused(&steps(&period, ""), &["/gait/capture_step/period_s: the number must be from"]);
     let own = r#", "control": {"joints": {"left_knee": {"kp": 1, "reference": 0.1}}}"#;
     refused(&steps(height, own), &["/gait", "`left_knee` is planned during the run"]);
-    let both = format!(r#"{height}}}, "weight_shift_step": {{"#);
+    let both = format!(r#"{height}}}, "divergent_component": {{"#);
     refused(&steps(&both, ""), &["one kind of gait, not two"]);
 }
 

@@ -77,6 +77,34 @@ fn the_answer_has_every_knot_as_json() {
     assert!(answer["knots"].as_array().unwrap().len() > 300);
 }
 
+/// Torques of the plan are part of the scenario; values in place of the model's are, too.
+#[test]
+fn a_walk_in_space_is_designed() {
+    let directory = Directory::new("walk_design_space");
+    let text = denavit::shipped::find_gait("tulip_walk").unwrap().text;
+    let soft =
+        text.replace("\"model\"", "\"parameters\": {\"ks_left_ankle_x\": 250},\n  \"model\"");
+    fs::write(directory.path.join("gait.json"), soft).unwrap();
+    let said = designed(&directory, &["gait.json", "-o", "walk.json", "--trajectory", "t.json"]);
+    assert!(said.contains("divergent component of motion for tulip"), "{said}");
+    let read = |file: &str| -> Value {
+        serde_json::from_str(&fs::read_to_string(directory.path.join(file)).unwrap()).unwrap()
+    };
+    let mut scenario = read("walk.json");
+    assert_eq!(scenario["parameters"], serde_json::json!({"ks_left_ankle_x": 250.0}));
+    assert_eq!(scenario["contact"], serde_json::json!({"friction": 0.8}));
+    assert_eq!(read("t.json")["joints"].as_object().unwrap().len(), 12);
+    let joints = scenario["control"]["joints"].as_object().unwrap();
+    assert!(joints.values().all(|law| law["feed_forward"]["cubic"]["times"].is_array()));
+    assert_eq!(joints.len(), 12);
+    scenario["duration_s"] = 2.0.into();
+    fs::write(directory.path.join("short.json"), scenario.to_string()).unwrap();
+    for scheme in ["event", "time-stepping"] {
+        let run = run_in(&directory.path, &["simulate", "short.json", "--scheme", scheme]);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{}", run.stdout);
+    }
+}
+
 /// A gait file that says what cannot be, in place of a part of a shipped one.
 fn refused(directory: &Directory, (name, own, other): (&str, &str, &str)) -> String {
     let text = denavit::shipped::find_gait(name).unwrap().text;
@@ -121,6 +149,26 @@ fn gaits_that_cannot_be_are_named() {
         (
             (primitives, "\"model\": \"planar_biped\"", "\"model\": \"tulip\""),
             ["planar robots with two legs", "plane that it moves in", "hint"],
+        ),
+        (
+            ("tulip_walk", "\"center_of_mass_height_m\": 0.65", "\"center_of_mass_height_m\": 0.6"),
+            ["`step 1, swing` at", "needs `left_ankle_y` at -0.80", "its limits are -0.8 and 0.8"],
+        ),
+        (
+            ("tulip_walk", "\"step_s\": 0.8", "\"step_s\": 0.8, \"step_width_m\": 0.1"),
+            ["`start` at 0.000 s", "a foot is on the other one", "hint"],
+        ),
+        (
+            (
+                "tulip_walk",
+                "\"model\": \"tulip\"",
+                "\"model\": \"tulip\", \"parameters\": {\"ks_left_ankle\": 1}",
+            ),
+            ["gait.json", "the model has no parameter `ks_left_ankle`", "hint"],
+        ),
+        (
+            ("tulip_walk", "\"model\": \"tulip\"", "\"model\": \"planar_biped\""),
+            ["robots in space with two legs", "freedom to move in space", "hint"],
         ),
         (
             (primitives, "\"model\": \"planar_biped\"", "\"model\": \"planar_bipde\""),

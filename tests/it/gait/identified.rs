@@ -23,7 +23,7 @@ pub(crate) fn walked(
 ) -> MeasuredLog {
     let shipped = shipped::find_scenario("tulip_step").expect("shipped");
     let mut text: serde_json::Value = serde_json::from_str(shipped.text).expect("JSON");
-    text["gait"]["weight_shift_step"]["length_m"] = length_m.into();
+    text["gait"]["divergent_component"]["footsteps"][0]["forward_m"] = length_m.into();
     let read = denavit::walk::read_scenario(shipped.name, text.to_string().as_bytes(), load);
     let mut scenario = read.unwrap_or_else(|error| panic!("{error}"));
     scenario.scheme = RunScheme::TimeStepping;

@@ -29,13 +29,18 @@ const fn ignored(test: &'static str, reason: &'static str, runs: Runs) -> Ignore
 
 const NO_MEASUREMENTS: &str = "needs the measurements, which are not part of the repository";
 
-const IGNORED: [Ignored; 7] = [
+const IGNORED: [Ignored; 8] = [
     ignored("what_is_left_out_of_a_real_axis_is_named", NO_MEASUREMENTS, Runs::Measurements),
     ignored("the_published_parameters_and_errors_are_reached", NO_MEASUREMENTS, Runs::Measurements),
     ignored("documents_compile_to_at_most_forty_pages", "needs pdflatex", Runs::Ci),
     ignored("documents_of_f_and_b_compile", "needs pdflatex", Runs::Ci),
     ignored(
         "intervals_of_friction_hold_over_many_seeds",
+        "takes minutes: the figures are in the docs",
+        Runs::Long,
+    ),
+    ignored(
+        "least_stiffness_of_passive_ankle_rolls",
         "takes minutes: the figures are in the docs",
         Runs::Long,
     ),

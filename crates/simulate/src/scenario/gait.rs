@@ -14,6 +14,8 @@ use denavit_plants::trajectory::Reference;
 pub struct PlannedGait {
     /// What each joint follows; none where no drive is to follow.
     pub references: Vec<Option<Reference>>,
+    /// Planned torques of each joint [N m, N]; none where none are planned.
+    pub torques: Vec<Option<Reference>>,
     /// Stiffness of the joints' laws [N m/rad, N/m].
     pub stiffness: f64,
     /// Damping of the joints' laws [N m s/rad, N s/m].
@@ -43,7 +45,8 @@ pub(super) fn gait(
         return None;
     };
     let gait = planner(node, plant, report)?;
-    for (index, (law, reference)) in control.joints.iter_mut().zip(gait.references).enumerate() {
+    let planned = gait.references.into_iter().zip(gait.torques);
+    for (index, (law, (reference, torque))) in control.joints.iter_mut().zip(planned).enumerate() {
         let has_own = law.reference.is_some() || law.feed_forward.is_some();
         if gait.planning.is_some() && reference.is_some() && has_own {
             let joint = &plant.model().joints[index].name;
@@ -55,6 +58,7 @@ pub(super) fn gait(
             continue;
         }
         law.reference = reference;
+        law.feed_forward = law.feed_forward.take().or(torque);
         if law.stiffness == 0.0 && law.damping == 0.0 {
             (law.stiffness, law.damping) = (gait.stiffness, gait.damping);
         }

@@ -43,7 +43,7 @@ fn schema_and_reader_agree_on_form() {
         ("\"time_stepping\": {\"tolerances\": {\"energy\": 1}}".to_owned(), false),
         ("\"tolerances\": {\"cone_n\": 1e-3}".to_owned(), true),
         ("\"gait\": {\"march\": {}}".to_owned(), false),
-        ("\"gait\": {\"weight_shift_step\": {\"phases_s\": [1, 2]}}".to_owned(), false),
+        ("\"gait\": {\"divergent_component\": [1, 2]}".to_owned(), false),
         ("\"gait\": {\"capture_step\": {}}".to_owned(), false),
         ("\"gait\": {}".to_owned(), false),
         (reference("{\"polynomial\": [0, 1]}"), true),

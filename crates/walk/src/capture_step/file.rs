@@ -60,6 +60,7 @@ pub(crate) fn read(
         references[*joint] = Some(Reference::Constant(prepared.start[*joint]));
     }
     Some(PlannedGait {
+        torques: vec![None; references.len()],
         references,
         stiffness,
         damping,

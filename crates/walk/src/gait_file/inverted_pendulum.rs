@@ -1,7 +1,7 @@
 //! The kind `inverted_pendulum` of gait files.
 
 use super::laws;
-use super::primitives::{DURATION_S, HEIGHT_M, MARGIN_M, PITCH_RAD, PLACE_M, STEPS};
+use super::primitives::{DURATION_S, HEIGHT_M, LIFT_M, MARGIN_M, PITCH_RAD, PLACE_M, STEPS};
 use crate::gait_plan::InvertedPendulumProblem;
 use denavit_codegen::model::Node;
 use denavit_simulate::scenario::{FieldsNumbers, Range, Report};
@@ -22,7 +22,6 @@ const KEYS: &[&str] = &[
     "kd",
     "fallback_friction",
 ];
-const LIFT_M: Range = Range::new(0.0, 10.0);
 const INTERVAL_S: Range = Range::new(1e-3, 1.0);
 
 /// Reads what the walk is to be.

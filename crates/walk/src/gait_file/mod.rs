@@ -3,15 +3,17 @@
 //! One key says the kind; the gait's numbers stand under it. All faults of a file are found in one
 //! run, each with its place, its cause and what to do about it.
 
+pub(crate) mod divergent_component;
 mod inverted_pendulum;
 mod laws;
 mod limit_cycle;
 mod primitives;
 
-use crate::gait_plan::{InvertedPendulumProblem, PrimitivesProblem};
+use crate::gait_plan::{DivergentComponentProblem, InvertedPendulumProblem, PrimitivesProblem};
 use crate::optimal::LimitCycleProblem;
 use denavit_codegen::model::{Fields, Node, read_document};
-use denavit_simulate::scenario::{Report, ScenarioError, check_format};
+use denavit_plants::Override;
+use denavit_simulate::scenario::{NodeNumbers, Report, ScenarioError, check_format};
 
 /// The tag of a gait file.
 pub const FORMAT: &str = "denavit-gait/1";
@@ -27,15 +29,17 @@ const KEYS: &[&str] = &[
     "description",
     "source",
     "model",
+    "parameters",
     "primitives",
     "inverted_pendulum",
+    "divergent_component",
     "limit_cycle",
 ];
 /// The kinds of gaits, each a key.
-const KINDS: &[&str] = &["primitives", "inverted_pendulum", "limit_cycle"];
+const KINDS: &[&str] = &["primitives", "inverted_pendulum", "divergent_component", "limit_cycle"];
 /// What a file without any of them lacks.
-const ANY_KIND: &str =
-    "an object with a kind of gait: `primitives`, `inverted_pendulum` or `limit_cycle`";
+const ANY_KIND: &str = "an object with a kind of gait: `primitives`, `inverted_pendulum`, \
+                        `divergent_component` or `limit_cycle`";
 
 /// A gait, to be designed.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +50,8 @@ pub struct GaitFile {
     pub description: String,
     /// The robot: the name of a shipped model, or of a file.
     pub model: String,
+    /// Values in place of the model's.
+    pub parameters: Vec<Override>,
     /// What it is to be.
     pub kind: GaitKind,
 }
@@ -57,6 +63,8 @@ pub enum GaitKind {
     Primitives(PrimitivesProblem),
     /// A walk by the linear inverted pendulum.
     InvertedPendulum(InvertedPendulumProblem),
+    /// A walk in space on planned footsteps.
+    DivergentComponent(DivergentComponentProblem),
     /// A limit cycle by periodic optimal control.
     LimitCycle(Box<LimitCycleProblem>),
 }
@@ -75,9 +83,21 @@ pub fn read_gait(file: &str, source: &[u8]) -> Result<GaitFile, ScenarioError> {
         };
         let [name, description, _] = ["name", "description", "source"].map(|key| text(key, report));
         let model = fields.require("model", report).and_then(|node| node.text(report));
+        let parameters = parameters(fields, report);
         let kind = kind(root, fields, report);
-        Some(GaitFile { name, description, model: model?.to_owned(), kind: kind? })
+        Some(GaitFile { name, description, model: model?.to_owned(), parameters, kind: kind? })
     })
+}
+
+/// Values in place of the model's. Which parameters it has is known when it is loaded.
+fn parameters(fields: &Fields<'_>, report: &mut Report) -> Vec<Override> {
+    let given = fields.get("parameters").and_then(|node| node.members(report));
+    let given = given.iter().flat_map(|members| members.all());
+    let value = |(name, node): (&str, Node<'_>)| {
+        let value = node.finite(report)?;
+        Some(Override { parameter: name.to_owned(), value })
+    };
+    given.filter_map(value).collect()
 }
 
 fn kind(root: Node<'_>, fields: &Fields<'_>, report: &mut Report) -> Option<GaitKind> {
@@ -91,6 +111,9 @@ fn kind(root: Node<'_>, fields: &Fields<'_>, report: &mut Report) -> Option<Gait
     Some(match kind {
         "primitives" => GaitKind::Primitives(primitives::read(node, report)?),
         "inverted_pendulum" => GaitKind::InvertedPendulum(inverted_pendulum::read(node, report)?),
+        "divergent_component" => {
+            GaitKind::DivergentComponent(divergent_component::read(node, report)?)
+        }
         _ => GaitKind::LimitCycle(Box::new(limit_cycle::read(node, report)?)),
     })
 }

@@ -22,6 +22,7 @@ const POSTURE_KEYS: &[&str] =
 
 pub(super) const PLACE_M: Range = Range::new(-10.0, 10.0);
 pub(super) const HEIGHT_M: Range = Range::new(1e-3, 100.0);
+pub(super) const LIFT_M: Range = Range::new(0.0, 10.0);
 pub(super) const PITCH_RAD: Range = Range::new(-3.2, 3.2);
 pub(super) const DURATION_S: Range = Range::new(1e-3, 100.0);
 pub(super) const MARGIN_M: Range = Range::new(0.0, 1.0);

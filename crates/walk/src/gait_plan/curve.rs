@@ -87,6 +87,9 @@ pub struct JointPath {
     pub joint: usize,
     /// The pieces.
     pub pieces: Vec<Piece>,
+    /// Planned torques at times, joined by a cubic spline; none are planned for some gaits
+    /// [N m, N].
+    pub feed_forward: Option<Curve>,
 }
 
 impl JointPath {

@@ -8,6 +8,22 @@ use std::fmt;
 pub enum PlanError {
     /// The plant is no planar walker with two legs that are alike; holds what it lacks.
     NoWalker(String),
+    /// The plant is no robot in space with two legs; holds what it lacks.
+    NoBiped(String),
+    /// Feet, weight and torso do not say where all coordinates are.
+    Undetermined {
+        /// Number of conditions.
+        conditions: usize,
+        /// Number of coordinates.
+        coordinates: usize,
+    },
+    /// A foot would be on the other one.
+    Collision {
+        /// The phase.
+        posture: String,
+        /// Its time \[s\].
+        t_s: f64,
+    },
     /// A posture has no joint positions.
     OutOfReach {
         /// The posture, or the phase.
@@ -81,6 +97,17 @@ impl fmt::Display for PlanError {
             Self::NoWalker(lacks) => {
                 write!(f, "the gait is one of planar robots with two legs: there is no {lacks}")
             }
+            Self::NoBiped(lacks) => {
+                write!(f, "the gait is one of robots in space with two legs: there is no {lacks}")
+            }
+            Self::Undetermined { conditions, coordinates } => write!(
+                f,
+                "{conditions} conditions, of feet, weight and torso, do not determine \
+                 {coordinates} coordinates"
+            ),
+            Self::Collision { posture, t_s } => {
+                write!(f, "`{posture}` at {t_s:.3} s: a foot is on the other one")
+            }
             Self::OutOfReach { posture, t_s, residual } => write!(
                 f,
                 "`{posture}` at {t_s:.3} s is out of reach: inverse kinematics leaves a residual \
@@ -138,6 +165,12 @@ impl PlanError {
                 "joints and contact points are named right_.. and left_.., the base base_x, \
                  base_z, base_pitch"
             }
+            Self::NoBiped(_) => {
+                "joints and contact points are named right_.. and left_.., the base floats; at \
+                 zero of all joints soles are level"
+            }
+            Self::Undetermined { .. } => "in space, two legs of six joints each are meant",
+            Self::Collision { .. } => "place the feet farther apart, or turn by less in a step",
             Self::OutOfReach { .. } => "lower the hip, or shorten or lower the step",
             Self::Limit { .. } => "another height of the hip, or a shorter or lower step",
             Self::Margin { .. } => "move the point over the foot that stands, or lower `margin_m`",

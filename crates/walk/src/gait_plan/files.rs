@@ -16,14 +16,19 @@ impl GaitPlan {
             joint: path.joint,
             stiffness: self.gains.kp,
             damping: self.gains.kd,
-            functions: vec![("reference", reference_text(path, self.repeats))],
+            functions: {
+                let reference = ("reference", reference_text(path, self.repeats));
+                let torque = path.feed_forward.as_ref();
+                let torque = torque.map(|curve| ("feed_forward", curve.text()));
+                std::iter::once(reference).chain(torque).collect()
+            },
         };
         let laws: Vec<JointLaw> = self.paths.iter().map(law).collect();
         let run = ScenarioRun {
             duration_s: self.duration_s,
             start: &State::resting(self.start.clone()),
             laws: &laws,
-            fallback_friction: self.gains.fallback_friction,
+            friction: self.gains.friction,
         };
         scenario_file(model, head, &run)
     }

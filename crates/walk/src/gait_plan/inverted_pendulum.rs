@@ -4,9 +4,11 @@
 
 use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
+use super::footsteps::smooth;
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, JointGains, Knot};
-use super::walker::{Height, Pose, Posture, Walker};
+use super::posture::Posture;
+use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
 use denavit_runtime::Scalar;
 use std::f64::consts::PI;
@@ -142,12 +144,6 @@ impl Phase {
     }
 }
 
-/// From 0 to 1 without velocity and acceleration at the ends.
-fn smooth(share: f64) -> f64 {
-    let u = share.clamp(0.0, 1.0);
-    u * u * u * (10.0 - u * (15.0 - 6.0 * u))
-}
-
 /// A walk that is being planned.
 struct Planner<'a> {
     problem: &'a InvertedPendulumProblem,
@@ -259,7 +255,7 @@ impl Planner<'_> {
             let values = knots.iter().map(|knot| knot.q[*joint]).collect();
             let curve = Curve::Cubic { times_s: times_s.clone(), values };
             let pieces = vec![Piece { duration_s: self.course.end_s(), curve }];
-            JointPath { joint: *joint, pieces }
+            JointPath { joint: *joint, pieces, feed_forward: None }
         };
         self.walker.driven.iter().map(path).collect()
     }

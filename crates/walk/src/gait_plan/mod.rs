@@ -2,24 +2,36 @@
 //!
 //! - [`plan_primitives`]: statically stable postures, joined (thesis 4.4.2)
 //! - [`plan_inverted_pendulum`]: the linear inverted pendulum, from standing to standing
-//! - [`GaitPlan`]: what both make; its files are [`GaitPlan::scenario_text`] and
+//! - [`plan_divergent_component`]: a walk in space on planned footsteps, by the divergent component
+//!   of the pendulum
+//! - [`GaitPlan`]: what all make; its files are [`GaitPlan::scenario_text`] and
 //!   [`GaitPlan::trajectory_text`]
 //! - [`PendulumPath`]: the centre of mass of the pendulum in closed form
-//! - [`Walker`]: joint positions for given places of the feet
+//! - [`Walker`], [`Biped`]: joint positions for given places of the feet, in the plane and in space
 
+mod biped;
 mod curve;
+mod divergent_component;
 mod fault;
 mod files;
+mod footsteps;
 mod inverted_pendulum;
 mod pendulum;
 mod plan;
+mod posture;
 mod primitives;
+mod torque;
 mod walker;
 
+pub use crate::scenario_file::ContactFriction;
+pub use biped::{AnkleRoll, Biped, BipedPose, RollCondition, Sole, SolePlace};
 pub use curve::{Curve, JointPath, Piece};
+pub use divergent_component::plan_divergent_component;
 pub use fault::PlanError;
+pub use footsteps::{AnkleRolls, DivergentComponentProblem, Ending, Footstep, Side};
 pub use inverted_pendulum::{InvertedPendulumProblem, plan_inverted_pendulum};
 pub use pendulum::{PendulumPath, PendulumState, PressureSegment};
 pub use plan::{GaitPlan, JointGains, Knot};
+pub use posture::Posture;
 pub use primitives::{Join, Primitive, PrimitivesProblem, plan_primitives};
-pub use walker::{Foot, Height, Pose, Posture, Walker};
+pub use walker::{Foot, Height, Pose, Walker};

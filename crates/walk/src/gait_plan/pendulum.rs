@@ -87,16 +87,31 @@ impl PendulumPath {
         omega: f64,
         segments: &[PressureSegment],
         start_m: f64,
-        [first, last]: [usize; 2],
+        ends: [usize; 2],
     ) -> Option<Self> {
-        if last + 1 >= segments.len() {
-            return None;
-        }
+        let shape = |moved: usize| -> Vec<f64> {
+            (0..=segments.len()).map(|place| f64::from(u8::from(place == moved + 1))).collect()
+        };
+        let shapes = ends.map(shape);
+        let is_inside = ends[1] + 1 < segments.len();
+        is_inside.then(|| Self::resting_by(omega, segments, start_m, &shapes)).flatten()
+    }
+
+    /// As [`Self::resting`], where two shapes are added to the centre of pressure as far as rest
+    /// asks for: `shapes` hold a value for each end of a segment, one more than there are segments.
+    pub fn resting_by(
+        omega: f64,
+        segments: &[PressureSegment],
+        start_m: f64,
+        shapes: &[Vec<f64>; 2],
+    ) -> Option<Self> {
         let moved = |shifts: [f64; 2]| {
             let mut segments = segments.to_vec();
-            for (index, shift) in [first, last].into_iter().zip(shifts) {
-                segments[index].places_m[1] += shift;
-                segments[index + 1].places_m[0] += shift;
+            for (shape, shift) in shapes.iter().zip(shifts) {
+                for (segment, ends) in segments.iter_mut().zip(shape.windows(2)) {
+                    segment.places_m[0] += shift * ends[0];
+                    segment.places_m[1] += shift * ends[1];
+                }
             }
             Self::new(omega, &segments, start_m)
         };

@@ -2,23 +2,24 @@
 
 use super::curve::JointPath;
 use super::fault::PlanError;
+use crate::scenario_file::ContactFriction;
 use denavit_plants::PlantModel;
 use denavit_plants::trajectory::Reference;
 
-/// Gains of all driven joints, and the friction where no-slip contact has no answer to an impact.
+/// Gains of all driven joints, and the friction of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointGains {
     /// Stiffness [N m/rad].
     pub kp: f64,
     /// Damping [N m s/rad].
     pub kd: f64,
-    /// Coefficient of friction.
-    pub fallback_friction: f64,
+    /// Friction of the ground.
+    pub friction: ContactFriction,
 }
 
 impl Default for JointGains {
     fn default() -> Self {
-        Self { kp: 2000.0, kd: 40.0, fallback_friction: 0.8 }
+        Self { kp: 2000.0, kd: 40.0, friction: ContactFriction::Fallback(0.8) }
     }
 }
 

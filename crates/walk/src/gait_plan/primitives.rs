@@ -4,7 +4,8 @@
 use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
 use super::plan::{GaitPlan, JointGains, Knot};
-use super::walker::{Height, Pose, Posture, Walker};
+use super::posture::Posture;
+use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
 
 /// How joint positions go from a posture to the next.
@@ -256,7 +257,7 @@ impl Step<'_> {
         let path = |joint: &usize| {
             let roles = [*joint, self.walker.exchange.coordinates[*joint]];
             let pieces = roles.iter().flat_map(|role| self.pieces(*role)).collect();
-            JointPath { joint: *joint, pieces }
+            JointPath { joint: *joint, pieces, feed_forward: None }
         };
         self.walker.driven.iter().map(path).collect()
     }

@@ -1,9 +1,9 @@
 //! A planar robot with two legs, and its joint positions for given places of its feet.
 
 use super::fault::PlanError;
-use crate::inverse_kinematics::{Condition, PostureError, solve};
+use super::posture::{Posture, bent, first, placed, reach};
+use crate::inverse_kinematics::{Condition, largest_error};
 use crate::leg_exchange::LegExchange;
-use denavit_numerics::Random;
 use denavit_plants::Plant;
 
 /// A foot: its ankle is the origin of the link that its contact points are on.
@@ -42,15 +42,6 @@ pub struct Pose {
     pub pitch_rad: f64,
 }
 
-/// Joint positions that meet a pose.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Posture {
-    /// All coordinates [rad, m].
-    pub q: Vec<f64>,
-    /// The largest error of a condition, by forward kinematics [m, rad].
-    pub residual: f64,
-}
-
 /// A planar robot with two legs whose joints and contact points are named `right_..` and
 /// `left_..`.
 #[derive(Clone, Debug)]
@@ -67,14 +58,6 @@ pub struct Walker {
     base: [usize; 3],
 }
 
-/// Starts of the search for the first posture.
-const STARTS: usize = 24;
-/// How far joints are from their middle in these \[rad\].
-const SPREAD: f64 = 0.7;
-/// How far joints begin inside a limit that stands at straight legs \[rad\].
-const BENT: f64 = 0.5;
-/// Beyond a limit by less is at it [rad, m].
-const AT_LIMIT: f64 = 1e-9;
 /// Sole points nearer to each other make no sole \[m\].
 const SOLE_M: f64 = 1e-6;
 
@@ -147,9 +130,9 @@ impl Walker {
         let (foot, height) = (self.feet[side], self.ground_m + lift);
         let x = ankle - foot.heel_to_ankle_m;
         [
-            Condition::Point { contact: foot.heel, axis: 0, value: x },
-            Condition::Point { contact: foot.heel, axis: 2, value: height },
-            Condition::Point { contact: foot.toe, axis: 2, value: height },
+            Condition::point(foot.heel, 0, x),
+            Condition::point(foot.heel, 2, height),
+            Condition::point(foot.toe, 2, height),
         ]
     }
 
@@ -176,27 +159,9 @@ impl Walker {
         plant: &mut dyn Plant,
         pose: &Pose,
         near: &[f64],
-        (name, t_s): (&str, f64),
+        at: (&str, f64),
     ) -> Result<Posture, PlanError> {
-        let conditions = self.conditions(pose);
-        let mut q = near.to_vec();
-        solve(plant, &conditions, &mut q).map_err(|error| match error {
-            PostureError::OutOfReach { residual } => {
-                PlanError::OutOfReach { posture: name.to_owned(), t_s, residual }
-            }
-            PostureError::Count { conditions, coordinates } => PlanError::NoWalker(format!(
-                "posture by {conditions} conditions for {coordinates} coordinates"
-            )),
-        })?;
-        for (joint, value) in plant.model().joints.iter().zip(&q) {
-            let Some(limits) = joint.position_limits else { continue };
-            if *value < limits[0] - AT_LIMIT || *value > limits[1] + AT_LIMIT {
-                let (posture, joint) = (name.to_owned(), joint.name.clone());
-                return Err(PlanError::Limit { posture, t_s, joint, value: *value, limits });
-            }
-        }
-        let residual = residual(plant, &conditions, &q);
-        Ok(Posture { q, residual })
+        reach(plant, &self.conditions(pose), near, at)
     }
 
     /// The posture of a pose, looked for from several starts: of those within limits that with the
@@ -210,52 +175,14 @@ impl Walker {
         pose: &Pose,
         at: (&str, f64),
     ) -> Result<Posture, PlanError> {
-        let mut random = Random::new(1);
-        let mut best: Option<(f64, Posture)> = None;
-        let mut worst: Option<PlanError> = None;
-        for start in 0..STARTS {
-            let mut q = self.start(plant, pose);
-            if start > 0 {
-                for joint in &self.driven {
-                    q[*joint] += SPREAD * (2.0 * random.uniform() - 1.0);
-                }
-            }
-            match self.reach(plant, pose, &q, at) {
-                Ok(posture) => {
-                    let bends = self.driven.iter().map(|joint| posture.q[*joint].powi(2));
-                    let size: f64 = bends.sum();
-                    if best.as_ref().is_none_or(|(least, _)| size < least - 1e-9) {
-                        best = Some((size, posture));
-                    }
-                }
-                Err(error) => worst = Some(nearer(worst, error)),
-            }
-        }
-        match (best, worst) {
-            (Some((_, posture)), _) => Ok(posture),
-            (None, Some(error)) => Err(error),
-            (None, None) => Err(PlanError::NoWalker("posture".to_owned())),
-        }
-    }
-
-    /// Legs nearly straight, bent to where their limits allow.
-    fn start(&self, plant: &dyn Plant, pose: &Pose) -> Vec<f64> {
-        let joints = &plant.model().joints;
-        let mut q = vec![0.0; joints.len()];
-        for joint in &self.driven {
-            q[*joint] = match joints[*joint].position_limits {
-                Some([low, high]) if low > -0.5 * BENT => (low + BENT).min(0.5 * (low + high)),
-                Some([low, high]) if high < 0.5 * BENT => (high - BENT).max(0.5 * (low + high)),
-                _ => 0.0,
-            };
-        }
+        let mut start = bent(plant.model(), &self.driven);
         let height = match pose.height {
             Height::Hip(height) | Height::CenterOfMass(height) => height,
         };
-        q[self.base[0]] = pose.center_m;
-        q[self.base[1]] = self.ground_m + height;
-        q[self.base[2]] = pose.pitch_rad;
-        q
+        start[self.base[0]] = pose.center_m;
+        start[self.base[1]] = self.ground_m + height;
+        start[self.base[2]] = pose.pitch_rad;
+        first(plant, &self.conditions(pose), (&start, &self.driven), at)
     }
 
     /// All coordinates for these joint positions while a foot stands level at a place.
@@ -267,19 +194,12 @@ impl Walker {
         plant: &mut dyn Plant,
         (side, foot_m): (usize, [f64; 2]),
         q: &[f64],
-        (name, t_s): (&str, f64),
+        at: (&str, f64),
     ) -> Result<Vec<f64>, PlanError> {
         let mut conditions = self.sole(side, foot_m).to_vec();
         let joints = (0..q.len()).filter(|joint| !self.base.contains(joint));
         conditions.extend(joints.map(|joint| Condition::Coordinate(joint, q[joint])));
-        let mut placed = q.to_vec();
-        solve(plant, &conditions, &mut placed).map_err(|error| match error {
-            PostureError::OutOfReach { residual } => {
-                PlanError::OutOfReach { posture: name.to_owned(), t_s, residual }
-            }
-            count @ PostureError::Count { .. } => PlanError::NoWalker(count.to_string()),
-        })?;
-        Ok(placed)
+        placed(plant, &conditions, q, at)
     }
 
     /// How far a sole is from being level at a place \[m\].
@@ -289,12 +209,12 @@ impl Walker {
         (side, foot_m): (usize, [f64; 2]),
         q: &[f64],
     ) -> f64 {
-        residual(plant, &self.sole(side, foot_m), q)
+        largest_error(plant, &self.sole(side, foot_m), q)
     }
 
     /// The largest error of a pose's conditions at these coordinates [m, rad].
     pub(super) fn error(&self, plant: &mut dyn Plant, pose: &Pose, q: &[f64]) -> f64 {
-        residual(plant, &self.conditions(pose), q)
+        largest_error(plant, &self.conditions(pose), q)
     }
 
     /// How deep a sole is below the ground \[m\].
@@ -305,31 +225,6 @@ impl Walker {
         let heights = [foot.heel, foot.toe].map(|point| positions[3 * point + 2]);
         (self.ground_m - heights[0].min(heights[1])).max(0.0)
     }
-}
-
-/// The error to report of two: limits before residuals, small residuals before large ones.
-fn nearer(known: Option<PlanError>, other: PlanError) -> PlanError {
-    match (known, other) {
-        (
-            Some(PlanError::OutOfReach { posture, t_s, residual }),
-            PlanError::OutOfReach { residual: next, .. },
-        ) => PlanError::OutOfReach { posture, t_s, residual: residual.min(next) },
-        (Some(known @ PlanError::Limit { .. }), _) => known,
-        (_, other) => other,
-    }
-}
-
-/// The largest error of conditions, by forward kinematics [m, rad].
-fn residual(plant: &mut dyn Plant, conditions: &[Condition], q: &[f64]) -> f64 {
-    let mut positions = vec![0.0; 3 * plant.model().contacts.len()];
-    plant.contact_positions(q, &mut positions);
-    let center = plant.center_of_mass(q);
-    let error = |condition: &Condition| match *condition {
-        Condition::Coordinate(index, value) => (q[index] - value).abs(),
-        Condition::Point { contact, axis, value } => (positions[3 * contact + axis] - value).abs(),
-        Condition::CenterOfMass { axis, value } => (center[axis] - value).abs(),
-    };
-    conditions.iter().map(error).fold(0.0, f64::max)
 }
 
 /// The foot of a side: the rearmost and the foremost of its contact points with straight legs.

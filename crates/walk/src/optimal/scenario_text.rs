@@ -4,7 +4,7 @@ use super::design::LimitCycle;
 use super::following::joint_gains;
 use super::planned::PlannedPhase;
 use crate::scenario_file::{
-    JointLaw, ScenarioHead, ScenarioRun, list, number, scenario_file, sequence,
+    ContactFriction, JointLaw, ScenarioHead, ScenarioRun, list, number, scenario_file, sequence,
 };
 use denavit_plants::PlantModel;
 
@@ -19,7 +19,7 @@ pub fn scenario_text(gait: &LimitCycle, model: &PlantModel, head: &ScenarioHead<
         duration_s: head.steps as f64 * gait.step.period_s,
         start: &gait.cycle.start,
         laws: &laws,
-        fallback_friction: FALLBACK_FRICTION,
+        friction: ContactFriction::Fallback(FALLBACK_FRICTION),
     };
     scenario_file(model, head, &run)
 }

@@ -46,6 +46,7 @@ fn scenario(plan: &GaitPlan) -> Scenario {
         description: "",
         source: "",
         model: "planar_biped",
+        parameters: &[],
         steps: plan.steps,
     };
     let text = plan.scenario_text(plant.model(), &head);

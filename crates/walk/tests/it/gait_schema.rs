@@ -31,12 +31,6 @@ fn schema_and_reader_agree() {
     let posture = json!({"center_of_mass_m": 0.0, "swing_foot_m": [0.1, 0]});
     let primitives = json!({"hip_height_m": 0.5, "postures": [posture, posture]});
     let pendulum = json!({"step_length_m": 0.1, "step_s": 0.8, "center_of_mass_height_m": 0.6});
-    let with = |gait: &Value, pointer: &str, value: Value| {
-        let mut gait = gait.clone();
-        let (parent, key) = pointer.rsplit_once('/').unwrap();
-        gait.pointer_mut(parent).unwrap()[key] = value;
-        gait
-    };
     let mut cases = vec![
         ("primitives", primitives.clone(), true),
         ("inverted_pendulum", pendulum.clone(), true),
@@ -54,7 +48,12 @@ fn schema_and_reader_agree() {
         ("march", json!({}), false),
     ];
     let schema: Value = serde_json::from_str(schema()).expect("JSON");
-    for (kind, own) in [("primitives", &primitives), ("inverted_pendulum", &pendulum)] {
+    let kinds = [
+        ("primitives", &primitives),
+        ("inverted_pendulum", &pendulum),
+        ("divergent_component", &space()),
+    ];
+    for (kind, own) in kinds {
         let properties = schema["properties"][kind]["properties"].as_object().unwrap();
         let mut count = 0;
         for (key, stated) in properties {
@@ -65,7 +64,7 @@ fn schema_and_reader_agree() {
             for (value, is_right) in
                 [(least, true), (most, true), (below, false), (2.0 * most, false)]
             {
-                let value = if key == "steps" && value.fract() == 0.0 {
+                let value = if (key == "steps" || key == "corrections") && value.fract() == 0.0 {
                     json!(value as i64)
                 } else {
                     json!(value)
@@ -76,6 +75,46 @@ fn schema_and_reader_agree() {
         }
         assert!(count > 20, "{kind}: {count}");
     }
+    assert_agreed(&validator, cases);
+}
+
+#[test]
+fn schema_and_reader_agree_on_footsteps() {
+    let (space, validator) = (space(), validator());
+    let listed = |footsteps: Value| {
+        let mut listed = json!({"step_s": 0.8, "center_of_mass_height_m": 0.6});
+        listed["footsteps"] = footsteps;
+        listed
+    };
+    let cases = vec![
+        ("divergent_component", space.clone(), true),
+        ("divergent_component", with(&space, "/footsteps", json!([{}])), false),
+        ("divergent_component", with(&space, "/ends", json!("on_last_foot")), false),
+        ("divergent_component", listed(json!([{}])), true),
+        ("divergent_component", listed(json!([])), false),
+        ("divergent_component", listed(json!([{"width_m": 0}])), false),
+        ("divergent_component", with(&listed(json!([{}])), "/steps", json!(3)), false),
+        ("divergent_component", with(&space, "/corrections", json!(11)), false),
+        ("divergent_component", with(&space, "/first_swing", json!("both")), false),
+    ];
+    assert_agreed(&validator, cases);
+}
+
+/// A walk in space whose steps are alike.
+fn space() -> Value {
+    json!({"step_length_m": 0.1, "step_s": 0.8, "center_of_mass_height_m": 0.6})
+}
+
+/// A gait with another value at a place.
+fn with(gait: &Value, pointer: &str, value: Value) -> Value {
+    let mut gait = gait.clone();
+    let (parent, key) = pointer.rsplit_once('/').unwrap();
+    gait.pointer_mut(parent).unwrap()[key] = value;
+    gait
+}
+
+/// Kinds with their gaits, and whether these are right: for the schema and for the reader.
+fn assert_agreed(validator: &jsonschema::Validator, cases: Vec<(&str, Value, bool)>) {
     for (kind, gait, is_right) in cases {
         let all = json!({"format": "denavit-gait/1", "model": "planar_biped", kind: gait});
         assert_eq!(validator.is_valid(&all), is_right, "{all}");

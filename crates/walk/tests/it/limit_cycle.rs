@@ -19,6 +19,7 @@ fn text_of(gait: &LimitCycle, plant: &dyn Plant, steps: usize) -> String {
         description: "a \"designed\" gait",
         source: "test",
         model: "planar_biped",
+        parameters: &[],
         steps,
     };
     scenario_text(gait, plant.model(), &head)

@@ -4,16 +4,16 @@ mod balance;
 mod capturability;
 mod capture_step;
 mod comparison;
-mod event_driven_step;
 mod gait_file;
 mod gait_plan;
 mod gait_schema;
+mod gait_space;
 mod held_joints;
 mod limit_cycle;
 mod passive_walkers;
 mod poincare;
 mod robustness;
-mod weight_shift_step;
+mod tulip_step;
 
 use denavit_plants::shipped;
 use denavit_simulate::scenario::Scenario;

@@ -37,6 +37,20 @@ impl Candidate<'_> {
         Terms { rates: terms.coriolis, accelerations: terms.inertia, gravity: terms.gravity }
     }
 
+    /// The frames with the matter of the bodies themselves, which regrouping gives in part to the
+    /// bodies that carry them.
+    pub(super) fn with_own_matter(&self, dag: &mut Dag) -> Frames {
+        let bodies = Mechanism::new(dag, self.robot).bodies;
+        let mut own = self.frames.clone();
+        for (frame, body) in own.frames.iter_mut().zip(bodies) {
+            frame.inertia = match frame.attachment {
+                Some(turn) => body.inertia.turned(dag, &turn),
+                None => body.inertia,
+            };
+        }
+        own
+    }
+
     pub(super) fn inverse_dynamics(&self, dag: &mut Dag) -> Vec<ExprId> {
         let rigid = inverse_dynamics(dag, self.frames, self.terms());
         let mut torques = rigid.clone();

@@ -220,10 +220,10 @@ fn with_entries(outputs: &[Output], entries: &[ExprId]) -> Vec<Output> {
         .collect()
 }
 
-/// The arguments of a function, in the order of the call.
-pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec<Argument> {
+/// Which of the motion and its torques a function is called with.
+fn motion_arguments(name: FunctionName) -> &'static [&'static str] {
     use FunctionName as F;
-    let names: &[&'static str] = match name {
+    match name {
         F::BaseParameters => &[],
         F::InverseDynamics
         | F::InverseDynamicsDerivatives
@@ -256,8 +256,13 @@ pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec
         | F::CenterOfMassJacobian
         | F::CentroidalMomentumMatrix
         | F::PotentialEnergy => &["q"],
-    };
-    let mut arguments: Vec<Argument> = names
+    }
+}
+
+/// The arguments of a function, in the order of the call.
+pub(crate) fn arguments(dag: &mut Dag, robot: &Robot, name: FunctionName) -> Vec<Argument> {
+    use FunctionName as F;
+    let mut arguments: Vec<Argument> = motion_arguments(name)
         .iter()
         .map(|&argument| {
             let symbols = robot.joints().map(|(link, variables)| match argument {

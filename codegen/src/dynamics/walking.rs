@@ -71,7 +71,8 @@ pub(super) fn outputs(dag: &mut Dag, candidate: &Candidate<'_>, name: FunctionNa
             output("centroidal_momentum_bias", &[6], bias, MOMENTUM_BIAS)
         }
         F::AngularMomenta => {
-            let momenta = energy::angular_momenta(dag, frames);
+            let own = candidate.with_own_matter(dag);
+            let momenta = energy::angular_momenta(dag, &own);
             output("angular_momenta", &[n, 3], momenta.concat(), ANGULAR_MOMENTA)
         }
         F::ZeroMomentPoint => {

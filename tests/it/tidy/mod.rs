@@ -4,6 +4,7 @@ mod circles;
 mod errata;
 mod ignored;
 mod reached;
+mod shipped;
 mod walls;
 
 use std::fs;

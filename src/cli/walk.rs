@@ -5,6 +5,8 @@ mod capturability;
 mod capture_steps;
 mod compare;
 mod design;
+mod number;
+mod page;
 mod poincare;
 mod robustness;
 
@@ -64,6 +66,7 @@ Example:
     Capturability(capturability::Arguments),
     CaptureSteps(capture_steps::Arguments),
     Compare(compare::Arguments),
+    Page(page::Arguments),
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
@@ -79,5 +82,6 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Command::Capturability(arguments) => capturability::run(arguments, out),
         Command::CaptureSteps(arguments) => capture_steps::run(arguments, out),
         Command::Compare(arguments) => compare::run(arguments, out),
+        Command::Page(arguments) => page::run(arguments, out),
     }
 }

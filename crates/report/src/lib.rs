@@ -52,4 +52,4 @@ pub use run::{
 pub use table::{Align, Table};
 pub use two_stage::TwoStagePage;
 pub use values::Values;
-pub use walk::{CaptureReach, HeatMap, UnitCircle};
+pub use walk::{CaptureReach, HeatMap, ReturnMapPicture, UnitCircle};

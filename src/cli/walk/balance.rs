@@ -66,10 +66,10 @@ pub(super) fn period(text: &str) -> Result<f64, String> {
 }
 
 /// A judged robot: its name, its description, and what was found.
-struct Judged {
-    name: String,
-    model: PlantModel,
-    course: Course,
+pub(super) struct Judged {
+    pub(super) name: String,
+    pub(super) model: PlantModel,
+    pub(super) course: Course,
 }
 
 pub(crate) fn run(
@@ -232,7 +232,7 @@ fn criteria(what: What) -> &'static [(&'static str, Criterion)] {
     }
 }
 
-fn draw(what: What, judged: &Judged) -> String {
+pub(super) fn draw(what: What, judged: &Judged) -> String {
     let (course, colours) = (&judged.course, ["#1f6fb4", "#d9822b"]);
     let times: Vec<f64> = course.instants.iter().map(|instant| instant.t_s).collect();
     let along = |criterion: Criterion| -> Vec<f64> {
@@ -361,6 +361,21 @@ fn momentum_table(judged: &Judged) -> Table {
     table
 }
 
+/// Each point of a criterion with its margins, as cells of a table.
+pub(super) fn margin_cells(what: What, course: &Course) -> Vec<Vec<String>> {
+    let cells = |(name, criterion): &(&str, Criterion)| {
+        let found = course.margins(*criterion)?;
+        Some(vec![
+            name.replace('_', "-"),
+            format!("{:.2}", 1e3 * found.least_m),
+            format!("{:.4}", found.at_s),
+            format!("{:.2}", 1e3 * found.largest_m),
+            percent(found.outside),
+        ])
+    };
+    criteria(what).iter().filter_map(cells).collect()
+}
+
 fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure> {
     let course = &judged.course;
     let shares = course.shares();
@@ -377,16 +392,7 @@ fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure
             ("outside", Align::Right),
         ];
         let mut table = Table::new(&columns);
-        for (name, criterion) in criteria(what) {
-            let Some(found) = course.margins(*criterion) else { continue };
-            table.push(vec![
-                name.replace('_', "-"),
-                format!("{:.2}", 1e3 * found.least_m),
-                format!("{:.4}", found.at_s),
-                format!("{:.2}", 1e3 * found.largest_m),
-                percent(found.outside),
-            ]);
-        }
+        margin_cells(what, course).into_iter().for_each(|cells| table.push(cells));
         writeln!(out, "{table}")?;
     }
     if what == What::Zmp {

@@ -5,6 +5,7 @@ use super::super::failure::Failure;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::simulate::open;
+use super::number::within;
 use clap::Args;
 use denavit::report::{Align, CaptureReach, Table};
 use denavit::walk::capturability::{Capturability, CaptureRegion, StepLimits, Steps};
@@ -28,13 +29,13 @@ pub(crate) struct Arguments {
     #[arg(value_name = "SCENARIO")]
     scenario: PathBuf,
     /// Height of the centre of mass above the ground
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", value_parser = within(1e-3..=1e3, "m"))]
     height: Option<f64>,
     /// The least time of a step
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = within(1e-3..=1e2, "s"))]
     step_time: Option<f64>,
     /// The longest step from ankle to ankle, either way
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", value_parser = within(0.0..=1e3, "m"))]
     longest_step: Option<f64>,
     /// The largest number of steps that is listed
     #[arg(
@@ -46,7 +47,12 @@ pub(crate) struct Arguments {
     steps: u32,
     /// A capture point, forward from the ankle that stands: how many steps it needs, and where the
     /// foot may land
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "METRES",
+        allow_negative_numbers = true,
+        value_parser = within(-1e3..=1e3, "m")
+    )]
     capture: Option<f64>,
     /// Draw the reaches over the sole; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -77,9 +83,6 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         ..known
     };
     let found = Capturability::new(limits).map_err(|error| failure(error.to_string()))?;
-    if arguments.capture.is_some_and(|place| !place.is_finite()) {
-        return Err(Failure::Walk("--capture".to_owned(), "a finite number".to_owned()));
-    }
     check_outputs(&outputs)?;
     let wanted = arguments.capture.map(|capture_m| wanted(&found, capture_m));
     if let Some(path) = &arguments.svg {

@@ -6,6 +6,7 @@ use super::super::json::write_json;
 use super::super::progress::Progress;
 use super::super::simulate::open;
 use super::capturability::steps_value;
+use super::number::{impulse, within};
 use clap::Args;
 use denavit::report::{Align, Table};
 use denavit::simulate::scenario::Scenario;
@@ -31,7 +32,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "SCENARIO")]
     scenario: PathBuf,
     /// The strongest impulse, forward and backward [N s]
-    #[arg(long, value_name = "NS", default_value_t = 28.0)]
+    #[arg(long, value_name = "NS", default_value = "28", value_parser = within(1e-6..=1e6, "N s"))]
     most: f64,
     /// How many impulses, from the strongest backward to the strongest forward
     #[arg(
@@ -47,11 +48,17 @@ pub(crate) struct Arguments {
         value_name = "NS,..",
         value_delimiter = ',',
         allow_hyphen_values = true,
+        value_parser = impulse,
         conflicts_with_all = ["most", "pushes"]
     )]
     impulses: Vec<f64>,
     /// How long the robot has to come to rest after the push
-    #[arg(long, value_name = "SECONDS", default_value_t = 4.0)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "4",
+        value_parser = within(1e-3..=1e3, "s")
+    )]
     after: f64,
     /// The answer as JSON
     #[arg(long)]
@@ -59,13 +66,6 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let positive = |value: f64| value > 0.0 && value.is_finite();
-    if !positive(arguments.most) || !positive(arguments.after) {
-        return Err(Failure::Walk("--most, --after".to_owned(), "positive numbers".to_owned()));
-    }
-    if !arguments.impulses.iter().all(|impulse| impulse.is_finite()) {
-        return Err(Failure::Walk("--impulses".to_owned(), "finite numbers".to_owned()));
-    }
     let mut scenario = open(&arguments.scenario)?;
     let name = scenario.name.clone();
     let options = options(arguments, &scenario)?;

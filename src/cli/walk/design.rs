@@ -98,6 +98,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let name = arguments.gait.display().to_string();
     let bytes = read_or_shipped(&arguments.gait, ("gait", shipped::GAITS))?;
     let gait = read_gait(&name, &bytes).map_err(Failure::Scenario)?;
+    if arguments.trajectory.is_some() && matches!(gait.kind, GaitKind::LimitCycle(_)) {
+        return Err(refused(&name, NO_TRAJECTORY));
+    }
     check_outputs(&outputs)?;
     let designed = designed(arguments, &name, &gait)?;
     if let Some(path) = &arguments.output {

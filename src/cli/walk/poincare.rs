@@ -6,10 +6,11 @@ use super::super::json::{Ordered, write_json};
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::simulate::open;
 use clap::Args;
-use denavit::report::{Align, Table, UnitCircle, short};
+use denavit::report::{Align, ReturnMapPicture, Table, UnitCircle, short};
 use denavit::simulate::scenario::Scenario;
 use denavit::walk::poincare::{
-    Multiplier, PoincareAnalysis, PoincareOptions, Section, Share, WantedSection, analyse, shares,
+    Convergence, Multiplier, PoincareAnalysis, PoincareOptions, Section, Share, WantedSection,
+    analyse, shares,
 };
 use serde_json::{Value, json as value};
 use std::io::Write;
@@ -20,7 +21,8 @@ use std::path::PathBuf;
 /// The state that comes back to itself is found by Newton's method. The multipliers are those of
 /// the linearised return map inside the manifold of the contacts, from the variational equation
 /// with saltation at events; central differences and other sections check them. Deviations die
-/// where all are inside the unit circle: else the command exits with 1.
+/// where all are inside the unit circle: else, and where the checks contradict each other, the
+/// command exits with 1.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -45,12 +47,31 @@ pub(crate) struct Arguments {
     /// Leave out the comparison with central differences and with other sections
     #[arg(long)]
     unchecked: bool,
+    /// How far two velocities are off the cycle at the start of the way back to it
+    #[arg(long, value_name = "RATE", default_value_t = 0.1, value_parser = off)]
+    off: f64,
+    /// Cycles for which the way back is followed
+    #[arg(
+        long,
+        value_name = "CYCLES",
+        default_value_t = 12,
+        value_parser = clap::value_parser!(u32).range(1..=1000)
+    )]
+    returns: u32,
+    /// Draw the way back on the section (thesis figure 4.8); - is standard output
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
     /// Draw the multipliers in the unit circle (thesis figure 4.9); - is standard output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// The answer as JSON
     #[arg(long)]
     json: bool,
+}
+
+fn off(text: &str) -> Result<f64, String> {
+    let off: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (1e-6..=10.0).contains(&off) { Ok(off) } else { Err("not from 1e-6 to 10 rad/s".into()) }
 }
 
 fn section(text: &str) -> Result<WantedSection, String> {
@@ -64,7 +85,7 @@ fn section(text: &str) -> Result<WantedSection, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let outputs = [arguments.svg.as_ref()];
+    let outputs = [arguments.svg.as_ref(), arguments.map.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let mut scenario = open(&arguments.scenario)?;
     check_outputs(&outputs)?;
@@ -72,12 +93,21 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         section: arguments.section.unwrap_or_default(),
         approach_steps: arguments.approach as usize,
         checks: !arguments.unchecked,
+        returns: (arguments.off, arguments.returns as usize),
         ..PoincareOptions::default()
     };
-    let found = analyse(&mut scenario, &options)
-        .map_err(|error| Failure::Walk(scenario.name.clone(), error.to_string()))?;
+    let found = analyse(&mut scenario, &options).map_err(|error| {
+        let hint = match options.section {
+            WantedSection::Strike => "\n  hint: leave out --section: the clock says when to look",
+            _ => "",
+        };
+        Failure::Walk(scenario.name.clone(), format!("{error}{hint}"))
+    })?;
     if let Some(path) = &arguments.svg {
         write_whole(path, picture(&scenario, &found).as_bytes())?;
+    }
+    if let (Some(path), Some(convergence)) = (&arguments.map, &found.convergence) {
+        write_whole(path, return_map(&scenario, &found, convergence).as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
@@ -87,7 +117,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             say_written(out, &outputs)?;
         }
     }
-    Ok(if is_stable(&found) { Answer::Done } else { Answer::Negative })
+    let good = is_stable(&found) && found.contradiction().is_none();
+    Ok(if good { Answer::Done } else { Answer::Negative })
 }
 
 fn largest(found: &PoincareAnalysis) -> f64 {
@@ -98,7 +129,7 @@ fn is_stable(found: &PoincareAnalysis) -> bool {
     largest(found) < 1.0
 }
 
-fn picture(scenario: &Scenario, found: &PoincareAnalysis) -> String {
+pub(super) fn picture(scenario: &Scenario, found: &PoincareAnalysis) -> String {
     let subtitle = format!(
         "{}: largest multiplier {} after {} s",
         scenario.plant.model().name,
@@ -108,6 +139,35 @@ fn picture(scenario: &Scenario, found: &PoincareAnalysis) -> String {
     let values: Vec<[f64; 2]> = found.multipliers.iter().map(|one| one.value).collect();
     let title = scenario.name.replace('_', " ");
     UnitCircle { title: &title, subtitle: &subtitle, multipliers: &values }.draw()
+}
+
+pub(super) fn return_map(
+    scenario: &Scenario,
+    found: &PoincareAnalysis,
+    convergence: &Convergence,
+) -> String {
+    let model = scenario.plant.model();
+    let title = format!("{}: returns from off the cycle", scenario.name.replace('_', " "));
+    let name = |index: usize| -> String {
+        let joint = convergence.joints.get(index).map(|joint| &model.joints[*joint]);
+        joint.map_or_else(String::new, |joint| {
+            let unit = if joint.slides { "m/s" } else { "rad/s" };
+            format!("velocity of {} off its cycle [{unit}]", joint.name)
+        })
+    };
+    let factor = convergence.factor().map_or_else(|| "-".to_owned(), short);
+    let subtitle = format!(
+        "a cycle makes {factor} of a deviation in the mean; largest multiplier {}",
+        short(largest(found))
+    );
+    let points: Vec<[f64; 2]> = convergence
+        .deviations
+        .iter()
+        .map(|all| [0, 1].map(|axis| all.get(axis).copied().unwrap_or(0.0)))
+        .collect();
+    let [right, up] = [name(0), name(1)];
+    ReturnMapPicture { title: &title, subtitle: &subtitle, axes: [&right, &up], points: &points }
+        .draw()
 }
 
 fn section_text(scenario: &Scenario, found: &PoincareAnalysis) -> String {
@@ -159,6 +219,7 @@ fn answer(scenario: &Scenario, found: &PoincareAnalysis) -> Value {
         "multipliers": all_values(found),
         "largest": largest(found),
         "stable": is_stable(found),
+        "contradiction": found.contradiction(),
         "dominant": dominant,
         "forbidden": found.forbidden,
         "fixed_point": {
@@ -170,6 +231,13 @@ fn answer(scenario: &Scenario, found: &PoincareAnalysis) -> Value {
         "section_spread": found.section_spread.map(|(apart, _)| apart),
         "sections": found.section_spread.map_or(1, |(_, count)| count),
         "differences_apart": found.methods_apart,
+        "returns": found.convergence.as_ref().map(|returns| value!({
+            "velocities": returns.joints.iter().map(|j| &model.joints[*j].name).collect::<Vec<_>>(),
+            "deviations": returns.deviations,
+            "lengths": returns.lengths,
+            "factor": returns.factor(),
+            "stopped": returns.stopped.as_ref().map(ToString::to_string),
+        })),
     })
 }
 
@@ -220,12 +288,42 @@ fn print(
     if let Some((apart, count)) = found.section_spread {
         writeln!(out, "{count} sections: multipliers above 0.01 apart by {apart:.1e} at most")?;
     }
-    let verdict = if is_stable(found) {
-        "stable: deviations die"
-    } else {
-        "not stable: a deviation stays or grows"
+    if let Some(returns) = &found.convergence {
+        print_returns(out, scenario, returns)?;
+    }
+    if let Some(apart) = found.contradiction() {
+        writeln!(
+            out,
+            "the checks contradict each other by {apart:.1e}: events are so near that deviations \
+             meet others; the multipliers are not confirmed"
+        )?;
+    }
+    let verdict = match (found.contradiction().is_some(), is_stable(found)) {
+        (true, _) => "not confirmed",
+        (_, true) => "stable: deviations die",
+        (_, false) => "not stable: a deviation stays or grows",
     };
     writeln!(out, "{verdict} (largest multiplier {})", short(largest(found)))?;
+    Ok(())
+}
+
+/// How far the robot is off its cycle at the start and after each cycle.
+fn print_returns(
+    out: &mut dyn Write,
+    scenario: &Scenario,
+    returns: &Convergence,
+) -> Result<(), Failure> {
+    let joints = &scenario.plant.model().joints;
+    let names: Vec<String> =
+        returns.joints.iter().map(|joint| format!("qd_{}", joints[*joint].name)).collect();
+    let lengths: Vec<String> =
+        returns.lengths.iter().map(|length| format!("{length:.1e}")).collect();
+    writeln!(out, "off the cycle in {}: {}", names.join(", "), lengths.join(" "))?;
+    match (&returns.stopped, returns.factor()) {
+        (Some(error), _) => writeln!(out, "from there it does not come back: {error}")?,
+        (None, Some(factor)) => writeln!(out, "a cycle makes {factor:.3} of it in the mean")?,
+        (None, None) => {}
+    }
     Ok(())
 }
 
@@ -234,6 +332,6 @@ fn complex([re, im]: [f64; 2]) -> String {
     if im == 0.0 { size(re) } else { format!("{} {sign} {}i", size(re), size(im.abs())) }
 }
 
-fn size(value: f64) -> String {
+pub(super) fn size(value: f64) -> String {
     if value.abs() >= 1e-4 { format!("{value:.6}") } else { format!("{value:.1e}") }
 }

@@ -6,11 +6,13 @@ use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::progress::Progress;
 use super::super::simulate::open;
+use super::number::within;
 use clap::Args;
 use denavit::plants::{PlantModel, PointModel};
 use denavit::report::{Align, HeatMap, Table};
 use denavit::simulate::scenario::Scenario;
 use denavit::simulate::{Log, Simulation};
+use denavit::walk::balance::check_walker;
 use denavit::walk::poincare::{PoincareAnalysis, PoincareOptions, analyse};
 use denavit::walk::robustness::{
     BasinOptions, BasinStart, LeastPush, PushOptions, basin, grid, least_pushes, noise,
@@ -42,7 +44,14 @@ pub(crate) struct BasinArguments {
     )]
     vary: Vec<String>,
     /// How far each is varied, either way [rad, rad/s, m, m/s]
-    #[arg(long, value_name = "A,B", value_delimiter = ',', num_args = 1, default_value = "1,0.1")]
+    #[arg(
+        long,
+        value_name = "A,B",
+        value_delimiter = ',',
+        num_args = 1,
+        default_value = "1,0.1",
+        value_parser = within(0.0..=100.0, "rad, rad/s, m or m/s")
+    )]
     reach: Vec<f64>,
     /// Starts along each coordinate
     #[arg(
@@ -53,7 +62,12 @@ pub(crate) struct BasinArguments {
     )]
     grid: u32,
     /// Vary all joint velocities instead: normal, with this standard deviation [rad/s]
-    #[arg(long, value_name = "DEVIATION", conflicts_with_all = ["vary", "reach", "grid"])]
+    #[arg(
+        long,
+        value_name = "DEVIATION",
+        conflicts_with_all = ["vary", "reach", "grid"],
+        value_parser = within(1e-9..=100.0, "rad/s")
+    )]
     noise: Option<f64>,
     /// How many random starts
     #[arg(
@@ -109,10 +123,15 @@ pub(crate) struct PushArguments {
     )]
     times: u32,
     /// The strongest impulse that is tried [N s]
-    #[arg(long, value_name = "NS", default_value_t = 20.0)]
+    #[arg(long, value_name = "NS", default_value = "20", value_parser = within(1e-6..=1e6, "N s"))]
     most: f64,
     /// How long the robot must walk on after the push
-    #[arg(long, value_name = "SECONDS", default_value_t = 4.0)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "4",
+        value_parser = within(1e-3..=1e3, "s")
+    )]
     after: f64,
     /// Draw the map; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -167,18 +186,16 @@ pub(crate) fn run_basin(
     let model = scenario.plant.model().clone();
     let (names, reach) = (pair(&arguments.vary, "--vary")?, pair(&arguments.reach, "--reach")?);
     let deviations = match arguments.noise {
-        Some(deviation) if !(deviation > 0.0 && deviation.is_finite()) => {
-            return Err(Failure::Walk("--noise".to_owned(), "a positive number".to_owned()));
-        }
         Some(deviation) => {
             let count = arguments.starts as usize;
             noise(scenario.plant.as_ref(), deviation, count, arguments.seed)
         }
         None => {
-            if !reach.iter().all(|reach| reach.is_finite()) {
-                return Err(Failure::Walk("--reach".to_owned(), "two finite numbers".to_owned()));
-            }
             let entries = [coordinate(&model, &names[0])?, coordinate(&model, &names[1])?];
+            if entries[0] == entries[1] {
+                let why = format!("`{}` twice\n  hint: name two coordinates", names[0]);
+                return Err(Failure::Walk("--vary".to_owned(), why));
+            }
             grid(model.joints.len(), entries, reach, arguments.grid as usize)
         }
     };
@@ -302,12 +319,10 @@ fn draw_basin(
 pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let positive = |value: f64| value > 0.0 && value.is_finite();
-    if !positive(arguments.most) || !positive(arguments.after) {
-        return Err(Failure::Walk("--most, --after".to_owned(), "positive numbers".to_owned()));
-    }
     let mut scenario = disturbed(&arguments.scenario)?;
     let name = scenario.name.clone();
+    check_walker(scenario.plant.as_mut())
+        .map_err(|error| Failure::Walk(name.clone(), error.to_string()))?;
     let model = scenario.plant.model().clone();
     let link = pushed_link(&model, arguments.link.as_deref())?;
     check_outputs(&outputs)?;

@@ -21,7 +21,7 @@ const COMMANDS: [&str; 13] = [
 ];
 
 /// The commands of `walk`.
-const WALK: [&str; 10] = [
+const WALK: [&str; 11] = [
     "zmp",
     "fri",
     "capture",
@@ -32,6 +32,7 @@ const WALK: [&str; 10] = [
     "capturability",
     "capture-steps",
     "compare",
+    "page",
 ];
 
 /// The command lines of a help text's examples; three blanks begin a remark.

@@ -72,13 +72,16 @@ fn what_cannot_be_judged_is_refused() {
         (&["walk", "poincare", "planar_biped_capture_step"], "does not repeat"),
         (&["walk", "poincare", "no_such_gait"], "no shipped scenario"),
         (&["walk", "basin", GAIT, "--vary", "q_nose,q_base_pitch"], "q_nose"),
-        (&["walk", "basin", GAIT, "--noise", "0"], "positive"),
+        (&["walk", "basin", GAIT, "--noise", "0"], "not from 0.000000001 to 100 rad/s"),
         (&["walk", "push", GAIT, "--link", "nose"], "nose"),
-        (&["walk", "capturability", GAIT, "--step-time", "0"], "least step time cannot be 0"),
-        (&["walk", "capturability", GAIT, "--height", "nan"], "height of the centre of mass"),
+        (&["walk", "capturability", GAIT, "--step-time", "0"], "not from 0.001 to 100 s"),
+        (&["walk", "capturability", GAIT, "--height", "nan"], "not from 0.001 to 1000 m"),
         (&["walk", "capturability", "tulip_standing"], "planar robots with two legs"),
         (&["walk", "capture-steps", GAIT], "capture_step"),
-        (&["walk", "capture-steps", "planar_biped_capture_step", "--most", "0"], "positive"),
+        (
+            &["walk", "capture-steps", "planar_biped_capture_step", "--most", "0"],
+            "not from 0.000001",
+        ),
         (&["walk", "zmp", "Cargo.toml", "--model", "planar_biped"], "Cargo.toml"),
     ] {
         let refused = run(words);
@@ -120,4 +123,49 @@ fn capture_steps_compares_predicted_and_made_steps() {
     assert_eq!(pushes[1]["outcome"], "stands");
     assert_eq!(pushes[2]["outcome"], "fell");
     assert_eq!(found["agree"], 3);
+}
+
+#[test]
+fn a_gait_has_a_page_with_the_figures_of_the_thesis() {
+    let directory = Directory::new("walk_page");
+    let answer = run_in(&directory.path, &["walk", "page", GAIT, "-o", "gait.html"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    let page = std::fs::read_to_string(directory.path.join("gait.html")).expect("a page");
+    assert_eq!(page.matches("<svg").count(), 7, "joints, run, three points, returns, circle");
+    for figure in ["figures 4.2", "figures 4.3", "figure 4.7", "figure 4.8", "figure 4.9"] {
+        assert!(page.contains(figure), "{figure}");
+    }
+    assert!(page.contains("-0.211688"), "the largest multiplier");
+    let standing = run_in(&directory.path, &["walk", "page", "bouncing_ball", "-o", "ball.html"]);
+    assert_eq!(standing.code, Some(2), "{}", standing.stdout);
+    assert_eq!(directory.files(), ["gait.html"]);
+}
+
+#[test]
+fn numbers_that_nobody_means_are_refused() {
+    let capture = "planar_biped_capture_step";
+    for (words, said) in [
+        (&["walk", "push", GAIT, "--after", "1e9"][..], "not from 0.001 to 1000 s"),
+        (&["walk", "push", GAIT, "--most", "1e308"], "not from 0.000001 to 1000000 N s"),
+        (&["walk", "push", "cradle"], "floating base"),
+        (&["walk", "capture-steps", capture, "--impulses", "1e308"], "N s"),
+        (&["walk", "capturability", capture, "--height", "1e308"], "not from 0.001 to 1000 m"),
+        (&["walk", "basin", GAIT, "--reach", "1e308,1"], "not from 0 to 100"),
+        (&["walk", "basin", GAIT, "--vary", "q_base_x,q_base_x"], "`q_base_x` twice"),
+    ] {
+        let run = run(words);
+        assert_eq!(run.code, Some(2), "{words:?}: {}", run.stdout);
+        assert!(run.stderr.contains(said), "{words:?}: {}", run.stderr);
+    }
+}
+
+/// The kind of the gait says so before anything is designed, and nothing is written.
+#[test]
+fn a_limit_cycle_has_no_trajectory_of_its_own() {
+    let directory = Directory::new("walk_trajectory");
+    let words = ["walk", "design", "planar_biped_limit_cycle", "-o", "a.json", "--trajectory"];
+    let run = run_in(&directory.path, &[&words[..], &["b.json"]].concat());
+    assert_eq!(run.code, Some(2), "{}", run.stdout);
+    assert!(run.stderr.contains("references alone do not walk a limit cycle"), "{}", run.stderr);
+    assert!(directory.files().is_empty());
 }

@@ -147,7 +147,9 @@ impl Explained for Cause {
             Self::NoFormat(expected) => format!("add `\"format\": \"{expected}\"`"),
             Self::Form(model::Cause::MissingKey(key)) => format!("add `\"{key}\": ..`"),
             Self::Form(cause) => {
-                return cause.hint().or_else(|| Some("docs/scenario.md says what is right".into()));
+                return cause.hint().or_else(|| {
+                    Some("docs/scenario.md says what is right, docs/gait.md of gaits".into())
+                });
             }
             Self::UnknownLink(_, Some(near))
             | Self::UnknownJoint(_, Some(near))

@@ -76,7 +76,7 @@ pub fn course_of_scenario(
     period_s: f64,
     whole: bool,
 ) -> Result<Course, BalanceError> {
-    check(scenario.plant.as_mut())?;
+    check_walker(scenario.plant.as_mut())?;
     let cycle = if whole || scenario.scheme == RunScheme::TimeStepping {
         None
     } else {
@@ -119,11 +119,15 @@ pub fn course_of_scenario(
 /// # Errors
 /// Robots that do not walk, columns that are not there.
 pub fn course_of_log(plant: &mut dyn Plant, log: &Log) -> Result<Course, BalanceError> {
-    check(plant)?;
+    check_walker(plant)?;
     Ok(Course { over: Over::Run, instants: instants(plant, log)?, run: None })
 }
 
-fn check(plant: &mut dyn Plant) -> Result<(), BalanceError> {
+/// Whether a robot can walk, and fall: it has a floating base and contact points.
+///
+/// # Errors
+/// Robots that cannot.
+pub fn check_walker(plant: &mut dyn Plant) -> Result<(), BalanceError> {
     let model = plant.model();
     let floats = model.joints.first().is_some_and(|joint| !joint.drivable);
     let walks = floats && !model.contacts.is_empty() && plant.walking().is_some();

@@ -10,7 +10,7 @@ mod energy;
 mod instant;
 mod summary;
 
-pub use course::{BalanceError, Course, Over, course_of_log, course_of_scenario};
+pub use course::{BalanceError, Course, Over, check_walker, course_of_log, course_of_scenario};
 pub use energy::Energy;
 pub use instant::{Instant, Phase};
 pub use summary::{Criterion, Margins, Shares};

@@ -1,6 +1,7 @@
 //! The stability of a scenario's gait: its cycle, its multipliers, and on which section they were
 //! found.
 
+use super::convergence::{Convergence, converge};
 use super::cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
 use super::multipliers::{Multiplier, multipliers};
 use super::rhythm::{NotPeriodic, Rhythm};
@@ -36,11 +37,20 @@ pub struct PoincareOptions {
     pub checks: bool,
     /// A walker without a clock that does not strike within this time does not walk \[s\].
     pub patience_s: f64,
+    /// How far two velocities are off the cycle [rad/s, m/s], and over how many cycles the way back
+    /// is followed; 0: not at all.
+    pub returns: (f64, usize),
 }
 
 impl Default for PoincareOptions {
     fn default() -> Self {
-        Self { section: WantedSection::Best, approach_steps: 4, checks: true, patience_s: 5.0 }
+        Self {
+            section: WantedSection::Best,
+            approach_steps: 4,
+            checks: true,
+            patience_s: 5.0,
+            returns: (0.1, 0),
+        }
     }
 }
 
@@ -61,6 +71,8 @@ pub struct PoincareAnalysis {
     pub methods_apart: Option<f64>,
     /// Largest difference of multipliers above 1e-2 between sections, with how many there were.
     pub section_spread: Option<(f64, usize)>,
+    /// Returns from off the cycle, if asked for.
+    pub convergence: Option<Convergence>,
 }
 
 /// Why there is no analysis.
@@ -105,6 +117,8 @@ const CLEAR: f64 = 0.04;
 /// Multipliers below this may differ between sections: deviations that die within a step leave
 /// different traces.
 const LARGE: f64 = 1e-2;
+/// Checks that are farther apart contradict each other.
+const CONTRADICTS: f64 = 1e-3;
 /// More sections are not compared.
 const SECTIONS: usize = 3;
 
@@ -142,9 +156,17 @@ pub fn analyse(
     } else {
         None
     };
-    let section_spread =
+    let mut section_spread =
         if options.checks && is_clock { spread(&mut map, &cycle, &own)? } else { None };
+    let leading = own.first().filter(|_| options.returns.1 > 0);
+    let convergence = leading.map(|one| converge(&mut map, &cycle, one, options.returns));
     let forbidden = if is_clock { forbidden(map.plant, own.len()) } else { 0 };
+    if options.checks && !is_clock && rhythm.clock_s.is_some() {
+        // differences across a strike may meet other events: the variational equation does not
+        let plain = PoincareOptions { checks: false, returns: (0.0, 0), ..*options };
+        let on_clock = PoincareOptions { section: WantedSection::Best, ..plain };
+        section_spread = Some((apart(&own, &analyse(scenario, &on_clock)?.multipliers), 2));
+    }
     Ok(PoincareAnalysis {
         cycle,
         section,
@@ -152,7 +174,28 @@ pub fn analyse(
         forbidden,
         methods_apart,
         section_spread,
+        convergence,
     })
+}
+
+/// Largest difference of multipliers above 1e-2, by falling modulus.
+fn apart(own: &[Multiplier], other: &[Multiplier]) -> f64 {
+    let pairs = own.iter().zip(other).filter(|(one, _)| one.modulus() > LARGE);
+    let apart = |(one, other): (&Multiplier, &Multiplier)| {
+        (one.value[0] - other.value[0]).hypot(one.value[1] - other.value[1])
+    };
+    pairs.map(apart).fold(0.0, f64::max)
+}
+
+impl PoincareAnalysis {
+    /// How far the checks of the multipliers are apart, where they contradict each other: events
+    /// are so near to each other that small deviations meet others, and the linearised map says
+    /// little of deviations that can be seen.
+    pub fn contradiction(&self) -> Option<f64> {
+        let spread = self.section_spread.map(|(apart, _)| apart);
+        let worst = self.methods_apart.into_iter().chain(spread).fold(0.0, f64::max);
+        (worst > CONTRADICTS).then_some(worst)
+    }
 }
 
 /// Differences of runs take more accuracy than runs: states are to be good to about 1e-11.

@@ -124,6 +124,11 @@ impl Chart {
         State { t_s: self.base.t_s + later, q, qd, motor, motor_rate, laws }
     }
 
+    /// By how much later on the clock a state of these coordinates is \[s\].
+    pub(super) fn later_s(&self, coordinates: &[f64]) -> f64 {
+        coordinates.last().copied().filter(|_| self.has_time).unwrap_or(0.0)
+    }
+
     /// The coordinates of a state near by, to first order.
     pub fn coordinates(&self, state: &State) -> Vec<f64> {
         let mut coordinates = self.coordinates_of_change(&State {

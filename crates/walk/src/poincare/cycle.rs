@@ -59,6 +59,10 @@ const FIXED: f64 = 1e-11;
 /// Rounding of long runs keeps some cycles from more than this [rad, rad/s].
 const NEARLY_FIXED: f64 = 1e-7;
 const ITERATIONS: usize = 30;
+/// No shorter part of a Newton step is tried.
+const LEAST_SHARE: f64 = 1e-3;
+/// A Newton step moves the time on the clock by no more than this share of a cycle.
+const LATER: f64 = 0.1;
 /// A Newton step that reduces the residual by less asks for a new matrix.
 const SLOW: f64 = 0.2;
 
@@ -100,7 +104,7 @@ pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, 
             return Err(CycleError::NotFound(residual));
         };
         matrix = Some(jacobian);
-        (state, returned) = advance(map, &chart, step.as_slice())?;
+        (state, returned) = advance(map, &chart, step.as_slice(), returned.took_s)?;
     }
     let (residual, state) = best.unwrap_or_else(|| (f64::INFINITY, near.clone()));
     if residual >= NEARLY_FIXED {
@@ -133,14 +137,17 @@ fn advance(
     map: &mut ReturnMap<'_>,
     chart: &Chart,
     step: &[f64],
+    took_s: f64,
 ) -> Result<(State, Returned), CycleError> {
-    let mut share = 1.0;
+    // a time on the clock far from here is that of another cycle
+    let later_s = chart.later_s(step).abs();
+    let mut share = if later_s > LATER * took_s { LATER * took_s / later_s } else { 1.0 };
     loop {
         let part: Vec<f64> = step.iter().map(|entry| share * entry).collect();
         let state = chart.state(map.plant, &part);
         match map.apply(&state) {
             Ok(returned) => return Ok((state, returned)),
-            Err(error) if share < 0.1 => return Err(CycleError::Return(error)),
+            Err(error) if share < LEAST_SHARE => return Err(CycleError::Return(error)),
             Err(_) => share *= 0.5,
         }
     }

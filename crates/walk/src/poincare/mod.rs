@@ -5,10 +5,12 @@
 //! - [`fixed_point`]: the state that comes back to itself
 //! - [`by_differences`], [`by_variation`]: the linearised return map, in two independent ways
 //! - [`multipliers`]: its eigenvalues with their directions
+//! - [`converge`]: returns from off the cycle
 //! - [`doubling`]: where a cycle of twice the steps branches off
 
 mod analysis;
 mod chart;
+mod convergence;
 mod cycle;
 mod doubling;
 mod multipliers;
@@ -19,6 +21,7 @@ mod wording;
 
 pub use analysis::{PoincareAnalysis, PoincareError, PoincareOptions, WantedSection, analyse};
 pub use chart::Chart;
+pub use convergence::{Convergence, converge};
 pub use cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
 pub use doubling::doubling;
 pub use multipliers::{Multiplier, multipliers};

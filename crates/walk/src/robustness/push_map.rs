@@ -33,7 +33,7 @@ pub struct LeastPush {
     pub at_s: f64,
     /// Unit vector in the world.
     pub direction: [f64; 3],
-    /// The least impulse that fells it; none if the strongest does not [N s].
+    /// The least impulse that fells it: 0 if it falls anyway, none if the strongest does not [N s].
     pub impulse_ns: Option<f64>,
     /// What became of it then.
     pub outcome: Outcome,
@@ -65,6 +65,10 @@ fn least(
     outcome_of: &mut dyn FnMut(f64) -> Outcome,
     options: &PushOptions,
 ) -> (Option<f64>, Outcome) {
+    let unpushed = outcome_of(0.0);
+    if !unpushed.walks() {
+        return (Some(0.0), unpushed);
+    }
     let mut borne = 0.0;
     for step in 1..=options.coarse.max(1) {
         let strength = options.most_ns * step as f64 / options.coarse.max(1) as f64;

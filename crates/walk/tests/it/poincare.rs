@@ -6,7 +6,8 @@ use denavit_simulate::integrate::{Accuracy, Method};
 use denavit_simulate::{Simulation, State, simulate};
 use denavit_walk::LegExchange;
 use denavit_walk::poincare::{
-    ReturnMap, Section, by_differences, by_variation, fixed_point, multipliers,
+    PoincareOptions, ReturnMap, Section, WantedSection, analyse, by_differences, by_variation,
+    fixed_point, multipliers,
 };
 
 /// The return map of a gait with this time of a step, looked at after a share of it.
@@ -53,6 +54,36 @@ fn assert_cycle(gait: (&str, f64), share: f64, travel_m: f64, expected: &[[f64; 
         }
         assert!(found[expected.len()..].iter().all(|multiplier| multiplier.modulus() < 1e-3));
     });
+}
+
+/// From (0.1, -0.1) rad/s off its cycle (walking.md 6): 0.0013 is left of 0.141 after 12 steps, as
+/// the modulus of the largest multipliers has it.
+#[test]
+fn the_limit_cycle_is_returned_to_as_its_multipliers_say() {
+    let mut scenario = scenario(LIMIT_CYCLE.0);
+    let options =
+        PoincareOptions { checks: false, returns: (0.1, 12), ..PoincareOptions::default() };
+    let found = analyse(&mut scenario, &options).unwrap();
+    let returns = found.convergence.unwrap();
+    assert_eq!(returns.stopped, None);
+    assert_eq!(returns.lengths.len(), 13);
+    assert_near(returns.lengths[0], 0.1_f64.hypot(0.1), 0.01);
+    assert!(returns.lengths[12] < 2e-3, "{:?}", returns.lengths);
+    // a pair turns as it shrinks: its modulus is met in the mean alone
+    assert_near(returns.factor().unwrap(), found.multipliers[0].modulus(), 0.05);
+}
+
+/// A multiplier of a strike section against that of the clock.
+#[test]
+fn a_strike_section_is_compared_with_the_clock() {
+    let mut scenario = scenario(LIMIT_CYCLE.0);
+    let section = WantedSection::Strike;
+    let options = PoincareOptions { section, ..PoincareOptions::default() };
+    let found = analyse(&mut scenario, &options).unwrap();
+    assert!(matches!(found.section, Section::Touch(_)));
+    let (apart, count) = found.section_spread.unwrap();
+    assert!(apart < 1e-4 && count == 2, "{apart}");
+    assert_eq!(found.contradiction(), None);
 }
 
 const ZMP_GAIT: (&str, f64) = ("planar_biped_zmp_gait", 1.2);

@@ -114,6 +114,10 @@ fn judge(arguments: &Arguments) -> Result<Judged, Failure> {
         let course = course_of_log(plant.as_mut(), &log).map_err(failure)?;
         return Ok(Judged { name, model: plant.model().clone(), course });
     }
+    if arguments.input.extension().is_some_and(|extension| extension == "csv") {
+        let why = "a log says nothing of its robot\n  hint: name the robot's model: --model MODEL";
+        return Err(Failure::Walk(name, why.to_owned()));
+    }
     let mut scenario = open(&arguments.input)?;
     let course =
         course_of_scenario(&mut scenario, arguments.period, arguments.whole).map_err(failure)?;

@@ -83,6 +83,9 @@ fn what_cannot_be_judged_is_refused() {
             "not from 0.000001",
         ),
         (&["walk", "zmp", "Cargo.toml", "--model", "planar_biped"], "Cargo.toml"),
+        (&["walk", "zmp", "log.csv"], "--model MODEL"),
+        (&["walk", "poincare", "planar_biped_pushed"], "pushes come once"),
+        (&["simulate", "models/gaits/tulip_walk.json"], "a gait is designed first"),
     ] {
         let refused = run(words);
         assert_eq!(refused.code, Some(2), "{words:?}: {}", refused.stdout);
@@ -136,8 +139,8 @@ fn a_gait_has_a_page_with_the_figures_of_the_thesis() {
         assert!(page.contains(figure), "{figure}");
     }
     assert!(page.contains("-0.211688"), "the largest multiplier");
-    let standing = run_in(&directory.path, &["walk", "page", "bouncing_ball", "-o", "ball.html"]);
-    assert_eq!(standing.code, Some(2), "{}", standing.stdout);
+    let refused = run_in(&directory.path, &["walk", "page", "cradle", "-o", "cradle.html"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stdout);
     assert_eq!(directory.files(), ["gait.html"]);
 }
 

@@ -141,8 +141,13 @@ impl fmt::Display for Cause {
 impl Explained for Cause {
     fn hint(&self) -> Option<String> {
         Some(match self {
+            Self::Form(model::Cause::WrongFormat { found, expected })
+                if found == "denavit-gait/1" && *expected == "denavit-scenario/1" =>
+            {
+                "a gait is designed first: `denavit walk design GAIT -o SCENARIO`".to_owned()
+            }
             Self::Form(model::Cause::WrongFormat { expected, .. }) => {
-                format!("this file has `\"format\": \"{expected}\"`")
+                format!("such a file has `\"format\": \"{expected}\"`")
             }
             Self::NoFormat(expected) => format!("add `\"format\": \"{expected}\"`"),
             Self::Form(model::Cause::MissingKey(key)) => format!("add `\"{key}\": ..`"),

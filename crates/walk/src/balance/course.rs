@@ -77,7 +77,8 @@ pub fn course_of_scenario(
     whole: bool,
 ) -> Result<Course, BalanceError> {
     check_walker(scenario.plant.as_mut())?;
-    let cycle = if whole || scenario.scheme == RunScheme::TimeStepping {
+    let is_pushed = !scenario.simulation.pushes.is_empty();
+    let cycle = if whole || is_pushed || scenario.scheme == RunScheme::TimeStepping {
         None
     } else {
         let options = PoincareOptions {

@@ -11,7 +11,7 @@ use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
 use super::footsteps::{AnkleRolls, DivergentComponentProblem, Phase, phases};
 use super::pendulum::{PendulumPath, PressureSegment};
-use super::plan::{GaitPlan, Knot};
+use super::plan::{GaitPlan, Knot, ROUNDING_M};
 use super::posture::Posture;
 use super::torque::{Bearing, Moment, torques};
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
@@ -298,7 +298,7 @@ impl Planner<'_> {
         let [x, y, _] = pose.center_m;
         let margin_m = self.biped.margin_m(plant.model(), feet, pressure);
         let least_m = self.problem.margin_m;
-        if margin_m < least_m || margin_m.is_nan() {
+        if margin_m < least_m - ROUNDING_M || margin_m.is_nan() {
             let point = "planned zero moment point";
             return Err(PlanError::Margin { point, posture: name, t_s, margin_m, least_m });
         }

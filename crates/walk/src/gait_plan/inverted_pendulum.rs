@@ -6,7 +6,7 @@ use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
 use super::footsteps::smooth;
 use super::pendulum::{PendulumPath, PressureSegment};
-use super::plan::{GaitPlan, JointGains, Knot};
+use super::plan::{GaitPlan, JointGains, Knot, ROUNDING_M};
 use super::posture::Posture;
 use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
@@ -291,7 +291,7 @@ impl Planner<'_> {
         for knot in &all {
             let margin_m = knot.pressure_margin_m.unwrap_or(f64::NAN);
             let least_m = self.problem.margin_m;
-            if margin_m >= least_m {
+            if margin_m >= least_m - ROUNDING_M {
                 continue;
             }
             let (posture, t_s) = (knot.name.clone(), knot.t_s);

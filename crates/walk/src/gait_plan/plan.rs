@@ -6,6 +6,9 @@ use crate::scenario_file::ContactFriction;
 use denavit_plants::PlantModel;
 use denavit_plants::trajectory::Reference;
 
+/// Margins that miss what is asked for by less are as asked for \[m\]: postures are found to 1e-11.
+pub(super) const ROUNDING_M: f64 = 1e-9;
+
 /// Gains of all driven joints, and the friction of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointGains {

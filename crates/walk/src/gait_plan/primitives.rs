@@ -3,7 +3,7 @@
 
 use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
-use super::plan::{GaitPlan, JointGains, Knot};
+use super::plan::{GaitPlan, JointGains, Knot, ROUNDING_M};
 use super::posture::Posture;
 use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
@@ -182,7 +182,7 @@ impl Step<'_> {
     fn check_margin(&self, knot: &Knot) -> Result<(), PlanError> {
         let least_m = self.problem.margin_m;
         // written so that NaN fails as well
-        if knot.static_margin_m >= least_m {
+        if knot.static_margin_m >= least_m - ROUNDING_M {
             return Ok(());
         }
         let (posture, t_s, margin_m) = (knot.name.clone(), knot.t_s, knot.static_margin_m);

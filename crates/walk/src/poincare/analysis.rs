@@ -86,6 +86,8 @@ pub enum PoincareError {
     Stopped(Stop, f64),
     /// The swing foot does not strike in time \[s\].
     NoStrike(f64),
+    /// The scenario pushes the robot.
+    Pushed,
     /// A section of the clock of a controller that has none.
     NoClock,
     /// There is no cycle.
@@ -103,6 +105,7 @@ impl fmt::Display for PoincareError {
             Self::Start(error) => write!(f, "{error}"),
             Self::Stopped(stop, t_s) => write!(f, "at {t_s:.6} s the run {stop}"),
             Self::NoStrike(t_s) => write!(f, "no foot strikes the ground within {t_s} s"),
+            Self::Pushed => write!(f, "pushes come once: with them there is no cycle"),
             Self::NoClock => write!(f, "the controller has no clock, and so no phase"),
             Self::Cycle(error) => write!(f, "{error}"),
             Self::Multipliers => write!(f, "the multipliers do not converge"),
@@ -130,6 +133,9 @@ pub fn analyse(
     scenario: &mut Scenario,
     options: &PoincareOptions,
 ) -> Result<PoincareAnalysis, PoincareError> {
+    if !scenario.simulation.pushes.is_empty() {
+        return Err(PoincareError::Pushed);
+    }
     let plant = scenario.plant.as_mut();
     let rhythm = Rhythm::of(plant, &scenario.control).map_err(|NotPeriodic(joint)| {
         PoincareError::NotPeriodic(plant.model().joints[joint].name.clone())

@@ -5,19 +5,23 @@ use super::super::failure::Failure;
 use super::super::files::{load_beside, read_or_shipped};
 use super::super::json::{Ordered, write_json};
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::simulate::open;
 use clap::Args;
 use denavit::effect;
+use denavit::model::json as file;
 use denavit::plants::trajectory::Reference;
 use denavit::plants::{Plant, PlantModel, plant_of};
 use denavit::report::{Align, GaitCurve, GaitPicture, Table};
 use denavit::shipped;
-use denavit::walk::ScenarioHead;
-use denavit::walk::gait_file::{GaitFile, GaitKind, read_gait};
+use denavit::simulate::scenario::Scenario;
+use denavit::walk::gait_file::{FORMAT, GaitFile, GaitKind, read_gait};
 use denavit::walk::gait_plan::{
     GaitPlan, Knot, PlanError, plan_divergent_component, plan_inverted_pendulum, plan_primitives,
 };
 use denavit::walk::optimal::{LimitCycle, design, scenario_text};
+use denavit::walk::{ScenarioHead, read_scenario};
 use serde_json::{Map, Value, json as value};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -102,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return Err(refused(&name, NO_TRAJECTORY));
     }
     check_outputs(&outputs)?;
-    let designed = designed(arguments, &name, &gait)?;
+    let designed = designed((&arguments.gait, arguments.output.as_deref()), &name, &gait)?;
     if let Some(path) = &arguments.output {
         write_whole(path, designed.scenario.as_bytes())?;
     }
@@ -135,14 +139,46 @@ fn refused(name: &str, why: impl std::fmt::Display) -> Failure {
     Failure::Walk(name.to_owned(), why.to_string())
 }
 
-fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Designed, Failure> {
-    let bytes = load_beside(&arguments.gait, &gait.model)
+/// Whether this names a gait and no scenario: a file that says so, or a shipped gait.
+fn is_gait(path: &Path) -> bool {
+    if path.is_file() {
+        let bytes = std::fs::read(path).unwrap_or_default();
+        let is_tag = |(key, tag): &(Cow<'_, str>, file::Json<'_>)| {
+            key == "format" && matches!(&tag.value, file::Value::Text(tag) if tag == FORMAT)
+        };
+        return file::parse(&bytes).is_ok_and(|root| root.entries().iter().any(is_tag));
+    }
+    let is_in = |list: &[shipped::ShippedModel]| list.iter().any(|one| Path::new(one.name) == path);
+    is_in(shipped::GAITS) && !is_in(shipped::SCENARIOS)
+}
+
+/// A scenario, or that of a gait, which is designed for it.
+pub(super) fn open_or_design(path: &Path) -> Result<Scenario, Failure> {
+    if !is_gait(path) {
+        return open(path);
+    }
+    let name = path.display().to_string();
+    let bytes = read_or_shipped(path, ("gait", shipped::GAITS))?;
+    let gait = read_gait(&name, &bytes).map_err(Failure::Scenario)?;
+    let designed = designed((path, None), &name, &gait)?;
+    let load = |model: &str| load_beside(path, model);
+    read_scenario(&name, designed.scenario.as_bytes(), &load).map_err(Failure::Scenario)
+}
+
+/// Designs a gait; its file, and where the scenario goes, say how the scenario calls its model.
+fn designed(
+    files: (&Path, Option<&Path>),
+    name: &str,
+    gait: &GaitFile,
+) -> Result<Designed, Failure> {
+    let (gait_file, _) = files;
+    let bytes = load_beside(gait_file, &gait.model)
         .map_err(|why| refused(name, format_args!("{}: {why}\n  hint: {MODEL}", gait.model)))?;
     let robot = effect::read_model(&gait.model, &bytes, &[]).map_err(Failure::Model)?;
     let mut plant = plant_of(&robot, &gait.parameters).map_err(|error| refused(name, error))?;
-    let stem = arguments.gait.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = gait_file.file_stem().unwrap_or_default().to_string_lossy();
     let own = if gait.name.is_empty() { stem.into_owned() } else { gait.name.clone() };
-    let model = model_from(arguments, &gait.model);
+    let model = model_from(files, &gait.model);
     let source = format!("`denavit walk design` from the gait {own}");
     let head = ScenarioHead {
         name: &own,
@@ -177,7 +213,7 @@ fn designed(arguments: &Arguments, name: &str, gait: &GaitFile) -> Result<Design
 }
 
 /// What the scenario calls its model: paths are taken from the scenario's directory.
-fn model_from(arguments: &Arguments, model: &str) -> String {
+fn model_from((gait, output): (&Path, Option<&Path>), model: &str) -> String {
     if shipped::find_referred(model).is_some() {
         return model.to_owned();
     }
@@ -185,8 +221,8 @@ fn model_from(arguments: &Arguments, model: &str) -> String {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         parent.unwrap_or(Path::new(".")).canonicalize().ok()
     };
-    let from = directory(&arguments.gait);
-    let file = arguments.output.as_ref().filter(|path| path.as_os_str() != "-");
+    let from = directory(gait);
+    let file = output.filter(|path| path.as_os_str() != "-");
     if file.is_none_or(|path| directory(path) == from) {
         return model.to_owned();
     }

@@ -3,8 +3,9 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::super::simulate::{draw as draw_run, open};
+use super::super::simulate::draw as draw_run;
 use super::balance::{Judged, What, draw as draw_balance, margin_cells, period};
+use super::design::open_or_design;
 use super::poincare::{picture, return_map, size};
 use clap::Args;
 use denavit::report::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section};
@@ -24,8 +25,8 @@ use std::path::PathBuf;
 Example:
   denavit walk page planar_biped_limit_cycle_gait -o gait.html")]
 pub(crate) struct Arguments {
-    /// The path of a scenario file, or the name of a shipped scenario
-    #[arg(value_name = "SCENARIO")]
+    /// A scenario or a gait, which is designed first: the path of its file, or a shipped name
+    #[arg(value_name = "SCENARIO|GAIT")]
     scenario: PathBuf,
     /// Distance of the instants that are looked at
     #[arg(long, value_name = "SECONDS", default_value = "0.001", value_parser = period)]
@@ -38,7 +39,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [Some(&arguments.output)];
     let is_answered = on_stdout(&outputs, false)?;
-    let mut scenario = open(&arguments.scenario)?;
+    let mut scenario = open_or_design(&arguments.scenario)?;
     check_outputs(&outputs)?;
     let name = arguments.scenario.display().to_string();
     let course = course_of_scenario(&mut scenario, arguments.period, false)

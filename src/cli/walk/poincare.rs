@@ -4,7 +4,7 @@ use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::json::{Ordered, write_json};
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::super::simulate::open;
+use super::design::open_or_design;
 use clap::Args;
 use denavit::report::{Align, ReturnMapPicture, Table, UnitCircle, short};
 use denavit::simulate::scenario::Scenario;
@@ -29,8 +29,8 @@ Examples:
   denavit walk poincare planar_biped_limit_cycle_gait --unchecked --svg circle.svg
   denavit walk poincare compass_gait --section strike --json")]
 pub(crate) struct Arguments {
-    /// The path of a scenario file, or the name of a shipped scenario
-    #[arg(value_name = "SCENARIO")]
+    /// A scenario or a gait, which is designed first: the path of its file, or a shipped name
+    #[arg(value_name = "SCENARIO|GAIT")]
     scenario: PathBuf,
     /// Where the cycle is looked at: strike, or a share of the cycle from 0 to 1 [default: the
     /// middle of the longest time without an event]
@@ -87,7 +87,7 @@ fn section(text: &str) -> Result<WantedSection, String> {
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.svg.as_ref(), arguments.map.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let mut scenario = open(&arguments.scenario)?;
+    let mut scenario = open_or_design(&arguments.scenario)?;
     check_outputs(&outputs)?;
     let options = PoincareOptions {
         section: arguments.section.unwrap_or_default(),

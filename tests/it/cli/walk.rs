@@ -40,6 +40,15 @@ fn poincare_answers_with_the_keys_that_are_promised() {
     assert!((found["period_s"].as_f64().expect("a period") - 0.73434639116).abs() < 1e-8);
 }
 
+/// A gait is designed first: walking primitives have nearly no multipliers.
+#[test]
+fn poincare_takes_gaits() {
+    let words = ["walk", "poincare", "planar_biped_primitives", "--unchecked", "--returns", "1"];
+    let found = json(&[&words[..], &["--json"]].concat());
+    assert!(found["largest"].as_f64().expect("a modulus") < 0.01, "{found}");
+    assert_eq!(found["cycle"], "step");
+}
+
 #[test]
 fn a_log_is_judged_with_the_model_of_its_robot() {
     let directory = Directory::new("walk-log");
@@ -69,7 +78,7 @@ fn what_cannot_be_judged_is_refused() {
         (&["walk", "zmp", "tulip_leg_tracking"][..], "floating base"),
         (&["walk", "poincare", "tulip_leg_tracking"], "does not repeat"),
         (&["walk", "poincare", GAIT, "--section", "1.5"], "share of the cycle"),
-        (&["walk", "poincare", "planar_biped_capture_step"], "does not repeat"),
+        (&["walk", "poincare", "planar_biped_start_stop"], "does not repeat"),
         (&["walk", "poincare", "no_such_gait"], "no shipped scenario"),
         (&["walk", "basin", GAIT, "--vary", "q_nose,q_base_pitch"], "q_nose"),
         (&["walk", "basin", GAIT, "--noise", "0"], "not from 0.000000001 to 100 rad/s"),
@@ -85,6 +94,7 @@ fn what_cannot_be_judged_is_refused() {
         (&["walk", "zmp", "Cargo.toml", "--model", "planar_biped"], "Cargo.toml"),
         (&["walk", "zmp", "log.csv"], "--model MODEL"),
         (&["walk", "poincare", "planar_biped_pushed"], "pushes come once"),
+        (&["walk", "poincare", "planar_biped_inverted_pendulum"], "does not repeat"),
         (&["simulate", "models/gaits/tulip_walk.json"], "a gait is designed first"),
     ] {
         let refused = run(words);

@@ -6,8 +6,8 @@ use denavit_simulate::integrate::{Accuracy, Method};
 use denavit_simulate::{Simulation, State, simulate};
 use denavit_walk::LegExchange;
 use denavit_walk::poincare::{
-    PoincareOptions, ReturnMap, Section, WantedSection, analyse, by_differences, by_variation,
-    fixed_point, multipliers,
+    Chart, PoincareOptions, ReturnMap, Section, WantedSection, analyse, by_differences,
+    by_variation, fixed_point, multipliers,
 };
 
 /// The return map of a gait with this time of a step, looked at after a share of it.
@@ -71,6 +71,25 @@ fn the_limit_cycle_is_returned_to_as_its_multipliers_say() {
     assert!(returns.lengths[12] < 2e-3, "{:?}", returns.lengths);
     // a pair turns as it shrinks: its modulus is met in the mean alone
     assert_near(returns.factor().unwrap(), found.multipliers[0].modulus(), 0.05);
+}
+
+/// With the place along the ground among the coordinates there is one more, equal to 1.
+#[test]
+fn the_place_along_the_ground_has_the_multiplier_1() {
+    with_map(LIMIT_CYCLE.0, (LIMIT_CYCLE.1, 0.5), |map, near| {
+        let cycle = fixed_point(map, &near).unwrap();
+        let of = |map: &mut ReturnMap<'_>, chart: &Chart| {
+            multipliers(&by_variation(map, chart, cycle.period_s).unwrap()).unwrap()
+        };
+        let own = of(map, &cycle.chart);
+        let whole = Chart::new(map.plant, &cycle.chart.base, &cycle.closed, &[], false);
+        let all = of(map, &whole);
+        assert_eq!(all.len(), own.len() + 1);
+        assert_near(all[0].value[0], 1.0, 1e-9);
+        for (with, without) in all[1..].iter().zip(&own).take(3) {
+            assert_near(with.modulus(), without.modulus(), 1e-6);
+        }
+    });
 }
 
 /// A multiplier of a strike section against that of the clock.

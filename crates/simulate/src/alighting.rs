@@ -24,6 +24,11 @@ impl Alighting {
         Self { risen: vec![false; contacts], y: vec![0.0; len] }
     }
 
+    /// A contact has been tried: what it was above the ground before says nothing.
+    pub(super) fn tried(&mut self, contact: usize) {
+        self.risen[contact] = false;
+    }
+
     /// A contact that has alighted at the end of the last step.
     pub(super) fn find(&mut self, motion: &mut Motion<'_>, stepper: &Stepper) -> Option<usize> {
         for closed in &motion.closed {

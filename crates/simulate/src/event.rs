@@ -238,6 +238,11 @@ impl Watch {
         Ok(Fired { watched, t_s })
     }
 
+    /// A contact has touched, and was not closed: it alights when it has risen once more.
+    pub(super) fn tried(&mut self, contact: usize) {
+        self.alighting.tried(contact);
+    }
+
     /// Contacts that have risen count from the ground again.
     fn lower_levels(&mut self, motion: &mut Motion<'_>, stepper: &Stepper) {
         motion.place(stepper.state());

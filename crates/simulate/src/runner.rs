@@ -285,6 +285,7 @@ impl<'a> Runner<'a> {
             if !closed.contains(&contact) {
                 // what it is off by while closed is not a fall of its own
                 self.watch.level[contact] = self.motion.gap(contact).min(0.0);
+                self.watch.tried(contact);
             }
         }
         let energy_j = self.motion.energy(&self.y) - energy;

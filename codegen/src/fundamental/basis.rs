@@ -6,8 +6,9 @@
 
 use super::key::Key;
 use super::layout::{Atom, Layout};
-use super::series::sum_equal_keys;
+use super::series::{SeriesError, sum_equal_keys};
 use super::whole::{Overflow, Whole};
+use rustc_hash::FxHashMap;
 
 /// A power of the cosine, times the sine or not, as it stands in the field of an angle: `c^a` as
 /// a, `c^a s` as -(a + 1).
@@ -42,12 +43,14 @@ pub(super) fn cumulated<const N: usize, C: Whole>(
 /// of [`product_powers`] instead of multiples.
 ///
 /// The known angles come first; the rest of the angle is left as a cosine or sine. Without a rest
-/// (`known` is false) the lowest bit is 0 everywhere.
+/// (`known` is false) the lowest bit is 0 everywhere. cos(k q1 + l q2) has some k l terms in this
+/// basis: there may be `limit` of them on the way.
 pub(super) fn products<const N: usize, C: Whole>(
     layout: &Layout,
     mut terms: Vec<(Key<N>, C)>,
     known: bool,
-) -> Result<Vec<(Key<N>, C)>, Overflow> {
+    limit: usize,
+) -> Result<Vec<(Key<N>, C)>, SeriesError> {
     let angles: Vec<&Atom> = layout.angles.iter().filter(|atom| atom.is_known == known).collect();
     if angles.is_empty() {
         return Ok(terms);
@@ -68,7 +71,7 @@ pub(super) fn products<const N: usize, C: Whole>(
         // With a bias no field is negative, and fields can be read and written one by one.
         let mut group: Vec<_> = group.iter().map(|(key, c)| (key.plus(bias), c.clone())).collect();
         for atom in &angles {
-            group = convert_angle(atom, &group)?;
+            group = convert_angle(atom, &group, limit.saturating_sub(result.len()))?;
         }
         for (key, coefficient) in group {
             let key = key.minus(bias);
@@ -107,8 +110,10 @@ fn with_normal_sign<const N: usize, C: Whole>(
 fn convert_angle<const N: usize, C: Whole>(
     atom: &Atom,
     terms: &[(Key<N>, C)],
-) -> Result<Vec<(Key<N>, C)>, Overflow> {
+    limit: usize,
+) -> Result<Vec<(Key<N>, C)>, SeriesError> {
     let mut converted = Vec::with_capacity(2 * terms.len());
+    let mut polynomials: FxHashMap<usize, [Vec<C>; 2]> = FxHashMap::default();
     for (key, coefficient) in terms {
         let digit = key.bits(atom.position, atom.width) as i64 - (1 << (atom.width - 1));
         if digit == 0 {
@@ -122,18 +127,25 @@ fn convert_angle<const N: usize, C: Whole>(
             converted.push((key, coefficient.times(factor)?));
             Ok(())
         };
-        for (power, factor) in chebyshev::<C>(size, false)?.iter().enumerate() {
+        if !polynomials.contains_key(&size) {
+            polynomials.insert(size, [chebyshev(size, false)?, chebyshev(size - 1, true)?]);
+        }
+        let [first, second] = &polynomials[&size];
+        for (power, factor) in first.iter().enumerate() {
             if !factor.is_zero() {
                 give(power as i64, is_sine, factor)?;
             }
         }
         // sin(k q) cos R in a sine, -sin(k q) sin R in a cosine
         let is_negative = is_sine == (digit < 0);
-        for (power, factor) in chebyshev::<C>(size - 1, true)?.iter().enumerate() {
+        for (power, factor) in second.iter().enumerate() {
             if !factor.is_zero() {
                 let factor = if is_negative { factor.negated() } else { factor.clone() };
                 give(-(power as i64 + 1), !is_sine, &factor)?;
             }
+        }
+        if converted.len() > limit {
+            return Err(SeriesError::TooManyTerms);
         }
     }
     sum_equal_keys(&mut converted)?;

@@ -6,8 +6,8 @@ use super::expand::{Expansion, FourierError, Stop, expand};
 use super::key::Key;
 use super::layout::{Layout, expanded_nodes};
 use super::polynomial::{Monomial, Polynomial};
-use super::series::Series;
-use super::whole::{Overflow, Whole};
+use super::series::{Series, SeriesError};
+use super::whole::Whole;
 use crate::expr::{Dag, ExprId, SymbolId};
 use crate::number::Rational;
 use num_bigint::BigInt;
@@ -209,6 +209,7 @@ impl Job<'_> {
         expansion: &mut Expansion<'_>,
     ) -> Result<Vec<Decomposition>, Stop> {
         let series = expand::<N, C>(dag, (self.nodes, self.outputs), self.layout, expansion)?;
+        let limit = expansion.allowed_terms::<N, C>();
         let chains: Vec<Vec<usize>> = self
             .matrix
             .chains
@@ -219,7 +220,13 @@ impl Job<'_> {
         let mut result = Vec::new();
         for &basis in self.bases {
             if basis != Basis::Cumulated || !chains.is_empty() {
-                let tables = self.tables(&series, basis, &chains)?;
+                let tables = self.tables(&series, (basis, &chains), limit);
+                let tables = tables.map_err(|error| match error {
+                    SeriesError::Overflow => Stop::Overflow,
+                    SeriesError::TooManyTerms => {
+                        Stop::too_large(expansion, self.nodes.len(), self.nodes.len())
+                    }
+                })?;
                 result.push(tables.finish(dag, self, basis, &chains));
             }
         }
@@ -229,9 +236,9 @@ impl Job<'_> {
     fn tables<const N: usize, C: Whole>(
         &self,
         series: &FxHashMap<ExprId, Series<N, C>>,
-        basis: Basis,
-        chains: &[Vec<usize>],
-    ) -> Result<Tables<N, C>, Overflow> {
+        (basis, chains): (Basis, &[Vec<usize>]),
+        limit: usize,
+    ) -> Result<Tables<N, C>, SeriesError> {
         let columns = self.matrix.rows.first().map_or(0, Vec::len);
         let mut tables =
             Tables { functions: Index::new(), coefficients: Index::new(), columns: Vec::new() };
@@ -239,12 +246,13 @@ impl Job<'_> {
             let mut entries = Vec::new();
             for (equation, row) in self.matrix.rows.iter().enumerate() {
                 let entry = &series[&row[column]];
-                let terms = products(self.layout, entry.terms.clone(), true)?;
+                let terms = products(self.layout, entry.terms.clone(), true, limit)?;
                 let terms = match basis {
                     Basis::Fourier => terms,
-                    Basis::Product => products(self.layout, terms, false)?,
+                    Basis::Product => products(self.layout, terms, false, limit)?,
                     Basis::Cumulated => {
-                        products(self.layout, cumulated(self.layout, chains, &terms), false)?
+                        let terms = cumulated(self.layout, chains, &terms);
+                        products(self.layout, terms, false, limit)?
                     }
                 };
                 let found = self.by_function(&entry.denominator, terms);

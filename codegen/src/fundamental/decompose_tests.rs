@@ -145,6 +145,15 @@ fn too_many_terms_are_a_clear_error() {
 }
 
 #[test]
+fn products_of_high_multiples_are_kept_within_memory() {
+    // One term of the Fourier basis, some 1000^4 of the product basis.
+    let mut dag = Dag::new();
+    let expr = read(&mut dag, "cos(1000*q1 + 1000*q2 + 1000*q3 + 1000*q4)");
+    let error = try_all(&mut dag, &[vec![expr]], &[], 1 << 22).expect_err("it does not fit");
+    assert!(matches!(error, FourierError::Memory { limit_bytes, .. } if limit_bytes == 1 << 22));
+}
+
+#[test]
 fn a_division_by_zero_is_an_error() {
     let mut dag = Dag::new();
     let expr = read(&mut dag, "1/((l1 + l2)^2 - l1^2 - 2*l1*l2 - l2^2)");

@@ -30,6 +30,14 @@ pub struct Expansion<'a> {
     pub progress: &'a mut dyn FnMut(Progress),
 }
 
+impl Expansion<'_> {
+    /// How many terms fit the memory.
+    pub(super) fn allowed_terms<const N: usize, C>(&self) -> usize {
+        // A hash table that grows holds its terms three times for a moment.
+        self.memory_bytes / size_of::<(Key<N>, C)>() / 3
+    }
+}
+
 /// Why an expression was not written out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FourierError {
@@ -89,6 +97,13 @@ pub(super) enum Stop {
     Error(FourierError),
 }
 
+impl Stop {
+    /// The terms do not fit the memory.
+    pub(super) fn too_large(expansion: &Expansion<'_>, done: usize, total: usize) -> Self {
+        Self::Error(FourierError::Memory { limit_bytes: expansion.memory_bytes, done, total })
+    }
+}
+
 impl From<Overflow> for Stop {
     fn from(_: Overflow) -> Self {
         Self::Overflow
@@ -107,17 +122,11 @@ pub(super) fn expand<const N: usize, C: Whole>(
         dag.node(expr).for_each_operand(|operand| *uses.entry(operand).or_default() += 1);
     }
     outputs.iter().for_each(|&output| *uses.entry(output).or_default() += 1);
-    let term_bytes = size_of::<(Key<N>, C)>();
-    // A hash table that grows holds its terms three times for a moment.
-    let allowed = expansion.memory_bytes / term_bytes / 3;
+    let allowed = expansion.allowed_terms::<N, C>();
     let mut values: FxHashMap<ExprId, Series<N, C>> = FxHashMap::default();
     let mut terms = 0;
     for (done, &expr) in nodes.iter().enumerate() {
-        let too_large = Stop::Error(FourierError::Memory {
-            limit_bytes: expansion.memory_bytes,
-            done,
-            total: nodes.len(),
-        });
+        let too_large = Stop::too_large(expansion, done, nodes.len());
         let limit = allowed.saturating_sub(terms);
         let series = node(dag, expr, (layout, limit), &values).map_err(|stop| match stop {
             NodeStop::Series(SeriesError::Overflow) => Stop::Overflow,

@@ -148,17 +148,16 @@ impl Control {
             }
             Compensation::ComputedTorque => plant.bias(q, qd, command),
         }
-        scratch.wanted.clear();
-        for (index, joint) in self.joints.iter().enumerate() {
-            let feedback = joint.reference.as_ref().map_or(0.0, |reference| {
-                let target = reference.at(t_s);
+        let ControlMemory { wanted, mass, asked, .. } = scratch;
+        let asked = asked.at(&self.joints, t_s);
+        wanted.clear();
+        for (index, (joint, asked)) in self.joints.iter().zip(asked).enumerate() {
+            let feedback = asked.target.map_or(0.0, |target| {
                 let forward = match self.compensation {
                     Compensation::ComputedTorque => target.acceleration,
                     _ => 0.0,
                 };
-                let factor =
-                    joint.gain_factor.as_ref().map_or(1.0, |factor| factor.at(t_s).position);
-                let gains = [joint.stiffness, joint.damping].map(|gain| factor * gain);
+                let gains = [joint.stiffness, joint.damping].map(|gain| asked.factor * gain);
                 let wanted_rate = match joint.damped {
                     Damped::Error => target.rate,
                     Damped::Rate => 0.0,
@@ -167,29 +166,29 @@ impl Control {
                     + gains[0] * (target.position - q[index])
                     + gains[1] * (wanted_rate - qd[index])
             });
-            scratch.wanted.push(feedback);
+            wanted.push(feedback);
         }
         if self.compensation == Compensation::ComputedTorque {
             let n = q.len();
-            scratch.mass.resize(n * n, 0.0);
-            plant.mass_matrix(q, &mut scratch.mass);
-            for (row, entry) in scratch.mass.chunks_exact(n).zip(command.iter_mut()) {
-                *entry += row.iter().zip(&scratch.wanted).map(|(d, a)| d * a).sum::<f64>();
+            mass.resize(n * n, 0.0);
+            plant.mass_matrix(q, mass);
+            for (row, entry) in mass.chunks_exact(n).zip(command.iter_mut()) {
+                *entry += row.iter().zip(&*wanted).map(|(d, a)| d * a).sum::<f64>();
             }
         } else {
-            command.iter_mut().zip(&scratch.wanted).for_each(|(entry, add)| *entry += add);
+            command.iter_mut().zip(&*wanted).for_each(|(entry, add)| *entry += add);
         }
-        self.finish(plant.model(), t_s, command);
+        self.finish(plant.model(), asked, command);
     }
 
-    fn finish(&self, model: &PlantModel, t_s: f64, command: &mut [f64]) {
-        for (index, (joint, entry)) in self.joints.iter().zip(command).enumerate() {
-            let is_driven = joint.reference.is_some() || joint.feed_forward.is_some();
+    fn finish(&self, model: &PlantModel, asked: &[Asked], command: &mut [f64]) {
+        for (index, (asked, entry)) in asked.iter().zip(command).enumerate() {
+            let is_driven = asked.target.is_some() || asked.torque.is_some();
             if !is_driven || !model.joints[index].drivable {
                 *entry = 0.0;
                 continue;
             }
-            *entry += joint.feed_forward.as_ref().map_or(0.0, |torque| torque.at(t_s).position);
+            *entry += asked.torque.unwrap_or(0.0);
             if let Some([low, high]) = self.limits(model, index) {
                 *entry = entry.clamp(low, high);
             }
@@ -197,10 +196,58 @@ impl Control {
     }
 }
 
-/// Memory of a controller, so that a call allocates nothing.
+/// What functions of time ask of a joint at one time.
+#[derive(Clone, Copy, Debug)]
+struct Asked {
+    target: Option<Setpoint>,
+    /// Of both gains.
+    factor: f64,
+    torque: Option<f64>,
+}
+
+/// Memory of a controller, so that a call allocates nothing. It is that of one control: another
+/// one, or other references, need a new one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ControlMemory {
     wanted: Vec<f64>,
     mass: Vec<f64>,
     zero: Vec<f64>,
+    asked: AskedLately,
+}
+
+/// What was asked at the last few times: Newton's iteration comes back to those of its stages,
+/// differences of the motion ask at one time again and again.
+#[derive(Clone, Debug, Default)]
+struct AskedLately {
+    /// The time, and an entry for each joint.
+    times: [(Option<f64>, Vec<Asked>); 4],
+    /// The one that is overwritten next.
+    oldest: usize,
+}
+
+impl AskedLately {
+    fn at(&mut self, joints: &[JointControl], t_s: f64) -> &[Asked] {
+        let known = self.times.iter().position(|(time, _)| *time == Some(t_s));
+        let slot = known.unwrap_or_else(|| {
+            let slot = self.oldest;
+            self.oldest = (slot + 1) % self.times.len();
+            let (time, asked) = &mut self.times[slot];
+            *time = Some(t_s);
+            asked.clear();
+            asked.extend(joints.iter().map(|joint| Asked::of(joint, t_s)));
+            slot
+        });
+        &self.times[slot].1
+    }
+}
+
+impl Asked {
+    fn of(joint: &JointControl, t_s: f64) -> Self {
+        let at = |function: &Option<Reference>| function.as_ref().map(|known| known.at(t_s));
+        Self {
+            target: at(&joint.reference),
+            factor: at(&joint.gain_factor).map_or(1.0, |factor| factor.position),
+            torque: at(&joint.feed_forward).map(|torque| torque.position),
+        }
+    }
 }

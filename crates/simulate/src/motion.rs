@@ -16,6 +16,7 @@ use super::drive::{DriveOutput, Drives};
 use super::ground::Ground;
 use super::integrate::Rates;
 use super::laws::LawForces;
+use super::planner::JointPlan;
 use super::push::{self, Push};
 use super::state::{INTEGRALS, Layout};
 use denavit_plants::Plant;
@@ -182,6 +183,12 @@ impl<'a> Motion<'a> {
             None => &mut *self.plant,
         };
         self.control.command(plant, t_s, q, qd, &mut self.memory, command);
+    }
+
+    /// Joints follow new plans from now on.
+    pub(super) fn follow(&mut self, plans: Vec<JointPlan>) {
+        self.control.to_mut().follow(plans);
+        self.memory = ControlMemory::default();
     }
 
     /// Accelerations without contact forces, into `work.acceleration`; factors the mass matrix.

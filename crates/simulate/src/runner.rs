@@ -404,7 +404,7 @@ impl<'a> Runner<'a> {
         let sensed = Sensed { t_s, q: parts.q, qd: parts.qd, closed: &closed };
         let plans = looks.look(self.motion.plant, &sensed);
         let is_new = plans.is_some();
-        plans.into_iter().for_each(|plans| self.motion.control.to_mut().follow(plans));
+        plans.into_iter().for_each(|plans| self.motion.follow(plans));
         is_new
     }
 

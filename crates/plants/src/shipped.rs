@@ -85,6 +85,7 @@ pub const SCENARIOS: &[ShippedModel] = &shipped!["models/scenarios":
     "tulip_leg_elastic_identification",
     "tulip_leg_identification",
     "tulip_leg_tracking",
+    "tulip_pushed",
     "tulip_standing",
     "tulip_step",
 ];

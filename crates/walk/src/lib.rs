@@ -7,6 +7,7 @@
 //! - [`balance`]: zero moment point, foot rotation, capture point, momentum along a run
 //! - [`capturability`]: in how many steps the linear inverted pendulum comes to rest
 //! - [`capture_step`]: a controller that steps onto the capture point
+//! - [`foot_placement`]: a walk in space whose feet are placed as the robot is pushed
 //! - [`comparison`]: what each criterion of stability says of runs, and what comes out
 //! - [`poincare`]: cycles, and whether they are stable
 //! - [`robustness`]: basins of attraction, and the least push that fells
@@ -17,6 +18,8 @@ pub mod balance;
 pub mod capturability;
 pub mod capture_step;
 pub mod comparison;
+mod fading;
+pub mod foot_placement;
 pub mod gait_file;
 pub mod gait_plan;
 pub mod inverse_kinematics;

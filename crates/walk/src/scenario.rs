@@ -1,8 +1,9 @@
 //! Scenarios with gaits: the key `gait` is planned here, then the simulation sees references.
 
 use crate::capture_step::read as read_capture_step;
+use crate::foot_placement;
 use crate::gait_file::divergent_component;
-use crate::gait_plan::{DivergentComponentProblem, PlanError, plan_divergent_component};
+use crate::gait_plan::{DivergentComponentProblem, PlanError, SpaceWalk, plan_space_walk};
 use denavit_codegen::model::Node;
 use denavit_plants::Plant;
 use denavit_simulate::scenario::{
@@ -24,50 +25,67 @@ pub fn read_scenario(
 
 /// Plans what stands under the key `gait`.
 fn planned(gait: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option<PlannedGait> {
-    let kinds = gait.fields(&["divergent_component", "capture_step"], report)?;
+    let kinds = gait.fields(&["divergent_component", "foot_placement", "capture_step"], report)?;
+    let placement = kinds.get("foot_placement");
     match (kinds.get("divergent_component"), kinds.get("capture_step")) {
-        (Some(node), None) => planned_walk(node, plant, report),
-        (None, Some(node)) => read_capture_step(node, plant, report),
+        (Some(node), None) => planned_walk(node, placement, plant, report),
+        (None, Some(node)) => {
+            if let Some(other) = placement {
+                let hint = "it belongs to a walk in space: `divergent_component`";
+                report.push(other.at(), Cause::Gait("no walk to place feet of".to_owned(), hint));
+            }
+            read_capture_step(node, plant, report)
+        }
         (Some(_), Some(other)) => other.wrong_kind("one kind of gait, not two", report),
         (None, None) => gait.wrong_kind("`divergent_component` or `capture_step`", report),
     }
 }
 
-/// Plans a walk in space.
-fn planned_walk(node: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option<PlannedGait> {
+/// Plans a walk in space, and the law that places its feet if there is one.
+fn planned_walk(
+    node: Node<'_>,
+    placement: Option<Node<'_>>,
+    plant: &mut dyn Plant,
+    report: &mut Report,
+) -> Option<PlannedGait> {
     let fields = node.members(report)?;
     if let Some(friction) = fields.get("friction") {
         let hint = "the ground of a scenario is under `contact`";
         report.push(friction.at(), Cause::Gait("no effect here".to_owned(), hint));
     }
+    let law = placement.map(|node| (node, foot_placement::read(node, report)));
     let problem = divergent_component::read(node, report)?;
-    match followed(plant, &problem) {
-        Ok(gait) => Some(gait),
+    let (gait, walk) = match followed(plant, &problem) {
+        Ok(planned) => planned,
         Err(error) => {
             report.push(node.at(), Cause::Gait(error.to_string(), error.hint()));
-            None
+            return None;
         }
-    }
+    };
+    let Some((node, law)) = law else { return Some(gait) };
+    let planning = Some(law?.planning(walk, node, report)?);
+    Some(PlannedGait { planning, ..gait })
 }
 
 /// What each joint follows, and the torque that is planned for it.
 fn followed(
     plant: &mut dyn Plant,
     problem: &DivergentComponentProblem,
-) -> Result<PlannedGait, PlanError> {
-    let plan = plan_divergent_component(plant, problem)?;
+) -> Result<(PlannedGait, SpaceWalk), PlanError> {
+    let (plan, walk) = plan_space_walk(plant, problem)?;
     let references = plan.references(plant.model())?;
     let mut torques = vec![None; references.len()];
     for path in &plan.paths {
         let torque = path.feed_forward.as_ref().map(|curve| curve.reference());
         torques[path.joint] = torque.transpose()?;
     }
-    Ok(PlannedGait {
+    let gait = PlannedGait {
         references,
         torques,
         stiffness: plan.gains.kp,
         damping: plan.gains.kd,
         start: Some(plan.start),
         planning: None,
-    })
+    };
+    Ok((gait, walk))
 }

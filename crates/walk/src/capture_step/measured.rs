@@ -1,16 +1,10 @@
 //! What the controller measures: the state, as places and velocities of what it plans.
 
 use super::pendulum::Pendulum;
+use crate::fading::Moving;
 use crate::gait_plan::Walker;
 use denavit_plants::Plant;
 use denavit_simulate::Sensed;
-
-/// A value with its velocity [m, m/s; rad, rad/s].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Moving {
-    pub(super) value: f64,
-    pub(super) rate: f64,
-}
 
 /// Where everything is that is planned.
 #[derive(Clone, Debug, PartialEq)]

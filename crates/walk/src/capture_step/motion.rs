@@ -1,9 +1,10 @@
 //! From planned paths of centre of mass, trunk and feet to what joints follow.
 
-use super::measured::{Measured, Moving};
+use super::measured::Measured;
 use super::pendulum::Pressure;
 use super::reach::Reach;
 use super::torques::torques;
+use crate::fading::{FADES_PER_S, Moving};
 use crate::gait_plan::{Height, Pose, Walker};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, TrajectoryError};
@@ -34,8 +35,6 @@ pub(super) struct Motion<'a> {
     pub(super) duration_s: f64,
 }
 
-/// What is measured beside the plan fades so fast \[1/s\].
-const FADES_PER_S: f64 = 15.0;
 /// The torso comes upright so fast: it takes angular momentum, which moves the centre of pressure
 /// \[1/s\].
 const RIGHTS_PER_S: f64 = 8.0;
@@ -54,15 +53,9 @@ fn smooth(share: f64) -> f64 {
     u * u * u * (10.0 - u * (15.0 - 6.0 * u))
 }
 
-/// What is left after a time of what was measured beside the plan: it fades at a rate \[1/s\] with
-/// critical damping, so that a plan made on the way goes on alike.
-fn left(apart: Moving, rate: f64, t_s: f64) -> f64 {
-    (apart.value + (apart.rate + rate * apart.value) * t_s) * (-rate * t_s).exp()
-}
-
 /// The way from where something is, with its velocity, to a place.
 fn to(from: Moving, place: f64, t_s: f64) -> f64 {
-    place + left(Moving { value: from.value - place, rate: from.rate }, FADES_PER_S, t_s)
+    place + Moving { value: from.value - place, rate: from.rate }.left(FADES_PER_S, t_s)
 }
 
 impl Motion<'_> {
@@ -77,7 +70,7 @@ impl Motion<'_> {
                 let late_s = (t_s - swing.step_s).max(0.0);
                 let lift = swing.lift_m * sine * sine - SINK_M_S * late_s;
                 let moving = Moving { value: 0.0, rate: along.rate };
-                [x + left(moving, FADES_PER_S, t_s), lift + left(height, FADES_PER_S, t_s)]
+                [x + moving.left(FADES_PER_S, t_s), lift + height.left(FADES_PER_S, t_s)]
             }
             _ => [along.value, to(height, 0.0, t_s)],
         }
@@ -92,7 +85,7 @@ impl Motion<'_> {
             feet_m,
             center_m: pendulum.center_m,
             height: Height::CenterOfMass(height_m.min(highest_m)),
-            pitch_rad: left(self.measured.pitch, RIGHTS_PER_S, t_s),
+            pitch_rad: self.measured.pitch.left(RIGHTS_PER_S, t_s),
         }
     }
 
@@ -120,7 +113,7 @@ impl Motion<'_> {
             let t_s = self.duration_s * index as f64 / count;
             let Some(posture) = self.posture(plant, t_s, &near) else { break };
             let faded =
-                posture.iter().zip(&apart).map(|(q, apart)| q + left(*apart, FADES_PER_S, t_s));
+                posture.iter().zip(&apart).map(|(q, apart)| q + apart.left(FADES_PER_S, t_s));
             knots.push((t_s, faded.collect()));
             near = posture;
         }

@@ -147,6 +147,23 @@ impl Biped {
         (middle(&self.soles[1]) - middle(&self.soles[0])).abs()
     }
 
+    /// Where a sole is, seen from above, for these places of all contact points \[m\].
+    pub(crate) fn place(&self, side: usize, positions: &[f64]) -> SolePlace {
+        let sole = &self.soles[side];
+        let at = |point: usize, axis: usize| positions[3 * point + axis];
+        let mean = |axis: usize| {
+            sole.points.iter().map(|point| at(*point, axis)).sum::<f64>() / sole.points.len() as f64
+        };
+        let [from, far, _] = sole.frame;
+        let [u, v] = [0, 1].map(|axis| at(sole.points[far], axis) - at(sole.points[from], axis));
+        let [p, q] = [0, 1].map(|axis| sole.places_m[far][axis] - sole.places_m[from][axis]);
+        SolePlace {
+            middle_m: [mean(0), mean(1)],
+            yaw_rad: (p * v - q * u).atan2(p * u + q * v),
+            lift_m: mean(2) - self.ground_m,
+        }
+    }
+
     /// Corners of a sole in the world \[m\].
     pub fn corners_m(&self, side: usize, place: &SolePlace) -> Vec<[f64; 3]> {
         let corner = |at: &[f64; 2]| {
@@ -169,6 +186,15 @@ impl Biped {
             own.flat_map(|side| self.corners_m(side, &soles[side])).collect();
         let polygon = SupportPolygon::of(model, corners.iter().map(|corner| &corner[..]));
         polygon.margin([x, y, self.ground_m])
+    }
+
+    /// The share of each contact point in the load, of which the left foot has a share.
+    pub(crate) fn weights(&self, model: &PlantModel, left: f64) -> Vec<f64> {
+        let mut weights = vec![0.0; model.contacts.len()];
+        for (sole, load) in self.soles.iter().zip([1.0 - left, left]) {
+            sole.points.iter().for_each(|point| weights[*point] = load);
+        }
+        weights
     }
 
     /// Whether soles at these places are beside each other, seen from above.

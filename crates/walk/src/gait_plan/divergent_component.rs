@@ -14,8 +14,8 @@ use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, Knot, ROUNDING_M};
 use super::posture::Posture;
 use super::torque::{Bearing, Moment, torques};
+use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
-use denavit_plants::{Plant, PlantModel};
 
 /// A plan with more knots is one for longer than anybody waits.
 const MAX_KNOTS: usize = 20_000;
@@ -29,6 +29,31 @@ pub fn plan_divergent_component(
     plant: &mut dyn Plant,
     problem: &DivergentComponentProblem,
 ) -> Result<GaitPlan, PlanError> {
+    Ok(plan_space_walk(plant, problem)?.0)
+}
+
+/// A planned walk in space, for what goes on planning during a run.
+#[derive(Clone, Debug)]
+pub(crate) struct SpaceWalk {
+    pub(crate) problem: DivergentComponentProblem,
+    pub(crate) biped: Biped,
+    pub(crate) phases: Vec<Phase>,
+    /// The centre of mass along x and y, with the centre of pressure under it.
+    pub(crate) center: [PendulumPath; 2],
+}
+
+impl SpaceWalk {
+    /// w of the pendulum \[1/s\].
+    pub(crate) fn omega(&self) -> f64 {
+        (self.biped.gravity / self.problem.center_of_mass_height_m).sqrt()
+    }
+}
+
+/// The plan, and the walk behind it.
+pub(crate) fn plan_space_walk(
+    plant: &mut dyn Plant,
+    problem: &DivergentComponentProblem,
+) -> Result<(GaitPlan, SpaceWalk), PlanError> {
     let (double_support_s, step_s) = (problem.double_support_s, problem.step_s);
     // written so that NaN fails as well
     if !(double_support_s > 0.0 && double_support_s < step_s) {
@@ -44,7 +69,7 @@ pub fn plan_divergent_component(
     let planner = Planner { problem, biped, phases, times };
     let motion = planner.motion(plant)?;
     let knots = planner.checked(plant, &motion)?;
-    Ok(GaitPlan {
+    let plan = GaitPlan {
         step_s,
         step_length_m: planner.mean_step_m(),
         steps: problem.swings(),
@@ -55,7 +80,10 @@ pub fn plan_divergent_component(
         start: motion.postures.first().map(|posture| posture.q.clone()).unwrap_or_default(),
         gains: problem.gains,
         knots,
-    })
+    };
+    let Planner { biped, phases, .. } = planner;
+    let walk = SpaceWalk { problem: problem.clone(), biped, phases, center: motion.center };
+    Ok((plan, walk))
 }
 
 /// A time of the plan: the phase that it is in, which may have just begun.
@@ -216,17 +244,7 @@ impl Planner<'_> {
 
     fn pose(&self, center: &[PendulumPath; 2], time: Time) -> BipedPose {
         let (phase, share) = self.phase(time);
-        let [x, y] = [0, 1].map(|axis| center[axis].at(time.t_s).position_m);
-        BipedPose {
-            soles: phase.soles_at(share, self.problem.lift_m),
-            center_m: [x, y, self.problem.center_of_mass_height_m],
-            yaw_rad: phase.yaw_at(share),
-            pitch_rad: self.problem.torso_pitch_rad,
-            roll: match self.problem.ankle_rolls {
-                AnkleRolls::Driven => RollCondition::Torso(0.0),
-                AnkleRolls::Passive => RollCondition::Ankles(phase.load_at(share)),
-            },
-        }
+        pose(self.problem, phase, share, [0, 1].map(|axis| center[axis].at(time.t_s).position_m))
     }
 
     fn joint_paths(&self, plant: &mut dyn Plant, motion: &Motion) -> Vec<JointPath> {
@@ -234,7 +252,8 @@ impl Planner<'_> {
         let rolls = self.biped.rolls().filter(|_| self.problem.ankle_rolls == AnkleRolls::Passive);
         let free: Vec<usize> = rolls.iter().flatten().map(|roll| roll.joint).collect();
         let mut needed = |time: &Time| {
-            let weights = self.weights(plant.model(), *time);
+            let (phase, share) = self.phase(*time);
+            let weights = self.biped.weights(plant.model(), phase.load_at(share));
             let bearing = Bearing { weights: &weights, free: &free };
             torques(plant, &motion.moment(time.t_s), bearing)
         };
@@ -248,17 +267,6 @@ impl Planner<'_> {
             JointPath { joint: *joint, pieces, feed_forward: Some(torque) }
         };
         driven.map(path).collect()
-    }
-
-    /// The share of each contact point in the load.
-    fn weights(&self, model: &PlantModel, time: Time) -> Vec<f64> {
-        let (phase, share) = self.phase(time);
-        let left = phase.load_at(share);
-        let mut weights = vec![0.0; model.contacts.len()];
-        for (sole, load) in self.biped.soles.iter().zip([1.0 - left, left]) {
-            sole.points.iter().for_each(|point| weights[*point] = load);
-        }
-        weights
     }
 
     /// The knots with the times halfway between them, where curves pass, and all margins checked.
@@ -311,5 +319,24 @@ impl Planner<'_> {
             static_margin_m: self.biped.margin_m(plant.model(), feet, [x, y]),
             pressure_margin_m: Some(margin_m),
         })
+    }
+}
+
+/// The pose at a share of a phase, with the centre of mass there \[m\].
+pub(crate) fn pose(
+    problem: &DivergentComponentProblem,
+    phase: &Phase,
+    share: f64,
+    [x, y]: [f64; 2],
+) -> BipedPose {
+    BipedPose {
+        soles: phase.soles_at(share, problem.lift_m),
+        center_m: [x, y, problem.center_of_mass_height_m],
+        yaw_rad: phase.yaw_at(share),
+        pitch_rad: problem.torso_pitch_rad,
+        roll: match problem.ankle_rolls {
+            AnkleRolls::Driven => RollCondition::Torso(0.0),
+            AnkleRolls::Passive => RollCondition::Ankles(phase.load_at(share)),
+        },
     }
 }

@@ -133,38 +133,38 @@ const ONWARD: [f64; 2] = [0.15, 0.85];
 
 /// A time in which the same feet stand.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Phase {
-    pub(super) name: String,
-    pub(super) start_s: f64,
-    pub(super) duration_s: f64,
+pub(crate) struct Phase {
+    pub(crate) name: String,
+    pub(crate) start_s: f64,
+    pub(crate) duration_s: f64,
     /// At the beginning, right and left.
-    pub(super) soles: [SolePlace; 2],
+    pub(crate) soles: [SolePlace; 2],
     /// The foot that swings, and where it lands.
-    pub(super) swing: Option<(usize, SolePlace)>,
+    pub(crate) swing: Option<(usize, SolePlace)>,
     /// Direction of the torso at the beginning and at the end \[rad\].
-    pub(super) yaws_rad: [f64; 2],
+    pub(crate) yaws_rad: [f64; 2],
     /// Share of the left foot in the load at the beginning and at the end.
-    pub(super) loads: [f64; 2],
+    pub(crate) loads: [f64; 2],
     /// The centre of pressure at the beginning and at the end \[m\].
-    pub(super) pressures_m: [[f64; 2]; 2],
+    pub(crate) pressures_m: [[f64; 2]; 2],
 }
 
 impl Phase {
-    pub(super) fn standing(&self) -> [bool; 2] {
+    pub(crate) fn standing(&self) -> [bool; 2] {
         [0, 1].map(|side| self.swing.is_none_or(|(swing, _)| swing != side))
     }
 
     /// The foot that stands, or one of both.
-    pub(super) fn stance(&self) -> usize {
+    pub(crate) fn stance(&self) -> usize {
         self.swing.map_or(0, |(side, _)| 1 - side)
     }
 
-    pub(super) fn end_s(&self) -> f64 {
+    pub(crate) fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
     }
 
     /// The feet at a share of the phase.
-    pub(super) fn soles_at(&self, share: f64, lift_m: f64) -> [SolePlace; 2] {
+    pub(crate) fn soles_at(&self, share: f64, lift_m: f64) -> [SolePlace; 2] {
         let mut soles = self.soles;
         if let Some((side, landing)) = self.swing {
             let way = smooth((share - ONWARD[0]) / (ONWARD[1] - ONWARD[0]));
@@ -180,24 +180,24 @@ impl Phase {
     }
 
     /// The centre of pressure at a share of the phase \[m\].
-    pub(super) fn pressure_at(&self, share: f64) -> [f64; 2] {
+    pub(crate) fn pressure_at(&self, share: f64) -> [f64; 2] {
         let [from, to] = self.pressures_m;
         [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share.clamp(0.0, 1.0))
     }
 
     /// Direction of the torso \[rad\].
-    pub(super) fn yaw_at(&self, share: f64) -> f64 {
+    pub(crate) fn yaw_at(&self, share: f64) -> f64 {
         self.yaws_rad[0] + (self.yaws_rad[1] - self.yaws_rad[0]) * smooth(share)
     }
 
     /// Share of the left foot in the load.
-    pub(super) fn load_at(&self, share: f64) -> f64 {
+    pub(crate) fn load_at(&self, share: f64) -> f64 {
         self.loads[0] + (self.loads[1] - self.loads[0]) * smooth(share)
     }
 }
 
 /// From 0 to 1 without velocity and acceleration at the ends.
-pub(super) fn smooth(share: f64) -> f64 {
+pub(crate) fn smooth(share: f64) -> f64 {
     let u = share.clamp(0.0, 1.0);
     u * u * u * (10.0 - u * (15.0 - 6.0 * u))
 }

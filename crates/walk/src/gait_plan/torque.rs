@@ -5,11 +5,11 @@ use denavit_plants::Plant;
 
 /// A robot at one time of its motion.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Moment {
+pub(crate) struct Moment {
     /// [rad, m], and derivatives by time.
-    pub(super) q: Vec<f64>,
-    pub(super) qd: Vec<f64>,
-    pub(super) qdd: Vec<f64>,
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    pub(crate) qdd: Vec<f64>,
 }
 
 /// Pivots below this part of the largest are zero.
@@ -21,17 +21,17 @@ const SLACK: f64 = 1e-6;
 
 /// What carries a robot, and what drives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bearing<'a> {
+pub(crate) struct Bearing<'a> {
     /// The share of each contact point in the load; zero is a point that carries nothing.
-    pub(super) weights: &'a [f64],
+    pub(crate) weights: &'a [f64],
     /// Joints that nothing drives, besides those of the base.
-    pub(super) free: &'a [usize],
+    pub(crate) free: &'a [usize],
 }
 
 /// Torques of all coordinates, zero for those that nothing drives: what drives these are ground
 /// forces, the base exactly, joints as nearly as can be. Of these forces, those with the least sum
 /// of squares over the weights.
-pub(super) fn torques(plant: &mut dyn Plant, moment: &Moment, bearing: Bearing<'_>) -> Vec<f64> {
+pub(crate) fn torques(plant: &mut dyn Plant, moment: &Moment, bearing: Bearing<'_>) -> Vec<f64> {
     let (n, rows) = (moment.q.len(), 3 * bearing.weights.len());
     let mut jacobian = vec![0.0; rows * n];
     plant.contact_jacobian(&moment.q, &mut jacobian);

@@ -4,6 +4,7 @@ mod balance;
 mod capturability;
 mod capture_step;
 mod comparison;
+mod foot_placement;
 mod gait_file;
 mod gait_plan;
 mod gait_schema;

@@ -32,8 +32,13 @@ fn fallen_or_not(scenario: &mut Scenario) -> Run {
 }
 
 /// Scenarios with pushes, or with feet that may pass through the ground.
-const EVENTS_ONLY: [&str; 4] =
-    ["compass_gait", "planar_biped_capture_step", "planar_biped_lunge", "planar_biped_pushed"];
+const EVENTS_ONLY: [&str; 5] = [
+    "compass_gait",
+    "planar_biped_capture_step",
+    "planar_biped_lunge",
+    "planar_biped_pushed",
+    "tulip_pushed",
+];
 
 #[test]
 fn every_scenario_runs_by_steps_within_its_tolerances() {

@@ -9,6 +9,7 @@ use super::layout::{Atom, Layout};
 use super::series::{SeriesError, sum_equal_keys};
 use super::whole::{Overflow, Whole};
 use rustc_hash::FxHashMap;
+use std::collections::hash_map::Entry;
 
 /// A power of the cosine, times the sine or not, as it stands in the field of an angle: `c^a` as
 /// a, `c^a s` as -(a + 1).
@@ -127,10 +128,12 @@ fn convert_angle<const N: usize, C: Whole>(
             converted.push((key, coefficient.times(factor)?));
             Ok(())
         };
-        if !polynomials.contains_key(&size) {
-            polynomials.insert(size, [chebyshev(size, false)?, chebyshev(size - 1, true)?]);
-        }
-        let [first, second] = &polynomials[&size];
+        let [first, second] = match polynomials.entry(size) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(free) => {
+                free.insert([chebyshev(size, false)?, chebyshev(size - 1, true)?])
+            }
+        };
         for (power, factor) in first.iter().enumerate() {
             if !factor.is_zero() {
                 give(power as i64, is_sine, factor)?;

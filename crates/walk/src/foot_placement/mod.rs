@@ -1,8 +1,8 @@
 //! A walk in space whose feet are placed as the robot is pushed (thesis 4.4.3, active lateral foot
 //! placement).
 //!
-//! The walk is planned from standing to standing on footsteps ([`crate::gait_plan`]). During the run
-//! a planner looks at the state at a fixed period. As long as the divergent component of motion,
+//! The walk is planned from standing to standing on footsteps ([`crate::gait_plan`]). During the
+//! run a planner looks at the state at a fixed period. As long as the divergent component of motion,
 //! centre of mass plus velocity over w, is where it was planned, nothing happens. Where it is not,
 //! the centre of pressure goes beyond it, inside the soles that stand, so that it returns. What the
 //! soles are too small for is foretold for the landing of the foot that swings; this one lands

@@ -1,5 +1,5 @@
-//! Feet that are placed as the robot is pushed: the push fells the walk that is only planned, and the
-//! one with this law goes on beside its plan.
+//! Feet that are placed as the robot is pushed: the push fells the walk that is only planned, and
+//! the one with this law goes on beside its plan.
 
 use super::{assert_near, scenario};
 use denavit_plants::{Plant, shipped};

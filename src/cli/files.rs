@@ -22,6 +22,9 @@ const MAX_LOG_BYTES: u64 = 256 << 20;
 /// The files that this run has read: no output may take the place of one.
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// What standard input and pipes held: they can be read once, and workers open a scenario each.
+static STREAMS: Mutex<Vec<(PathBuf, Vec<u8>)>> = Mutex::new(Vec::new());
+
 /// The robot of a path with the effects that its file names: those of `folder`, or of the folder
 /// `effects` beside the file, then the shipped ones.
 pub(crate) fn read_model_with_effects(
@@ -138,6 +141,21 @@ fn read_path(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Result<Vec
 
 /// The bytes of a file, or of standard input.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
+    let is_stream = path.metadata().map_or(path == Path::new("-"), |found| !found.is_file());
+    match STREAMS.lock() {
+        Ok(mut streams) if is_stream => {
+            if let Some((_, bytes)) = streams.iter().find(|(known, _)| known == path) {
+                return Ok(bytes.clone());
+            }
+            let bytes = read_once(path)?;
+            streams.push((path.to_owned(), bytes.clone()));
+            Ok(bytes)
+        }
+        _ => read_once(path),
+    }
+}
+
+fn read_once(path: &Path) -> Result<Vec<u8>, Failure> {
     let name = path.display().to_string();
     if name == "-" {
         return read_all("standard input", &mut io::stdin().lock());

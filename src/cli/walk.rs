@@ -14,11 +14,21 @@ use super::Answer;
 use super::failure::Failure;
 use balance::What;
 use clap::{Args, Subcommand};
+use denavit::plants::PlantModel;
 use std::io::Write;
 
 /// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots
 /// scuff, and runs would end there.
 const FALLBACK_FRICTION: f64 = 0.8;
+
+/// A model that names nothing that must not touch the ground never falls, whatever it does.
+fn say_what_is_no_fall(out: &mut dyn Write, model: &PlantModel) -> Result<(), Failure> {
+    if model.fall_points.is_empty() {
+        let name = &model.name;
+        writeln!(out, "\nnothing counts as a fall: {name} has no `bodies_that_must_not_touch`")?;
+    }
+    Ok(())
+}
 
 /// Walk: design gaits, and say whether they are stable
 ///

@@ -284,7 +284,18 @@ pub fn fall_points(robot: &Robot) -> impl Iterator<Item = (PointModel, f64)> {
     })
 }
 
+/// Gravity and ground are as far from each other's directions as rounding takes them.
+const STRAIGHT: f64 = 1e-12;
+
 impl PlantModel {
+    /// The acceleration of free fall, where it goes straight down onto level ground [m/s^2].
+    pub fn fall_onto_level_ground(&self) -> Option<f64> {
+        let [x, y, z] = self.gravity;
+        let (size, [_, _, up]) = (x.hypot(y).hypot(z), self.ground.normal);
+        let is_level = up > 1.0 - STRAIGHT;
+        (is_level && z < 0.0 && x.hypot(y) <= STRAIGHT * size).then_some(size)
+    }
+
     /// The joint of a floating base in space whose quarter turn makes its coordinates singular: the
     /// second of three that turn, its roll.
     pub fn singular_base_joint(&self) -> Option<usize> {

@@ -6,7 +6,7 @@
 //! forces of the ground have no other place. The outcome is that of the run.
 
 use crate::balance::{BalanceError, Course, Criterion, Energy, Over, course_of_scenario};
-use crate::poincare::{Multiplier, PoincareOptions, analyse};
+use crate::poincare::{Fate, Multiplier, PoincareOptions, analyse};
 use denavit_simulate::Stop;
 use denavit_simulate::scenario::Scenario;
 
@@ -51,6 +51,8 @@ pub struct Compared {
     pub scenario: String,
     /// Whether it ended without a fall, and when \[s\].
     pub outcome: (Stop, f64),
+    /// Whether the model names what must not touch the ground: else nothing counts as a fall.
+    pub falls_are_seen: bool,
     /// Exact zero moment point, inside or on the edge.
     pub zero_moment: Verdict,
     /// Cart-table zero moment point inside.
@@ -91,6 +93,11 @@ impl Verdict {
 }
 
 impl Compared {
+    /// Whether a criterion's verdict is wrong about the run.
+    pub fn is_wrong(&self, verdict: Verdict) -> bool {
+        (self.falls_are_seen || self.fell()) && verdict.is_wrong(self.fell())
+    }
+
     /// Whether the run ended with a fall.
     pub fn fell(&self) -> bool {
         matches!(self.outcome.0, Stop::Fall(_))
@@ -109,9 +116,9 @@ pub fn compare(scenario: &mut Scenario, period_s: f64) -> Result<Compared, Balan
         Ok(found) => Some(found.multipliers.first().map_or(0.0, Multiplier::modulus)),
         Err(_) => None,
     };
-    let poincare = match largest_multiplier {
-        Some(largest) if largest < 1.0 => Verdict::Met,
-        Some(_) => Verdict::Missed(0.0),
+    let poincare = match largest_multiplier.map(Fate::of) {
+        Some(Fate::Die) => Verdict::Met,
+        Some(Fate::Stay | Fate::Grow) => Verdict::Missed(0.0),
         None => Verdict::Silent,
     };
     let (momentum, largest_momentum) = momentum(scenario, &course);
@@ -130,6 +137,7 @@ pub fn compare(scenario: &mut Scenario, period_s: f64) -> Result<Compared, Balan
     Ok(Compared {
         scenario: scenario.name.clone(),
         outcome,
+        falls_are_seen: !scenario.plant.model().fall_points.is_empty(),
         zero_moment: strict(Criterion::ZeroMoment),
         cart_table: strict(Criterion::CartTable),
         foot_rotation: strict(Criterion::FootRotation),

@@ -2,7 +2,7 @@
 
 use super::super::Answer;
 use super::super::failure::Failure;
-use super::super::files::{load_beside, read_or_shipped};
+use super::super::files::{load_beside, read_file, read_or_shipped};
 use super::super::json::{Ordered, write_json};
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::simulate::open;
@@ -141,8 +141,8 @@ fn refused(name: &str, why: impl std::fmt::Display) -> Failure {
 
 /// Whether this names a gait and no scenario: a file that says so, or a shipped gait.
 fn is_gait(path: &Path) -> bool {
-    if path.is_file() {
-        let bytes = std::fs::read(path).unwrap_or_default();
+    if path.exists() || path == Path::new("-") {
+        let bytes = read_file(path).unwrap_or_default();
         let is_tag = |(key, tag): &(Cow<'_, str>, file::Json<'_>)| {
             key == "format" && matches!(&tag.value, file::Value::Text(tag) if tag == FORMAT)
         };

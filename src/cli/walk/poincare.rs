@@ -9,8 +9,8 @@ use clap::Args;
 use denavit::report::{Align, ReturnMapPicture, Table, UnitCircle, short};
 use denavit::simulate::scenario::Scenario;
 use denavit::walk::poincare::{
-    Convergence, Multiplier, PoincareAnalysis, PoincareOptions, Section, Share, WantedSection,
-    analyse, shares,
+    Convergence, Fate, Multiplier, PoincareAnalysis, PoincareOptions, Section, Share,
+    WantedSection, analyse, shares,
 };
 use serde_json::{Value, json as value};
 use std::io::Write;
@@ -126,7 +126,7 @@ fn largest(found: &PoincareAnalysis) -> f64 {
 }
 
 fn is_stable(found: &PoincareAnalysis) -> bool {
-    largest(found) < 1.0
+    Fate::of(largest(found)) == Fate::Die
 }
 
 pub(super) fn picture(scenario: &Scenario, found: &PoincareAnalysis) -> String {
@@ -298,10 +298,11 @@ fn print(
              meet others; the multipliers are not confirmed"
         )?;
     }
-    let verdict = match (found.contradiction().is_some(), is_stable(found)) {
-        (true, _) => "not confirmed",
-        (_, true) => "stable: deviations die",
-        (_, false) => "not stable: a deviation stays or grows",
+    let verdict = match (found.contradiction(), Fate::of(largest(found))) {
+        (Some(_), _) => "not confirmed",
+        (None, Fate::Die) => "stable: deviations die",
+        (None, Fate::Stay) => "neither stable nor unstable: some deviations stay as they are",
+        (None, Fate::Grow) => "not stable: a deviation grows",
     };
     writeln!(out, "{verdict} (largest multiplier {})", short(largest(found)))?;
     Ok(())

@@ -103,6 +103,8 @@ pub(crate) struct BasinArguments {
 /// Push a robot: the least impulse that fells it, over the time in its step and the direction
 ///
 /// Where the gait has a cycle, the robot is pushed in it, else after the start of the scenario.
+/// Pushes of the scenario itself are left out. Where the no-slip law has no answer to an impact,
+/// friction of 0.8 stands in, unless the scenario says otherwise.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -125,6 +127,9 @@ pub(crate) struct PushArguments {
     /// The strongest impulse that is tried [N s]
     #[arg(long, value_name = "NS", default_value = "20", value_parser = within(1e-6..=1e6, "N s"))]
     most: f64,
+    /// The least impulse is found to this [N s] [default: the strongest over 256]
+    #[arg(long, value_name = "NS", value_parser = within(1e-6..=1e6, "N s"))]
+    resolution: Option<f64>,
     /// How long the robot must walk on after the push
     #[arg(
         long,
@@ -139,6 +144,13 @@ pub(crate) struct PushArguments {
     /// The answer as JSON
     #[arg(long)]
     json: bool,
+}
+
+/// The scenario as it is pushed: its own pushes are others.
+fn pushable(path: &Path) -> Result<Scenario, Failure> {
+    let mut scenario = disturbed(path)?;
+    scenario.simulation.pushes.clear();
+    Ok(scenario)
 }
 
 /// The scenario as disturbed runs need it.
@@ -219,9 +231,10 @@ pub(crate) fn run_basin(
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
-        (_, true) => write_json(out, &basin_answer(&name, arguments, &starts))?,
+        (_, true) => write_json(out, &basin_answer((&name, &model), arguments, &starts))?,
         (_, false) => {
             print_basin(out, &name, arguments, &starts)?;
+            super::say_what_is_no_fall(out, &model)?;
             say_written(out, &outputs)?;
         }
     }
@@ -238,7 +251,7 @@ fn counted(starts: &[BasinStart]) -> Vec<(&'static str, usize)> {
 }
 
 fn basin_answer(
-    name: &str,
+    (name, model): (&str, &PlantModel),
     arguments: &BasinArguments,
     starts: &[BasinStart],
 ) -> serde_json::Value {
@@ -249,6 +262,7 @@ fn basin_answer(
         "starts": starts.len(),
         "cycles": arguments.steps,
         "outcomes": outcomes,
+        "falls_are_seen": !model.fall_points.is_empty(),
         "walks": starts.iter().filter(|start| start.outcome.walks()).count(),
     })
 }
@@ -319,7 +333,7 @@ fn draw_basin(
 pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let mut scenario = disturbed(&arguments.scenario)?;
+    let mut scenario = pushable(&arguments.scenario)?;
     let name = scenario.name.clone();
     check_walker(scenario.plant.as_mut())
         .map_err(|error| Failure::Walk(name.clone(), error.to_string()))?;
@@ -345,12 +359,12 @@ pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result
         directions,
         most_ns: arguments.most,
         coarse: 8,
-        resolution_ns: arguments.most / 256.0,
+        resolution_ns: arguments.resolution.unwrap_or(arguments.most / 256.0),
         after_s: arguments.after,
     };
     let progress = Progress::new();
     let found =
-        least_pushes(&|| disturbed(&arguments.scenario).ok(), &start, &options, &|done, all| {
+        least_pushes(&|| pushable(&arguments.scenario).ok(), &start, &options, &|done, all| {
             progress.show(&format!("{done} of {all} pushes"));
         });
     progress.clear();
@@ -359,9 +373,9 @@ pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
-        (_, true) => write_json(out, &push_answer(&name, &model, link, &found))?,
+        (_, true) => write_json(out, &push_answer(&name, (&model, link), (&options, &found)))?,
         (_, false) => {
-            print_push(out, &name, (&model, link), &found)?;
+            print_push(out, &name, (&model, link), (&options, &found))?;
             say_written(out, &outputs)?;
         }
     }
@@ -393,9 +407,8 @@ fn direction_word(direction: [f64; 3]) -> &'static str {
 
 fn push_answer(
     name: &str,
-    model: &PlantModel,
-    link: usize,
-    found: &[LeastPush],
+    (model, link): (&PlantModel, usize),
+    (options, found): (&PushOptions, &[LeastPush]),
 ) -> serde_json::Value {
     let one = |push: &LeastPush| {
         value!({
@@ -406,16 +419,23 @@ fn push_answer(
         })
     };
     let pushes: Vec<serde_json::Value> = found.iter().map(one).collect();
-    value!({ "scenario": name, "link": model.links[link], "pushes": pushes })
+    value!({
+        "scenario": name,
+        "link": model.links[link],
+        "resolution_ns": options.resolution_ns,
+        "falls_are_seen": !model.fall_points.is_empty(),
+        "pushes": pushes,
+    })
 }
 
 fn print_push(
     out: &mut dyn Write,
     name: &str,
     (model, link): (&PlantModel, usize),
-    found: &[LeastPush],
+    (options, found): (&PushOptions, &[LeastPush]),
 ) -> Result<(), Failure> {
-    writeln!(out, "{name}: the least impulse at {} that fells it\n", model.links[link])?;
+    let (at, to) = (&model.links[link], options.resolution_ns);
+    writeln!(out, "{name}: the least impulse at {at} that fells it, to {to:.2} N s at most\n")?;
     let columns = [
         ("direction", Align::Left),
         ("at [s]", Align::Right),
@@ -431,7 +451,8 @@ fn print_push(
             push.outcome.word().to_owned(),
         ]);
     }
-    Ok(write!(out, "{table}")?)
+    write!(out, "{table}")?;
+    super::say_what_is_no_fall(out, model)
 }
 
 fn draw_push(name: &str, options: &PushOptions, found: &[LeastPush]) -> String {

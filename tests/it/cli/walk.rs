@@ -1,7 +1,8 @@
 //! `denavit walk`: answers, exit codes, and what is refused.
 
-use super::{Directory, Run, json, run_in};
+use super::{Directory, Run, command, json, run_in};
 use std::path::Path;
+use std::process::Stdio;
 
 const GAIT: &str = "planar_biped_zmp_gait";
 
@@ -181,4 +182,45 @@ fn a_limit_cycle_has_no_trajectory_of_its_own() {
     assert_eq!(run.code, Some(2), "{}", run.stdout);
     assert!(run.stderr.contains("references alone do not walk a limit cycle"), "{}", run.stderr);
     assert!(directory.files().is_empty());
+}
+
+/// Workers open a scenario each; standard input can be read once.
+#[test]
+fn scenarios_and_gaits_may_come_from_standard_input() {
+    let directory = Directory::new("walk-stdin");
+    let cycle = directory.path.join("gait.json");
+    let shipped = denavit::shipped::find_scenario("planar_biped_limit_cycle_gait").unwrap();
+    std::fs::write(&cycle, shipped.text).unwrap();
+    let gait = directory.path.join("primitives.json");
+    let primitives = denavit::shipped::find_gait("planar_biped_primitives").unwrap();
+    std::fs::write(&gait, primitives.text).unwrap();
+    for (file, words) in [
+        (&cycle, &["walk", "basin", "-", "--grid", "2", "--steps", "1", "--json"][..]),
+        (&cycle, &["walk", "push", "-", "--times", "1", "--after", "0.5", "--json"]),
+        (&cycle, &["walk", "compare", "-", "--json"]),
+        (&gait, &["walk", "poincare", "-", "--unchecked", "--returns", "1", "--json"]),
+    ] {
+        let piped = command(&directory.path)
+            .args(words)
+            .stdin(Stdio::from(std::fs::File::open(file).unwrap()))
+            .output()
+            .unwrap();
+        let piped = Run::of(piped);
+        let path = file.display().to_string();
+        let by_path: Vec<&str> =
+            words.iter().map(|word| if *word == "-" { &path } else { *word }).collect();
+        let named = run_in(&directory.path, &by_path);
+        assert_eq!(piped.code, Some(0), "{words:?}: {}", piped.stderr);
+        assert_eq!(piped.stdout, named.stdout, "{words:?}");
+    }
+}
+
+/// Without `bodies_that_must_not_touch` a robot lies on the ground and has not fallen.
+#[test]
+fn where_nothing_counts_as_a_fall_the_answer_says_so() {
+    let words = ["walk", "push", "compass_gait", "--times", "1", "--after", "0.2"];
+    let found = run(&[&words[..], &["--resolution", "1"]].concat());
+    assert!(found.stdout.contains("nothing counts as a fall"), "{}", found.stdout);
+    assert!(found.stdout.contains("to 1.00 N s"), "{}", found.stdout);
+    assert_eq!(json(&[&words[..], &["--json"]].concat())["falls_are_seen"], false);
 }

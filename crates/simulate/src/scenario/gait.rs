@@ -3,7 +3,7 @@
 
 use super::fault::Cause;
 use super::reader::Report;
-use crate::control::Control;
+use crate::control::{Compensation, Control};
 use crate::planner::Planning;
 use denavit_codegen::model::{Fields, Node};
 use denavit_plants::Plant;
@@ -45,6 +45,11 @@ pub(super) fn gait(
         return None;
     };
     let gait = planner(node, plant, report)?;
+    let is_sampled = control.period_s.is_some();
+    if gait.planning.is_some() && (is_sampled || control.compensation != Compensation::None) {
+        let why = "torques are planned during the run, and `control` adds others".to_owned();
+        report.push(node.at(), Cause::Gait(why, "leave `compensation` and `period_s` out"));
+    }
     let planned = gait.references.into_iter().zip(gait.torques);
     for (index, (law, (reference, torque))) in control.joints.iter_mut().zip(planned).enumerate() {
         let has_own = law.reference.is_some() || law.feed_forward.is_some();

@@ -10,13 +10,41 @@ use denavit_plants::{PlantModel, PointModel};
 
 const KEYS: &[&str] = &["link", "position_m", "at_s", "impulse_ns", "force_n", "duration_s"];
 
-/// All pushes, in the order of their times.
-pub(super) fn pushes(fields: &Fields<'_>, model: &PlantModel, report: &mut Report) -> Vec<Push> {
+/// All pushes, in the order of their times; of a robot whose run begins and ends at these times
+/// \[s\].
+pub(super) fn pushes(
+    fields: &Fields<'_>,
+    (model, run_s): (&PlantModel, [f64; 2]),
+    report: &mut Report,
+) -> Vec<Push> {
     let nodes = fields.get("pushes").map_or_else(Vec::new, |node| node.items(report));
-    let mut pushes: Vec<Push> =
-        nodes.into_iter().filter_map(|node| push(node, model, report)).collect();
+    let mut pushes = Vec::new();
+    for node in nodes {
+        let Some(push) = push(node, model, report) else { continue };
+        if let Some(missing) = idle(&push, model.planar, run_s) {
+            report.push(node.at(), Cause::NoEffect(missing));
+        }
+        pushes.push(push);
+    }
     pushes.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     pushes
+}
+
+/// What a push lacks to have an effect.
+fn idle(push: &Push, is_planar: bool, [start_s, end_s]: [f64; 2]) -> Option<&'static str> {
+    let (vector, over_s) = match push.shove {
+        Shove::Impulse(vector) => (vector, push.at_s),
+        Shove::Force(vector, duration_s) => (vector, push.at_s + duration_s),
+    };
+    if push.at_s >= end_s || over_s < start_s {
+        return Some("a run that lasts until then");
+    }
+    let [x, y, z] = vector;
+    match (x == 0.0 && z == 0.0, y == 0.0) {
+        (true, true) => Some("a strength"),
+        (true, false) if is_planar => Some("a part along x or z, where the robot moves"),
+        _ => None,
+    }
 }
 
 fn push(node: Node<'_>, model: &PlantModel, report: &mut Report) -> Option<Push> {

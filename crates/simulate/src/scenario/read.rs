@@ -97,8 +97,9 @@ fn scenario(
     let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
     let posture = gait(fields, plant.as_mut(), planner, &mut control, report);
     let initial = initial(fields, plant.as_mut(), &control, posture, report);
-    simulation.pushes = pushes(fields, plant.model(), report);
     simulation.end_s += initial.t_s;
+    let run_s = [initial.t_s, simulation.end_s];
+    simulation.pushes = pushes(fields, (plant.model(), run_s), report);
     find_idle(fields, plant.model(), &simulation, &control, report);
     Some(Scenario {
         origin,

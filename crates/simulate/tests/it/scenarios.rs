@@ -230,3 +230,32 @@ fn a_million_faults_are_counted_not_listed() {
     assert_eq!((error.faults.len(), error.omitted), (100, 150_000 - 100));
     assert!(error.to_string().ends_with("more faults"));
 }
+
+#[test]
+fn pushes_without_an_effect_are_faults() {
+    let error = faults(
+        r#"{
+ "format": "denavit-scenario/1",
+ "model": "planar_biped",
+ "duration_s": 2,
+ "initial": {"t_s": 10},
+ "pushes": [
+  {"link": "base_pitch", "at_s": 100, "impulse_ns": [1, 0, 0]},
+  {"link": "base_pitch", "at_s": 0.5, "impulse_ns": [1, 0, 0]},
+  {"link": "base_pitch", "at_s": 11, "impulse_ns": [0, 5, 0]},
+  {"link": "base_pitch", "at_s": 11, "force_n": [0, 0, 0], "duration_s": 1},
+  {"link": "base_pitch", "at_s": 9.5, "force_n": [1, 0, 0], "duration_s": 1}
+ ]
+}"#,
+    );
+    let text = error.to_string();
+    for part in [
+        "/pushes/0: this has no effect without a run that lasts until then",
+        "/pushes/1: this has no effect without a run that lasts until then",
+        "/pushes/2: this has no effect without a part along x or z",
+        "/pushes/3: this has no effect without a strength",
+    ] {
+        assert!(text.contains(part), "{part}\nis not in\n{text}");
+    }
+    assert!(!text.contains("/pushes/4"), "{text}");
+}

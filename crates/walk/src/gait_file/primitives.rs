@@ -33,7 +33,9 @@ pub(super) fn read(node: Node<'_>, report: &mut Report) -> Option<PrimitivesProb
     let given = &node.fields(KEYS, report)?;
     let before = report.count();
     let all = All {
-        hip_height_m: given.get("hip_height_m").and_then(|n| n.number_in(HEIGHT_M, report)),
+        hip_height_m: given
+            .get("hip_height_m")
+            .map(|node| node.number_in(HEIGHT_M, report).unwrap_or(HEIGHT_M.most)),
         torso_pitch_rad: given.number("torso_pitch_rad", PITCH_RAD, 0.0, report),
         duration_s: given.number("duration_s", DURATION_S, 0.8, report),
     };

@@ -1,7 +1,7 @@
 //! A robot in space with two legs, and its joint positions for given places of its soles.
 
 use super::fault::PlanError;
-use super::posture::{Posture, bent, first, placed, reach};
+use super::posture::{Conditions, Posture, bent, first, placed, reach};
 use crate::inverse_kinematics::{Condition, largest_error};
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::SupportPolygon;
@@ -111,14 +111,9 @@ impl Biped {
         if model.planar {
             return Err(lacks("freedom to move in space"));
         }
-        let [_, _, up] = model.ground.normal;
-        if up < 1.0 - 1e-12 {
-            return Err(lacks("level ground"));
-        }
-        let gravity = model.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-        if gravity <= 0.0 {
-            return Err(lacks("gravity"));
-        }
+        let gravity = model
+            .fall_onto_level_ground()
+            .ok_or_else(|| lacks("gravity straight down onto level ground"))?;
         let joint = |name: &str| {
             let found = model.find_joint(name);
             found.ok_or_else(|| PlanError::NoBiped(format!("joint `{name}`")))
@@ -237,7 +232,19 @@ impl Biped {
         ]
     }
 
-    fn conditions(&self, pose: &BipedPose) -> Vec<Condition> {
+    fn conditions(&self, pose: &BipedPose) -> Conditions {
+        let corners = (0..2).flat_map(|side| {
+            let places = self.corners_m(side, &pose.soles[side]);
+            self.soles[side].points.iter().copied().zip(places)
+        });
+        let implied = corners.flat_map(|(point, place)| {
+            let axes = place.into_iter().enumerate();
+            axes.map(move |(axis, value)| Condition::point(point, axis, value))
+        });
+        Conditions { solved: self.solved(pose), implied: implied.collect() }
+    }
+
+    fn solved(&self, pose: &BipedPose) -> Vec<Condition> {
         let mut conditions = [0, 1].map(|side| self.sole(side, &pose.soles[side])).concat();
         let [x, y, z] = pose.center_m;
         let center = [x, y, self.ground_m + z].into_iter().enumerate();
@@ -318,7 +325,7 @@ impl Biped {
 
     /// The largest error of a pose's conditions at these coordinates [m, rad].
     pub(super) fn error(&self, plant: &mut dyn Plant, pose: &BipedPose, q: &[f64]) -> f64 {
-        largest_error(plant, &self.conditions(pose), q)
+        largest_error(plant, &self.solved(pose), q)
     }
 }
 

@@ -81,6 +81,7 @@ pub(crate) fn plan_space_walk(
         gains: problem.gains,
         knots,
     };
+    let plan = plan.joined()?;
     let Planner { biped, phases, .. } = planner;
     let walk = SpaceWalk { problem: problem.clone(), biped, phases, center: motion.center };
     Ok((plan, walk))
@@ -152,11 +153,15 @@ impl Planner<'_> {
         self.phases.last().map_or(0.0, Phase::end_s)
     }
 
-    /// The mean of how far the middle between the feet goes \[m\].
+    /// The mean of how far the middle between the feet goes, negative backwards \[m\].
     fn mean_step_m(&self) -> f64 {
         let steps = &self.problem.footsteps;
-        let way = steps.iter().map(|step| step.forward_m.hypot(step.left_m)).sum::<f64>();
-        way / steps.len().max(1) as f64
+        let way = steps.iter().map(|step| {
+            let length_m = step.forward_m.hypot(step.left_m);
+            if step.forward_m < 0.0 { -length_m } else { length_m }
+        });
+        // not the sum, which begins at -0
+        way.fold(0.0, |sum, step| sum + step) / steps.len().max(1) as f64
     }
 
     fn phase(&self, time: Time) -> (&Phase, f64) {

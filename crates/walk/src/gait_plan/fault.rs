@@ -46,6 +46,26 @@ pub enum PlanError {
         /// Its limits [rad, m].
         limits: [f64; 2],
     },
+    /// A posture has a body in the ground that must not touch it.
+    Fallen {
+        /// The posture, or the phase.
+        posture: String,
+        /// Its time \[s\].
+        t_s: f64,
+        /// The body.
+        body: String,
+        /// Its height above the ground \[m\].
+        height_m: f64,
+    },
+    /// Between two knots the joined curves leave what is asked for.
+    Between {
+        /// The phase.
+        posture: String,
+        /// The time \[s\].
+        t_s: f64,
+        /// The largest error of a condition [m, rad].
+        residual: f64,
+    },
     /// The centre of mass, or the planned centre of pressure, is not inside the support polygon by
     /// the margin that is asked for.
     Margin {
@@ -118,6 +138,17 @@ impl fmt::Display for PlanError {
                 "`{posture}` at {t_s:.3} s needs `{joint}` at {value:.4}; its limits are {low} \
                  and {high}"
             ),
+            Self::Fallen { posture, t_s, body, height_m } => write!(
+                f,
+                "`{posture}` at {t_s:.3} s has `{body}`, which must not touch the ground, \
+                 {:.1} mm below it",
+                -1e3 * height_m
+            ),
+            Self::Between { posture, t_s, residual } => write!(
+                f,
+                "`{posture}` at {t_s:.3} s: curves between two knots leave a residual of \
+                 {residual:.2e}"
+            ),
             Self::Margin { point, posture, t_s, margin_m, least_m } => {
                 let millimetres = 1e3 * margin_m.abs();
                 let side = if *margin_m < 0.0 { "outside" } else { "inside" };
@@ -172,6 +203,8 @@ impl PlanError {
             Self::Undetermined { .. } => "in space, two legs of six joints each are meant",
             Self::Collision { .. } => "place the feet farther apart, or turn by less in a step",
             Self::OutOfReach { .. } => "lower the hip, or shorten or lower the step",
+            Self::Fallen { .. } => "a higher hip or centre of mass",
+            Self::Between { .. } => "a smaller `interval_s`, a longer swing, or a lower step",
             Self::Limit { .. } => "another height of the hip, or a shorter or lower step",
             Self::Margin { .. } => "move the point over the foot that stands, or lower `margin_m`",
             Self::NotClosed { .. } => {

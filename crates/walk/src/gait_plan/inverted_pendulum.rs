@@ -176,7 +176,7 @@ pub fn plan_inverted_pendulum(
     let knots = planner.knots(plant)?;
     let paths = planner.joint_paths(&knots);
     let knots = planner.checked(plant, knots, &paths)?;
-    Ok(GaitPlan {
+    GaitPlan {
         step_s,
         step_length_m: problem.step_length_m,
         steps: problem.steps,
@@ -187,7 +187,8 @@ pub fn plan_inverted_pendulum(
         start: knots.first().map(|knot| knot.q.clone()).unwrap_or_default(),
         gains: problem.gains,
         knots,
-    })
+    }
+    .joined()
 }
 
 /// The centre of mass from rest to rest.

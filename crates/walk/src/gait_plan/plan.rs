@@ -71,7 +71,25 @@ pub struct GaitPlan {
     pub knots: Vec<Knot>,
 }
 
+/// Joined curves leave what is asked for by at most this between knots: feet that stand give way so
+/// far [m, rad].
+const BETWEEN: f64 = 0.01;
+
 impl GaitPlan {
+    /// The plan, if its curves keep near to what is asked for between the knots, too.
+    ///
+    /// # Errors
+    /// The time at which they leave it most.
+    pub(super) fn joined(self) -> Result<Self, PlanError> {
+        match self.worst(false) {
+            Some(knot) if knot.residual > BETWEEN || knot.residual.is_nan() => {
+                let (posture, t_s, residual) = (knot.name.clone(), knot.t_s, knot.residual);
+                Err(PlanError::Between { posture, t_s, residual })
+            }
+            _ => Ok(self),
+        }
+    }
+
     /// The references of all joints, none where nothing drives.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::fault::PlanError;
 use crate::inverse_kinematics::{Condition, PostureError, largest_error, solve};
 use denavit_numerics::Random;
-use denavit_plants::{Plant, PlantModel};
+use denavit_plants::{Plant, PlantModel, point_positions};
 
 /// Joint positions that meet a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,17 +46,38 @@ pub(super) fn placed(
     }
 }
 
+/// What a posture is to meet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Conditions {
+    /// As many as coordinates, which are solved for.
+    pub(super) solved: Vec<Condition>,
+    /// What follows from them but for another branch: a foot upside down is on its points, too.
+    pub(super) implied: Vec<Condition>,
+}
+
+/// Implied conditions are missed by less, or by the size of a foot [m, rad].
+const BRANCH: f64 = 1e-6;
+
 /// The posture near `near` that meets conditions.
 ///
 /// # Errors
-/// Conditions that are out of reach, or beyond a joint's limit.
+/// Conditions that are out of reach, or beyond a joint's limit; bodies below the ground.
 pub(super) fn reach(
     plant: &mut dyn Plant,
-    conditions: &[Condition],
+    conditions: &Conditions,
     near: &[f64],
     at: (&str, f64),
 ) -> Result<Posture, PlanError> {
-    let q = placed(plant, conditions, near, at)?;
+    let Conditions { solved, implied } = conditions;
+    let q = placed(plant, solved, near, at)?;
+    let missed = largest_error(plant, implied, &q);
+    if missed > BRANCH {
+        return Err(PlanError::OutOfReach {
+            posture: at.0.to_owned(),
+            t_s: at.1,
+            residual: missed,
+        });
+    }
     for (joint, value) in plant.model().joints.iter().zip(&q) {
         let Some(limits) = joint.position_limits else { continue };
         if *value < limits[0] - AT_LIMIT || *value > limits[1] + AT_LIMIT {
@@ -64,8 +85,27 @@ pub(super) fn reach(
             return Err(PlanError::Limit { posture, t_s: at.1, joint, value: *value, limits });
         }
     }
-    let residual = largest_error(plant, conditions, &q);
+    stays_above(plant, &q, at)?;
+    let residual = largest_error(plant, solved, &q);
     Ok(Posture { q, residual })
+}
+
+/// What must not touch the ground is above it.
+fn stays_above(plant: &mut dyn Plant, q: &[f64], at: (&str, f64)) -> Result<(), PlanError> {
+    let mut transforms = vec![0.0; 12 * plant.model().links.len()];
+    plant.link_transforms(q, &mut transforms);
+    let model = plant.model();
+    let mut places = vec![0.0; 3 * model.fall_points.len()];
+    point_positions(&model.fall_points, &transforms, &mut places);
+    for (index, place) in places.chunks_exact(3).enumerate() {
+        let place = [place[0], place[1], place[2]];
+        let height_m = model.ground.height(&place) - model.fall_radii_m[index];
+        if height_m < 0.0 {
+            let (posture, body) = (at.0.to_owned(), model.fall_points[index].name.clone());
+            return Err(PlanError::Fallen { posture, t_s: at.1, body, height_m });
+        }
+    }
+    Ok(())
 }
 
 /// The posture that meets conditions, looked for from several starts about one: of those within
@@ -75,7 +115,7 @@ pub(super) fn reach(
 /// As of [`reach`]: the error of the first start, or of the one that comes nearest.
 pub(super) fn first(
     plant: &mut dyn Plant,
-    conditions: &[Condition],
+    conditions: &Conditions,
     (start, joints): (&[f64], &[usize]),
     at: (&str, f64),
 ) -> Result<Posture, PlanError> {

@@ -110,7 +110,7 @@ pub fn plan_primitives(
     let step = Step { walker, problem, postures, times_s };
     let knots = step.knots(plant)?;
     let (step_s, steps) = (step.times_s[problem.postures.len()], problem.steps);
-    Ok(GaitPlan {
+    GaitPlan {
         step_s,
         step_length_m,
         steps,
@@ -121,7 +121,8 @@ pub fn plan_primitives(
         start: step.postures[0].q.clone(),
         gains: problem.gains,
         knots,
-    })
+    }
+    .joined()
 }
 
 /// The step's length, if the first posture may follow the last.

@@ -1,7 +1,7 @@
 //! A planar robot with two legs, and its joint positions for given places of its feet.
 
 use super::fault::PlanError;
-use super::posture::{Posture, bent, first, placed, reach};
+use super::posture::{Conditions, Posture, bent, first, placed, reach};
 use crate::inverse_kinematics::{Condition, largest_error};
 use crate::leg_exchange::LegExchange;
 use denavit_plants::Plant;
@@ -72,10 +72,6 @@ impl Walker {
         if !model.planar {
             return Err(lacks("plane that it moves in"));
         }
-        let [_, _, up] = model.ground.normal;
-        if up < 1.0 - 1e-12 {
-            return Err(lacks("level ground"));
-        }
         let base = ["base_x", "base_z", "base_pitch"].map(|name| {
             let found = model.find_joint(name);
             found.ok_or_else(|| PlanError::NoWalker(format!("joint `{name}`")))
@@ -86,10 +82,9 @@ impl Walker {
         let driven = model.joints.iter().enumerate().filter(|(_, joint)| joint.drivable);
         let driven = driven.map(|(index, _)| index).collect();
         let [right, left] = ["right_", "left_"].map(|side| foot(plant, side));
-        let gravity = model.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-        if gravity <= 0.0 {
-            return Err(lacks("gravity"));
-        }
+        let gravity = model
+            .fall_onto_level_ground()
+            .ok_or_else(|| lacks("gravity straight down onto level ground"))?;
         Ok(Self {
             feet: [right?, left?],
             driven,
@@ -136,7 +131,15 @@ impl Walker {
         ]
     }
 
-    fn conditions(&self, pose: &Pose) -> Vec<Condition> {
+    fn conditions(&self, pose: &Pose) -> Conditions {
+        let implied = |side: usize| {
+            let (foot, [ankle, _]) = (self.feet[side], pose.feet_m[side]);
+            Condition::point(foot.toe, 0, ankle + foot.ankle_to_toe_m)
+        };
+        Conditions { solved: self.solved(pose), implied: [0, 1].map(implied).to_vec() }
+    }
+
+    fn solved(&self, pose: &Pose) -> Vec<Condition> {
         let [right, left] = [0, 1].map(|side| self.sole(side, pose.feet_m[side]));
         let mut conditions = [right, left].concat();
         conditions.push(Condition::CenterOfMass { axis: 0, value: pose.center_m });
@@ -214,7 +217,7 @@ impl Walker {
 
     /// The largest error of a pose's conditions at these coordinates [m, rad].
     pub(super) fn error(&self, plant: &mut dyn Plant, pose: &Pose, q: &[f64]) -> f64 {
-        largest_error(plant, &self.conditions(pose), q)
+        largest_error(plant, &self.solved(pose), q)
     }
 
     /// How deep a sole is below the ground \[m\].

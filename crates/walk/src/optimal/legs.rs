@@ -129,6 +129,9 @@ impl Legs {
         if !model.planar {
             return Err(NoWalker("plane that it moves in".to_owned()));
         }
+        let gravity = model
+            .fall_onto_level_ground()
+            .ok_or_else(|| NoWalker("gravity straight down onto level ground".to_owned()))?;
         let contact = |name: &str| {
             let found = model.contacts.iter().position(|contact| contact.name == name);
             found.ok_or_else(|| NoWalker(format!("contact point `{name}`")))
@@ -159,13 +162,13 @@ impl Legs {
             ],
             ground_m: model.ground.point[2],
             mass_kg: model.mass_kg,
-            gravity: model.gravity.iter().map(|g| g * g).sum::<f64>().sqrt(),
+            gravity,
             leg_m: 0.0,
         };
         let mut positions = vec![0.0; 3 * model.contacts.len()];
         plant.contact_positions(&vec![0.0; legs.coordinates], &mut positions);
         legs.leg_m = -positions[3 * legs.contact(Role::StanceHeel) + 2];
-        if !(legs.leg_m > 0.0 && legs.gravity > 0.0 && legs.mass_kg > 0.0) {
+        if !(legs.leg_m > 0.0 && legs.mass_kg > 0.0) {
             return Err(NoWalker("weight on legs below a hip".to_owned()));
         }
         Ok(legs)

@@ -166,6 +166,9 @@ pub fn analyse(
         if options.checks && is_clock { spread(&mut map, &cycle, &own)? } else { None };
     let leading = own.first().filter(|_| options.returns.1 > 0);
     let convergence = leading.map(|one| converge(&mut map, &cycle, one, options.returns));
+    // where contacts forbid that deviation there is no way back
+    let is_off = |way: &Convergence| way.lengths[0] > LEFT * options.returns.0;
+    let convergence = convergence.filter(is_off);
     let forbidden = if is_clock { forbidden(map.plant, own.len()) } else { 0 };
     if options.checks && !is_clock && rhythm.clock_s.is_some() {
         // differences across a strike may meet other events: the variational equation does not
@@ -183,6 +186,9 @@ pub fn analyse(
         convergence,
     })
 }
+
+/// Less than this part of a deviation is left inside the manifold of the contacts: they forbid it.
+const LEFT: f64 = 1e-3;
 
 /// Largest difference of multipliers above 1e-2, by falling modulus.
 fn apart(own: &[Multiplier], other: &[Multiplier]) -> f64 {

@@ -24,7 +24,7 @@ pub use chart::Chart;
 pub use convergence::{Convergence, converge};
 pub use cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
 pub use doubling::doubling;
-pub use multipliers::{Multiplier, multipliers};
+pub use multipliers::{Fate, Multiplier, multipliers};
 pub use rhythm::{NotPeriodic, Rhythm};
 pub use section::{ReturnError, ReturnMap, Returned, Section};
 pub use symmetry::Symmetry;

@@ -18,6 +18,32 @@ impl Multiplier {
     }
 }
 
+/// Multipliers are known to about this; a modulus nearer to 1 says neither that deviations die nor
+/// that they grow.
+const NEUTRAL: f64 = 1e-5;
+
+/// What becomes of deviations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// All multipliers are inside the unit circle.
+    Die,
+    /// The largest is on it, as far as is known: such deviations stay as they are.
+    Stay,
+    /// The largest is outside.
+    Grow,
+}
+
+impl Fate {
+    /// Of deviations whose largest multiplier has this modulus.
+    pub fn of(largest: f64) -> Self {
+        match largest {
+            modulus if modulus < 1.0 - NEUTRAL => Self::Die,
+            modulus if modulus <= 1.0 + NEUTRAL => Self::Stay,
+            _ => Self::Grow,
+        }
+    }
+}
+
 /// More QR iterations for one matrix are no convergence.
 const ITERATIONS: usize = 10_000;
 

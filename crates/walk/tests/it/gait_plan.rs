@@ -3,7 +3,7 @@
 
 use super::assert_near;
 use denavit_codegen::model;
-use denavit_plants::{Plant, plant_of, shipped};
+use denavit_plants::{Override, Plant, plant_of, point_positions, shipped};
 use denavit_simulate::scenario::Scenario;
 use denavit_simulate::{Run, Stop};
 use denavit_walk::ScenarioHead;
@@ -357,5 +357,74 @@ fn all_faults_of_a_gait_file_are_told_at_once() {
     for place in ["step_s", "center_of_mass_height_m", "/steps", "/standing_s", "one kind of gait"]
     {
         assert!(error.contains(place), "{place}:\n{error}");
+    }
+}
+
+/// By forward kinematics, whatever the search says: toes are ahead of heels, and nothing that must
+/// not touch the ground is below it.
+fn assert_upright(plant: &mut dyn Plant, plan: &GaitPlan) {
+    let model = plant.model().clone();
+    let contact = |name: &str| model.contacts.iter().position(|c| c.name == name).unwrap();
+    let feet = ["right", "left"]
+        .map(|side| [contact(&format!("{side}_heel")), contact(&format!("{side}_toe"))]);
+    let mut positions = vec![0.0; 3 * model.contacts.len()];
+    let mut transforms = vec![0.0; 12 * model.links.len()];
+    let mut bodies = vec![0.0; 3 * model.fall_points.len()];
+    for knot in &plan.knots {
+        plant.contact_positions(&knot.q, &mut positions);
+        for [heel, toe] in feet {
+            assert_near(positions[3 * toe] - positions[3 * heel], 0.21, 5e-3);
+        }
+        plant.link_transforms(&knot.q, &mut transforms);
+        point_positions(&model.fall_points, &transforms, &mut bodies);
+        assert!(bodies.chunks_exact(3).all(|place| place[2] > -1e-3), "{knot:?}");
+    }
+}
+
+/// At 0.45 m there is a posture on feet that are upside down.
+#[test]
+fn feet_are_the_right_way_up_at_every_height() {
+    let mut plant = biped();
+    let mut planned = 0;
+    for height_m in [0.36, 0.40, 0.42, 0.45, 0.48, 0.52, 0.58, 0.62] {
+        let problem =
+            InvertedPendulumProblem { center_of_mass_height_m: height_m, steps: 4, ..pendulum() };
+        if let Ok(plan) = plan_inverted_pendulum(plant.as_mut(), &problem) {
+            assert_upright(plant.as_mut(), &plan);
+            planned += 1;
+        }
+        let mut low = primitives();
+        low.postures.iter_mut().for_each(|posture| posture.hip_height_m = height_m - 0.1);
+        if let Ok(plan) = plan_primitives(plant.as_mut(), &low) {
+            assert_upright(plant.as_mut(), &plan);
+            planned += 1;
+        }
+    }
+    assert!(planned >= 8, "{planned} plans");
+}
+
+#[test]
+fn curves_that_leave_the_ground_between_knots_are_refused() {
+    let problem = InvertedPendulumProblem { double_support_s: 0.79, steps: 4, ..pendulum() };
+    let error = plan_inverted_pendulum(biped().as_mut(), &problem).unwrap_err();
+    assert!(matches!(error, PlanError::Between { residual, .. } if residual > 0.05), "{error}");
+}
+
+/// Gravity that points up, or aslant, is not that of a pendulum on level ground.
+#[test]
+fn gravity_has_to_point_down() {
+    let text = shipped::find("planar_biped").unwrap().text;
+    let upwards = [Override { parameter: "g".to_owned(), value: -9.81 }];
+    let robot = model::read("planar_biped", text.as_bytes()).unwrap();
+    let aslant = text.replace("\"gravity\": [0, 0, \"-g\"]", "\"gravity\": [1, 0, \"-g\"]");
+    assert_ne!(aslant, text);
+    let slope = model::read("aslant", aslant.as_bytes()).unwrap();
+    for mut plant in [plant_of(&robot, &upwards).unwrap(), plant_of(&slope, &[]).unwrap()] {
+        for error in [
+            plan_inverted_pendulum(plant.as_mut(), &pendulum()).unwrap_err(),
+            plan_primitives(plant.as_mut(), &primitives()).unwrap_err(),
+        ] {
+            assert!(error.to_string().contains("gravity straight down"), "{error}");
+        }
     }
 }

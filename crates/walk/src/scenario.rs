@@ -1,7 +1,7 @@
 //! Scenarios with gaits: the key `gait` is planned here, then the simulation sees references.
 
 use crate::capture_step::read as read_capture_step;
-use crate::foot_placement;
+use crate::foot_placement::{self, FootPlacement};
 use crate::gait_file::divergent_component;
 use crate::gait_plan::{DivergentComponentProblem, PlanError, SpaceWalk, plan_space_walk};
 use denavit_codegen::model::Node;
@@ -27,10 +27,11 @@ pub fn read_scenario(
 fn planned(gait: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option<PlannedGait> {
     let kinds = gait.fields(&["divergent_component", "foot_placement", "capture_step"], report)?;
     let placement = kinds.get("foot_placement");
+    let placement = placement.map(|node| (node, foot_placement::read(node, report)));
     match (kinds.get("divergent_component"), kinds.get("capture_step")) {
         (Some(node), None) => planned_walk(node, placement, plant, report),
         (None, Some(node)) => {
-            if let Some(other) = placement {
+            if let Some((other, _)) = placement {
                 let hint = "it belongs to a walk in space: `divergent_component`";
                 report.push(other.at(), Cause::Gait("no walk to place feet of".to_owned(), hint));
             }
@@ -44,7 +45,7 @@ fn planned(gait: Node<'_>, plant: &mut dyn Plant, report: &mut Report) -> Option
 /// Plans a walk in space, and the law that places its feet if there is one.
 fn planned_walk(
     node: Node<'_>,
-    placement: Option<Node<'_>>,
+    placement: Option<(Node<'_>, Option<FootPlacement>)>,
     plant: &mut dyn Plant,
     report: &mut Report,
 ) -> Option<PlannedGait> {
@@ -53,7 +54,6 @@ fn planned_walk(
         let hint = "the ground of a scenario is under `contact`";
         report.push(friction.at(), Cause::Gait("no effect here".to_owned(), hint));
     }
-    let law = placement.map(|node| (node, foot_placement::read(node, report)));
     let problem = divergent_component::read(node, report)?;
     let (gait, walk) = match followed(plant, &problem) {
         Ok(planned) => planned,
@@ -62,7 +62,7 @@ fn planned_walk(
             return None;
         }
     };
-    let Some((node, law)) = law else { return Some(gait) };
+    let Some((node, law)) = placement else { return Some(gait) };
     let planning = Some(law?.planning(walk, node, report)?);
     Some(PlannedGait { planning, ..gait })
 }

@@ -12,7 +12,7 @@ use denavit_simulate::{JointPlan, ReferencePlanner, Sensed};
 pub(super) struct Stepper {
     law: FootPlacementLaw,
     course: Course,
-    /// By how much the clock of the course is ahead of that of the run: feet that landed early \[s\].
+    /// By how much the clock of the course is ahead of that of the run: feet landed early \[s\].
     ahead_s: f64,
     /// The last swing whose landing has been looked at.
     taken_in: Option<usize>,

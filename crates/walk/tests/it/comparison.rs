@@ -81,7 +81,7 @@ fn angular_momentum_is_neither_sufficient_nor_necessary() {
     assert!(run.largest_momentum < 1e-9, "{}", run.largest_momentum);
     let run = compared("planar_biped_trunk_swing");
     assert!(!run.fell() && run.momentum.is_wrong(false));
-    // how far apart its feet stand stays as it is: a multiplier of 1, which is not inside the circle
+    // how far apart its feet stand stays as it is: a multiplier of 1, not inside the circle
     assert_near(run.largest_multiplier.unwrap(), 1.0, 1e-6);
     assert_eq!(run.poincare, Verdict::Missed(0.0));
     assert!(run.largest_momentum > 0.6);
@@ -114,7 +114,7 @@ fn limit_cycles_need_more_energy_a_metre_and_less_torque_squared() {
     }
 }
 
-/// A model that names nothing that must not touch the ground never falls: nothing is wrong about it.
+/// A model that names nothing that must not touch the ground never falls: nothing is wrong then.
 #[test]
 fn where_nothing_counts_as_a_fall_no_criterion_is_wrong() {
     let mut scenario = scenario("compass_gait");

@@ -12,7 +12,7 @@ use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
 use denavit::shipped::ShippedModel;
-use denavit::simulate::LogError;
+use denavit::simulate::LogFaults;
 use denavit::simulate::scenario::ScenarioError;
 use std::fmt;
 use std::io;
@@ -83,7 +83,7 @@ pub(crate) enum Failure {
     /// Nothing is diagnosed.
     Diagnose(DiagnosisError),
     /// A log is wrong.
-    Log(LogError),
+    Log(LogFaults),
     /// A gait has no answer; holds the scenario and why.
     Walk(String, String),
     /// A step was given for the scheme that chooses its own.

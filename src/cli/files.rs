@@ -7,7 +7,7 @@ use denavit::effect::{self, Effect};
 use denavit::model::Robot;
 use denavit::model::equations::{self, Equations};
 use denavit::shipped::{self, ShippedModel};
-use denavit::simulate::Log;
+use denavit::simulate::LogFile;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -85,7 +85,7 @@ pub(crate) fn open_log(path: &Path) -> Result<BufReader<File>, Failure> {
 }
 
 /// A log of the project's own columns.
-pub(crate) fn read_log(path: &Path) -> Result<Log, Failure> {
+pub(crate) fn read_log(path: &Path) -> Result<LogFile, Failure> {
     let name = path.display().to_string();
     let failure = |error| Failure::Read { file: name.clone(), error };
     let mut bytes = Vec::new();
@@ -94,7 +94,7 @@ pub(crate) fn read_log(path: &Path) -> Result<Log, Failure> {
     if bytes.len() as u64 > MAX_LOG_BYTES {
         return Err(Failure::TooLarge { file: name, limit: MAX_LOG_BYTES });
     }
-    Log::from_csv(&name, &bytes).map_err(Failure::Log)
+    LogFile::from_csv(&name, &bytes).map_err(Failure::Log)
 }
 
 /// What a command can be about that takes models and equations.

@@ -1,6 +1,7 @@
 //! `denavit walk`: gaits, their stability, and what each criterion misses.
 
 mod balance;
+mod balance_log;
 mod capturability;
 mod capture_steps;
 mod compare;

@@ -1,11 +1,13 @@
 //! Logs: a table in time, with what it was made of in its header.
 
+use super::log_fault::LogFaults;
+use super::log_file::LogFile;
 use std::borrow::Cow;
-use std::fmt::{self, Write};
+use std::fmt::Write;
 
 /// A table of numbers with named columns, `t` first; the columns are those of the project's logs:
 /// `t`, `q_JOINT`, `qd_JOINT`, `ref_JOINT`, `tau_JOINT`, `tau_cmd_JOINT`, `motor_JOINT`,
-/// `f_CONTACT_x|y|z`.
+/// `f_CONTACT_x|y|z`, `w_LINK_fx|fy|fz|mx|my|mz`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Log {
     /// Name and value of each line of the header.
@@ -16,125 +18,11 @@ pub struct Log {
     pub values: Vec<f64>,
 }
 
-/// What is wrong with a log, where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LogError {
-    /// The name of the file, as it was given.
-    pub file: String,
-    /// The line, from 1.
-    pub line: usize,
-    /// The cell in that line, from 1; 1 where the whole line is meant.
-    pub cell: usize,
-    /// What is wrong.
-    pub cause: LogFault,
-}
-
-/// What can be wrong with a log.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LogFault {
-    /// The file is not UTF-8.
-    NotUtf8,
-    /// There is no line with the names of the columns.
-    NoColumns,
-    /// Two columns have this name.
-    RepeatedColumn(String),
-    /// There is no column `t`.
-    NoTime,
-    /// There are no rows.
-    NoRows,
-    /// A row with more or fewer cells than there are columns: expected, found.
-    RowLength(usize, usize),
-    /// A cell that is no finite number; holds it.
-    NotANumber(String),
-    /// A time that is missing, or not after the one before it.
-    NotIncreasing,
-}
-
-impl fmt::Display for LogError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}: ", self.file, self.line, self.cell)?;
-        match &self.cause {
-            LogFault::NotUtf8 => write!(f, "not UTF-8 text"),
-            LogFault::NoColumns => write!(f, "no line with the names of columns"),
-            LogFault::RepeatedColumn(name) => write!(f, "a second column `{name}`"),
-            LogFault::NoTime => write!(f, "no column `t`, the time in seconds"),
-            LogFault::NoRows => write!(f, "no rows"),
-            LogFault::RowLength(expected, found) => {
-                write!(f, "{found} cells, where there are {expected} columns")
-            }
-            LogFault::NotANumber(cell) => write!(f, "`{cell}` is not a finite number"),
-            LogFault::NotIncreasing => write!(f, "the time is not after that of the row before"),
-        }
-    }
-}
-
-impl std::error::Error for LogError {}
-
 impl Log {
     /// Reads CSV: lines `# name: value`, the names of the columns, rows of numbers; empty cells are
     /// undefined (NaN), and empty lines are nothing. `file` is its name, for messages alone.
-    pub fn from_csv(file: &str, source: &[u8]) -> Result<Self, LogError> {
-        let error = |line, cell, cause| LogError { file: file.to_owned(), line, cell, cause };
-        let text = std::str::from_utf8(source).map_err(|invalid| {
-            let line = source[..invalid.valid_up_to()].iter().filter(|b| **b == b'\n').count();
-            error(line + 1, 1, LogFault::NotUtf8)
-        })?;
-        let mut log = Self::default();
-        let mut time = None;
-        for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-            let (number, line) = (index + 1, line.trim());
-            if line.is_empty() {
-                continue;
-            }
-            if let Some(said) = line.strip_prefix('#') {
-                let (name, value) = said.split_once(':').unwrap_or((said, ""));
-                log.header.push((name.trim().to_owned(), value.trim().to_owned()));
-            } else if log.columns.is_empty() {
-                for (cell, name) in line.split(',').map(str::trim).enumerate() {
-                    if log.columns.iter().any(|known| known == name) {
-                        let cause = LogFault::RepeatedColumn(name.to_owned());
-                        return Err(error(number, cell + 1, cause));
-                    }
-                    log.columns.push(name.to_owned());
-                }
-                time = log.columns.iter().position(|column| column == "t");
-                if time.is_none() {
-                    return Err(error(number, 1, LogFault::NoTime));
-                }
-            } else {
-                log.push_row(line, time.unwrap_or(0))
-                    .map_err(|(cell, cause)| error(number, cell, cause))?;
-            }
-        }
-        let lines = text.lines().count().max(1);
-        match (log.columns.is_empty(), log.values.is_empty()) {
-            (true, _) => Err(error(lines, 1, LogFault::NoColumns)),
-            (_, true) => Err(error(lines, 1, LogFault::NoRows)),
-            _ => Ok(log),
-        }
-    }
-
-    fn push_row(&mut self, line: &str, time: usize) -> Result<(), (usize, LogFault)> {
-        let (columns, first) = (self.columns.len(), self.values.len());
-        for (cell, text) in line.split(',').map(str::trim).enumerate() {
-            let value = match text {
-                "" => f64::NAN,
-                text => match text.parse::<f64>() {
-                    Ok(value) if value.is_finite() => value,
-                    _ => return Err((cell + 1, LogFault::NotANumber(text.to_owned()))),
-                },
-            };
-            self.values.push(value);
-        }
-        let found = self.values.len() - first;
-        if found != columns {
-            return Err((1, LogFault::RowLength(columns, found)));
-        }
-        let now = self.values[first + time];
-        let before = first.checked_sub(columns).map(|row| self.values[row + time]);
-        // Written so that an empty cell fails as well.
-        let increases = before.map_or(now.is_finite(), |before| now > before);
-        if increases { Ok(()) } else { Err((time + 1, LogFault::NotIncreasing)) }
+    pub fn from_csv(file: &str, source: &[u8]) -> Result<Self, LogFaults> {
+        LogFile::from_csv(file, source).map(|read| read.log)
     }
 
     /// The line on which row number `row` stands in a file without empty lines, from 1.
@@ -237,23 +125,5 @@ mod tests {
         assert_eq!(text, format!("# scenario: {escaped}\nt\n0\n"));
         let read = Log::from_csv("a.csv", text.as_bytes()).expect("a log");
         assert_eq!(read.header, [("scenario".to_owned(), escaped.to_owned())]);
-    }
-
-    #[test]
-    fn faults_have_their_place() {
-        let fault = |text: &str| {
-            let error = Log::from_csv("a.csv", text.as_bytes()).unwrap_err();
-            (error.line, error.cell, error.cause)
-        };
-        assert_eq!(fault(""), (1, 1, LogFault::NoColumns));
-        assert_eq!(fault("# a: b\nt,q\n"), (2, 1, LogFault::NoRows));
-        assert_eq!(fault("q,p\n1,2\n"), (1, 1, LogFault::NoTime));
-        assert_eq!(fault("t,q,q\n"), (1, 3, LogFault::RepeatedColumn("q".to_owned())));
-        assert_eq!(fault("t,q\n0,1\n1\n"), (3, 1, LogFault::RowLength(2, 1)));
-        assert_eq!(fault("t,q\n0,nan\n"), (2, 2, LogFault::NotANumber("nan".to_owned())));
-        assert_eq!(fault("t,q\n0,1\n0,2\n"), (3, 1, LogFault::NotIncreasing));
-        assert_eq!(fault("t,q\n,1\n"), (2, 1, LogFault::NotIncreasing));
-        let wide = Log::from_csv("a.csv", b"t,q\n0,\xff\n").unwrap_err();
-        assert_eq!((wide.line, wide.cause), (2, LogFault::NotUtf8));
     }
 }

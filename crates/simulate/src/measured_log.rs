@@ -34,7 +34,7 @@ pub fn measured_log(
                 Some(_) => Instrument::Torque,
                 None => continue,
             },
-            Some(("ref" | "f", _)) => Instrument::Exact,
+            Some(("ref" | "f" | "w", _)) => Instrument::Exact,
             _ if column == "t" => Instrument::Exact,
             _ => continue,
         };

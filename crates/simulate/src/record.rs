@@ -7,6 +7,7 @@ use super::control::Control;
 use super::joint_record::JointObserver;
 use super::log::Log;
 use super::motion::Motion;
+use super::push::{LinkWrench, forced_links};
 use super::simulation::Simulation;
 use super::support::SupportPolygon;
 use denavit_plants::PlantModel;
@@ -19,6 +20,8 @@ pub(super) struct Recorder {
     pub(super) joints: JointObserver,
     /// Contacts that pass through the ground by a rule, until they rise again.
     pub(super) passing: Vec<bool>,
+    /// The links whose rows have what forces push them with.
+    pushed: Vec<usize>,
     /// Whether rows have accelerations.
     accelerations: bool,
     /// Nothing but contacts and gravity acts from outside.
@@ -34,11 +37,17 @@ impl Recorder {
         let start_energy = motion.energy(y);
         let model = motion.plant.model();
         let mut columns = columns(model, &motion.control, &motion.drives.elastic);
+        let pushed = forced_links(&simulation.pushes);
+        for link in &pushed {
+            let of_link = |part| format!("w_{}_{part}", model.links[*link]);
+            columns.extend(["fx", "fy", "fz", "mx", "my", "mz"].map(of_link));
+        }
         if simulation.logs_accelerations {
             columns.extend(model.joints.iter().map(|joint| format!("qdd_{}", joint.name)));
         }
         Self {
             log: Log { columns, ..Log::default() },
+            pushed,
             accelerations: simulation.logs_accelerations,
             audit: Audit::new(model),
             joints: JointObserver::new(model, &motion.control),
@@ -194,7 +203,7 @@ impl Recorder {
 
     fn write(
         &mut self,
-        motion: &Motion<'_>,
+        motion: &mut Motion<'_>,
         t_s: f64,
         y: &[f64],
         zmp: Option<[[f64; 3]; 2]>,
@@ -233,6 +242,11 @@ impl Recorder {
             values.extend(point);
         }
         values.extend(energies);
+        for link in &self.pushed {
+            let wrench = LinkWrench::of(motion.pushes, *link, motion.plant, (time, parts.q));
+            values.extend(wrench.force);
+            values.extend(wrench.moment);
+        }
         if self.accelerations {
             values.extend(&motion.work.acceleration);
         }

@@ -6,16 +6,17 @@ use super::super::files::{read_log, read_model_with_effects};
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::simulate::open;
+use super::balance_log::{events, series, turning_bodies};
 use clap::Args;
-use denavit::plants::{PlantModel, plant_of};
+use denavit::plants::{PlantError, PlantModel, plant_of};
 use denavit::report::{Align, BalanceCurve, BalancePicture, Table, percent};
-use denavit::simulate::{EventKind, Log};
+use denavit::simulate::scenario::RunScheme;
 use denavit::walk::balance::{
-    BalanceError, Course, Criterion, Instant, Margins, course_of_log, course_of_scenario,
+    BalanceError, Course, Criterion, Grid, Instant, Margins, course_of_log, course_on_grid,
 };
 use serde_json::{Map, Value, json as value};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,15 +38,9 @@ pub(crate) struct Arguments {
     /// Judge the whole run, not one cycle of the gait
     #[arg(long, conflicts_with = "model")]
     whole: bool,
-    /// Distance of the instants that are looked at
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        default_value = "0.0005",
-        value_parser = period,
-        conflicts_with = "model"
-    )]
-    period: f64,
+    /// Distance of the instants that are looked at [default: 0.0005, more of runs over 100 s]
+    #[arg(long, value_name = "SECONDS", value_parser = period, conflicts_with = "model")]
+    period: Option<f64>,
     /// Where the criteria go, row by row, as CSV; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -70,7 +65,12 @@ pub(super) struct Judged {
     pub(super) name: String,
     pub(super) model: PlantModel,
     pub(super) course: Course,
+    /// What its reader must know beside.
+    pub(super) notes: Vec<String>,
 }
+
+/// Distance of instants where nobody asks for another one \[s\].
+const PERIOD_S: f64 = 5e-4;
 
 pub(crate) fn run(
     what: What,
@@ -105,126 +105,51 @@ pub(crate) fn run(
 
 fn judge(arguments: &Arguments) -> Result<Judged, Failure> {
     let name = arguments.input.display().to_string();
-    let failure = |error: BalanceError| Failure::Walk(name.clone(), error.to_string());
     if let Some(model) = &arguments.model {
-        let robot = read_model_with_effects(model, None)?;
-        let mut plant = plant_of(&robot, &[])
-            .map_err(|error| Failure::Walk(robot.name.clone(), error.to_string()))?;
-        let log = read_log(&arguments.input)?;
-        let course = course_of_log(plant.as_mut(), &log).map_err(failure)?;
-        return Ok(Judged { name, model: plant.model().clone(), course });
+        return judge_log(name, &arguments.input, model);
     }
     if arguments.input.extension().is_some_and(|extension| extension == "csv") {
         let why = "a log says nothing of its robot\n  hint: name the robot's model: --model MODEL";
         return Err(Failure::Walk(name, why.to_owned()));
     }
     let mut scenario = open(&arguments.input)?;
-    let course =
-        course_of_scenario(&mut scenario, arguments.period, arguments.whole).map_err(failure)?;
+    let grid = arguments.period.map_or(Grid::From(PERIOD_S), Grid::Every);
+    let course = course_on_grid(&mut scenario, grid, arguments.whole)
+        .map_err(|error| Failure::Walk(name, error.to_string()))?;
+    let mut notes = Vec::new();
+    if scenario.scheme == RunScheme::TimeStepping {
+        notes.push("judged from event to event, though the scenario is one of steps".to_owned());
+    }
+    let chosen =
+        course.period_s.filter(|period_s| grid == Grid::From(PERIOD_S) && *period_s > PERIOD_S);
+    notes.extend(chosen.map(|period_s| {
+        format!("the run is long: an instant every {period_s} s; --period {PERIOD_S} takes more")
+    }));
     let model = scenario.plant.model().clone();
-    Ok(Judged { name: scenario.name, model, course })
+    Ok(Judged { name: scenario.name, model, course, notes })
 }
 
-const POINTS: [(&str, Criterion); 4] = [
-    ("zmp", Criterion::ZeroMoment),
-    ("cart_table", Criterion::CartTable),
-    ("fri", Criterion::FootRotation),
-    ("capture", Criterion::Capture),
-];
-
-/// All criteria, row by row; docs/walking.md lists the columns.
-fn series(judged: &Judged) -> Log {
-    let mut columns = vec!["t".to_owned()];
-    let axes = ["x", "y", "z"];
-    for vector in ["com", "com_velocity", "com_acceleration", "angular_momentum", "cop"] {
-        columns.extend(axes.map(|axis| format!("{vector}_{axis}")));
-    }
-    for (name, _) in POINTS {
-        columns.extend(axes.map(|axis| format!("{name}_{axis}")));
-        columns.push(format!("{name}_margin"));
-    }
-    columns.extend(["support_low", "support_high", "feet", "contacts"].map(str::to_owned));
-    let bodies = turning_bodies(judged);
-    for body in &bodies {
-        let name = &judged.model.joints[*body].name;
-        columns.extend(axes.map(|axis| format!("angular_momentum_{name}_{axis}")));
-    }
-    let mut values = Vec::new();
-    for instant in &judged.course.instants {
-        values.push(instant.t_s);
-        values.extend(instant.center_of_mass.as_flattened());
-        values.extend(instant.angular_momentum);
-        values.extend(instant.center_of_pressure_m);
-        for (_, criterion) in POINTS {
-            values.extend(criterion.point(instant).unwrap_or([f64::NAN; 3]));
-            values.push(criterion.margin(instant).unwrap_or(f64::NAN));
+fn judge_log(name: String, log: &Path, model: &Path) -> Result<Judged, Failure> {
+    let robot = read_model_with_effects(model, None)?;
+    let file = read_log(log)?;
+    let parameters = file.parameters(&robot.name, robot.hash).map_err(Failure::Log)?;
+    let mut plant = plant_of(&robot, &parameters).map_err(|error| match error {
+        PlantError::UnknownParameter(parameter, _) => {
+            Failure::Log(file.unknown_parameter(&parameter))
         }
-        values.extend(instant.support.range().unwrap_or([f64::NAN; 2]));
-        values.push(feet(instant));
-        values.push(instant.closed as f64);
-        bodies.iter().for_each(|body| values.extend(instant.body_momenta[*body]));
+        error => Failure::Walk(robot.name.clone(), error.to_string()),
+    })?;
+    let course = course_of_log(plant.as_mut(), &file).map_err(|error| match error {
+        BalanceError::Log(faults) => Failure::Log(faults),
+        error => Failure::Walk(name.clone(), error.to_string()),
+    })?;
+    let model = plant.model().clone();
+    let mut notes = Vec::new();
+    if !parameters.is_empty() {
+        let all = parameters.iter().map(|one| format!("{} = {}", one.parameter, one.value));
+        notes.push(format!("by the log's header {}", all.collect::<Vec<_>>().join(", ")));
     }
-    let header = vec![
-        ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
-        ("criteria_of", judged.name.clone()),
-        ("model", judged.model.name.clone()),
-        ("over", judged.course.over.word().to_owned()),
-    ];
-    let header = header.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-    Log { header, columns, values }
-}
-
-fn feet(instant: &Instant) -> f64 {
-    use denavit::walk::balance::Phase;
-    match instant.phase {
-        Phase::Flight => 0.0,
-        Phase::Flat | Phase::Toe => 1.0,
-        Phase::Double => 2.0,
-    }
-}
-
-/// Events with their impulses, and the velocities before and after.
-fn events(judged: &Judged) -> Log {
-    let model = &judged.model;
-    let mut columns = ["t", "kind", "energy"].map(str::to_owned).to_vec();
-    let points = model.contacts.iter();
-    columns.extend(points.clone().map(|contact| format!("closed_{}", contact.name)));
-    for contact in points {
-        columns.extend(["x", "y", "z"].map(|axis| format!("p_{}_{axis}", contact.name)));
-    }
-    for prefix in ["q", "qd_before", "qd_after"] {
-        columns.extend(model.joints.iter().map(|joint| format!("{prefix}_{}", joint.name)));
-    }
-    let mut values = Vec::new();
-    for event in judged.course.run.iter().flat_map(|run| &run.events) {
-        values.push(event.t_s);
-        values.push(match event.kind {
-            EventKind::Start => 0.0,
-            EventKind::Touch(_) => 1.0,
-            EventKind::Limit | EventKind::LeastLoads => 2.0,
-            EventKind::SlipEnds(_) => 3.0,
-            EventKind::Jump(_) => 4.0,
-            EventKind::Push => 5.0,
-            EventKind::Plan => 6.0,
-        });
-        values.push(event.energy_j);
-        let contacts = 0..model.contacts.len();
-        values.extend(contacts.clone().map(|c| f64::from(u8::from(event.closed.contains(&c)))));
-        for contact in contacts {
-            let hits = event.impulses.iter().filter(|(hit, _)| *hit == contact);
-            let sum =
-                hits.fold([0.0; 3], |sum, (_, p)| [sum[0] + p[0], sum[1] + p[1], sum[2] + p[2]]);
-            values.extend(sum);
-        }
-        [&event.q, &event.before, &event.after].into_iter().for_each(|part| values.extend(part));
-    }
-    let kinds = "0 start, 1 touch, 2 limit of forces, 3 end of slipping, 4 jump, 5 push, 6 plan";
-    let header = [
-        ("denavit".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-        ("events_of".to_owned(), judged.name.clone()),
-        ("kinds".to_owned(), kinds.to_owned()),
-    ];
-    Log { header: header.to_vec(), columns, values }
+    Ok(Judged { name, model, course, notes })
 }
 
 fn criteria(what: What) -> &'static [(&'static str, Criterion)] {
@@ -287,6 +212,8 @@ fn answer(what: What, judged: &Judged) -> Value {
     set("of", value!(judged.name));
     set("model", value!(judged.model.name));
     set("over", value!(course.over.word()));
+    set("scheme", value!(course.scheme));
+    set("period_s", value!(course.period_s));
     set("duration_s", value!(course.duration_s()));
     for (name, criterion) in criteria(what) {
         set(name, margins_json(course.margins(*criterion)));
@@ -333,14 +260,6 @@ fn range(course: &Course, value: impl Fn(&Instant) -> f64) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// The joints whose bodies turn, or go round the centre of mass.
-fn turning_bodies(judged: &Judged) -> Vec<usize> {
-    let turns = |instant: &Instant, body: usize| instant.body_momenta[body] != [0.0; 3];
-    let instants = &judged.course.instants;
-    let all = 0..judged.model.joints.len();
-    all.filter(|body| instants.iter().any(|instant| turns(instant, *body))).collect()
-}
-
 /// The least and the largest angular momentum about each axis, of the robot and of its bodies.
 fn momentum_table(judged: &Judged) -> Table {
     let course = &judged.course;
@@ -384,9 +303,25 @@ fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure
     let course = &judged.course;
     let shares = course.shares();
     let over = course.over.word();
-    writeln!(out, "{}: over one {over} of {:.4} s\n", judged.name, course.duration_s())?;
-    if what == What::Momentum {
+    let scheme = match course.scheme.as_deref() {
+        Some("event") => ", from event to event",
+        Some("time_stepping") => ", by time stepping",
+        _ => "",
+    };
+    writeln!(out, "{}: over one {over} of {:.4} s{scheme}", judged.name, course.duration_s())?;
+    judged.notes.iter().try_for_each(|note| writeln!(out, "{note}"))?;
+    writeln!(out)?;
+    let rows = margin_cells(what, course);
+    if course.instants.is_empty() {
+        writeln!(out, "no instant has forces\n")?;
+    } else if what == What::Momentum {
         writeln!(out, "{}", momentum_table(judged))?;
+    } else if rows.is_empty() {
+        let why = match what {
+            What::Fri => "no foot ever stands alone, or something pushes whenever one does",
+            _ => "nothing ever stands on the ground",
+        };
+        writeln!(out, "{why}\n")?;
     } else {
         let columns = [
             ("point", Align::Left),
@@ -396,7 +331,7 @@ fn print(out: &mut dyn Write, what: What, judged: &Judged) -> Result<(), Failure
             ("outside", Align::Right),
         ];
         let mut table = Table::new(&columns);
-        margin_cells(what, course).into_iter().for_each(|cells| table.push(cells));
+        rows.into_iter().for_each(|cells| table.push(cells));
         writeln!(out, "{table}")?;
     }
     if what == What::Zmp {

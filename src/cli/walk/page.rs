@@ -69,7 +69,7 @@ fn page(scenario: &mut Scenario, course: Course, cycle: Result<PoincareAnalysis,
     let energy = course.energy(scenario.plant.as_ref());
     let over = format!("{}, {:.4} s", course.over.word(), course.duration_s());
     let model = scenario.plant.model().clone();
-    let judged = Judged { name: scenario.name.clone(), model, course };
+    let judged = Judged { name: scenario.name.clone(), model, course, notes: Vec::new() };
     let balance = vec![
         Part::Table(margins(&judged)),
         figure(draw_balance(What::Zmp, &judged), "Zero moment point (figure 4.7)."),

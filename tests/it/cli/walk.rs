@@ -66,6 +66,62 @@ fn a_log_is_judged_with_the_model_of_its_robot() {
     }
 }
 
+/// What a scenario sets in place of its model's values is in the log; a log of another model is
+/// refused with the place in its header.
+#[test]
+fn a_log_is_of_its_own_robot() {
+    let directory = Directory::new("walk-log-model");
+    let text = denavit::shipped::find_scenario(GAIT).expect("shipped").text;
+    let moon = text.replacen("\"model\"", "\"parameters\": {\"g\": 3.7}, \"model\"", 1);
+    let mut moon: serde_json::Value = serde_json::from_str(&moon).expect("JSON");
+    moon["duration_s"] = 0.5.into();
+    std::fs::write(directory.path.join("moon.json"), moon.to_string()).expect("written");
+    let wrote = run_in(&directory.path, &["simulate", "moon.json", "-o", "moon.csv"]);
+    assert_eq!(wrote.stderr, "", "{}", wrote.stdout);
+    let log = std::fs::read_to_string(directory.path.join("moon.csv")).expect("a log");
+    assert!(log.contains("\n# parameters: g=3.7\n"), "{log:.400}");
+    let words = ["walk", "zmp", "moon.csv", "--model", "planar_biped"];
+    let judged = run_in(&directory.path, &[&words[..], &["--json"]].concat());
+    let found: serde_json::Value = serde_json::from_str(&judged.stdout).expect("JSON");
+    let apart = found["force_vs_momentum_max_m"].as_f64().expect("a distance");
+    // by 9.81 m/s^2 weight and forces do not agree
+    assert!(apart < 1e-9, "{apart}");
+    assert_eq!(found["scheme"], "event");
+    let hash = log.lines().find(|line| line.starts_with("# model_hash: ")).expect("a hash");
+    let other = log.replace(hash, "# model_hash: 0123456789abcdef");
+    std::fs::write(directory.path.join("moon.csv"), &other).expect("written");
+    let refused = run_in(&directory.path, &words);
+    assert_eq!(refused.code, Some(2), "{}", refused.stdout);
+    for part in ["moon.csv:4:1: ", "a log of another model", "hint: "] {
+        assert!(refused.stderr.contains(part), "{part}: {}", refused.stderr);
+    }
+    let bare: String = log
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .fold(String::new(), |text, line| text + line + "\n");
+    std::fs::write(directory.path.join("moon.csv"), bare).expect("written");
+    assert_eq!(run_in(&directory.path, &words).code, Some(0));
+}
+
+/// By time stepping the forces of a row are means over it: their point is in what carried them.
+#[test]
+fn a_log_of_steps_is_judged_by_what_carried() {
+    let directory = Directory::new("walk-log-steps");
+    let wrote = run_in(&directory.path, &["simulate", "tulip_step", "-o", "step.csv"]);
+    assert_eq!(wrote.code, Some(0), "{}", wrote.stderr);
+    let words = ["walk", "zmp", "step.csv", "--model", "tulip", "--json"];
+    let judged = run_in(&directory.path, &words);
+    let found: serde_json::Value = serde_json::from_str(&judged.stdout).expect("JSON");
+    assert!(found["exact"]["margin_min_m"].as_f64().expect("a margin") > -1e-7, "{found}");
+    assert_eq!(found["scheme"], "time_stepping");
+}
+
+#[test]
+fn a_table_without_rows_says_why() {
+    let found = run(&["walk", "fri", "planar_biped_switched_off"]);
+    assert!(found.stdout.contains("no foot ever stands alone"), "{}", found.stdout);
+}
+
 #[test]
 fn a_robot_that_falls_is_answered_with_1() {
     let fell = run(&["walk", "zmp", "planar_biped_switched_off"]);

@@ -19,6 +19,7 @@ pub use mapping::{ColumnMapping, ColumnSource, MappingError};
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::TorqueSide;
 use denavit_plants::regression::RegressionJoint;
+use denavit_simulate::model_of_header;
 use reader::{Head, Lines, Table, read_head, read_rows};
 use std::io::BufRead;
 
@@ -449,13 +450,9 @@ fn torque_side(head: &Head) -> Result<Option<TorqueSide>, LogFault> {
 /// Whether the log says that it is of another robot, or has joints that this one lacks.
 fn other_robot(head: &Head, robot: LogOf<'_>) -> Vec<LogFault> {
     let mut faults = Vec::new();
-    let said = head.header.iter().find(|(name, _)| name == "model");
-    if let Some((_, value)) = said {
-        let log = value.split_whitespace().next().unwrap_or_default();
-        if !log.is_empty() && log != robot.model {
-            let (log, model) = (log.to_owned(), robot.model.to_owned());
-            faults.push(LogFault::OtherModel { log, model });
-        }
+    if let Some(log) = model_of_header(&head.header).filter(|log| *log != robot.model) {
+        let (log, model) = (log.to_owned(), robot.model.to_owned());
+        faults.push(LogFault::OtherModel { log, model });
     }
     let is_ours = |name: &str| robot.joints.iter().any(|joint| joint.name == name);
     let named = head.columns.iter().filter_map(|column| column.strip_prefix("q_"));

@@ -3,7 +3,7 @@
 
 use super::ranges::{Range, short};
 use crate::breakdown::Breakdown;
-use crate::log::LogError;
+use crate::log_fault::LogError;
 use crate::start::StartError;
 use denavit_codegen::model::{self, Explained, FileError};
 use denavit_plants::PlantError;

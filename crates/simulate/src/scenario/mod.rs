@@ -29,12 +29,13 @@ pub use trajectory::{TRAJECTORY_FORMAT, Trajectory, read_trajectory, trajectory_
 use super::audit::Tolerances;
 use super::breakdown::{Breakdown, Stop};
 use super::control::Control;
+use super::log_origin::{MODEL_HASH, PARAMETERS, hash_text, parameters_text};
 use super::measured_log::measured_log;
 use super::run::{EventKind, Run, simulate};
 use super::simulation::Simulation;
 use super::state::State;
 use super::time_stepping::{Scheme, StepSolver, Stepping, simulate_by_steps};
-use denavit_plants::Plant;
+use denavit_plants::{Override, Plant};
 use start::Origin;
 
 /// The tag of a scenario file.
@@ -77,6 +78,8 @@ pub struct Scenario {
     pub description: String,
     /// The robot.
     pub plant: Box<dyn Plant>,
+    /// Values in place of those of its model, which the plant has.
+    pub parameters: Vec<Override>,
     /// The largest speed of each joint, where its model states one [rad/s, m/s].
     pub speed_limits: Vec<Option<f64>>,
     /// What drives it.
@@ -182,12 +185,17 @@ impl Scenario {
             ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
             ("scenario", self.name.clone()),
             ("model", model.name.clone()),
-            ("model_hash", format!("{:016x}", model.hash)),
+            (MODEL_HASH, hash_text(model.hash)),
+        ];
+        if !self.parameters.is_empty() {
+            header.push((PARAMETERS, parameters_text(&self.parameters)));
+        }
+        header.extend([
             // whatever the model says of the logs of its robot
             ("torque_side", "joint".to_owned()),
             ("seed", self.simulation.seed.to_string()),
             ("scheme", self.scheme.word().to_owned()),
-        ];
+        ]);
         if self.scheme == RunScheme::TimeStepping {
             let method = match self.stepping.scheme {
                 Scheme::MoreauMidpoint => "moreau",

@@ -93,7 +93,7 @@ fn scenario(
     let tolerances = options::tolerances(fields, Tolerances::of_method(simulation.method), report);
     let scheme = stepping::scheme(fields, report);
     let (stepping, stepping_tolerances) = stepping::stepping(fields, report);
-    let (mut plant, speed_limits) = plant(fields, load, report)?;
+    let RobotOfScenario { mut plant, parameters, speed_limits } = plant(fields, load, report)?;
     let mut control = control(fields, plant.model(), &mut Logs::new(load), report);
     let posture = gait(fields, plant.as_mut(), planner, &mut control, report);
     let initial = initial(fields, plant.as_mut(), &control, posture, report);
@@ -106,6 +106,7 @@ fn scenario(
         name,
         description,
         plant,
+        parameters,
         speed_limits,
         control,
         initial,
@@ -170,10 +171,16 @@ fn find_idle(
     }
 }
 
-/// A robot with the limits of its joints' speeds.
-type Limited = (Box<dyn Plant>, Vec<Option<f64>>);
+/// The robot of a scenario.
+struct RobotOfScenario {
+    plant: Box<dyn Plant>,
+    /// Values in place of its model's.
+    parameters: Vec<Override>,
+    /// Of its joints.
+    speed_limits: Vec<Option<f64>>,
+}
 
-fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<Limited> {
+fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<RobotOfScenario> {
     if let Some(balls) = fields.get("cradle_balls") {
         if fields.get("model").is_some() {
             report.push(balls.at(), Cause::TwoRobots);
@@ -182,7 +189,8 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
             report.push(parameters.at(), Cause::NoEffect("a `model`"));
         }
         let balls = fields.count("cradle_balls", ranges::CRADLE_BALLS, 2, report);
-        return Some((Box::new(Cradle::new(balls)), Vec::new()));
+        let plant = Box::new(Cradle::new(balls));
+        return Some(RobotOfScenario { plant, parameters: Vec::new(), speed_limits: Vec::new() });
     }
     let node = fields.require("model", report)?;
     let name = node.text(report)?;
@@ -215,7 +223,7 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
     let made = plant_of(&robot, &overrides);
     let place = if overrides.is_empty() { node.at() } else { fields.place("parameters") };
     let plant = made.map_err(|error| report.push(place, Cause::Plant(error))).ok()?;
-    Some((plant, speed_limits(&robot)))
+    Some(RobotOfScenario { plant, parameters: overrides, speed_limits: speed_limits(&robot) })
 }
 
 /// The joint that a key names.

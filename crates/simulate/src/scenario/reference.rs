@@ -48,7 +48,8 @@ impl<'a> Logs<'a> {
         let load = self.load;
         self.read.entry(file.to_owned()).or_insert_with(|| {
             let bytes = load(file).map_err(|reason| Cause::File(file.to_owned(), reason))?;
-            let log = Log::from_csv(file, &bytes).map_err(Cause::Log)?;
+            let log = Log::from_csv(file, &bytes)
+                .map_err(|faults| Cause::Log(faults.told()[0].clone()))?;
             match row_distance(&log).filter(|distance_s| *distance_s < ranges::LOG_PERIOD_S.least) {
                 Some(distance_s) => Err(Cause::RowsTooNear(distance_s)),
                 None => Ok(log),

@@ -1,10 +1,11 @@
 //! Balance along a run of a scenario, or along a log.
 
+use super::columns::Columns;
 use super::instant::{Instant, Moving};
 use crate::poincare::{PoincareOptions, WantedSection, analyse};
 use denavit_plants::Plant;
 use denavit_simulate::scenario::{RunScheme, Scenario};
-use denavit_simulate::{Log, Run, Simulation, StartError, Stop, simulate};
+use denavit_simulate::{Log, LogFaults, LogFile, Run, Simulation, StartError, Stop, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::fmt;
 
@@ -32,6 +33,10 @@ impl Over {
 pub struct Course {
     /// What it covers.
     pub over: Over,
+    /// The scheme of the run, as files and logs call it; none where a log does not say.
+    pub scheme: Option<String>,
+    /// The distance of instants, where it was asked for or chosen \[s\].
+    pub period_s: Option<f64>,
     /// Instant after instant.
     pub instants: Vec<Instant>,
     /// The run that was made for it.
@@ -41,8 +46,10 @@ pub struct Course {
 /// Why there is no course.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BalanceError {
-    /// A log has no such column.
-    NoColumn(String),
+    /// A log is wrong.
+    Log(LogFaults),
+    /// A course would have more instants than are kept; holds how many.
+    TooMany(f64),
     /// The robot has no contact points, or its base is fixed: no point of the ground tells of it.
     NotWalking,
     /// The run does not begin.
@@ -54,7 +61,12 @@ pub enum BalanceError {
 impl fmt::Display for BalanceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoColumn(name) => write!(f, "the log has no column `{name}`"),
+            Self::Log(faults) => write!(f, "{faults}"),
+            Self::TooMany(count) => write!(
+                f,
+                "{count:.0} instants, where at most {MOST_INSTANTS} are kept\n  hint: a longer \
+                 period: --period SECONDS"
+            ),
             Self::NotWalking => {
                 write!(f, "only robots with a floating base and contact points can fall")
             }
@@ -74,6 +86,51 @@ impl std::error::Error for BalanceError {}
 pub fn course_of_scenario(
     scenario: &mut Scenario,
     period_s: f64,
+    whole: bool,
+) -> Result<Course, BalanceError> {
+    course_on_grid(scenario, Grid::Every(period_s), whole)
+}
+
+/// Which instants are looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grid {
+    /// At this distance \[s\].
+    Every(f64),
+    /// At this distance \[s\], of long runs at a larger one: at most 200 000.
+    From(f64),
+}
+
+/// More instants are refused: each is about 1 kB.
+pub const MOST_INSTANTS: u32 = 1_000_000;
+/// So many are made where nobody asked for more.
+const ENOUGH_INSTANTS: f64 = 200_000.0;
+
+impl Grid {
+    /// The distance of instants over a time, both \[s\].
+    fn period_s(self, over_s: f64) -> Result<f64, BalanceError> {
+        match self {
+            Self::Every(period_s) if over_s / period_s > f64::from(MOST_INSTANTS) => {
+                Err(BalanceError::TooMany((over_s / period_s).ceil()))
+            }
+            Self::Every(period_s) => Ok(period_s),
+            Self::From(mut period_s) => {
+                while over_s / period_s > ENOUGH_INSTANTS {
+                    period_s *= 2.0;
+                }
+                Ok(period_s)
+            }
+        }
+    }
+}
+
+/// Balance along a scenario, as [`course_of_scenario`] has it, on a grid of instants. The run is
+/// made from event to event, whatever the scenario's scheme: that has forces at instants.
+///
+/// # Errors
+/// Robots that do not walk, runs that do not begin, more instants than are kept.
+pub fn course_on_grid(
+    scenario: &mut Scenario,
+    grid: Grid,
     whole: bool,
 ) -> Result<Course, BalanceError> {
     check_walker(scenario.plant.as_mut())?;
@@ -96,6 +153,7 @@ pub fn course_of_scenario(
         }
         None => (Over::Run, scenario.initial.clone(), scenario.simulation.end_s),
     };
+    let period_s = grid.period_s(end_s - start.t_s)?;
     let simulation = Simulation {
         end_s,
         log_period_s: period_s,
@@ -105,23 +163,29 @@ pub fn course_of_scenario(
     let plant = scenario.plant.as_mut();
     let run = simulate(plant, &scenario.control, &start, &simulation);
     let run = run.map_err(BalanceError::Start)?;
-    let mut instants = instants(plant, &run.log)?;
+    let columns = Columns::of(plant.model(), &run.log).map_err(|_| BalanceError::NotWalking)?;
+    let mut instants = instants(plant, &run.log, &columns)?;
     if run.stop != Stop::End {
         // the last row of a run that breaks down has no forces
         instants.retain(|instant| instant.center_of_mass[2].iter().all(|a| a.is_finite()));
     }
-    Ok(Course { over, instants, run: Some(run) })
+    let scheme = Some(RunScheme::Event.word().to_owned());
+    Ok(Course { over, scheme, period_s: Some(period_s), instants, run: Some(run) })
 }
 
 /// Balance along a log with positions and velocities of all joints, the base included, and the
 /// forces on the contact points. Accelerations are its columns `qdd_JOINT`, or else those that its
-/// torques and forces make.
+/// torques, its forces and what pushes (`w_LINK_fx|fy|fz|mx|my|mz`) make. Rows without forces are
+/// left out.
 ///
 /// # Errors
-/// Robots that do not walk, columns that are not there.
-pub fn course_of_log(plant: &mut dyn Plant, log: &Log) -> Result<Course, BalanceError> {
+/// Robots that do not walk, columns that are not there, cells that are empty or no digits.
+pub fn course_of_log(plant: &mut dyn Plant, file: &LogFile) -> Result<Course, BalanceError> {
     check_walker(plant)?;
-    Ok(Course { over: Over::Run, instants: instants(plant, log)?, run: None })
+    let columns = Columns::of_file(plant.model(), file).map_err(BalanceError::Log)?;
+    let instants = instants(plant, &file.log, &columns)?;
+    let scheme = file.log.scheme().map(str::to_owned);
+    Ok(Course { over: Over::Run, scheme, period_s: None, instants, run: None })
 }
 
 /// Whether a robot can walk, and fall: it has a floating base and contact points.
@@ -135,88 +199,62 @@ pub fn check_walker(plant: &mut dyn Plant) -> Result<(), BalanceError> {
     if walks { Ok(()) } else { Err(BalanceError::NotWalking) }
 }
 
-/// Columns of a log by what they are.
-struct Columns {
-    time: usize,
-    positions: Vec<usize>,
-    velocities: Vec<usize>,
-    accelerations: Option<Vec<usize>>,
-    torques: Vec<Option<usize>>,
-    forces: Vec<[usize; 3]>,
-    modes: Option<usize>,
-}
-
-impl Columns {
-    fn of(plant: &dyn Plant, log: &Log) -> Result<Self, BalanceError> {
-        let find = |name: String| {
-            let place = log.columns.iter().position(|column| *column == name);
-            place.ok_or(BalanceError::NoColumn(name))
-        };
-        let model = plant.model();
-        let all = |prefix: &str| -> Result<Vec<usize>, BalanceError> {
-            let names = model.joints.iter().map(|joint| format!("{prefix}_{}", joint.name));
-            names.map(find).collect()
-        };
-        let force = |contact: &denavit_plants::PointModel| {
-            let [x, y, z] = ["x", "y", "z"].map(|axis| format!("f_{}_{axis}", contact.name));
-            Ok([find(x)?, find(y)?, find(z)?])
-        };
-        Ok(Self {
-            time: find("t".to_owned())?,
-            positions: all("q")?,
-            velocities: all("qd")?,
-            accelerations: all("qdd").ok(),
-            torques: {
-                let joints = model.joints.iter();
-                joints.map(|joint| find(format!("tau_{}", joint.name)).ok()).collect()
-            },
-            forces: model.contacts.iter().map(force).collect::<Result<_, _>>()?,
-            modes: find("contact_modes".to_owned()).ok(),
-        })
-    }
-}
-
-fn instants(plant: &mut dyn Plant, log: &Log) -> Result<Vec<Instant>, BalanceError> {
-    let columns = Columns::of(plant, log)?;
+/// The instants of the rows that have forces, or accelerations.
+fn instants(
+    plant: &mut dyn Plant,
+    log: &Log,
+    columns: &Columns,
+) -> Result<Vec<Instant>, BalanceError> {
     let mut instants = Vec::with_capacity(log.len());
-    for row in log.rows() {
+    for row in log.rows().filter(|row| columns.has_forces(row)) {
         let take = |columns: &[usize]| -> Vec<f64> { columns.iter().map(|c| row[*c]).collect() };
         let t_s = row[columns.time];
         let (q, qd) = (take(&columns.positions), take(&columns.velocities));
         let forces: Vec<[f64; 3]> =
             columns.forces.iter().map(|force| force.map(|column| row[column])).collect();
+        let wrenches = columns.wrenches(row);
         let qdd = match &columns.accelerations {
             Some(columns) => take(columns),
             None => {
                 let torque = |column: &Option<usize>| column.map_or(0.0, |column| row[column]);
-                let torques: Vec<f64> = columns.torques.iter().map(torque).collect();
+                let mut torques: Vec<f64> = columns.torques.iter().map(torque).collect();
+                for wrench in &wrenches {
+                    let pushed = wrench.torques(plant, &q);
+                    torques.iter_mut().zip(pushed).for_each(|(torque, push)| *torque += push);
+                }
                 let found = accelerations(plant, (&q, &qd), &torques, &forces);
                 found.ok_or(BalanceError::Singular(t_s))?
             }
         };
-        let closed = closed(plant, &forces, columns.modes.map(|column| row[column]));
-        let at = Moving { t_s, q: &q, qd: &qd, qdd: &qdd, forces: &forces, closed: &closed };
+        let closed = closed(plant, &forces, columns.closed(row));
+        let at = Moving {
+            t_s,
+            q: &q,
+            qd: &qd,
+            qdd: &qdd,
+            forces: &forces,
+            wrenches: &wrenches,
+            closed: &closed,
+        };
         instants.push(Instant::of(plant, &at).ok_or(BalanceError::NotWalking)?);
     }
     Ok(instants)
 }
 
-/// Which contact points are closed: by their decimal digits, else where the ground presses.
-fn closed(plant: &dyn Plant, forces: &[[f64; 3]], modes: Option<f64>) -> Vec<bool> {
+/// Which contact points carry: those that are closed by their digits, and those on which the ground
+/// presses. By time stepping digits are of the end of a row, and forces means over it: what they
+/// act on carried.
+fn closed(plant: &dyn Plant, forces: &[[f64; 3]], digits: Option<Vec<bool>>) -> Vec<bool> {
     let normal = plant.model().ground.normal;
     let weight = plant.model().mass_kg * 9.81;
+    // beside digits, rounding alone is no force
+    let least = if digits.is_some() { 1e-12 } else { 1e-6 } * weight;
     let presses = |force: &[f64; 3]| {
         let along: f64 = force.iter().zip(normal).map(|(f, n)| f * n).sum();
-        along > 1e-6 * weight
+        along > least
     };
-    let digit = |modes: f64, contact: usize| {
-        let digit = (modes / 10.0_f64.powi(contact as i32)) % 10.0;
-        digit.floor() > 0.0
-    };
-    match modes.filter(|modes| modes.is_finite()) {
-        Some(modes) => (0..forces.len()).map(|contact| digit(modes, contact)).collect(),
-        None => forces.iter().map(presses).collect(),
-    }
+    let closed = |contact: usize| digits.as_ref().is_some_and(|closed| closed[contact]);
+    forces.iter().enumerate().map(|(contact, force)| closed(contact) || presses(force)).collect()
 }
 
 /// D^-1 (tau - bias + W f).
@@ -241,4 +279,19 @@ fn accelerations(
     }
     let factored = Cholesky::new(DMatrix::from_row_slice(n, n, &mass))?;
     Some(factored.solve(&driving).as_slice().to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_runs_have_at_most_200_000_instants() {
+        let period = |over_s: f64| Grid::From(5e-4).period_s(over_s).unwrap();
+        assert_eq!(period(100.0), 5e-4);
+        // 1000 s / 200 000 = 5 ms, and the next doubling of 0.5 ms is 8 ms
+        assert_eq!(period(1000.0), 8e-3);
+        assert_eq!(Grid::Every(1e-3).period_s(1000.0), Ok(1e-3));
+        assert!(Grid::Every(0.9e-3).period_s(1000.0).is_err());
+    }
 }

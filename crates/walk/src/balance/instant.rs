@@ -1,7 +1,7 @@
 //! The criteria of balance at one time.
 
-use denavit_plants::Plant;
-use denavit_simulate::{SupportForm, SupportPolygon};
+use denavit_plants::{GroundModel, Plant};
+use denavit_simulate::{LinkWrench, SupportForm, SupportPolygon};
 
 /// What stands on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,13 +23,15 @@ pub struct Instant {
     pub t_s: f64,
     /// Centre of mass \[m\], its velocity [m/s] and acceleration [m/s^2].
     pub center_of_mass: [[f64; 3]; 3],
-    /// Zero moment point of inertia and gravity; not finite in flight \[m\].
+    /// Where the ground's force acts for gravity, inertia and what pushes; not finite in flight
+    /// \[m\].
     pub zero_moment_point_m: [f64; 3],
     /// Centre of pressure of the contact forces; not finite without them \[m\].
     pub center_of_pressure_m: [f64; 3],
     /// Zero moment point of the cart-table model (thesis 4.3) \[m\].
     pub cart_table_m: [f64; 3],
-    /// Foot rotation indicator of the one foot that stands (Goswami 1999) \[m\].
+    /// Foot rotation indicator of the one foot that stands (Goswami 1999), while nothing pushes
+    /// from outside \[m\].
     pub foot_rotation_m: Option<[f64; 3]>,
     /// Capture point of the linear inverted pendulum \[m\].
     pub capture_m: [f64; 3],
@@ -64,7 +66,9 @@ pub(super) struct Moving<'a> {
     pub(super) qdd: &'a [f64],
     /// Force on each contact point in the world \[N\].
     pub(super) forces: &'a [[f64; 3]],
-    /// Whether each contact point is closed.
+    /// What pushes from outside.
+    pub(super) wrenches: &'a [LinkWrench],
+    /// Whether each contact point carries.
     pub(super) closed: &'a [bool],
 }
 
@@ -93,17 +97,17 @@ impl Instant {
         let is_still =
             closed.len() > 1 && closed.iter().all(|contact| speeds[*contact] < STILL_M_S);
         let center_of_pressure_m = pressure(plant, at, &positions);
+        let is_pushed = !at.wrenches.is_empty();
+        let pushed = if is_pushed { Some(pushed_zero_moment_point(plant, at)?) } else { None };
         let mut walking = plant.walking()?;
         let bias = walking.center_of_mass_bias(at.q, at.qd);
-        let along = |row: usize, values: &[f64]| -> f64 {
-            jacobian[row * n..(row + 1) * n].iter().zip(values).map(|(a, b)| a * b).sum()
-        };
-        let velocity = [0, 1, 2].map(|row| along(row, at.qd));
-        let acceleration = [0, 1, 2].map(|row| along(row, at.qdd) + bias[row]);
+        let line = |row: usize| &jacobian[row * n..(row + 1) * n];
+        let velocity = [0, 1, 2].map(|row| along(line(row), at.qd));
+        let acceleration = [0, 1, 2].map(|row| along(line(row), at.qdd) + bias[row]);
         let mut body_momenta = vec![[0.0; 3]; n];
         walking.angular_momenta(at.q, at.qd, body_momenta.as_flattened_mut());
         let foot_rotation_m = match feet[..] {
-            [foot] => walking.foot_rotation_indicator(foot, at.q, at.qd, at.qdd),
+            [foot] if !is_pushed => walking.foot_rotation_indicator(foot, at.q, at.qd, at.qdd),
             _ => None,
         };
         Some(Self {
@@ -111,7 +115,10 @@ impl Instant {
             center_of_mass: [center, velocity, acceleration],
             zero_moment_point_m: match phase {
                 Phase::Flight => [f64::NAN; 3],
-                _ => walking.zero_moment_point(at.q, at.qd, at.qdd)?,
+                _ => match pushed {
+                    Some(point) => point,
+                    None => walking.zero_moment_point(at.q, at.qd, at.qdd)?,
+                },
             },
             center_of_pressure_m,
             cart_table_m: walking.cart_table_zmp(at.q, at.qd, at.qdd)?,
@@ -176,20 +183,56 @@ fn speeds(plant: &mut dyn Plant, at: &Moving<'_>) -> Vec<f64> {
 /// Where the contact forces have no moment but about the normal.
 fn pressure(plant: &dyn Plant, at: &Moving<'_>, positions: &[f64]) -> [f64; 3] {
     let model = plant.model();
-    let (normal, origin) = (model.ground.normal, model.ground.point);
-    let (mut sum, mut moment) = (0.0, [0.0; 3]);
-    for (force, place) in at.forces.iter().zip(positions.chunks_exact(3)) {
-        sum += dot(normal, *force);
-        let arm: [f64; 3] = std::array::from_fn(|axis| place[axis] - origin[axis]);
-        let of_force = cross(arm, *force);
-        moment.iter_mut().zip(of_force).for_each(|(entry, part)| *entry += part);
+    let [mut force, mut moment] = [[0.0; 3]; 2];
+    for (one, place) in at.forces.iter().zip(positions.chunks_exact(3)) {
+        let arm = std::array::from_fn(|axis| place[axis] - model.ground.point[axis]);
+        add(&mut force, 1.0, *one);
+        add(&mut moment, 1.0, cross(arm, *one));
     }
     let weight = model.mass_kg * dot(model.gravity, model.gravity).sqrt();
-    if sum <= LOADED * weight {
+    if dot(model.ground.normal, force) <= LOADED * weight {
         return [f64::NAN; 3];
     }
-    let arm = cross(normal, moment);
-    std::array::from_fn(|axis| origin[axis] + arm[axis] / sum)
+    point_of_moment(&model.ground, force, moment)
+}
+
+/// Where the ground's force has to act: inertia takes what gravity, what pushes and the ground give
+/// together.
+fn pushed_zero_moment_point(plant: &mut dyn Plant, at: &Moving<'_>) -> Option<[f64; 3]> {
+    let n = at.q.len();
+    let (mass, gravity) = (plant.model().mass_kg, plant.model().gravity);
+    let ground = plant.model().ground;
+    let center = plant.center_of_mass(at.q);
+    let mut walking = plant.walking()?;
+    let mut matrix = vec![0.0; 6 * n];
+    walking.centroidal_momentum_matrix(at.q, &mut matrix);
+    let bias = walking.centroidal_momentum_bias(at.q, at.qd);
+    let rate = |row: usize| along(&matrix[row * n..(row + 1) * n], at.qdd) + bias[row];
+    let mut force = [0, 1, 2].map(rate);
+    add(&mut force, -mass, gravity);
+    let mut moment = [3, 4, 5].map(rate);
+    let arm = std::array::from_fn(|axis| center[axis] - ground.point[axis]);
+    add(&mut moment, 1.0, cross(arm, force));
+    for wrench in at.wrenches {
+        add(&mut force, -1.0, wrench.force);
+        add(&mut moment, -1.0, wrench.moment_about(plant, at.q, ground.point));
+    }
+    Some(point_of_moment(&ground, force, moment))
+}
+
+/// The point of the ground about which forces of this sum, and of this moment about the ground's
+/// point, have no moment but about the normal.
+fn point_of_moment(ground: &GroundModel, force: [f64; 3], moment: [f64; 3]) -> [f64; 3] {
+    let (size, arm) = (dot(ground.normal, force), cross(ground.normal, moment));
+    std::array::from_fn(|axis| ground.point[axis] + arm[axis] / size)
+}
+
+fn along(row: &[f64], values: &[f64]) -> f64 {
+    row.iter().zip(values).map(|(a, b)| a * b).sum()
+}
+
+fn add(sum: &mut [f64; 3], times: f64, term: [f64; 3]) {
+    sum.iter_mut().zip(term).for_each(|(entry, term)| *entry += times * term);
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -5,12 +5,16 @@
 //! - [`Course`]: these along a run or a log
 //! - [`Criterion`], [`Margins`], [`Shares`]: what they come to
 
+mod columns;
 mod course;
 mod energy;
 mod instant;
 mod summary;
 
-pub use course::{BalanceError, Course, Over, check_walker, course_of_log, course_of_scenario};
+pub use course::{
+    BalanceError, Course, Grid, MOST_INSTANTS, Over, check_walker, course_of_log,
+    course_of_scenario, course_on_grid,
+};
 pub use energy::Energy;
 pub use instant::{Instant, Phase};
 pub use summary::{Criterion, Margins, Shares};

@@ -100,7 +100,7 @@ pub enum Grid {
     From(f64),
 }
 
-/// More instants are refused: each is about 1 kB.
+/// More instants are refused: each takes about 1.3 kB.
 pub const MOST_INSTANTS: u32 = 1_000_000;
 /// So many are made where nobody asked for more.
 const ENOUGH_INSTANTS: f64 = 200_000.0;

@@ -10,12 +10,12 @@ use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
 use denavit_simulate::JointPlan;
 
-/// A motion from a time of the course on, up to its end.
+/// A motion from a time of the course on, up to its end or as far as the legs reach.
 pub(super) struct Motion<'a> {
     pub(super) law: &'a FootPlacementLaw,
     pub(super) course: &'a Course,
     pub(super) measured: &'a Measured,
-    /// Times of the course, from now on \[s\], and the phase that begins there or goes on.
+    /// Times of the course, from now on \[s\].
     pub(super) times_s: &'a [f64],
     pub(super) pendulums: &'a [Pendulum],
 }

@@ -55,25 +55,19 @@ impl Stepper {
         pendulums[from].towards(&pendulums[from + 1], share.clamp(0.0, 1.0)).divergent_m
     }
 
-    /// The swing that has just ended, early or in time, if it has not been taken in yet. After an
-    /// early landing the clock of the course goes on to the end of the swing.
-    fn landed(&mut self, measured: &Measured, course_s: &mut f64) -> Option<usize> {
-        let at = self.course.phase_at(*course_s);
+    /// The swing that has just ended, if it has not been taken in yet, and how early \[s\].
+    fn landed(&self, measured: &Measured, course_s: f64) -> Option<(usize, f64)> {
+        let at = self.course.phase_at(course_s);
         let phase = &self.course.phases[at];
-        let ended = match phase.swing {
+        let landed = match phase.swing {
             Some((side, _)) => {
-                let share = (*course_s - phase.start_s) / phase.duration_s;
-                if share < SWUNG || !measured.touches[side] {
-                    return None;
-                }
-                let early_s = phase.end_s() - *course_s;
-                self.ahead_s += early_s;
-                *course_s += early_s;
-                at
+                let share = (course_s - phase.start_s) / phase.duration_s;
+                let has_landed = share >= SWUNG && measured.touches[side];
+                has_landed.then_some((at, phase.end_s() - course_s))?
             }
-            None => at.checked_sub(1)?,
+            None => (at.checked_sub(1)?, 0.0),
         };
-        (self.taken_in != Some(ended)).then_some(ended)
+        (self.taken_in != Some(landed.0)).then_some(landed)
     }
 
     /// Takes a foot to be where it has landed; says if that makes another plan.
@@ -154,22 +148,27 @@ impl Stepper {
 
 impl ReferencePlanner for Stepper {
     fn plan(&mut self, plant: &mut dyn Plant, sensed: &Sensed<'_>) -> Option<Vec<JointPlan>> {
-        let mut course_s = sensed.t_s + self.ahead_s;
+        let course_s = sensed.t_s + self.ahead_s;
         if course_s >= self.course.end_s() {
             return None;
         }
         let (biped, omega) = (&self.law.walk.biped, self.course.omega());
         let measured = Measured::of(plant, biped, omega, sensed);
-        let landed = self.landed(&measured, &mut course_s);
-        let is_elsewhere = landed.is_some_and(|ended| self.take_in(ended, &measured));
+        let landed = self.landed(&measured, course_s);
+        let is_elsewhere = landed.is_some_and(|(ended, _)| self.take_in(ended, &measured));
+        let early_s = landed.map_or(0.0, |(_, early_s)| early_s);
         let [x, y] = measured.pendulum.divergent_m;
         let [expected_x, expected_y] = self.expected_m(course_s);
-        let is_off = (x - expected_x).hypot(y - expected_y) > self.law.numbers.tolerance_m;
+        let numbers = &self.law.numbers;
+        let is_off = (x - expected_x).hypot(y - expected_y) > numbers.tolerance_m;
         let is_due = sensed.t_s - self.planned_s > AGAIN_S || landed.is_some();
-        if !(is_elsewhere || is_off && is_due) {
+        let is_early = early_s > numbers.period_s;
+        if !(is_elsewhere || is_early || is_off && is_due) {
             return None;
         }
-        let plans = self.anew(plant, &measured, course_s)?;
+        // the clock of the course goes on to the end of the swing with the plan that begins there
+        let plans = self.anew(plant, &measured, course_s + early_s)?;
+        self.ahead_s += early_s;
         self.planned_s = sensed.t_s;
         Some(plans)
     }

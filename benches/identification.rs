@@ -2,8 +2,8 @@
 //!
 //! `cargo bench --bench identification` prints a table. One thread; the best of five runs.
 
-use denavit::identify::condition::Conditioned;
 use denavit::identify::estimate::{Condensed, Options, Triangle, estimate};
+use denavit::measure::condition::Conditioned;
 use denavit::model;
 use denavit::numerics::Random;
 use denavit::plants::regression::{RegressionModel, RegressionRows};

@@ -3,10 +3,10 @@
 //! often intervals of 95 % cover the true values.
 //! `cargo run --release --example two_stage [SEEDS]`
 
-use denavit::identify::condition::{Conditioning, Filter};
 use denavit::identify::estimate::SlowRows;
-use denavit::identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
+use denavit::measure::condition::{Conditioning, Filter};
+use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::model;
 use denavit::plants::PlantModel;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};

@@ -9,6 +9,7 @@
 //! - [`diagnose`]: what a model lacks, from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`identify`]: parameters from measured motion, and motion that shows them
+//! - [`measure`]: logs: read, checked, filtered; their noise and resolution
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
@@ -19,6 +20,7 @@ pub use denavit_codegen::{
 };
 pub use denavit_diagnose as diagnose;
 pub use denavit_identify as identify;
+pub use denavit_measure as measure;
 pub use denavit_numerics as numerics;
 pub use denavit_plants as plants;
 pub use denavit_plants::emitted::{planar_biped, puma560, tulip};

@@ -20,8 +20,8 @@ use denavit::diagnose::{
 };
 use denavit::effect::{Channel, Effect};
 use denavit::identify::Ground;
-use denavit::identify::condition::{Conditioned, Conditioning};
-use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
+use denavit::measure::condition::{Conditioned, Conditioning};
+use denavit::measure::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::effect::ApartEffects;
 use denavit::plants::regression::RegressionModel;

@@ -24,7 +24,7 @@ use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
 use super::state::{Setting, State, Taken};
 use super::structure::{Structure, describe};
 use denavit_codegen::model::Robot;
-use denavit_identify::log::MeasuredLog;
+use denavit_measure::log::MeasuredLog;
 use denavit_plants::regression::RegressionModel;
 use std::collections::BTreeSet;
 

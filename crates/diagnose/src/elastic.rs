@@ -10,7 +10,7 @@
 //! times the stiffness.
 
 use denavit_codegen::model::Robot;
-use denavit_identify::log::MeasuredLog;
+use denavit_measure::log::MeasuredLog;
 use denavit_plants::regression::{RegressionJoint, SpringStiffness};
 
 /// A robot whose drives are seen from their motors.

@@ -20,7 +20,7 @@ use super::turning::turning;
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_identify::excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};

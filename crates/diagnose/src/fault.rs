@@ -1,8 +1,8 @@
 //! Why nothing is diagnosed.
 
 use super::diagnosis::Request;
-use denavit_identify::condition::ConditionError;
-use denavit_identify::log::MeasuredLog;
+use denavit_measure::condition::ConditionError;
+use denavit_measure::log::MeasuredLog;
 use std::fmt;
 
 /// Why nothing is diagnosed.

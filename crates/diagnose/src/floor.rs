@@ -3,7 +3,7 @@
 use super::nominal::Nominal;
 use super::rows::torques;
 use super::signals::Signals;
-use denavit_identify::condition::{Butterworth, Laps};
+use denavit_measure::condition::{Butterworth, Laps};
 
 /// The floor of one log, after the filter of the rows.
 #[derive(Clone, Debug, PartialEq)]

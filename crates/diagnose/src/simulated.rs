@@ -9,13 +9,13 @@ use super::state::Taken;
 use denavit_codegen::effect::{Effect, EffectSite, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, ModelError, Robot};
 use denavit_codegen::number::parse_decimal;
-use denavit_identify::condition::{ConditionError, Filter};
 use denavit_identify::forward::{Forward, ForwardError, MotionLog, Windows, in_windows};
-use denavit_identify::log::MeasuredLog;
 use denavit_identify::{
     EffectValues, NewEffect, NewPlace, NewValue, undo_logged_torques, undo_readings, updated_text,
     with_effects,
 };
+use denavit_measure::condition::{ConditionError, Filter};
+use denavit_measure::log::MeasuredLog;
 use denavit_plants::effect::apart;
 use denavit_plants::{PlantError, PlantModel, plant_of};
 use std::fmt;

@@ -3,8 +3,8 @@
 //! D qdd + C qd + G = tau + W lambda: the right side is what is regressed. The virtual joints of a
 //! floating base have no torque of their own, so their rows are the wrench that contacts put on it.
 
-use super::log::MeasuredLog;
 use denavit_codegen::model::Robot;
+use denavit_measure::log::MeasuredLog;
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::{Plant, PlantError, plant_of};
 

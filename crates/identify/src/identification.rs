@@ -1,6 +1,5 @@
 //! All that identification says: data alone, for tables, files and reports to show.
 
-use super::condition::Conditioned;
 use super::estimate::{
     CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
     IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Standing, Status,
@@ -12,6 +11,7 @@ use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.

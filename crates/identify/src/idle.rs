@@ -1,7 +1,7 @@
 //! Motors that do not carry their joints: a brake holds them, or stiction.
 
-use super::condition::Conditioned;
 use super::estimate::{BlockMaker, nominal_values};
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 
 /// The deviation of a torque over that of the load, below which it does not follow it, if it is

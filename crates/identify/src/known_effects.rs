@@ -6,10 +6,10 @@
 //! filter of the torques, as laws that jump need, and is subtracted. Loads are those of the values
 //! that the model gives.
 
-use super::condition::{Butterworth, Conditioned, STENCIL};
 use super::forward::{DriveMotion, MotionLog};
-use super::log::MeasuredLog;
 use denavit_codegen::effect::{Channel, EffectSite, SpringSide};
+use denavit_measure::condition::{Butterworth, Conditioned, STENCIL};
+use denavit_measure::log::MeasuredLog;
 use denavit_plants::effect::{AddedLaw, Drive, EffectLaw, JointSamples};
 use denavit_plants::regression::{RegressionModel, RegressionRows, StandardParameter};
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! That what is left of torques is no noise: something is not as the model has it.
 
 use super::estimate::{Estimate, no_noise};
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 
 /// The share of a joint's torque from which on it is said.

@@ -1,8 +1,6 @@
 //! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
 //! - [`excite`]: trajectories that excite what is to be identified
-//! - [`log`]: what was measured, checked
-//! - [`condition`]: filtered, differentiated, decimated
 //! - [`add_contact_forces`]: what the ground does to each equation
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
@@ -14,7 +12,6 @@
 //! - [`statics`], [`read_statics`]: what weighings and held postures say
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 
-pub mod condition;
 mod contact_forces;
 pub mod estimate;
 pub mod excite;
@@ -24,7 +21,6 @@ mod idle;
 pub mod knowledge;
 mod known_effects;
 mod lacking;
-pub mod log;
 mod model_text;
 mod model_values;
 mod no_bodies;

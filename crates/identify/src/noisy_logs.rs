@@ -1,7 +1,7 @@
 //! Logs of which noise of the positions makes most, and those that bias parameters by it.
 
-use super::condition::Conditioned;
 use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog, Solution, solve};
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::fmt;
 

@@ -5,11 +5,11 @@ use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
 use denavit::effect::{self, Effect};
-use denavit::identify::condition::Conditioned;
 use denavit::identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit::identify::{
     Estimated, Identification, Request, UpdateError, UpdatedModel, estimated, updated_model,
 };
+use denavit::measure::condition::Conditioned;
 use denavit::model::Robot;
 use denavit::plants::effect::AddedLaw;
 use denavit::plants::regression::RegressionModel;

@@ -1,12 +1,12 @@
 //! Why nothing is identified.
 
 use denavit::identify::UpdateError;
-use denavit::identify::condition::ConditionError;
 use denavit::identify::estimate::{EstimateError, MisreadColumns};
 use denavit::identify::forward::ForwardError;
-use denavit::identify::log::{LogFaults, MappingError};
 use denavit::identify::statics::StaticFault;
 use denavit::identify::two_stage::TwoStageError;
+use denavit::measure::condition::ConditionError;
+use denavit::measure::log::{LogFaults, MappingError};
 use denavit::plants::PlantError;
 use denavit::plants::regression::RegressionError;
 use denavit::report::html::FormulaError;

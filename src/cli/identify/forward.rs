@@ -4,11 +4,11 @@ use super::logs::Read;
 use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
 use crate::cli::files::{load_beside, read_or_shipped};
-use denavit::identify::condition::Conditioned;
 use denavit::identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
 use denavit::identify::{UpdateError, UpdatedModel};
+use denavit::measure::condition::Conditioned;
 use denavit::model::Robot;
 use denavit::plants::{Plant, PlantError, plant_of};
 use denavit::report::{motion_picture, short};

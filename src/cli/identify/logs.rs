@@ -4,12 +4,12 @@ use super::{Arguments, IdentifyFailure, MethodName};
 use crate::cli::failure::Failure;
 use crate::cli::files::{open_log, read_file};
 use clap::{Args, ValueEnum};
-use denavit::identify::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
 use denavit::identify::forward::{LONGEST_S, MotionLog};
-use denavit::identify::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::identify::{
     Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
 };
+use denavit::measure::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
+use denavit::measure::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
 use denavit::model::Robot;
 use denavit::plants::effect::AddedLaw;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};

@@ -9,13 +9,13 @@ use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
 use crate::cli::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use denavit::identify::condition::{Conditioning, Filter};
 use denavit::identify::estimate::{
     Consistent, IdentifiedParameter, JointResidual, Validation, consistent, parameters, validate,
 };
-use denavit::identify::log::{LogRemark, MeasuredLog};
 use denavit::identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
 use denavit::identify::{NewValue, UpdateError, updated_model, updated_text};
+use denavit::measure::condition::{Conditioning, Filter};
+use denavit::measure::log::{LogRemark, MeasuredLog};
 use denavit::model::{self, Robot};
 use denavit::plants::plant_of;
 use denavit::plants::regression::{ModelParameter, RegressionModel};

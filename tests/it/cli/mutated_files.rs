@@ -2,8 +2,8 @@
 //! panics, whatever a byte was changed to.
 
 use denavit::effect;
-use denavit::identify::log::{ColumnMapping, LogOf, read_log};
 use denavit::identify::read_statics;
+use denavit::measure::log::{ColumnMapping, LogOf, read_log};
 use denavit::model::{self, Robot};
 use denavit::plants::regression::RegressionModel;
 use denavit::plants::{PlantModel, plant_of};

@@ -4,7 +4,7 @@ use super::identified::walked;
 use denavit::diagnose::{Filters, Request, SearchOptions, Uncertainty, candidates, diagnose};
 use denavit::effect;
 use denavit::identify::Ground;
-use denavit::identify::log::{ColumnMapping, LogFault, LogOf, MeasuredLog, read_log};
+use denavit::measure::log::{ColumnMapping, LogFault, LogOf, MeasuredLog, read_log};
 use denavit::numerics::Random;
 use denavit::plants::regression::RegressionModel;
 use denavit::regressor::functions::modelled;

@@ -2,9 +2,9 @@
 
 use super::{INERTIAL, robot};
 use denavit::identify::add_contact_forces;
-use denavit::identify::condition::{Conditioned, Conditioning, Filter};
 use denavit::identify::estimate::{Options, Status, estimate, parameters, validate};
-use denavit::identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
+use denavit::measure::condition::{Conditioned, Conditioning, Filter};
+use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit::numerics::Random;
 use denavit::plants::plant_of;
 use denavit::plants::regression::RegressionModel;

@@ -5,7 +5,7 @@ use super::{assert_none, root};
 use std::fs;
 
 /// Our packages, each after what it may use: folder, and the packages that it uses.
-const WALLS: [(&str, &[&str]); 12] = [
+const WALLS: [(&str, &[&str]); 13] = [
     ("codegen/runtime", &[]),
     ("codegen", &["runtime"]),
     ("codegen/jit", &["codegen", "runtime"]),
@@ -13,8 +13,9 @@ const WALLS: [(&str, &[&str]); 12] = [
     ("crates/plants", &["codegen", "jit", "runtime"]),
     ("crates/simulate", &["codegen", "numerics", "plants", "runtime"]),
     ("crates/walk", &["codegen", "numerics", "plants", "runtime", "simulate"]),
-    ("crates/identify", &["codegen", "numerics", "plants", "runtime", "simulate"]),
-    ("crates/diagnose", &["codegen", "identify", "numerics", "plants", "simulate"]),
+    ("crates/measure", &["codegen", "numerics", "plants", "simulate"]),
+    ("crates/identify", &["codegen", "measure", "numerics", "plants", "runtime", "simulate"]),
+    ("crates/diagnose", &["codegen", "identify", "measure", "numerics", "plants", "simulate"]),
     (
         "crates/report",
         &["codegen", "diagnose", "identify", "numerics", "plants", "runtime", "simulate"],
@@ -24,8 +25,8 @@ const WALLS: [(&str, &[&str]); 12] = [
     (
         "",
         &[
-            "codegen", "diagnose", "identify", "jit", "numerics", "plants", "report", "runtime",
-            "simulate", "walk",
+            "codegen", "diagnose", "identify", "jit", "measure", "numerics", "plants", "report",
+            "runtime", "simulate", "walk",
         ],
     ),
 ];

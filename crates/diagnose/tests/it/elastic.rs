@@ -7,7 +7,7 @@ use denavit_diagnose::{
     BeforeSprings, Candidate, Diagnosis, DiagnosisError, Moved, Request, SearchOptions,
     Uncertainty, Verdict, before_springs, candidates, diagnose, spring_candidates,
 };
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use std::f64::consts::TAU;

@@ -7,7 +7,7 @@ use denavit_diagnose::{
     Candidate, Diagnosis, ExactAliases, ExperimentOptions, Moved, Request, SearchOptions,
     Uncertainty, candidates, diagnose,
 };
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 

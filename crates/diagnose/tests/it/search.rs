@@ -6,7 +6,7 @@ use denavit_diagnose::{
     Candidate, Data, Filters, Gap, NoiseFloor, Nominal, SearchOptions, Setting, Signals, State,
     Uncertainty, search, share_closed,
 };
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use std::f64::consts::TAU;

@@ -15,7 +15,7 @@ use denavit_diagnose::{
     BeforeSprings, Candidate, Diagnosis, ExperimentOptions, Request, SearchOptions, Uncertainty,
     before_springs, candidates, diagnose, spring_candidates,
 };
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::regression::RegressionModel;
 use serde_json::{Value, json};
 

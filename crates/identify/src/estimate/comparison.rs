@@ -8,7 +8,7 @@ use super::left_out::LeftOut;
 use super::noise_bias::{NoiseOfLog, bias_of_some};
 use super::own_estimate::Tested;
 use super::solve::Solution;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 

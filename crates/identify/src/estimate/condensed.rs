@@ -7,7 +7,7 @@ use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
 use super::solve::{PriorRow, stacked};
 use super::triangle::Triangle;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 use std::borrow::Cow;

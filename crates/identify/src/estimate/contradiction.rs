@@ -12,7 +12,7 @@ use super::noise_bias::noise_squares;
 use super::own_estimate::{Own, Tested, of_joint, spread};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;

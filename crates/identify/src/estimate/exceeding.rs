@@ -13,7 +13,7 @@ use super::noise_bias::noise_squares;
 use super::own_estimate::{Tested, of_joint, spread};
 use super::triangle::Triangle;
 use super::unexplained::{Unexplained, moves};
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
 

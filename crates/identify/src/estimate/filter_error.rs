@@ -5,7 +5,7 @@
 //! that the filter left, both go through the filter again, and are compared.
 
 use super::validate::validate;
-use crate::condition::{Butterworth, Conditioned, STENCIL};
+use denavit_measure::condition::{Butterworth, Conditioned, STENCIL};
 use denavit_plants::regression::{RegressionModel, RegressionRows};
 
 /// Samples that are looked at in all, and computed at once.

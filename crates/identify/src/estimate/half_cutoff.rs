@@ -10,7 +10,7 @@
 use super::condensed::{Condensed, Rows};
 use super::errors::{FEWEST_PARTS, Problem, long_run};
 use super::least_squares::{Estimate, Fit};
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 

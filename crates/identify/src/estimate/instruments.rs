@@ -9,7 +9,7 @@ use super::condensed::{Condensed, Rows};
 use super::least_squares::{Estimate, EstimateError};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;

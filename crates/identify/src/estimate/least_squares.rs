@@ -13,7 +13,7 @@ use super::solve::{PriorRow, Solution, solve};
 use super::total;
 use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;

@@ -2,7 +2,7 @@
 //! sign of its rate says, and the filter smears that over its own time.
 
 use super::least_squares::{Method, Options};
-use crate::condition::{Butterworth, Conditioned, Piece};
+use denavit_measure::condition::{Butterworth, Conditioned, Piece};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;

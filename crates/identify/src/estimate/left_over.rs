@@ -4,7 +4,7 @@ use super::least_squares::Estimate;
 use super::left_out::LeftOut;
 use super::rows::BlockMaker;
 use super::unexplained::samples_of;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::collections::VecDeque;
 

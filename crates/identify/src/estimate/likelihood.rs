@@ -7,7 +7,7 @@
 
 use super::rows::Block;
 use super::weights::ByLog;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionModel, RegressionRows};
 
 /// Samples in a block.

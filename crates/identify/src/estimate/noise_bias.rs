@@ -13,7 +13,7 @@ use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
 use super::validate::validate;
-use crate::condition::{Conditioned, Piece};
+use denavit_measure::condition::{Conditioned, Piece};
 use denavit_numerics::Random;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use nalgebra::{DMatrix, DVector};

@@ -6,7 +6,7 @@ use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::rows::BlockMaker;
 use super::solve::solve;
 use super::weights::ByLog;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 

@@ -1,6 +1,6 @@
 //! The rows of a regression, block by block, after both sides went through the same decimator.
 
-use crate::condition::{Conditioned, Decimator};
+use denavit_measure::condition::{Conditioned, Decimator};
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use std::ops::Range;
 

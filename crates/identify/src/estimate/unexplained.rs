@@ -5,7 +5,7 @@ use super::least_squares::Estimate;
 use super::likelihood::noise_of_positions;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::fmt;
 

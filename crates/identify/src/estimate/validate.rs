@@ -1,7 +1,7 @@
 //! What a model leaves unexplained, joint by joint.
 
 use super::rows::BlockMaker;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::borrow::Borrow;
 use std::collections::VecDeque;

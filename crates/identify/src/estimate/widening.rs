@@ -8,7 +8,7 @@
 use super::errors::Errors;
 use super::least_squares::{Estimate, EstimateError, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 

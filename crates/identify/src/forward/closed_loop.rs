@@ -4,7 +4,7 @@ use super::{
     Compared, Controller, Forward, ForwardError, ForwardJoint, ForwardKind, LONGEST_S, MotionLog,
     column, names, rms, simulation,
 };
-use crate::log::{JointSignals, MeasuredLog};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
 use denavit_simulate::{Control, DriveModelling, Log, Stop, simulate_believing};

@@ -13,8 +13,8 @@ mod windows;
 pub use closed_loop::{closed_loop, simulated_log};
 pub use windows::{Windows, in_windows};
 
-use super::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
-use super::log::{JointSignals, MeasuredLog};
+use denavit_measure::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::short;
 use denavit_plants::PlantModel;
 use denavit_simulate::scenario::Controller;

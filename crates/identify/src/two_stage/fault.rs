@@ -1,8 +1,8 @@
 //! Why a log does not give springs and load.
 
 use super::Estimate;
-use crate::condition::ConditionError;
 use crate::estimate::EstimateError;
+use denavit_measure::condition::ConditionError;
 use std::fmt;
 
 /// Why a log does not give the parameters.

@@ -20,9 +20,9 @@ mod readings;
 
 pub use fault::TwoStageError;
 
-use super::condition::{Conditioned, Conditioning};
 use super::estimate::{self, SlowRows, estimate};
-use super::log::{JointSignals, MeasuredLog};
+use denavit_measure::condition::{Conditioned, Conditioning};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use denavit_plants::{DriveModel, PlantModel, SeriesElasticModel};
 use nalgebra::{DMatrix, DVector};

@@ -3,10 +3,10 @@
 use super::{INERTIAL, robot};
 use denavit_codegen::model;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::condition::{Conditioned, Conditioning, Filter};
 use denavit_identify::estimate::{Options, SlowRows, estimate, parameters, validate};
 use denavit_identify::forward::{Compared, MotionLog, closed_loop};
-use denavit_identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
+use denavit_measure::condition::{Conditioned, Conditioning, Filter};
+use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;
 use denavit_plants::{Override, plant_of};

@@ -3,11 +3,11 @@
 use super::{INERTIAL, robot};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::condition::Conditioned;
 use denavit_identify::estimate::{
     Errors, Estimate, Loss, Method, Options, Status, consistent, convergence, estimate, parameters,
     validate,
 };
+use denavit_measure::condition::Conditioned;
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::{LoadedPlant, Plant};

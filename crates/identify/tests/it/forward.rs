@@ -2,11 +2,11 @@
 
 use super::robot;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_identify::condition::Filter;
 use denavit_identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
-use denavit_identify::log::{ColumnMapping, JointSignals, LogOf, MeasuredLog, read_log};
+use denavit_measure::condition::Filter;
+use denavit_measure::log::{ColumnMapping, JointSignals, LogOf, MeasuredLog, read_log};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;
 use denavit_plants::{Override, Plant, plant_of};

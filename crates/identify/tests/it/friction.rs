@@ -2,10 +2,10 @@
 
 use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::condition::{Conditioned, Conditioning, Filter};
 use denavit_identify::estimate::{IdentifiedParameter, Options, SlowRows, estimate, parameters};
-use denavit_identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit_identify::{Identification, Request, identify};
+use denavit_measure::condition::{Conditioned, Conditioning, Filter};
+use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;

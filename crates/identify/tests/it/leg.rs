@@ -3,9 +3,9 @@
 
 use super::robot;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::condition::{Conditioned, Conditioning, Filter};
 use denavit_identify::estimate::{Options, estimate, interval_factor};
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::condition::{Conditioned, Conditioning, Filter};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::regression::RegressionModel;
 use denavit_plants::shipped;
 use denavit_simulate::{Log, scenario};

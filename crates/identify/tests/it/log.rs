@@ -2,7 +2,7 @@
 
 use super::robot;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_identify::log::{
+use denavit_measure::log::{
     ColumnMapping, LogFault, LogOf, LogRemark, MeasuredLog, Suspicion, read_log,
 };
 use denavit_plants::regression::{RegressionJoint, RegressionModel};

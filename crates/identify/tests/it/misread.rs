@@ -3,8 +3,8 @@
 
 use super::estimate::{Experiment, bare};
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::condition::Conditioned;
 use denavit_identify::estimate::{Evidence, ExchangedColumns, Misreading, misread_columns};
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::f64::consts::FRAC_PI_2;
 

@@ -2,9 +2,9 @@
 
 use super::INERTIAL;
 use super::estimate::{Experiment, bare};
-use denavit_identify::condition::{Averaging, ConditionError, Conditioned, Conditioning, Filter};
 use denavit_identify::estimate::{BlockMaker, Condensed, Method, Options, estimate, parameters};
-use denavit_identify::log::{JointSignals, MeasuredLog};
+use denavit_measure::condition::{Averaging, ConditionError, Conditioned, Conditioning, Filter};
+use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use std::f64::consts::TAU;

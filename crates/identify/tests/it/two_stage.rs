@@ -2,10 +2,10 @@
 
 use denavit_codegen::model;
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::condition::{Conditioning, Filter};
 use denavit_identify::estimate::SlowRows;
-use denavit_identify::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit_identify::two_stage::{TwoStage, TwoStageError, TwoStageOptions, two_stage};
+use denavit_measure::condition::{Conditioning, Filter};
+use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, read_log};
 use denavit_plants::PlantModel;
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use denavit_plants::shipped;

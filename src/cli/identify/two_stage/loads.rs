@@ -2,9 +2,9 @@
 
 use super::IdentifyFailure;
 use crate::cli::failure::Failure;
-use denavit::identify::condition::{Conditioned, Conditioning};
-use denavit::identify::log::{JointSignals, MeasuredLog};
 use denavit::identify::two_stage::{Spring, TwoStageError};
+use denavit::measure::condition::{Conditioned, Conditioning};
+use denavit::measure::log::{JointSignals, MeasuredLog};
 use denavit::plants::{JointModel, PlantModel, SeriesElasticModel};
 
 /// A log whose torques are those on the loads: of elastic joints r_L (k (r_M th / N - r_L q) + F0)

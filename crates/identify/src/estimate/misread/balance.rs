@@ -3,10 +3,10 @@
 
 use super::reading::Reading;
 use super::window::Window;
-use crate::condition::Conditioned;
 use crate::estimate::rows::{Coulomb, coulomb};
 use crate::estimate::solve::{solve, stacked};
 use crate::estimate::triangle::Triangle;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{
     RegressionEvaluator, RegressionModel, RegressionParameter, RegressionRows,
 };

@@ -6,7 +6,6 @@
 //! but noise is left with it: else it stands for something that the model lacks.
 
 use super::Misreading;
-use crate::condition::{Butterworth, Conditioned, Piece};
 use crate::estimate::condensed::Condensed;
 use crate::estimate::errors::{Errors, Problem};
 use crate::estimate::least_squares::Estimate;
@@ -15,6 +14,7 @@ use crate::estimate::rows::{Block, BlockMaker};
 use crate::estimate::solve::{Solution, solve};
 use crate::estimate::triangle::Triangle;
 use crate::estimate::weights::ByLog;
+use denavit_measure::condition::{Butterworth, Conditioned, Piece};
 use denavit_plants::regression::RegressionModel;
 use std::borrow::Cow;
 

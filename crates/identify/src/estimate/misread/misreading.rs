@@ -1,7 +1,7 @@
 //! The ways in which columns can be other ones than they are taken for, and how each is said.
 
 use super::reading::{OF_ANGLES, Signal};
-use crate::log::ColumnMapping;
+use denavit_measure::log::ColumnMapping;
 use denavit_plants::regression::RegressionJoint;
 use std::fmt;
 

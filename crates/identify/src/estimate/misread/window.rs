@@ -1,7 +1,7 @@
 //! Samples of a log under a reading of its columns.
 
 use super::reading::Source;
-use crate::condition::Conditioned;
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::CoulombLaw;
 use std::ops::Range;
 

@@ -77,7 +77,7 @@ impl Butterworth {
     }
 
     /// The filter of the same order with half the cutoff.
-    pub(crate) fn halved(&self) -> Option<Self> {
+    pub fn halved(&self) -> Option<Self> {
         Self::new(self.order, 0.5 * self.cutoff, 1.0)
     }
 

@@ -104,7 +104,7 @@ impl Conditioned {
     /// or than two steps of its encoder in a period of the filter's cutoff, for such a period at
     /// least; and a period before and after, where the filter smears that over. Where it turns
     /// round faster than that, the filter smears the sign over alike.
-    pub(crate) fn unsure_signs(&self, joint: usize) -> Option<Vec<bool>> {
+    pub fn unsure_signs(&self, joint: usize) -> Option<Vec<bool>> {
         let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
         let (period, samples) = (2 * filter.smear(), self.range.len());
         let mut is_unsure = vec![false; samples];
@@ -118,7 +118,7 @@ impl Conditioned {
     /// For each sample of [`Conditioned::range`] whether a joint that moves in between rests there:
     /// while the sign of its rate is not known, for some periods of the filter's cutoff, without
     /// the first and the last, into which the filter smears what is beside.
-    pub(crate) fn rests(&self, joint: usize) -> Vec<bool> {
+    pub fn rests(&self, joint: usize) -> Vec<bool> {
         let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
         let least = STILL * self.usual_rate(joint);
         let period = 2 * filter.smear();
@@ -130,7 +130,7 @@ impl Conditioned {
     /// need not be slower than the sign of its rate is known. Unseen by its encoder it creeps for a
     /// while before it stands still, and rubs: as long as it takes to stop, by its usual rate and
     /// acceleration, is none of the rest either.
-    pub(crate) fn counted_rests(&self, joint: usize) -> Option<Vec<bool>> {
+    pub fn counted_rests(&self, joint: usize) -> Option<Vec<bool>> {
         let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
         let period = 2 * filter.smear();
         let stops_s = self.usual_rate(joint) / self.usual_acceleration(joint);
@@ -177,7 +177,7 @@ impl Conditioned {
 
     /// For each of so many samples that are left, from `first` on, whether it has its weight from
     /// samples of [`Conditioned::range`] that are not among `left_out`.
-    pub(crate) fn counts(&self, left_out: &[bool], first: usize, samples: usize) -> Vec<bool> {
+    pub fn counts(&self, left_out: &[bool], first: usize, samples: usize) -> Vec<bool> {
         let (factor, reach) = (self.decimation.max(1), Decimator::reach_of(self.decimation));
         let half = (WEIGHED * factor as f64).ceil() as usize;
         let half = half.min(reach);

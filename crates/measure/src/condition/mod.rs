@@ -17,7 +17,7 @@ pub use butterworth::Butterworth;
 pub use decimate::Decimator;
 pub use laps::Laps;
 pub use noise::Encoder;
-pub(crate) use pieces::Piece;
+pub use pieces::Piece;
 
 use super::log::{JointSignals, MeasuredLog};
 use denavit_numerics::short;
@@ -335,7 +335,7 @@ impl Conditioned {
     /// What torques and columns pass alike. Of motion near its cutoff the first filter leaves less
     /// than the torque that it goes with, where that is not linear in it: products of rates,
     /// functions of positions. Below half of it they agree to less than a percent.
-    pub(crate) fn decimator(&self) -> Decimator {
+    pub fn decimator(&self) -> Decimator {
         let edge = self.filter.as_ref().map_or(0.5, |filter| 0.5 * filter.cutoff());
         Decimator::new(self.decimation, edge)
     }
@@ -354,12 +354,12 @@ impl Conditioned {
 
     /// Samples that are left and independent of each other: as many as the band that filter and
     /// decimator pass has of white noise, about 1.4 in a period of the cutoff.
-    pub(crate) fn independent(&self) -> f64 {
+    pub fn independent(&self) -> f64 {
         (self.noise_gains()[0][0] * self.range.len() as f64).min(self.samples() as f64)
     }
 
     /// Periods of the filter's cutoff; pairs of samples without a filter.
-    pub(crate) fn periods(&self) -> f64 {
+    pub fn periods(&self) -> f64 {
         self.range.len() as f64 * self.filter.as_ref().map_or(0.5, Butterworth::cutoff)
     }
 
@@ -385,7 +385,7 @@ impl Conditioned {
 impl Conditioned {
     /// The position of a joint (order 0), its rate or its acceleration at a place within
     /// [`Conditioned::range`].
-    pub(crate) fn moved(&self, joint: usize, order: usize, place: usize) -> f64 {
+    pub fn moved(&self, joint: usize, order: usize, place: usize) -> f64 {
         let q = &self.q[joint];
         match (order, &self.rates) {
             (0, _) => q[place],
@@ -425,7 +425,7 @@ impl Conditioned {
     }
 
     /// The same after the filter alone.
-    pub(crate) fn filter_gains(&self) -> [[f64; 3]; 3] {
+    pub fn filter_gains(&self) -> [[f64; 3]; 3] {
         self.gains_after(&Decimator::new(1, 0.5))
     }
 

@@ -30,7 +30,7 @@ const ROUNDING: f64 = 1e-10;
 
 /// The deviation of white noise of a signal, from its differences of sixth order; none if these are
 /// not those of white noise. What is rare, as jumps are, does not count.
-pub(crate) fn white_noise(signal: &[f64]) -> Option<f64> {
+pub(super) fn white_noise(signal: &[f64]) -> Option<f64> {
     let every = signal.len().div_ceil(BLOCK * BLOCKS).max(1);
     let mut squares: Vec<[f64; 2]> = Vec::new();
     for block in signal.chunks(BLOCK).step_by(every).filter(|block| block.len() > 4 * ORDER) {
@@ -105,7 +105,7 @@ impl Conditioned {
 impl Conditioned {
     /// A piece with the noise of the positions once more: added, and subtracted. Steps of an
     /// encoder are those that the motion makes, which while it is slow are no white noise.
-    pub(crate) fn piece_with_noise(&self, piece: Piece, random: &mut Random) -> [Self; 2] {
+    pub fn piece_with_noise(&self, piece: Piece, random: &mut Random) -> [Self; 2] {
         let mut added = self.piece(piece);
         let mut subtracted = added.clone();
         for joint in 0..added.q.len() {

@@ -7,16 +7,16 @@ const PIECES: usize = 12;
 
 /// Samples that are left after decimation and follow each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Piece {
+pub struct Piece {
     /// The first.
-    pub(crate) first: usize,
+    pub first: usize,
     /// Their number.
-    pub(crate) samples: usize,
+    pub samples: usize,
 }
 
 impl Conditioned {
     /// Pieces all along a log with at most so many samples before decimation, or the whole.
-    pub(crate) fn pieces(&self, most: usize) -> Vec<Piece> {
+    pub fn pieces(&self, most: usize) -> Vec<Piece> {
         let (samples, most) = (self.samples(), most / self.decimation.max(1));
         let length = most / PIECES;
         if samples <= most.max(PIECES) || length == 0 {
@@ -27,7 +27,7 @@ impl Conditioned {
     }
 
     /// A piece as a log of its own, whose sample 0 is the piece's first one.
-    pub(crate) fn piece(&self, Piece { first, samples }: Piece) -> Self {
+    pub fn piece(&self, Piece { first, samples }: Piece) -> Self {
         let edge = self.range.start;
         let start = first * self.decimation;
         let inner = 2 * Decimator::reach_of(self.decimation) + (samples - 1) * self.decimation + 1;
@@ -54,7 +54,7 @@ impl Conditioned {
 
     /// Logs, or pieces of those that have more than their part of so many samples before
     /// decimation, behind filters with half the cutoff of their own; nothing if one is too short.
-    pub(crate) fn behind_half_the_cutoff(logs: &[&Self], most: usize) -> Vec<Self> {
+    pub fn behind_half_the_cutoff(logs: &[&Self], most: usize) -> Vec<Self> {
         let pieces = |log: &&Self| log.pieces(most / logs.len().max(1));
         let all = logs.iter().flat_map(|log| pieces(log).into_iter().map(move |one| (log, one)));
         let halved = all.map(|(log, piece)| log.halved(piece).map(|[_, halved]| halved));
@@ -63,7 +63,7 @@ impl Conditioned {
 
     /// A piece without more of its edges than a filter of half the cutoff leaves, as it is and
     /// after that filter; none if that leaves nothing.
-    pub(crate) fn halved(&self, piece: Piece) -> Option<[Self; 2]> {
+    pub fn halved(&self, piece: Piece) -> Option<[Self; 2]> {
         let lower = self.filter.as_ref()?.halved()?;
         let mut own = self.piece(piece);
         let edge = lower.settling() + if own.rates.is_some() { 0 } else { STENCIL };

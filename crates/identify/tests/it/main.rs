@@ -6,7 +6,6 @@ mod excite;
 mod forward;
 mod friction;
 mod leg;
-mod log;
 mod misread;
 mod noise;
 mod regression;

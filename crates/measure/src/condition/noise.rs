@@ -2,6 +2,7 @@
 
 use super::{Conditioned, Piece, rate};
 use crate::log::JointSignals;
+use crate::resolution::WHITE;
 use denavit_numerics::Random;
 
 /// The order of the differences that noise is read from: of smooth signals they are next to
@@ -10,10 +11,6 @@ const ORDER: usize = 6;
 
 /// Variances of differences of white noise of variance 1: of this order, and of the one below.
 const GAINS: [f64; 2] = [924.0, 252.0];
-
-/// What white noise has of the ratio of these, at least: differences of a smooth signal become
-/// smaller with each order.
-const WHITE: f64 = 0.9;
 
 /// Samples that are looked at, in so many blocks.
 const BLOCK: usize = 256;
@@ -61,8 +58,10 @@ pub(super) fn position_noise(
 ) -> (f64, Option<Encoder>) {
     let level = signals.q.first().copied().unwrap_or(0.0);
     let encoder = signals.step.or(resolution).map(|step| Encoder { step, level });
-    let of_steps = encoder.map_or(0.0, |encoder| encoder.step / 12.0_f64.sqrt());
-    match white_noise(&signals.q) {
+    let raw = &signals.resolution.position;
+    let of_steps = encoder.map_or(raw.rounding_std(), |encoder| encoder.step / 12.0_f64.sqrt());
+    // samples that were interpolated have less noise than was measured
+    match white_noise(&signals.q).into_iter().chain(raw.white_std).reduce(f64::max) {
         Some(white) if white > of_steps => (white, None),
         _ => (of_steps, encoder),
     }

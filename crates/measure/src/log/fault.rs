@@ -108,7 +108,7 @@ pub enum LogRemark {
     /// Cells without a number were filled in.
     FilledCells { column: String, count: usize },
     /// Samples were brought to equal distances.
-    Resampled { jitter: f64 },
+    Resampled { jitter: f64, largest: f64 },
     /// A joint that does not move.
     Resting { joint: String },
     /// A joint that does not move, and whose torque does not follow its load.
@@ -397,10 +397,12 @@ impl fmt::Display for LogRemark {
             Self::FilledCells { column, count } => {
                 write!(f, "{count} cells of `{column}` without a number: filled in")
             }
-            Self::Resampled { jitter } => write!(
+            Self::Resampled { jitter, largest } => write!(
                 f,
-                "distances of samples scatter by {:.1} %: interpolated at equal distances",
-                100.0 * jitter
+                "distances of samples scatter by {:.1} %, by {:.1} % at most: interpolated at \
+                 equal distances",
+                100.0 * jitter,
+                100.0 * largest
             ),
             Self::Resting { joint } => {
                 write!(

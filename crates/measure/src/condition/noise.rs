@@ -62,7 +62,9 @@ pub(super) fn position_noise(
     let of_steps = encoder.map_or(raw.rounding_std(), |encoder| encoder.step / 12.0_f64.sqrt());
     // samples that were interpolated have less noise than was measured
     match white_noise(&signals.q).into_iter().chain(raw.white_std).reduce(f64::max) {
-        Some(white) if white > of_steps => (white, None),
+        // more than the steps make is there, once more at least: something else is most of it
+        Some(white) if white * white > 2.0 * of_steps * of_steps => (white, None),
+        Some(white) if white > of_steps => (white, encoder),
         _ => (of_steps, encoder),
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn step(values: &[f64], printed: f64) -> Option<f64> {
     let accepted = |sets: &[&[f64]]| {
         let (tried, guesses) = guesses(sets[0], rounding);
         guesses.iter().find_map(|guess| {
-            let step = refined(&levels, sets, *guess)?;
+            let step = refined(&levels, sets, (*guess, printed))?;
             let expected = sinc(printed / step);
             let [share, _] = phase(&levels, step);
             let odds = share * share * levels.len() as f64 - (tried as f64).ln();
@@ -125,7 +125,7 @@ fn guesses(changes: &[f64], rounding: f64) -> (usize, Vec<f64>) {
 
 /// A step by larger and larger changes, then by those over more and more samples, by least squares;
 /// last by the values themselves, to within a turn of their phase. None if nothing is left.
-fn refined(levels: &[f64], sets: &[&[f64]], guess: f64) -> Option<f64> {
+fn refined(levels: &[f64], sets: &[&[f64]], (guess, printed): (f64, f64)) -> Option<f64> {
     let mut step = guess;
     for changes in sets {
         let mut beyond = FIRST * guess;
@@ -133,32 +133,35 @@ fn refined(levels: &[f64], sets: &[&[f64]], guess: f64) -> Option<f64> {
         while small < changes.len() {
             small = changes.partition_point(|change| *change <= beyond);
             if small > 0 {
-                step = by_multiples(&changes[..small], step)?;
+                step = by_multiples(&changes[..small], step, printed)?;
             }
             beyond *= GROWTH;
         }
     }
     let mut lag = 2;
     while lag < levels.len() {
-        step = by_multiples(&differences(levels, lag), step)?;
+        step = by_multiples(&differences(levels, lag), step, printed)?;
         lag *= 2;
     }
     let [_, offset] = phase(levels, step);
     let zero = levels[0] + offset;
     let of_values: Vec<f64> = levels.iter().map(|value| value - zero).collect();
-    by_multiples(&of_values, step)
+    by_multiples(&of_values, step, printed)
 }
 
-/// The step that least squares give, changes being the multiples that they are nearest to.
-fn by_multiples(changes: &[f64], step: f64) -> Option<f64> {
-    let (mut products, mut squares) = (0.0, 0.0);
+/// The step that least squares give, changes being the multiples that they are nearest to; none if
+/// they are nearer to none than half of what the error of printing leaves.
+fn by_multiples(changes: &[f64], step: f64, printed: f64) -> Option<f64> {
+    let (mut products, mut squares, mut waves) = (0.0, 0.0, 0.0);
     for change in changes {
         let times = (change / step).round();
         products += times * change;
         squares += times * times;
+        waves += (TAU * (change / step - times)).cos();
     }
     let found = products / squares;
-    (found.is_finite() && found > 0.0).then_some(found)
+    let is_near = waves > 0.5 * sinc(printed / step).powi(2) * changes.len() as f64;
+    (is_near && found.is_finite() && found > 0.0).then_some(found)
 }
 
 /// The size of the mean of exp(2 pi i (x - x0) / step), and its phase as a length.

@@ -28,7 +28,9 @@ pub(super) fn deviation(time: &[f64], values: &[f64]) -> Option<f64> {
         of_blocks.get(of_blocks.len() / 2).copied()
     };
     let (cubic, fifth) = (by(2)?, by(3)?);
-    (cubic > 0.0 && fifth > WHITE * cubic).then(|| cubic.sqrt())
+    // of a constant rounding is left
+    let size = sound.iter().fold(0.0, |size: f64, [_, value]| size.max(value.abs()));
+    (cubic.sqrt() > f64::EPSILON * size && fifth > WHITE * cubic).then(|| cubic.sqrt())
 }
 
 /// The variance of a block's noise, by polynomials through so many neighbours on either side; none

@@ -379,7 +379,7 @@ fn write_steps(f: &mut fmt::Formatter<'_>, columns: &[(String, f64)]) -> fmt::Re
     if largest > 1.01 * least {
         write!(f, " to {largest:.3e}")?;
     }
-    write!(f, ", as of an encoder")
+    write!(f, ", as of an encoder or of printed digits")
 }
 
 impl fmt::Display for LogRemark {

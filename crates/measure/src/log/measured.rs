@@ -7,8 +7,8 @@ use crate::resolution::JointResolution;
 ///
 /// Torques are those that the joint needs, positive along its axis. A log has them so; or as those
 /// of the motors of stiff drives, if its header says `torque_side: motor`, or if it says nothing
-/// and the model's `torque_side` is the motor's. [`super::read_log`] is the one place where gear ratios
-/// count.
+/// and the model's `torque_side` is the motor's. [`super::read_log`] is the one place where gear
+/// ratios count.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointSignals {
     /// Position [rad, m].

@@ -4,9 +4,10 @@
 //! of two roundings to a printed digit u: the mean of cos(2 pi f d) is sinc(u f)^2 at f = 1/s, and
 //! near 0 at frequencies that are none of the lattice's, as soon as changes are of several sizes.
 //! The lowest such frequency is looked for in small changes, or changes of changes, and made exact
-//! in larger and larger ones. The values themselves decide: of N that lie on the lattice |mean exp(2 pi i x / s)| is
-//! sinc(u/s), of others N times its square is exponential with mean 1. Values that are printed to
-//! whole u repeat at f + 1/u, so that no step below 2 u can be told (Nyquist).
+//! in larger and larger ones. The values themselves decide: of N that lie on the lattice
+//! |mean exp(2 pi i x / s)| is sinc(u/s), of others N times its square is exponential with mean 1.
+//! Values that are printed to whole u repeat at f + 1/u, so that no step below 2 u can be told
+//! (Nyquist).
 
 use std::f64::consts::{PI, TAU};
 
@@ -56,7 +57,7 @@ pub(super) fn step(values: &[f64], printed: f64) -> Option<f64> {
         return None;
     }
     let signed: Vec<f64> = levels.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let changes = sorted(differences(&signed, 0), rounding);
+    let changes = sorted(differences(&levels, 1), rounding);
     // of what is fast all the time, changes of changes alone are small
     let of_changes = sorted(differences(&signed, 1), rounding);
     let accepted = |sets: &[&[f64]]| {
@@ -80,11 +81,8 @@ fn sorted(mut sizes: Vec<f64>, rounding: f64) -> Vec<f64> {
     sizes
 }
 
-/// How far values are from those so many samples later; their own sizes for none.
+/// How far values are from those so many samples later.
 fn differences(levels: &[f64], lag: usize) -> Vec<f64> {
-    if lag == 0 {
-        return levels.iter().map(|value| value.abs()).collect();
-    }
     levels.iter().zip(levels.iter().skip(lag)).map(|(one, other)| (other - one).abs()).collect()
 }
 

@@ -57,8 +57,11 @@ pub(super) fn position_noise(
     resolution: Option<f64>,
 ) -> (f64, Option<Encoder>) {
     let level = signals.q.first().copied().unwrap_or(0.0);
-    let encoder = signals.step.or(resolution).map(|step| Encoder { step, level });
     let raw = &signals.resolution.position;
+    // steps that are said may be wider than printed digits, and unseen
+    let said = resolution.filter(|_| raw.encoder_step.is_none());
+    let step = signals.step.into_iter().chain(said).reduce(f64::max);
+    let encoder = step.map(|step| Encoder { step, level });
     let of_steps = encoder.map_or(raw.rounding_std(), |encoder| encoder.step / 12.0_f64.sqrt());
     // samples that were interpolated have less noise than was measured
     match white_noise(&signals.q).into_iter().chain(raw.white_std).reduce(f64::max) {

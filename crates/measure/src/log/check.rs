@@ -86,20 +86,17 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
     let [low, high] = range(&signals.q);
     let column = format!("q_{}", joint.name);
     let largest = low.abs().max(high.abs());
-    match joint.position_limits {
-        Some(limits) => {
-            let slack = 0.02 * (limits[1] - limits[0]);
-            let beyond = [low < limits[0] - slack, high > limits[1] + slack];
-            let reach = limits[0].abs().max(limits[1].abs());
-            if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
-                found.suspicions.push(Suspicion::Degrees { column, largest });
-            } else if beyond[0] || beyond[1] {
-                let value = if beyond[0] { low } else { high };
-                found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
-            }
+    // A joint without limits may turn on and on: its velocities tell its unit, not its size.
+    if let Some(limits) = joint.position_limits {
+        let slack = 0.02 * (limits[1] - limits[0]);
+        let beyond = [low < limits[0] - slack, high > limits[1] + slack];
+        let reach = limits[0].abs().max(limits[1].abs());
+        if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
+            found.suspicions.push(Suspicion::Degrees { column, largest });
+        } else if beyond[0] || beyond[1] {
+            let value = if beyond[0] { low } else { high };
+            found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
         }
-        // A joint that may turn on and on does so: its velocities tell its unit, not its size.
-        None => {}
     }
     if let Some(step) = signals.step {
         let own = (format!("q_{}", joint.name), step);

@@ -16,24 +16,26 @@ pub fn spacing(values: &[f64]) -> f64 {
     }
     let every = values.len().div_ceil(SAMPLED);
     let sampled: Vec<f64> = finite().step_by(every).collect();
-    let mean = |spacing: &dyn Fn(f64) -> f64| {
-        let squares: f64 = sampled.iter().map(|value| spacing(*value).powi(2)).sum();
-        (squares / sampled.len() as f64).sqrt()
-    };
-    let of_single = || mean(&|value| f64::from(ulp(value as f32)));
+    let of_single = || rms(&sampled, |value| f64::from(ulp(value as f32)));
     if finite().all(|value| f64::from(value as f32) == value) {
         // numbers of few digits, as quarters, are single too
-        return of_single().max(of_decimals(&sampled, &mean));
+        return of_single().max(of_decimals(&sampled));
     }
-    let decimal = of_decimals(&sampled, &mean);
+    let decimal = of_decimals(&sampled);
     let is_shortest = |value: &f64| format!("{}", *value as f32).parse() == Ok(*value);
     let is_single = decimal > 0.0 && sampled.iter().all(is_shortest);
     if is_single { of_single().max(decimal) } else { decimal }
 }
 
+/// Root of the mean square of the distances at values.
+fn rms(values: &[f64], spacing: impl Fn(f64) -> f64) -> f64 {
+    let squares: f64 = values.iter().map(|value| spacing(*value).powi(2)).sum();
+    (squares / values.len().max(1) as f64).sqrt()
+}
+
 /// The distance of decimals, and of significant digits; 0 if some value has more digits than every
 /// double holds.
-fn of_decimals(sampled: &[f64], mean: &dyn Fn(&dyn Fn(f64) -> f64) -> f64) -> f64 {
+fn of_decimals(sampled: &[f64]) -> f64 {
     let (mut most_decimals, mut most_digits) = (i32::MIN, 0);
     for &value in sampled.iter().filter(|value| **value != 0.0) {
         let (digits, exponent) = decimal(value);
@@ -43,7 +45,7 @@ fn of_decimals(sampled: &[f64], mean: &dyn Fn(&dyn Fn(f64) -> f64) -> f64) -> f6
         most_digits = most_digits.max(digits);
         most_decimals = most_decimals.max(digits - 1 - exponent);
     }
-    let significant = mean(&|value| match value {
+    let significant = rms(sampled, |value| match value {
         0.0 => 0.0,
         _ => 10.0_f64.powi(decimal(value).1 - most_digits + 1),
     });

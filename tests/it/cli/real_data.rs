@@ -189,17 +189,22 @@ fn a_real_pendulum_has_coulomb_friction() {
 #[ignore = "needs the measurements, which are not part of the repository"]
 fn logs_that_show_nothing_of_a_real_pendulum_are_refused() {
     let set = Set::pendulum("real_pendulum_refused");
-    // errors in variables twice, a hand that no channel records
-    for log in ["sac.csv", "energy_shaping.csv", "gravity_comp_handmoved_200hz.csv"] {
-        let said = set.halves(&[log], &[]);
-        assert!(["cannot_tell", "unexplained"].contains(&said.verdict()), "{log}: {said}");
-        assert_eq!(said.others(|_| false), Vec::<String>::new(), "{log}: {said}");
+    // errors in variables twice, a hand that no channel records, a hold
+    let logs = ["sac", "energy_shaping", "gravity_comp_handmoved_200hz", "pd_1nm"];
+    let mut wrong = Vec::new();
+    for log in logs {
+        let said = set.halves(&[&format!("{log}.csv")], &[]);
+        // that nothing moves may be reported before anything is computed
+        let is_told = log == "pd_1nm" && said.message.contains("no joint moves");
+        let is_refused = match &said.answer {
+            None => is_told,
+            Some(_) => ["cannot_tell", "unexplained"].contains(&said.verdict()),
+        };
+        if !is_refused || !said.effects.is_empty() {
+            wrong.push(format!("{log}: {said}"));
+        }
     }
-    // a hold: that nothing moves may be said before anything is computed
-    let said = set.halves(&["pd_1nm.csv"], &[]);
-    let is_told = said.answer.is_none() && said.message.contains("no joint moves");
-    assert!(is_told || said.verdict() == "cannot_tell", "{said}");
-    assert_eq!(said.others(|_| false), Vec::<String>::new(), "{said}");
+    assert_eq!(wrong, Vec::<String>::new());
 }
 
 /// Joints of the arm whose friction grows with the root of the rate.

@@ -76,6 +76,7 @@ impl Case {
         let sensors = Sensors {
             steps: [8, 8, 10][random.below(3)],
             resolution: std::f64::consts::TAU / bits.exp2(),
+            encoder_noise: 0.0,
             torque_noise: vec![0.0; truth.joints.len()],
             rate_noise: random.chance(0.3).then_some(2e-3),
         };

@@ -17,7 +17,7 @@ pub enum Condition {
     Printed,
     /// All numbers stored as IEEE single precision.
     SinglePrecision,
-    /// Encoders of 16 to 18 bits, whose steps six decimals do not show exactly.
+    /// Encoders of 16 to 18 bits with noise, whose steps six decimals do not show exactly.
     CoarseEncoder,
     /// Rows at times that scatter, stamped as they were.
     Jitter,
@@ -45,6 +45,8 @@ pub const CONDITIONS: [Condition; 8] = [
 
 /// Resolution of coarse encoders, in bits of a turn of the joint.
 const COARSE_BITS: [f64; 3] = [16.0, 17.0, 18.0];
+/// Their noise, in steps.
+const COARSE_NOISE: f64 = 0.3;
 /// Standard deviation of a stamp against the distance of rows.
 const JITTER: [f64; 2] = [0.01, 0.05];
 /// A stamp is off by this many standard deviations at most.
@@ -160,6 +162,7 @@ impl Case {
             [JITTER, DROPPED, DISTURBANCE].map(|[low, high]| random.log_between(low, high));
         if is(Condition::CoarseEncoder) {
             self.sensors.resolution = TAU / bits.exp2();
+            self.sensors.encoder_noise = COARSE_NOISE * self.sensors.resolution;
         }
         let printed = is(Condition::Printed) || is(Condition::CoarseEncoder);
         self.recording = Recording {

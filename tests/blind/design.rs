@@ -116,10 +116,12 @@ fn variant(law: Law, count: usize) -> usize {
 /// The first number of the rows with conditions of real logs; the first for a run is as far behind
 /// it as the run's is behind 0.
 pub const CONDITIONS_FROM: u64 = 100_000;
-/// For each condition, rows with nothing and with one effect.
-const CONDITION_COUNTS: [usize; 2] = [4, 5];
+/// Shares of the rows: one for each condition, and three for all of them together, as logs are.
+const CONDITION_SHARES: usize = CONDITIONS.len() + 2;
+/// In each share, rows with nothing and with one effect.
+const CONDITION_COUNTS: [usize; 2] = [4, 4];
 /// Rows with conditions.
-pub const CONDITION_ROWS: usize = CONDITIONS.len() * (CONDITION_COUNTS[0] + CONDITION_COUNTS[1]);
+pub const CONDITION_ROWS: usize = CONDITION_SHARES * (CONDITION_COUNTS[0] + CONDITION_COUNTS[1]);
 /// Has no factor in common with [`CONDITION_ROWS`].
 const CONDITION_STRIDE: usize = 29;
 
@@ -161,10 +163,10 @@ fn choose(law: Law, count: usize) -> usize {
 }
 
 /// A row of the matrix with conditions: each effect once, the first of them twice; strengths and
-/// robots go round within a condition.
+/// robots go round within a share.
 fn condition_plan(row: usize) -> Plan {
-    let (which, index) = (row % CONDITIONS.len(), row / CONDITIONS.len());
-    let condition = Some(CONDITIONS[which]);
+    let (which, index) = (row % CONDITION_SHARES, row / CONDITION_SHARES);
+    let condition = Some(CONDITIONS[which.min(CONDITIONS.len() - 1)]);
     let exact = (which / 2 + index).is_multiple_of(2);
     let Some(index) = index.checked_sub(CONDITION_COUNTS[0]) else {
         // four of six, a small one always among them
@@ -172,7 +174,7 @@ fn condition_plan(row: usize) -> Plan {
         let exact = (which + index).is_multiple_of(2);
         return Plan { exact, condition, ..counted(Kind::Nothing, &[], robot, 0, 0) };
     };
-    let count = which + CONDITIONS.len() * index;
+    let count = which + CONDITION_SHARES * index;
     let law = alone(count);
     let (robot, strength) = (choose(law, which + index), (which + index) % STRENGTHS.len());
     Plan { exact, condition, ..counted(Kind::Single, &[law], robot, strength, count) }

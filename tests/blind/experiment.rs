@@ -151,6 +151,8 @@ pub struct Sensors {
     pub steps: usize,
     /// Resolution of all encoders \[rad\].
     pub resolution: f64,
+    /// Standard deviation of their noise \[rad\].
+    pub encoder_noise: f64,
     /// Standard deviation of each measured torque [N m].
     pub torque_noise: Vec<f64>,
     /// Standard deviation of each measured rate [rad/s], if there are any.
@@ -191,7 +193,11 @@ pub fn measure(
         rows.push((*row, late * sensors.steps as f64));
         t.push((index as f64 + late) * step_s);
     }
-    let rounded = |value: f64| (value / sensors.resolution).round() * sensors.resolution;
+    let rounded = |value: f64, random: &mut Random| {
+        let noise = sensors.encoder_noise;
+        let value = if noise > 0.0 { value + noise * random.normal() } else { value };
+        (value / sensors.resolution).round() * sensors.resolution
+    };
     let mut log = Log {
         step_s,
         t,
@@ -203,9 +209,9 @@ pub fn measure(
     for joint in 0..run.q.len() {
         let here: Vec<&Hidden> = hidden.iter().filter(|one| one.joint == joint).collect();
         let q: Vec<f64> = rows.iter().map(|row| between(&run.q[joint], *row)).collect();
-        let seen = |q: &f64| rounded(q + here.iter().map(|one| one.angle_error(*q)).sum::<f64>());
-        log.q.push(q.iter().map(seen).collect());
-        let motor = rows.iter().map(|row| rounded(between(&run.motor[joint], *row)));
+        let error = |q: f64| here.iter().map(|one| one.angle_error(q)).sum::<f64>();
+        log.q.push(q.iter().map(|q| rounded(q + error(*q), random)).collect());
+        let motor = rows.iter().map(|row| rounded(between(&run.motor[joint], *row), random));
         log.motor.push(motor.collect());
         let noise = sensors.torque_noise[joint];
         let torque = |((row, part), q): (&(usize, f64), &f64)| {

@@ -2,9 +2,9 @@
 //! alone, and scored.
 
 use super::case::Case;
-use super::design::{Kind, Plan, ROWS, plan};
+use super::design::{CONDITION_ROWS, CONDITIONS_FROM, Kind, Plan, ROWS, plan};
 use super::hidden::Law;
-use super::score::{Answer, Named, Score, confusion, score, table};
+use super::score::{Answer, Named, Score, by_condition, confusion, score, table};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io;
@@ -19,9 +19,13 @@ pub struct Files<'a> {
     pub validate: &'a Path,
 }
 
-/// Numbers of the reported run.
-pub fn reported() -> std::ops::Range<u64> {
-    10_000..10_000 + ROWS as u64
+/// Where the numbers of the reported run begin.
+const REPORTED: u64 = 11_000;
+
+/// Numbers of the reported run: those of the first rows, then those with conditions of real logs.
+pub fn reported() -> impl Iterator<Item = u64> {
+    let behind = CONDITIONS_FROM + REPORTED;
+    (REPORTED..REPORTED + ROWS as u64).chain(behind..behind + CONDITION_ROWS as u64)
 }
 
 /// Generates a case below `folder`, has it diagnosed and scores the answer. The sealed answer is
@@ -41,12 +45,28 @@ pub fn examine(
     Ok(score(&generated, &answer))
 }
 
-/// Tables of a run.
+/// Tables of a run: of the first rows, and beside them of those with conditions of real logs.
 pub fn report(scores: &[Score]) -> String {
+    let (first, behind): (Vec<Score>, Vec<Score>) =
+        scores.iter().cloned().partition(|score| score.condition.is_none());
+    let mut text = String::new();
+    if !first.is_empty() {
+        text += &tables(&first);
+    }
+    if !behind.is_empty() {
+        let apart = if first.is_empty() { "" } else { "\n" };
+        text += &format!("{apart}## Conditions of real logs\n\n");
+        text += &format!("{}\n{}", by_condition(&behind), tables(&behind));
+    }
+    text
+}
+
+fn tables(scores: &[Score]) -> String {
     let missed = scores.iter().filter(|score| !score.right).map(|score| {
         let Score { number, kind, level, truth, said, found, false_names, .. } = score;
+        let condition = score.condition.map_or(String::new(), |one| format!(", {one:?}"));
         format!(
-            "| {number} | {kind:?} | {level} | {} | {} | {found} | {false_names} |\n",
+            "| {number} | {kind:?}{condition} | {level} | {} | {} | {found} | {false_names} |\n",
             truth.join(" + "),
             said.join(" + ")
         )

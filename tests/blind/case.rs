@@ -1,5 +1,6 @@
 //! A case: everything that its number stands for, and the plant that it makes.
 
+use super::conditions::Recording;
 use super::design::{Kind, Plan, STRENGTHS, plan};
 use super::experiment::{Control, Sensors};
 use super::hidden::{Hidden, Law, Shape};
@@ -32,6 +33,11 @@ pub struct Case {
     pub target: f64,
     /// Of forces that no sensor sees, for the two logs.
     pub seeds: [f64; 2],
+    pub recording: Recording,
+    /// Standard deviation of what drives give beside their commands against their largest torque.
+    pub relative_disturbance: f64,
+    /// The same \[N m\], once the largest torques are known.
+    pub disturbance: Vec<f64>,
 }
 
 impl Case {
@@ -70,10 +76,12 @@ impl Case {
         let sensors = Sensors {
             steps: [8, 8, 10][random.below(3)],
             resolution: std::f64::consts::TAU / bits.exp2(),
+            encoder_noise: 0.0,
             torque_noise: vec![0.0; truth.joints.len()],
             rate_noise: random.chance(0.3).then_some(2e-3),
         };
-        Self {
+        let condition = plan.condition;
+        let mut case = Self {
             number,
             truth,
             nominal,
@@ -86,7 +94,14 @@ impl Case {
             target: STRENGTHS[plan.strength].1,
             seeds: [random.unit(), random.unit()],
             plan,
+            recording: Recording::default(),
+            relative_disturbance: 0.0,
+            disturbance: Vec::new(),
+        };
+        if let Some(condition) = condition {
+            case.meet(condition);
         }
+        case
     }
 
     /// The plant of a log (0: training, 1: validation) with some of the effects.

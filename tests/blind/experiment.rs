@@ -1,5 +1,6 @@
 //! The closed loop: sampled PD control along a reference, and what sensors make of the run.
 
+use super::conditions::{Disturbance, Recording};
 use super::hidden::{Hidden, Law};
 use super::nominal::Nominal;
 use super::plant::Plant;
@@ -84,6 +85,7 @@ pub fn run(
     control: &Control,
     reference: &Reference,
     duration_s: f64,
+    disturbance: &mut Disturbance,
 ) -> Option<Run> {
     let joints = plant.rows.len();
     let before = (BEFORE_S / STEP_S).round() as usize;
@@ -112,6 +114,7 @@ pub fn run(
             run.motor[joint].push(motor[joint]);
             run.command[joint].push(command[joint]);
         }
+        disturbance.step(&mut state.push, step == 0);
         plant.step(&mut state, &command, STEP_S);
         let far = |q: &f64| q.is_nan() || q.abs() > 20.0;
         if state.y[..joints].iter().any(far) {
@@ -148,6 +151,8 @@ pub struct Sensors {
     pub steps: usize,
     /// Resolution of all encoders \[rad\].
     pub resolution: f64,
+    /// Standard deviation of their noise \[rad\].
+    pub encoder_noise: f64,
     /// Standard deviation of each measured torque [N m].
     pub torque_noise: Vec<f64>,
     /// Standard deviation of each measured rate [rad/s], if there are any.
@@ -157,21 +162,45 @@ pub struct Sensors {
 /// What was measured: a column per joint, a row per sample.
 #[derive(Clone, Debug)]
 pub struct Log {
+    /// Distance of rows on their grid.
     pub step_s: f64,
+    pub t: Vec<f64>,
     pub q: Vec<Vec<f64>>,
     pub qd: Option<Vec<Vec<f64>>>,
     pub motor: Vec<Vec<f64>>,
     pub tau: Vec<Vec<f64>>,
 }
 
-/// Measures a run, with the effects that are in sensors.
-pub fn measure(run: &Run, sensors: &Sensors, hidden: &[Hidden], random: &mut Random) -> Log {
+/// Measures a run, with the effects that are in sensors, at its grid of rows or as a recording has
+/// its times.
+pub fn measure(
+    run: &Run,
+    sensors: &Sensors,
+    hidden: &[Hidden],
+    random: &mut Random,
+    recording: &Recording,
+    random_times: &mut Random,
+) -> Log {
     let total = run.q[0].len();
     let after = (AFTER_S / STEP_S).round() as usize;
-    let rows: Vec<usize> = (run.before..total - after).step_by(sensors.steps).collect();
-    let rounded = |value: f64| (value / sensors.resolution).round() * sensors.resolution;
+    let grid: Vec<usize> = (run.before..total - after).step_by(sensors.steps).collect();
+    let late = recording.late(grid.len(), random_times);
+    let kept = recording.kept(grid.len(), random_times);
+    let step_s = sensors.steps as f64 * STEP_S;
+    let all = grid.iter().zip(&late).zip(&kept).enumerate().filter(|(_, (_, kept))| **kept);
+    let (mut rows, mut t) = (Vec::new(), Vec::new());
+    for (index, ((row, late), _)) in all {
+        rows.push((*row, late * sensors.steps as f64));
+        t.push((index as f64 + late) * step_s);
+    }
+    let rounded = |value: f64, random: &mut Random| {
+        let noise = sensors.encoder_noise;
+        let value = if noise > 0.0 { value + noise * random.normal() } else { value };
+        (value / sensors.resolution).round() * sensors.resolution
+    };
     let mut log = Log {
-        step_s: sensors.steps as f64 * STEP_S,
+        step_s,
+        t,
         q: Vec::new(),
         qd: sensors.rate_noise.map(|_| Vec::new()),
         motor: Vec::new(),
@@ -179,32 +208,47 @@ pub fn measure(run: &Run, sensors: &Sensors, hidden: &[Hidden], random: &mut Ran
     };
     for joint in 0..run.q.len() {
         let here: Vec<&Hidden> = hidden.iter().filter(|one| one.joint == joint).collect();
-        let q: Vec<f64> = rows.iter().map(|row| run.q[joint][*row]).collect();
-        let seen = |q: &f64| rounded(q + here.iter().map(|one| one.angle_error(*q)).sum::<f64>());
-        log.q.push(q.iter().map(seen).collect());
-        let motor = rows.iter().map(|row| rounded(run.motor[joint][*row]));
+        let q: Vec<f64> = rows.iter().map(|row| between(&run.q[joint], *row)).collect();
+        let error = |q: f64| here.iter().map(|one| one.angle_error(q)).sum::<f64>();
+        log.q.push(q.iter().map(|q| rounded(q + error(*q), random)).collect());
+        let motor = rows.iter().map(|row| rounded(between(&run.motor[joint], *row), random));
         log.motor.push(motor.collect());
         let noise = sensors.torque_noise[joint];
-        let torque = |(row, q): (&usize, &f64)| {
+        let torque = |((row, part), q): (&(usize, f64), &f64)| {
             let gain: f64 = here.iter().map(|one| one.torque_gain(*q)).product();
-            let mean = mean_torque(&run.command[joint], *row, sensors.steps, &here);
+            let middle = *row as f64 + part;
+            let mean = mean_torque(&run.command[joint], middle, sensors.steps, &here);
             mean * gain + noise * random.normal()
         };
         log.tau.push(rows.iter().zip(&q).map(torque).collect());
         if let (Some(columns), Some(noise)) = (&mut log.qd, sensors.rate_noise) {
-            let rates = rows.iter().map(|row| run.qd[joint][*row] + noise * random.normal());
+            let rates = &run.qd[joint];
+            let rates = rows.iter().map(|row| between(rates, *row) + noise * random.normal());
             columns.push(rates.collect());
         }
     }
     log
 }
 
-/// The torque over the window of one sample around a row: what a sensor with that bandwidth says.
-fn mean_torque(command: &[f64], row: usize, steps: usize, here: &[&Hidden]) -> f64 {
+/// A signal at a step and a part of one further on: on the cubic through four neighbours.
+fn between(signal: &[f64], (step, part): (usize, f64)) -> f64 {
+    if part == 0.0 {
+        return signal[step];
+    }
+    let first = (step as f64 + part).floor() as usize - 1;
+    let x = step as f64 + part - first as f64;
+    let others = |k: usize| (0..4).filter(move |other| *other != k).map(|other| other as f64);
+    let weight =
+        |k: usize| -> f64 { others(k).map(|other| (x - other) / (k as f64 - other)).product() };
+    (0..4).map(|k| weight(k) * signal[first + k]).sum()
+}
+
+/// The torque over the window of one sample around a step: what a sensor with that bandwidth says.
+fn mean_torque(command: &[f64], middle: f64, steps: usize, here: &[&Hidden]) -> f64 {
     let late = here.iter().find(|hidden| hidden.law == Law::TorqueDelay);
     let window = |shift: f64| {
         // from cumulated sums one would lose digits; windows are short
-        let begin = row as f64 - shift - 0.5 * steps as f64;
+        let begin = middle - shift - 0.5 * steps as f64;
         let (whole, part) = (begin.floor(), begin - begin.floor());
         let first = (whole.max(0.0) as usize).min(command.len() - 1 - steps.min(command.len() - 1));
         let inner: f64 = command[first + 1..first + steps].iter().sum();

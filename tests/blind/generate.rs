@@ -1,6 +1,7 @@
 //! From a case to its files: sizes of effects by simulation, two logs, a model, a sealed answer.
 
 use super::case::Case;
+use super::conditions::{Disturbance, Recording};
 use super::design::{Kind, STRENGTHS};
 use super::experiment::{Log, Run, measure, run};
 use super::hidden::{Hidden, Law, Site};
@@ -40,12 +41,23 @@ impl Case {
             &self.control,
             &self.references[log],
             self.duration_s,
+            &mut Disturbance::new(&self.disturbance, self.random("disturbance", log)),
         )
     }
 
+    /// Random numbers of one of the two logs.
+    fn random(&self, of: &str, log: usize) -> Random {
+        Random::new(self.number, &format!("{of} of {}", ["train", "validate"][log]))
+    }
+
+    /// A log on the grid of its rows, as strengths are measured.
     fn measured(&self, run: &Run, hidden: &[Hidden], log: usize) -> Log {
-        let label = ["noise of train", "noise of validate"][log];
-        measure(run, &self.sensors, hidden, &mut Random::new(self.number, label))
+        self.recorded(run, hidden, log, &Recording::default())
+    }
+
+    fn recorded(&self, run: &Run, hidden: &[Hidden], log: usize, recording: &Recording) -> Log {
+        let [mut noise, mut times] = ["noise", "times"].map(|of| self.random(of, log));
+        measure(run, &self.sensors, hidden, &mut noise, recording, &mut times)
     }
 
     /// The true robot with the stated uncertainty: strength is not a matter of wrong numbers. It
@@ -131,12 +143,21 @@ impl Case {
         }
         let noises = run.command.iter().map(|command| self.relative_noise * rms(command));
         self.sensors.torque_noise = noises.collect();
+        if self.relative_disturbance > 0.0 {
+            let peak =
+                |command: &Vec<f64>| command.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+            let sizes = run.command.iter().map(|command| self.relative_disturbance * peak(command));
+            self.disturbance = sizes.collect();
+        }
     }
 
     /// Simulates the case.
     pub fn generate(mut self) -> Generated {
-        let plain = self.run(&[], 0).expect("the plain robot follows its reference");
+        let mut plain = self.run(&[], 0).expect("the plain robot follows its reference");
         self.fill_shapes(&plain);
+        if !self.disturbance.is_empty() {
+            plain = self.run(&[], 0).expect("the disturbed robot follows its reference");
+        }
         let mut strengths = Vec::new();
         let mut floor = self.left(&self.measured(&plain, &[], 0), false);
         if self.hidden.len() == 1 && self.hidden[0].law.is_lacking() {
@@ -165,7 +186,7 @@ impl Case {
         let hidden = self.hidden.clone();
         let [train, validate] = [0, 1].map(|log| {
             let run = self.run(&hidden, log).expect("it ran before");
-            self.measured(&run, &hidden, log)
+            self.recorded(&run, &hidden, log, &self.recording)
         });
         Generated { case: self, train, validate, strengths, floor }
     }
@@ -246,7 +267,7 @@ impl Generated {
     }
 
     fn table(&self, log: &Log) -> String {
-        let joints = &self.case.truth.joints;
+        let (joints, recording) = (&self.case.truth.joints, &self.case.recording);
         let named = |prefix: &str, joint: usize| format!("{prefix}_{}", joints[joint].name);
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
         for joint in 0..joints.len() {
@@ -268,9 +289,11 @@ impl Generated {
             text.push_str(name);
         }
         for row in 0..log.q[0].len() {
-            let _ = write!(text, "\n{:.5}", row as f64 * log.step_s);
+            let decimals = if recording.jitter > 0.0 { 7 } else { 5 };
+            let _ = write!(text, "\n{:.decimals$}", log.t[row]);
             for (_, column) in &columns {
-                let _ = write!(text, ",{:.8}", column[row]);
+                text.push(',');
+                text.push_str(&recording.digits.cell(column[row]));
             }
         }
         text.push('\n');
@@ -291,7 +314,7 @@ impl Generated {
             .zip(&self.strengths)
             .map(|(hidden, strength)| self.effect(hidden, *strength))
             .collect();
-        json!({
+        let mut answer = json!({
             "case": case.number,
             "kind": format!("{:?}", case.plan.kind),
             "robot": ROBOTS[case.plan.robot],
@@ -302,7 +325,17 @@ impl Generated {
             "floor_nm": self.floor[..case.truth.joints.len()],
             "effects": effects,
             "laps_s": [case.references[0].lap_s, case.references[1].lap_s],
-        })
+        });
+        if let Some(condition) = case.plan.condition {
+            answer["condition"] = json!({
+                "name": format!("{condition:?}"),
+                "recording": format!("{:?}", case.recording),
+                "resolution": case.sensors.resolution,
+                "disturbance_nm": case.disturbance,
+                "friction_std": case.nominal.friction_std,
+            });
+        }
+        answer
     }
 
     fn effect(&self, hidden: &Hidden, strength: f64) -> Value {

@@ -3,6 +3,7 @@
 
 pub mod battery;
 pub mod case;
+pub mod conditions;
 pub mod design;
 pub mod experiment;
 pub mod filter;

@@ -12,6 +12,8 @@ pub struct Nominal {
     pub robot: Robot,
     /// Standard deviation that the file states for every number, relative.
     pub relative_std: f64,
+    /// The same of viscous and Coulomb friction.
+    pub friction_std: f64,
     /// Whether the model has Coriolis and centrifugal terms.
     pub coriolis: bool,
 }
@@ -45,7 +47,7 @@ impl Nominal {
     pub fn draw(robot: &Robot, exact: bool, random: &mut Random) -> Self {
         let mut robot = robot.clone();
         if exact {
-            return Self { robot, relative_std: 0.01, coriolis: true };
+            return Self { robot, relative_std: 0.01, friction_std: 0.01, coriolis: true };
         }
         let std = 0.05;
         for joint in &mut robot.joints {
@@ -56,7 +58,7 @@ impl Nominal {
             joint.drive.viscous *= 1.0 + std * random.between(-1.0, 1.0);
             joint.drive.coulomb *= 1.0 + std * random.between(-1.0, 1.0);
         }
-        Self { robot, relative_std: std, coriolis: true }
+        Self { robot, relative_std: std, friction_std: std, coriolis: true }
     }
 
     /// Number of equations: one for each joint's torque, one for each spring.
@@ -96,7 +98,7 @@ impl Nominal {
     pub fn deviations(&self) -> Vec<Robot> {
         let mut changed = Vec::new();
         let std = self.relative_std;
-        let mut push = |change: &dyn Fn(&mut Joint) -> &mut f64, joint: usize| {
+        let mut push = |change: &dyn Fn(&mut Joint) -> &mut f64, joint: usize, std: f64| {
             let mut robot = self.robot.clone();
             let number = change(&mut robot.joints[joint]);
             if *number != 0.0 {
@@ -105,13 +107,13 @@ impl Nominal {
             }
         };
         for joint in 0..self.robot.joints.len() {
-            push(&|one| &mut one.row.body.mass, joint);
+            push(&|one| &mut one.row.body.mass, joint, std);
             for axis in 0..3 {
-                push(&|one| &mut one.row.body.com[axis], joint);
-                push(&|one| &mut one.row.body.inertia[(axis, axis)], joint);
+                push(&|one| &mut one.row.body.com[axis], joint, std);
+                push(&|one| &mut one.row.body.inertia[(axis, axis)], joint, std);
             }
-            push(&|one| &mut one.drive.rotor, joint);
-            push(&|one| &mut one.drive.viscous, joint);
+            push(&|one| &mut one.drive.rotor, joint, std);
+            push(&|one| &mut one.drive.viscous, joint, self.friction_std);
         }
         for joint in self.elastic_joints() {
             let mut robot = self.robot.clone();
@@ -146,11 +148,7 @@ impl Nominal {
     }
 
     fn number(&self, value: f64) -> Value {
-        if value == 0.0 {
-            json!(0)
-        } else {
-            json!({"value": value, "std": value.abs() * self.relative_std})
-        }
+        stated(value, self.relative_std)
     }
 
     fn link(&self, joint: &Joint) -> Value {
@@ -201,12 +199,12 @@ impl Nominal {
         let drive = &joint.drive;
         let mut file = json!({"gear_ratio": drive.gear});
         let entries = [
-            ("rotor_inertia", drive.rotor),
-            ("viscous", drive.viscous),
-            ("coulomb", drive.coulomb),
+            ("rotor_inertia", drive.rotor, self.relative_std),
+            ("viscous", drive.viscous, self.friction_std),
+            ("coulomb", drive.coulomb, self.friction_std),
         ];
-        for (name, value) in entries.into_iter().filter(|(_, value)| *value != 0.0) {
-            file[name] = self.number(value);
+        for (name, value, std) in entries.into_iter().filter(|(_, value, _)| *value != 0.0) {
+            file[name] = stated(value, std);
         }
         if let Some(spring) = drive.spring {
             file["series_elastic"] = json!({
@@ -217,6 +215,11 @@ impl Nominal {
         }
         file
     }
+}
+
+/// A number with its relative standard deviation; a zero is meant to be one.
+fn stated(value: f64, relative_std: f64) -> Value {
+    if value == 0.0 { json!(0) } else { json!({"value": value, "std": value.abs() * relative_std}) }
 }
 
 fn inertia_of(body: &Value) -> Map<String, Value> {

@@ -62,6 +62,8 @@ pub struct State {
     pub y: Vec<f64>,
     slide: Vec<f64>,
     load: Vec<f64>,
+    /// Torques of the drives beside their commands [N m].
+    pub push: Vec<f64>,
 }
 
 type Matrix = [[f64; MOST]; MOST];
@@ -108,7 +110,8 @@ impl Plant {
         }
         let sign = |v: &f64| if *v == 0.0 { 0.0 } else { v.signum() };
         let slide = qd.iter().map(sign).collect();
-        State { t, y, slide, load: vec![0.0; self.joints()] }
+        let [load, push] = [0, 1].map(|_| vec![0.0; self.joints()]);
+        State { t, y, slide, load, push }
     }
 
     /// Angles of the drives in the joints' units.
@@ -199,7 +202,7 @@ impl Plant {
         let mut force = [0.0; MOST];
         for joint in 0..joints {
             force[joint] -= bias[joint] + pushed[joint];
-            let given = self.delivered(joint, command[joint], states);
+            let given = self.delivered(joint, command[joint], states) + state.push[joint];
             force[self.drive(joint)] += given - self.viscous[joint] * motor_rate[joint];
         }
         for one in &self.transmissions {

@@ -1,6 +1,7 @@
 //! Scores of answers: names and joints, false discoveries, refusals, gaps, intervals, confusion.
 
 use super::case::Case;
+use super::conditions::{CONDITIONS, Condition};
 use super::design::Kind;
 use super::generate::Generated;
 use super::hidden::{Hidden, Site};
@@ -36,6 +37,10 @@ pub struct Answer {
 pub struct Score {
     pub number: u64,
     pub kind: Kind,
+    /// Of the rows with conditions of real logs.
+    pub condition: Option<Condition>,
+    /// Whether the answer is that nothing is missing.
+    pub is_clean: bool,
     /// `strong`, `medium`, `weak`, or `hidden` below what can be seen.
     pub level: &'static str,
     /// What was hidden, by catalogue name (or law, outside the catalogue).
@@ -136,6 +141,8 @@ pub fn score(generated: &Generated, answer: &Answer) -> Score {
     Score {
         number: case.number,
         kind: case.plan.kind,
+        condition: case.plan.condition,
+        is_clean: answer.verdict == "nothing_missing",
         level: level(strength),
         truth: case.hidden.iter().map(label).collect(),
         said: named.iter().map(said).collect(),
@@ -236,6 +243,8 @@ pub fn table(scores: &[Score]) -> String {
     line("pairs: both named", both, seen().count());
     let false_discoveries = of(Kind::Nothing).filter(|score| !score.right).count();
     line("nothing hidden: false discoveries", false_discoveries, of(Kind::Nothing).count());
+    let clean = of(Kind::Nothing).filter(|score| score.is_clean).count();
+    line("nothing hidden: nothing missing, it says", clean, of(Kind::Nothing).count());
     line(
         "outside the catalogue: refused or unnamed",
         rights(Kind::Outside),
@@ -253,6 +262,31 @@ pub fn table(scores: &[Score]) -> String {
         text += &format!(
             "\nMedian share of the explainable gap closed: {median:.1} % \
              (95 % interval {low:.1} .. {high:.1} %)\n"
+        );
+    }
+    text
+}
+
+/// How it went under each condition of real logs: effects named, and of nothing hidden false
+/// discoveries and answers that nothing is missing.
+pub fn by_condition(scores: &[Score]) -> String {
+    let mut text = String::from(
+        "| condition | name and joint | and nothing else | false discoveries | nothing missing |\n\
+         |---|---:|---:|---:|---:|\n",
+    );
+    for condition in CONDITIONS {
+        let these = scores.iter().filter(|score| score.condition == Some(condition));
+        let (nothing, hidden): (Vec<&Score>, Vec<&Score>) =
+            these.partition(|score| score.kind == Kind::Nothing);
+        let share = |of: &[&Score], is_it: &dyn Fn(&Score) -> bool| {
+            format!("{} of {}", of.iter().filter(|score| is_it(score)).count(), of.len())
+        };
+        text += &format!(
+            "| {condition:?} | {} | {} | {} | {} |\n",
+            share(&hidden, &|score| score.found > 0),
+            share(&hidden, &|score| score.right),
+            share(&nothing, &|score| !score.right),
+            share(&nothing, &|score| score.is_clean)
         );
     }
     text

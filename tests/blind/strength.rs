@@ -80,7 +80,7 @@ pub fn left(log: &Log, nominal: &Nominal, noise: &[f64]) -> Vec<f64> {
     let right: Vec<f64> = stacked(equations, &kept, &weights, |joint, row| residual[joint][row]);
     let mut columns = smooth_columns(nominal, &kept, &weights, motion);
     for joint in 0..joints {
-        let level = nominal.robot.joint_side(joint)[2] * nominal.relative_std;
+        let level = nominal.robot.joint_side(joint)[2] * nominal.friction_std;
         let signs: Vec<f64> = directions[joint].iter().map(|sign| level * sign).collect();
         let signs = low.apply(&signs);
         let of = |at: usize, row: usize| if at == joint { signs[row] } else { 0.0 };

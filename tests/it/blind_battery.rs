@@ -81,7 +81,8 @@ fn files_say_what_the_plants_are_made_of() {
     let mut random = Random::new(7, "states");
     for number in 0..ROBOTS.len() {
         let robot = robot(number);
-        let nominal = Nominal { robot: robot.clone(), relative_std: 0.05, coriolis: true };
+        let whole = Nominal::draw(&robot, true, &mut random);
+        let nominal = Nominal { relative_std: 0.05, ..whole };
         let text = nominal.file().to_string();
         let read = model::read(robot.name, text.as_bytes()).expect("a sound file");
         let mut plant = LoadedPlant::new(&read, &[]).expect("a plant");
@@ -393,7 +394,8 @@ fn a_cable_on_a_post_follows_eulers_belt() {
 fn the_suite_has_every_kind_and_no_reported_case() {
     let numbers = suite();
     assert_eq!(numbers.iter().collect::<BTreeSet<_>>().len(), 31);
-    assert!(numbers.iter().all(|number| !reported().contains(number) && *number < 1000));
+    assert!(numbers.iter().all(|number| *number < 1000));
+    assert!(reported().all(|number| !numbers.contains(&number)));
     let kinds =
         [Kind::Single, Kind::Pair, Kind::Nothing, Kind::Outside, Kind::CannotTell, Kind::Thesis];
     for kind in kinds {

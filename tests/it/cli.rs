@@ -26,6 +26,7 @@ mod mutated_files;
 mod outputs;
 mod printed;
 mod readme;
+mod real_data;
 mod simulate;
 mod simulate_summary;
 mod simulated_again;

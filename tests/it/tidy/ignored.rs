@@ -19,8 +19,10 @@ enum Runs {
     Ci,
     /// `.ci/long`.
     Long,
-    /// People who have the measurements: `EMPS_DATA` names their folder.
+    /// People who have the measurements: `DENAVIT_EMPS` names their folder.
     Measurements,
+    /// People who have logs of several robots: `DENAVIT_REAL_DATA` names their folder.
+    RealData,
 }
 
 const fn ignored(test: &'static str, reason: &'static str, runs: Runs) -> Ignored {
@@ -29,9 +31,25 @@ const fn ignored(test: &'static str, reason: &'static str, runs: Runs) -> Ignore
 
 const NO_MEASUREMENTS: &str = "needs the measurements, which are not part of the repository";
 
-const IGNORED: [Ignored; 8] = [
+const IGNORED: [Ignored; 12] = [
     ignored("what_is_left_out_of_a_real_axis_is_named", NO_MEASUREMENTS, Runs::Measurements),
     ignored("the_published_parameters_and_errors_are_reached", NO_MEASUREMENTS, Runs::Measurements),
+    ignored(
+        "a_real_axis_has_friction_that_differs_by_its_direction",
+        NO_MEASUREMENTS,
+        Runs::RealData,
+    ),
+    ignored("a_real_pendulum_has_coulomb_friction", NO_MEASUREMENTS, Runs::RealData),
+    ignored(
+        "logs_that_show_nothing_of_a_real_pendulum_are_refused",
+        NO_MEASUREMENTS,
+        Runs::RealData,
+    ),
+    ignored(
+        "a_real_arm_has_viscous_and_coulomb_friction_in_all_joints",
+        NO_MEASUREMENTS,
+        Runs::RealData,
+    ),
     ignored("documents_compile_to_at_most_forty_pages", "needs pdflatex", Runs::Ci),
     ignored("documents_of_f_and_b_compile", "needs pdflatex", Runs::Ci),
     ignored(
@@ -93,6 +111,10 @@ fn what_is_left_out_of_the_suite_is_run_by_a_script() {
             // both of them are tests of LaTeX, which run by the name of their module
             Runs::Ci => ci.contains("--ignored latex::"),
             Runs::Long => long.contains(known.test),
+            // all tests of their module
+            Runs::RealData => {
+                long.contains("--ignored real_data::") && long.contains("DENAVIT_REAL_DATA")
+            }
             Runs::Measurements => long.contains(known.test) && long.contains("DENAVIT_EMPS"),
         };
         if !is_run {

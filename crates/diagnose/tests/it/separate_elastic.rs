@@ -2,6 +2,7 @@
 //! motor is told along the motion that is computed for it, followed by the plant of the blind
 //! battery.
 
+use denavit_blind::conditions::{Disturbance, Recording};
 use denavit_blind::experiment::{Control, Log, Sensors, measure, run};
 use denavit_blind::hidden::{Hidden, Law, Shape};
 use denavit_blind::nominal::Nominal;
@@ -76,15 +77,20 @@ fn measured(log: &Log, leg: &Robot, resolution: f64) -> MeasuredLog {
 /// The diagnosis of two motions.
 fn diagnosed(references: [&Reference; 2]) -> (Diagnosis, Vec<Candidate>) {
     let leg = leg();
-    let nominal = Nominal { robot: leg.clone(), relative_std: 0.01, coriolis: true };
+    let nominal =
+        Nominal { robot: leg.clone(), relative_std: 0.01, friction_std: 0.01, coriolis: true };
     let control =
         Control { steps: 4, loop_rate: 40.0, damping: 0.9, gravity: true, friction: false };
     let resolution = 1e-5;
     let noise = vec![0.03; leg.joints.len()];
-    let sensors = Sensors { steps: 8, resolution, torque_noise: noise, rate_noise: None };
+    let sensors =
+        Sensors { steps: 8, resolution, encoder_noise: 0.0, torque_noise: noise, rate_noise: None };
     let logs = [("one", references[0]), ("other", references[1])].map(|(seed, reference)| {
-        let run = run(&truth(&leg), &nominal, &control, reference, 15.0).expect("it follows");
-        let log = measure(&run, &sensors, &[], &mut Random::new(1, seed));
+        let mut calm = Disturbance::new(&[], Random::new(1, "calm"));
+        let run = run(&truth(&leg), &nominal, &control, reference, 15.0, &mut calm);
+        let (run, whole) = (run.expect("it follows"), Recording::default());
+        let mut times = Random::new(1, "times");
+        let log = measure(&run, &sensors, &[], &mut Random::new(1, seed), &whole, &mut times);
         measured(&log, &leg, resolution)
     });
     let file = model(&nominal).to_string();

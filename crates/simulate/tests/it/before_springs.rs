@@ -190,7 +190,9 @@ fn leg() -> (LoadedPlant, Plant) {
     let [mu, fc, vs, k, q_0, d] = LEG;
     let mut leg = robot(5);
     leg.joints.iter_mut().for_each(|joint| joint.drive.coulomb = 0.0);
-    let mut file = Nominal { robot: leg.clone(), relative_std: 0.01, coriolis: true }.file();
+    let mut file =
+        Nominal { robot: leg.clone(), relative_std: 0.01, friction_std: 0.01, coriolis: true }
+            .file();
     let one = |name: &str, link: &str, values: Value| {
         let at = json!({"link": link});
         json!({"effect": name, "at": at, "parameters": values})

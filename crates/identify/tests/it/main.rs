@@ -6,6 +6,7 @@ mod excite;
 mod forward;
 mod friction;
 mod leg;
+mod log;
 mod misread;
 mod noise;
 mod regression;

@@ -2,7 +2,6 @@
 
 use super::{Conditioned, Piece, rate};
 use crate::log::JointSignals;
-use crate::resolution::WHITE;
 use denavit_numerics::Random;
 
 /// The order of the differences that noise is read from: of smooth signals they are next to
@@ -11,6 +10,10 @@ const ORDER: usize = 6;
 
 /// Variances of differences of white noise of variance 1: of this order, and of the one below.
 const GAINS: [f64; 2] = [924.0, 252.0];
+
+/// What white noise has of the ratio of these, at least: differences of a smooth signal become
+/// smaller with each order.
+const WHITE: f64 = 0.9;
 
 /// Samples that are looked at, in so many blocks.
 const BLOCK: usize = 256;
@@ -57,17 +60,10 @@ pub(super) fn position_noise(
     resolution: Option<f64>,
 ) -> (f64, Option<Encoder>) {
     let level = signals.q.first().copied().unwrap_or(0.0);
-    let raw = &signals.resolution.position;
-    // steps that are said may be wider than printed digits, and unseen
-    let said = resolution.filter(|_| raw.encoder_step.is_none());
-    let step = signals.step.into_iter().chain(said).reduce(f64::max);
-    let encoder = step.map(|step| Encoder { step, level });
-    let of_steps = encoder.map_or(raw.rounding_std(), |encoder| encoder.step / 12.0_f64.sqrt());
-    // samples that were interpolated have less noise than was measured
-    match white_noise(&signals.q).into_iter().chain(raw.white_std).reduce(f64::max) {
-        // more than the steps make is there, once more at least: something else is most of it
-        Some(white) if white * white > 2.0 * of_steps * of_steps => (white, None),
-        Some(white) if white > of_steps => (white, encoder),
+    let encoder = signals.step.or(resolution).map(|step| Encoder { step, level });
+    let of_steps = encoder.map_or(0.0, |encoder| encoder.step / 12.0_f64.sqrt());
+    match white_noise(&signals.q) {
+        Some(white) if white > of_steps => (white, None),
         _ => (of_steps, encoder),
     }
 }

@@ -14,6 +14,9 @@ const FASTEST_STEP_S: f64 = 1e-6;
 /// Seconds in an hour.
 const HOUR_S: f64 = 3600.0;
 
+/// A turning joint without limits hardly goes further \[rad\].
+const LARGEST_ANGLE_RAD: f64 = 20.0;
+
 /// Changes of a torque below this are rounding [N m, N].
 const ROUNDING: f64 = 1e-12;
 
@@ -86,17 +89,22 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
     let [low, high] = range(&signals.q);
     let column = format!("q_{}", joint.name);
     let largest = low.abs().max(high.abs());
-    // A joint without limits may turn on and on: its velocities tell its unit, not its size.
-    if let Some(limits) = joint.position_limits {
-        let slack = 0.02 * (limits[1] - limits[0]);
-        let beyond = [low < limits[0] - slack, high > limits[1] + slack];
-        let reach = limits[0].abs().max(limits[1].abs());
-        if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
-            found.suspicions.push(Suspicion::Degrees { column, largest });
-        } else if beyond[0] || beyond[1] {
-            let value = if beyond[0] { low } else { high };
-            found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
+    match joint.position_limits {
+        Some(limits) => {
+            let slack = 0.02 * (limits[1] - limits[0]);
+            let beyond = [low < limits[0] - slack, high > limits[1] + slack];
+            let reach = limits[0].abs().max(limits[1].abs());
+            if !joint.slides && largest > 1.5 * reach && largest > 6.0 {
+                found.suspicions.push(Suspicion::Degrees { column, largest });
+            } else if beyond[0] || beyond[1] {
+                let value = if beyond[0] { low } else { high };
+                found.suspicions.push(Suspicion::BeyondLimits { column, value, limits });
+            }
         }
+        None if !joint.slides && largest > LARGEST_ANGLE_RAD => {
+            found.suspicions.push(Suspicion::Degrees { column, largest });
+        }
+        None => {}
     }
     if let Some(step) = signals.step {
         let own = (format!("q_{}", joint.name), step);
@@ -252,4 +260,103 @@ fn slope(a: &[f64], b: &[f64]) -> f64 {
         aa += (x - at) * (x - at);
     }
     ab / aa
+}
+
+/// Changes of a position that tell the step of its encoder, at least: of one that moves from sample
+/// to sample, and of one that mostly does not.
+const FEWEST_MOVES: usize = 20;
+const FEWEST_STEPS: usize = 5;
+
+/// Steps that the smallest difference of a position that is always fast may be.
+const MOST_OF_LEAST: u32 = 5;
+
+/// The step of an encoder: what all differences of neighbouring samples are multiples of.
+pub(super) fn encoder_step(q: &[f64]) -> Option<f64> {
+    let differences = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let size = range(q).into_iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let tiny = 1e-12 * size.max(1e-6);
+    let moved: Vec<f64> = differences.filter(|&d| d > tiny).take(20_000).collect();
+    // where a position rests but for some steps, few tell their size
+    let is_staircase = moved.len() >= FEWEST_STEPS && moved.len() * 10 < q.len();
+    if moved.len() < FEWEST_MOVES && !is_staircase {
+        return None;
+    }
+    let least = moved.iter().copied().fold(f64::INFINITY, f64::min);
+    (1..=MOST_OF_LEAST).find_map(|times| of_multiples(&moved, least / f64::from(times), size))
+}
+
+/// The step near a first guess that differences are multiples of; none if they are not, or if what
+/// printed positions of this size are rounded to is no less.
+fn of_multiples(moved: &[f64], guess: f64, size: f64) -> Option<f64> {
+    // Larger multiples know the step better than the digits of one.
+    let step = (1..=3).fold(guess, |step, digits| {
+        let small = moved.iter().filter(|&&d| d < 10.0_f64.powi(digits) * step);
+        let (sum, count) = small.fold((0.0, 0.0), |(sum, count), d| {
+            let times = (d / step).round();
+            (sum + d * times, count + times * times)
+        });
+        sum / count
+    });
+    let rounding = 1e-9 * size;
+    let is_multiple = |d: &&f64| {
+        let times = **d / step;
+        (times - times.round()).abs() < 0.02 + 2.0 * rounding / step && times < 1e5
+    };
+    // Of a smooth signal hardly any difference is a multiple of its smallest one.
+    let multiples = moved.iter().filter(is_multiple).count();
+    (step >= 20.0 * rounding && multiples as f64 > 0.995 * moved.len() as f64).then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn sampled(step: f64, digits: Option<i32>) -> Vec<f64> {
+        let at = |k: usize| {
+            let t = 1e-3 * k as f64;
+            let q = 0.8 * (TAU * 0.3 * t).sin() + 0.3 * (TAU * 0.7 * t).cos();
+            let stepped = if step > 0.0 { (q / step).round() * step } else { q };
+            let scale = digits.map_or(1.0, |digits| 10.0_f64.powi(digits));
+            if digits.is_some() { (stepped * scale).round() / scale } else { stepped }
+        };
+        (0..8000).map(at).collect()
+    }
+
+    /// Steps are found to far more digits than one difference has, in full precision and printed
+    /// to 7 digits, and where hardly any difference is as small as a step.
+    #[test]
+    fn steps_of_encoders_are_found() {
+        for step in [TAU / 4000.0, TAU / 20_000.0, TAU / 200_000.0, 1e-5, 2e-6, 1e-6] {
+            let found = encoder_step(&sampled(step, None)).expect("steps");
+            assert!((found / step - 1.0).abs() < 1e-9, "{step}: {found}");
+        }
+        let printed = sampled(TAU / 20_000.0, Some(7));
+        let found = encoder_step(&printed).expect("steps");
+        assert!((found / (TAU / 20_000.0) - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    /// Ten steps in three thousand samples.
+    #[test]
+    fn steps_of_slow_motion_are_found() {
+        let at = |k: usize| 0.01 * (1e-3 * k as f64).sin();
+        let slow: Vec<f64> = (0..3000).map(|k| (at(k) / 1e-3).round() * 1e-3).collect();
+        let found = encoder_step(&slow).expect("steps");
+        assert!((found / 1e-3 - 1.0).abs() < 1e-9, "{found}");
+        // at rest, but for a smooth move of ten samples
+        let moved = |k: usize| 0.1 * (0.1 * k.clamp(1000, 1010) as f64).sin();
+        let smooth: Vec<f64> = (0..3000).map(moved).collect();
+        assert_eq!(encoder_step(&smooth), None);
+    }
+
+    #[test]
+    fn smooth_noisy_and_resting_signals_have_none() {
+        assert_eq!(encoder_step(&sampled(0.0, None)), None);
+        let mut random = denavit_numerics::Random::new(9);
+        let noisy: Vec<f64> =
+            sampled(0.0, None).into_iter().map(|q| q + 1e-4 * random.normal()).collect();
+        assert_eq!(encoder_step(&noisy), None);
+        assert_eq!(encoder_step(&[0.3; 500]), None);
+        assert_eq!(encoder_step(&[0.3]), None);
+    }
 }

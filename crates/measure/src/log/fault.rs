@@ -108,7 +108,7 @@ pub enum LogRemark {
     /// Cells without a number were filled in.
     FilledCells { column: String, count: usize },
     /// Samples were brought to equal distances.
-    Resampled { jitter: f64, largest: f64 },
+    Resampled { jitter: f64 },
     /// A joint that does not move.
     Resting { joint: String },
     /// A joint that does not move, and whose torque does not follow its load.
@@ -379,7 +379,7 @@ fn write_steps(f: &mut fmt::Formatter<'_>, columns: &[(String, f64)]) -> fmt::Re
     if largest > 1.01 * least {
         write!(f, " to {largest:.3e}")?;
     }
-    write!(f, ", as of an encoder or of printed digits")
+    write!(f, ", as of an encoder")
 }
 
 impl fmt::Display for LogRemark {
@@ -397,12 +397,10 @@ impl fmt::Display for LogRemark {
             Self::FilledCells { column, count } => {
                 write!(f, "{count} cells of `{column}` without a number: filled in")
             }
-            Self::Resampled { jitter, largest } => write!(
+            Self::Resampled { jitter } => write!(
                 f,
-                "distances of samples scatter by {:.1} %, by {:.1} % at most: interpolated at \
-                 equal distances",
-                100.0 * jitter,
-                100.0 * largest
+                "distances of samples scatter by {:.1} %: interpolated at equal distances",
+                100.0 * jitter
             ),
             Self::Resting { joint } => {
                 write!(

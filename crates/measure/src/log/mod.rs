@@ -10,17 +10,11 @@ mod check;
 mod fault;
 mod jumps;
 mod mapping;
-mod measured;
 mod reader;
 mod repair;
-mod timing;
 
 pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
 pub use mapping::{ColumnMapping, ColumnSource, MappingError};
-pub use measured::{JointSignals, MeasuredLog};
-pub use timing::Timing;
-
-use crate::resolution::{Resolution, printed_spacing};
 
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::TorqueSide;
@@ -28,6 +22,110 @@ use denavit_plants::regression::RegressionJoint;
 use denavit_simulate::model_of_header;
 use reader::{Head, Lines, Table, read_head, read_rows};
 use std::io::BufRead;
+
+/// What was measured of a joint, one entry for each sample.
+///
+/// Torques are those that the joint needs, positive along its axis. A log has them so; or as those
+/// of the motors of stiff drives, if its header says `torque_side: motor`, or if it says nothing
+/// and the model's `torque_side` is the motor's. [`read_log`] is the one place where gear ratios
+/// count.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointSignals {
+    /// Position [rad, m].
+    pub q: Vec<f64>,
+    /// Rate, if it was logged [rad/s, m/s].
+    pub qd: Option<Vec<f64>>,
+    /// Acceleration, if it was logged [rad/s^2, m/s^2].
+    pub qdd: Option<Vec<f64>>,
+    /// Torque [N m, N].
+    pub tau: Option<Vec<f64>>,
+    /// Reference position [rad, m].
+    pub reference: Option<Vec<f64>>,
+    /// Angle of the motor before a spring, before the gear \[rad\].
+    pub motor: Option<Vec<f64>>,
+    /// Torque of that motor, before the gear \[N m\].
+    pub motor_torque: Option<Vec<f64>>,
+    /// The step of the encoder, if the position has steps [rad, m].
+    pub step: Option<f64>,
+    /// The step of the motor's encoder \[rad\].
+    pub motor_step: Option<f64>,
+}
+
+/// A log at equal distances of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeasuredLog {
+    /// The name of the file.
+    pub file: String,
+    /// What the log says of itself.
+    pub header: Vec<(String, String)>,
+    /// The time of the first sample \[s\].
+    pub start_s: f64,
+    /// The distance of samples \[s\].
+    pub step_s: f64,
+    /// The joints, in the order of the model.
+    pub joints: Vec<JointSignals>,
+    /// Forces of contacts in the world \[N\], x, y, z of each point of the model that the log has.
+    pub contacts: Vec<(String, [Vec<f64>; 3])>,
+    /// What was found and repaired.
+    pub remarks: Vec<LogRemark>,
+}
+
+impl MeasuredLog {
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.joints.first().map_or(0, |joint| joint.q.len())
+    }
+}
+
+impl MeasuredLog {
+    /// The first samples alone.
+    pub fn head(&self, samples: usize) -> Self {
+        let head = |values: &Vec<f64>| values[..values.len().min(samples)].to_vec();
+        let some = |values: &Option<Vec<f64>>| values.as_ref().map(head);
+        let joint = |own: &JointSignals| JointSignals {
+            q: head(&own.q),
+            qd: some(&own.qd),
+            qdd: some(&own.qdd),
+            tau: some(&own.tau),
+            reference: some(&own.reference),
+            motor: some(&own.motor),
+            motor_torque: some(&own.motor_torque),
+            step: own.step,
+            motor_step: own.motor_step,
+        };
+        let contacts = self.contacts.iter();
+        Self {
+            file: self.file.clone(),
+            header: self.header.clone(),
+            start_s: self.start_s,
+            step_s: self.step_s,
+            joints: self.joints.iter().map(joint).collect(),
+            contacts: contacts
+                .map(|(name, axes)| (name.clone(), axes.each_ref().map(head)))
+                .collect(),
+            remarks: self.remarks.clone(),
+        }
+    }
+
+    /// Sees to it that no joint behind a spring has the torque of its motor alone, which is not
+    /// what the joint gets: a fault, or, where suspicions are accepted, a remark, and the motor's
+    /// torque is taken for the joint's.
+    pub fn require_joint_torques(&mut self, robot: LogOf<'_>) -> Result<(), LogFaults> {
+        let mut faults = Vec::new();
+        for (own, joint) in self.joints.iter_mut().zip(robot.joints) {
+            let (None, Some(command)) = (&own.tau, &own.motor_torque) else { continue };
+            let suspicion = Suspicion::CommandOfSpring { joint: joint.name.clone() };
+            if robot.accepts_suspicious {
+                let factor = joint.gear_ratio;
+                own.tau = Some(command.iter().map(|torque| factor * torque).collect());
+                self.remarks.push(LogRemark::Accepted(suspicion));
+            } else {
+                faults.push(LogFault::Suspicion(suspicion));
+            }
+        }
+        if faults.is_empty() { Ok(()) } else { Err(LogFaults { file: self.file.clone(), faults }) }
+    }
+}
 
 /// Of which robot a log is to be.
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +159,6 @@ pub fn read_log(
     let wanted = Wanted::new(&head, robot, mapping).map_err(failed)?;
     let places: Vec<usize> = wanted.columns.iter().map(|column| column.place).collect();
     let mut table = read_rows(&mut lines, &head, &places).map_err(failed)?;
-    let resolutions = wanted.resolutions(&table);
-    let printed_s = wanted.columns[0].scale.abs() * printed_spacing(&table.columns[0]);
     for (values, column) in table.columns.iter_mut().zip(&wanted.columns) {
         let Column { scale, offset, .. } = *column;
         if scale != 1.0 || offset != 0.0 {
@@ -79,19 +175,17 @@ pub fn read_log(
     let names: Vec<String> = wanted.columns.iter().map(|column| column.name.clone()).collect();
     let jumps = wanted.jumps(&table);
     let cut = table.cut.map(|line| LogRemark::CutLine { line });
-    let even = repair::even(table, &names, printed_s).map_err(failed)?;
+    let even = repair::even(table, &names).map_err(failed)?;
     let mut log = MeasuredLog {
         file: file.to_owned(),
         header: head.header,
         start_s: even.start_s,
         step_s: even.step_s,
-        timing: even.timing,
         joints: vec![JointSignals::default(); robot.joints.len()],
         contacts: Vec::new(),
         remarks: cut.into_iter().chain(even.remarks).collect(),
     };
-    let channels = even.columns.into_iter().zip(resolutions).collect();
-    wanted.hand_out(&mut log, channels, robot);
+    wanted.hand_out(&mut log, even.columns, robot);
     let mut found = check::check(&log, robot.joints);
     log.remarks.append(&mut found.remarks);
     let mut faults = found.faults;
@@ -212,80 +306,55 @@ impl Wanted {
         columns.filter_map(|(place, column)| jumps::jump(table, place, &column.name)).collect()
     }
 
-    /// What the raw cells of each column but the time tell apart, in our units.
-    fn resolutions(&self, table: &Table) -> Vec<Resolution> {
-        let of = |(column, values): (&Column, &Vec<f64>)| match column.goes_to {
-            Target::Joint(_, 0 | 1 | 3 | 4 | 6) => {
-                Resolution::of(&table.columns[0], values).scaled(column.scale)
-            }
-            _ => Resolution::default(),
-        };
-        self.columns.iter().zip(&table.columns).skip(1).map(of).collect()
-    }
-
-    /// What torques of a column are multiplied by to be those that joints are said to have: of a
-    /// spring those of the joint, of a motor before it its own.
-    fn gear(&self, described: &RegressionJoint, signal: usize) -> f64 {
-        let side = self.torque_side.unwrap_or(described.torque_side);
-        match (described.is_elastic, signal, side) {
-            (true, 4, TorqueSide::Joint) => 1.0 / described.gear_ratio,
-            (false, 3 | 4, TorqueSide::Motor) => described.gear_ratio,
-            _ => 1.0,
-        }
-    }
-
-    fn hand_out(
-        &self,
-        log: &mut MeasuredLog,
-        channels: Vec<(Vec<f64>, Resolution)>,
-        robot: LogOf<'_>,
-    ) {
+    fn hand_out(&self, log: &mut MeasuredLog, values: Vec<Vec<f64>>, robot: LogOf<'_>) {
         let mut forces: Vec<[Vec<f64>; 3]> = vec![Default::default(); robot.contacts.len()];
         let mut commanded = vec![None; robot.joints.len()];
         let mut geared = Vec::new();
         let targets = self.columns.iter().filter(|c| !matches!(c.goes_to, Target::Time));
-        for (column, (mut values, resolution)) in targets.zip(channels) {
+        for (column, mut values) in targets.zip(values) {
             match column.goes_to {
                 Target::Time => {}
                 Target::Contact(contact, axis) => forces[contact][axis] = values,
                 Target::Joint(joint, signal) => {
                     let described = &robot.joints[joint];
-                    let gear = self.gear(described, signal);
-                    if gear != 1.0 {
-                        values.iter_mut().for_each(|value| *value *= gear);
-                        let is_said = geared.contains(&described.name);
-                        if !described.is_elastic && !is_said {
+                    let side = self.torque_side.unwrap_or(described.torque_side);
+                    let factor = described.gear_ratio;
+                    let is_geared = side == TorqueSide::Motor && factor != 1.0;
+                    if described.is_elastic {
+                        // A spring's torque is one of the joint, a motor's is kept as its own.
+                        if signal == 4 && side == TorqueSide::Joint {
+                            values.iter_mut().for_each(|value| *value /= factor);
+                        }
+                    } else if matches!(signal, 3 | 4) && is_geared {
+                        values.iter_mut().for_each(|value| *value *= factor);
+                        if !geared.contains(&described.name) {
                             geared.push(described.name.clone());
                         }
                     }
                     let own = &mut log.joints[joint];
-                    let size = values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
-                    let of = &mut own.resolution;
                     match signal {
-                        0 => (of.position, own.step) = (resolution, resolution.staircase(size)),
-                        1 => of.velocity = resolution,
-                        3 => of.torque = resolution.scaled(gear),
-                        6 => (of.motor, own.motor_step) = (resolution, resolution.staircase(size)),
-                        _ => {}
-                    }
-                    match signal {
-                        0 => own.q = values,
+                        0 => {
+                            own.step = check::encoder_step(&values);
+                            own.q = values;
+                        }
                         1 => own.qd = Some(values),
                         2 => own.qdd = Some(values),
                         3 => own.tau = Some(values),
-                        4 => commanded[joint] = Some((values, resolution.scaled(gear))),
+                        4 => commanded[joint] = Some(values),
                         5 => own.reference = Some(values),
-                        _ => own.motor = Some(values),
+                        _ => {
+                            own.motor_step = check::encoder_step(&values);
+                            own.motor = Some(values);
+                        }
                     }
                 }
             }
         }
         for ((own, command), joint) in log.joints.iter_mut().zip(commanded).zip(robot.joints) {
-            let Some((command, resolution)) = command else { continue };
             if joint.is_elastic {
-                own.motor_torque = Some(command);
-            } else if own.tau.is_none() {
-                (own.tau, own.resolution.torque) = (Some(command), resolution);
+                own.motor_torque = command;
+            } else if own.tau.is_none() && command.is_some() {
+                own.tau = command;
                 let joint = joint.name.clone();
                 log.remarks.push(LogRemark::CommandedTorque { joint });
             }

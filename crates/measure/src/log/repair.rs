@@ -2,7 +2,6 @@
 
 use super::fault::{LogFault, LogRemark};
 use super::reader::Table;
-use super::timing::{Timing, samples_between};
 
 /// Fewer rows make no log.
 pub(super) const FEWEST_ROWS: usize = 4;
@@ -25,18 +24,13 @@ pub(super) struct Even {
     pub(super) step_s: f64,
     /// The time of the first \[s\].
     pub(super) start_s: f64,
-    pub(super) timing: Timing,
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) remarks: Vec<LogRemark>,
 }
 
-/// Brings rows to equal distances. The first column of `table` is the time, which was printed to
-/// `printed_s`; `names` are those of the columns.
-pub(super) fn even(
-    mut table: Table,
-    names: &[String],
-    printed_s: f64,
-) -> Result<Even, Vec<LogFault>> {
+/// Brings rows to equal distances. The first column of `table` is the time; `names` are those of
+/// the columns.
+pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFault>> {
     let mut remarks = Vec::new();
     let mut faults = Vec::new();
     let undefined = table.columns[0].iter().position(|time| time.is_nan());
@@ -55,16 +49,20 @@ pub(super) fn even(
     fill_cells(&mut table, names, &mut faults, &mut remarks);
     let time = &table.columns[0];
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let median = median(&mut steps);
-    let timing = Timing::new(time, median, printed_s);
-    let Timing { jitter, dropped, most_dropped, .. } = timing;
-    let samples = time.len() + dropped;
-    let is_printing = timing.is_printing(time);
-    if dropped as f64 > MAX_MISSING * samples as f64 || most_dropped > MAX_GAP {
-        let before = time.windows(2).position(|pair| samples_between(pair, median) > most_dropped);
-        let line = table.line(before.unwrap_or(0) + 1);
-        faults.push(LogFault::Gaps { missing: dropped, samples, longest: most_dropped, line });
-    } else if jitter > MAX_JITTER && !is_printing {
+    let median = median(&mut steps.clone());
+    let mut gaps = Gaps::default();
+    let mut scatter = 0.0;
+    for (row, step) in steps.iter_mut().enumerate() {
+        let samples = (*step / median).round().max(1.0);
+        gaps.add(samples as usize - 1, row);
+        scatter += (*step / median - samples).powi(2);
+    }
+    let jitter = (scatter / steps.len() as f64).sqrt();
+    let samples = time.len() + gaps.missing;
+    if gaps.missing as f64 > MAX_MISSING * samples as f64 || gaps.longest > MAX_GAP {
+        let Gaps { missing, longest, row } = gaps;
+        faults.push(LogFault::Gaps { missing, samples, longest, line: table.line(row + 1) });
+    } else if jitter > MAX_JITTER {
         faults.push(LogFault::Jitter { relative: jitter });
     }
     if !faults.is_empty() {
@@ -72,22 +70,39 @@ pub(super) fn even(
     }
     let (start_s, end_s) = (time[0], time[time.len() - 1]);
     let step_s = (end_s - start_s) / (samples - 1) as f64;
-    let is_regular = jitter <= RESAMPLED_JITTER || is_printing;
-    if dropped > 0 {
-        let (missing, longest) = (dropped, most_dropped);
+    let is_even = gaps.missing == 0 && jitter <= RESAMPLED_JITTER;
+    if gaps.missing > 0 {
+        let Gaps { missing, longest, .. } = gaps;
         remarks.push(LogRemark::FilledGaps { missing, samples, longest });
     }
-    if !is_regular {
-        remarks.push(LogRemark::Resampled { jitter, largest: timing.largest });
+    if jitter > RESAMPLED_JITTER {
+        remarks.push(LogRemark::Resampled { jitter });
     }
     let mut columns = table.columns;
     let time = columns.remove(0);
-    if dropped > 0 || !is_regular {
+    if !is_even {
         for column in &mut columns {
             *column = interpolated(&time, column, (start_s, step_s, samples));
         }
     }
-    Ok(Even { step_s, start_s, timing, columns, remarks })
+    Ok(Even { step_s, start_s, columns, remarks })
+}
+
+#[derive(Default)]
+struct Gaps {
+    missing: usize,
+    longest: usize,
+    /// The row before the longest.
+    row: usize,
+}
+
+impl Gaps {
+    fn add(&mut self, missing: usize, row: usize) {
+        self.missing = self.missing.saturating_add(missing);
+        if missing > self.longest {
+            (self.longest, self.row) = (missing, row);
+        }
+    }
 }
 
 fn median(values: &mut [f64]) -> f64 {

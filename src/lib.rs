@@ -9,7 +9,7 @@
 //! - [`diagnose`]: what a model lacks, from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`identify`]: parameters from measured motion, and motion that shows them
-//! - [`measure`]: logs: read, checked, filtered; their noise and resolution
+//! - [`measure`]: logs: read, checked, filtered; noise of their positions
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots

@@ -1,7 +1,8 @@
-//! What was measured: one model of logs for everything that is concluded from them.
+//! Logs of robots: what identification and diagnosis both know of them.
 //!
 //! - [`log`]: what was measured, read and checked
-//! - [`condition`]: filtered, differentiated, decimated; its noise, rests and velocity reversals
+//! - [`condition`]: filtered, differentiated, decimated; noise of positions, rests, velocity
+//!   reversals
 
 pub mod condition;
 pub mod log;

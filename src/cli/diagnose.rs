@@ -14,8 +14,8 @@ use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
-    BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, FoundEffect,
-    Moved, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose,
+    BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, Filters,
+    FoundEffect, Moved, Progress as Stage, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose,
     given_candidates, spring_candidates,
 };
 use denavit::effect::{Channel, Effect};
@@ -32,6 +32,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Diagnose: which physics does a model lack, where, and how sure is that
 ///
@@ -71,9 +72,15 @@ pub(crate) struct Arguments {
         value_parser = clap::value_parser!(u8).range(1..=20)
     )]
     most: u8,
-    /// What the turns of decoys begin with
+    /// What separating experiments are drawn with
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Cutoff of the filter of torques in Hz; without it the filter follows from the motion
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    filter: Option<f64>,
+    /// Stop after so many seconds, with the best until then
+    #[arg(long, value_name = "S", value_parser = positive)]
+    time_limit: Option<f64>,
     /// Take logs as they are, however wrong they look
     #[arg(long)]
     accept_suspicious: bool,
@@ -242,6 +249,8 @@ pub(super) fn of_motions(
         effects: None,
         most: 3,
         seed: 1,
+        filter: None,
+        time_limit: None,
         accept_suspicious: false,
         out: Some(folder.to_owned()),
         json: false,
@@ -293,15 +302,16 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
         experiment: arguments.out.as_ref().map(|_| (&robot, experiment)),
         moved: Some(&moved),
         uncertainty: Uncertainty::default(),
-        options: SearchOptions {
-            most_effects: usize::from(arguments.most),
-            seed: arguments.seed,
-            ..SearchOptions::default()
-        },
-        filters: None,
+        options: SearchOptions { most_effects: usize::from(arguments.most) },
+        filters: arguments.filter.map(Filters::of_torques),
     };
-    let found = diagnose(request, &mut |taken, gap| {
-        progress.show(&format!("{} effects, held-out gap {:.2} %", taken.len(), 100.0 * gap));
+    let started = Instant::now();
+    let found = diagnose(request, &mut |at| {
+        progress.show(&match at {
+            Stage::Evaluated(share) => format!("effects evaluated: {:.0} %", 100.0 * share),
+            Stage::Found(taken) => format!("{} effects found", taken.len()),
+        });
+        arguments.time_limit.is_none_or(|most_s| started.elapsed().as_secs_f64() < most_s)
     });
     let found = found.map_err(Failure::Diagnose)?;
     Ok(Shown {
@@ -447,6 +457,15 @@ fn with_given(mut given: Vec<Candidate>, mut searched: Vec<Candidate>) -> Vec<Ca
     searched.retain(|one| given.iter().all(|given| !is(given, one)));
     given.append(&mut searched);
     given
+}
+
+/// A number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    match value.is_finite() && value > 0.0 {
+        true => Ok(value),
+        false => Err("must be above 0".to_owned()),
+    }
 }
 
 /// The catalogue, with a user's own effects.

@@ -63,6 +63,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "stiction",
     "stribeck",
     "stribeck_exponential",
+    "stribeck_friction",
     "torque_delay",
     "torque_drift",
     "torque_gain",

@@ -70,6 +70,24 @@ impl EffectKind {
     }
 }
 
+/// How often an effect is met, before any log is looked at: what names of equal evidence are
+/// judged by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Occurrence {
+    /// Of most robots somebody would ask for it.
+    #[default]
+    Common,
+    /// A special drive, or another formula for something that is common.
+    Uncommon,
+    /// Known from single works.
+    Rare,
+}
+
+impl Occurrence {
+    /// The words, in the order of files.
+    pub const ALL: [Self; 3] = [Self::Common, Self::Uncommon, Self::Rare];
+}
+
 /// Where an effect can act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EffectSite {
@@ -284,6 +302,8 @@ pub struct Effect {
     pub kind: EffectKind,
     /// Where it can act.
     pub at: EffectSite,
+    /// How often it is met.
+    pub occurrence: Occurrence,
     /// On which side of a series spring it acts, if it is a law of a joint.
     pub side: SpringSide,
     /// Its parameters, in file order.

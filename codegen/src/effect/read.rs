@@ -5,7 +5,7 @@ use super::linear::{depends, linear};
 use super::spelling::JointUnit;
 use super::{
     Confusion, Effect, EffectKind, EffectParameter, EffectSite, EffectState, FORMAT, Law, Measured,
-    SpringSide,
+    Occurrence, SpringSide,
 };
 use crate::expr::{Dag, ExprId, SymbolClass, substitute};
 use crate::model::check::Scope;
@@ -26,6 +26,7 @@ const KEYS: &[&str] = &[
     "source",
     "kind",
     "at",
+    "occurrence",
     "side",
     "parameters",
     "states",
@@ -56,6 +57,12 @@ const SITES: Word<'_, EffectSite> = Word {
     ],
 };
 
+const OCCURRENCES: Word<'_, Occurrence> = Word {
+    what: "occurrence",
+    known: &["common", "uncommon", "rare"],
+    values: &Occurrence::ALL,
+};
+
 const SIDES: Word<'_, SpringSide> = Word {
     what: "side of a series spring",
     known: &["motor", "link"],
@@ -84,6 +91,7 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
     }
     let kind = fields.required_word("kind", &KINDS, report);
     let at = fields.required_word("at", &SITES, report);
+    let occurrence = fields.word("occurrence", &OCCURRENCES, report).unwrap_or_default();
     let side = fields.word("side", &SIDES, report).unwrap_or_default();
     let names = ["parameters", "states"].iter().filter_map(|key| fields.get(key));
     let names: BTreeSet<String> =
@@ -115,6 +123,7 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
         source,
         kind,
         at,
+        occurrence,
         side,
         parameters,
         states,

@@ -1,6 +1,8 @@
 //! What may be missing: an effect of the catalogue in one place of the robot.
 
 use super::law::Law;
+use denavit_codegen::effect::Occurrence;
+use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
 
 /// An effect in one place.
@@ -15,6 +17,8 @@ pub struct Candidate {
     pub joint: Option<usize>,
     /// Whether it adds to the inertial parameters of a body, as the model's numbers may be off.
     pub is_body: bool,
+    /// How often such an effect is met before any log is looked at.
+    pub occurrence: Occurrence,
     /// What it does.
     pub law: Box<dyn Law>,
 }
@@ -30,47 +34,96 @@ impl Candidate {
 const MOST_STARTS: usize = 48;
 
 /// Where a position that may be anywhere is looked for first, as shares of a joint's range.
-const PLACES: [f64; 7] = [0.03, 0.2, 0.35, 0.5, 0.65, 0.8, 0.97];
+const PLACES: [f64; 13] =
+    [0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98];
 
 /// Where a limit of torques is looked for first, as shares of the largest.
-const LIMITS: [f64; 4] = [0.97, 0.85, 0.7, 0.5];
+const LIMITS: [f64; 20] = [
+    0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.74, 0.68, 0.61, 0.54, 0.46, 0.38, 0.31, 0.25, 0.2, 0.16,
+    0.13, 0.1, 0.07, 0.05,
+];
 
-/// Where searches of a law's parameters begin: what it is linear in and what switches it off, where
-/// it is off; every combination of the values that the other parameters begin with. Positions
-/// without bounds begin within `range`, what the joint covers; one over a limit of torques at
-/// limits below the `largest`.
+/// Where the search of a law's parameters begins, and what is believed of them there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Their values.
+    pub values: Vec<f64>,
+    /// How far each may be from that; none of amplitudes, whose size is that of torques.
+    pub deviations: Vec<Option<f64>>,
+}
+
+/// Where searches of a law's parameters begin: what it is linear in, where it is off; every
+/// combination of the values that the other parameters begin with, each within half the distance
+/// to its neighbours. Positions without bounds begin within `range`, what the joint covers; one
+/// over a limit of torques at limits below the `largest`.
 pub fn starts(
     parameters: &[LawParameter],
     range: Option<[f64; 2]>,
     largest: Option<f64>,
-) -> Vec<Vec<f64>> {
-    let values_of = |parameter: &LawParameter| -> Vec<f64> {
-        let is_anywhere = parameter.bounds.iter().all(|end| end.is_infinite())
-            && ["rad", "m"].contains(&parameter.unit.as_str());
-        let is_limit = !parameter.linear && ["1/(N m)", "1/N"].contains(&parameter.unit.as_str());
-        match (parameter.nominal, range) {
-            (Some(off), _) if parameter.linear => vec![off],
-            _ if is_limit && largest.is_some_and(|largest| largest > 0.0) => {
-                LIMITS.iter().map(|share| 1.0 / (share * largest.unwrap_or(1.0))).collect()
-            }
-            (None, Some([low, high])) if is_anywhere => {
-                PLACES.iter().map(|share| low + share * (high - low)).collect()
-            }
-            (nominal, _) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
-            _ => parameter.start.clone(),
-        }
-    };
-    let mut all = vec![Vec::new()];
+) -> Vec<Start> {
+    let mut all = vec![Start { values: Vec::new(), deviations: Vec::new() }];
     for parameter in parameters {
-        let values = values_of(parameter);
-        let longer = |start: &Vec<f64>| -> Vec<Vec<f64>> {
-            values.iter().map(|&value| [start.as_slice(), &[value]].concat()).collect()
+        let values = values_of(parameter, range, largest);
+        let longer = |start: &Start| -> Vec<Start> {
+            let longer = |(value, deviation): &(f64, Option<f64>)| Start {
+                values: [start.values.as_slice(), &[*value]].concat(),
+                deviations: [start.deviations.as_slice(), &[*deviation]].concat(),
+            };
+            values.iter().map(longer).collect()
         };
         all = all.iter().flat_map(longer).collect();
     }
     // Thinned evenly, so that the same ones are left for the same law.
     let stride = all.len().div_ceil(MOST_STARTS).max(1);
     all.into_iter().step_by(stride).collect()
+}
+
+/// The values that one parameter begins with, and how far each may be off.
+fn values_of(
+    parameter: &LawParameter,
+    range: Option<[f64; 2]>,
+    largest: Option<f64>,
+) -> Vec<(f64, Option<f64>)> {
+    let [low, high] = parameter.bounds;
+    let is_position = ["rad", "m"].contains(&parameter.unit.as_str());
+    let is_anywhere = is_position && low.is_infinite() && high.is_infinite();
+    let is_limit = !parameter.linear && ["1/(N m)", "1/N"].contains(&parameter.unit.as_str());
+    let values: Vec<f64> = match (parameter.nominal, range, largest) {
+        (Some(off), ..) if parameter.linear => return vec![(off, None)],
+        (Some(off), ..) if parameter.start.is_empty() => {
+            let deviation = if is_position { Some(policy::ANGLE) } else { None };
+            return vec![(off, deviation)];
+        }
+        (_, _, Some(largest)) if is_limit && largest > 0.0 => {
+            LIMITS.iter().map(|share| 1.0 / (share * largest)).collect()
+        }
+        (None, Some([low, high]), _) if is_anywhere => {
+            PLACES.iter().map(|share| low + share * (high - low)).collect()
+        }
+        (nominal, ..) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
+        _ => parameter.start.clone(),
+    };
+    let span = range.map_or(0.0, |[low, high]| high - low);
+    let alone = |value: f64| match (is_position, value == 0.0) {
+        (true, _) => policy::LENGTH,
+        (false, true) => 1.0,
+        (false, false) => value.abs(),
+    };
+    let of = |value: &f64| {
+        let gaps = |sign: f64| {
+            let apart = values.iter().map(|other| sign * (other - value)).filter(|by| *by > 0.0);
+            apart.min_by(f64::total_cmp)
+        };
+        let deviation = match (gaps(-1.0), gaps(1.0)) {
+            (Some(below), Some(above)) => 0.25 * (below + above),
+            // what is anywhere may be where the joint does not come
+            (Some(_), None) | (None, Some(_)) if is_anywhere => 0.5 * span,
+            (Some(gap), None) | (None, Some(gap)) => 0.5 * gap,
+            (None, None) => alone(*value),
+        };
+        (*value, Some(deviation))
+    };
+    values.iter().map(of).collect()
 }
 
 #[cfg(test)]
@@ -92,9 +145,13 @@ mod tests {
         let place = of("rad", None, open, false);
         let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None);
         assert_eq!(within.len(), PLACES.len());
-        assert!(within.iter().all(|start| start[0] == 0.0 && 1.0 < start[1] && start[1] < 3.0));
-        assert_eq!(starts(&[stiffness.clone(), place], None, None), [[0.0, 5.0]]);
+        assert!(within.iter().all(|one| one.values[0] == 0.0 && one.deviations[0].is_none()));
+        assert!(within.iter().all(|one| 1.0 < one.values[1] && one.values[1] < 3.0));
+        let only = |parameters: &[LawParameter], range| {
+            starts(parameters, range, None).into_iter().map(|one| one.values).collect::<Vec<_>>()
+        };
+        assert_eq!(only(&[stiffness.clone(), place], None), [[0.0, 5.0]]);
         let bounded = of("rad", None, [0.0, 9.0], false);
-        assert_eq!(starts(&[stiffness, bounded], Some([1.0, 3.0]), None), [[0.0, 5.0]]);
+        assert_eq!(only(&[stiffness, bounded], Some([1.0, 3.0])), [[0.0, 5.0]]);
     }
 }

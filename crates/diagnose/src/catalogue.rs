@@ -85,6 +85,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
             at: name,
             joint,
             is_body: effect.at == EffectSite::Link && matches!(effect.law, EffectKindLaw::Moves(_)),
+            occurrence: effect.occurrence,
             law: Box::new(RobotLaw { effect: law, is_of_drives }),
         })
     };
@@ -128,6 +129,7 @@ fn on_joint(
         at,
         joint: Some(joint),
         is_body: false,
+        occurrence: effect.occurrence,
         law,
     })
 }

@@ -4,7 +4,7 @@ use super::law::{Motion, Response, derivative};
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
-use super::turning::{late_friction, settle};
+use super::turning::{PER_JOINT, settle, unnamed};
 use denavit_plants::effect::Drive;
 
 /// A stretch of rows: those of one equation in one log.
@@ -35,8 +35,8 @@ pub struct Data<'a> {
     /// what its joint takes [N m, N].
     pub residual: Vec<f64>,
     /// For each entry of z its column: the numbers of the model, the time between torque and
-    /// motion, for each joint friction that keeps its sign behind a reversal, and for each spring
-    /// its stiffness and the zero of its deflection.
+    /// motion, for each joint what is too small for a name, and for each spring its stiffness and
+    /// the zero of its deflection.
     pub columns: Vec<Vec<f64>>,
     /// The torque of every row, filtered: measured, or by the deflection of a spring [N m, N].
     pub torque: Vec<f64>,
@@ -88,8 +88,8 @@ impl<'a> Data<'a> {
             torques(nominal, signals, &given).iter().map(shifted).collect()
         };
         let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
-        let late: Vec<PerJoint> =
-            data.signals.iter().map(|signals| late_friction(nominal, signals, &given)).collect();
+        let unnamed: Vec<Vec<PerJoint>> =
+            data.signals.iter().map(|signals| unnamed(nominal, signals, &given)).collect();
         for joint in 0..joints {
             for (log, rows) in rows.iter().enumerate() {
                 let Some(target) = &rows.target[joint] else { continue };
@@ -103,10 +103,14 @@ impl<'a> Data<'a> {
                     column.extend(rows.torque(nominal, joint, &direction.axes));
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
-                let late = data.signals[log].rows_of(&late[log][joint]);
-                for (other, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
-                    let own = late.iter().map(|late| if other == joint { *late } else { 0.0 });
-                    column.extend(own);
+                for (place, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
+                    let own = (place / PER_JOINT == joint).then(|| place % PER_JOINT);
+                    match own {
+                        Some(own) => {
+                            column.extend(data.signals[log].rows_of(&unnamed[log][joint][own]));
+                        }
+                        None => column.resize(column.len() + count, 0.0),
+                    }
                 }
             }
         }
@@ -194,7 +198,6 @@ impl<'a> Data<'a> {
     }
 
     /// What a response to the motion of one log is in the rows: of the equations that have rows.
-    /// `signals` are the log's, or a coarse view of them.
     pub fn in_rows(&self, log: usize, signals: &Signals, response: &Response) -> RowResponse {
         let mut found = RowResponse::default();
         for (place, &equation) in response.equations.iter().enumerate() {
@@ -231,17 +234,6 @@ impl RowResponse {
         self.gradient.append(&mut other.gradient);
     }
 
-    /// The response with its rows turned by a share of each stretch.
-    pub fn turned(&self, turn: f64) -> Self {
-        let mut turned = self.clone();
-        let columns = turned.torque.iter_mut().chain(turned.gradient.iter_mut().flatten());
-        for column in columns {
-            let by = (turn * column.len() as f64) as usize % column.len().max(1);
-            column.rotate_right(by);
-        }
-        turned
-    }
-
     /// Takes the torque away from rows.
     pub fn subtract_from(&self, rows: &mut [f64]) {
         for (stretch, torque) in self.stretches.iter().zip(&self.torque) {
@@ -261,19 +253,6 @@ impl ModelTorques {
         let load_rate = load.iter().map(rate).collect();
         let total = torques(nominal, signals, &phi);
         Self { phi, numbers, load, load_rate, total, drives }
-    }
-
-    /// The torques at the samples of a coarse view.
-    pub fn thinned(&self, fine: &Signals, coarse: &Signals) -> Self {
-        let thin = |all: &PerJoint| all.iter().map(|one| coarse.thinned(fine, one)).collect();
-        Self {
-            phi: self.phi.clone(),
-            numbers: self.numbers.clone(),
-            load: thin(&self.load),
-            load_rate: thin(&self.load_rate),
-            total: thin(&self.total),
-            drives: self.drives.clone(),
-        }
     }
 
     /// The motion of a log with these torques.

@@ -31,8 +31,12 @@ impl Law for DriveLaw {
         &self.law.parameters
     }
 
+    fn follows_accelerations(&self) -> bool {
+        true
+    }
+
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let (joint, whole) = (self.joint, motion.signals.whole());
+        let (joint, whole) = (self.joint, motion.signals);
         let nothing = || vec![vec![0.0; motion.signals.samples()]];
         let mut response = Response {
             equations: vec![joint],
@@ -56,7 +60,7 @@ impl Law for DriveLaw {
         let through = self.law.through(&samples, values);
         if let Some(through) = through.filter(|through| through.share >= LEAST_PASSED) {
             let all = std::iter::once(through.torque).chain(through.gradient);
-            let mut all = all.map(|signal| vec![motion.signals.of_whole(signal)]);
+            let mut all = all.map(|signal| vec![signal]);
             response.torque = all.next().unwrap_or_default();
             response.gradient = all.collect();
         }

@@ -1,11 +1,8 @@
 //! What logs would have shown: an answer that nothing is missing says no more than that.
 
-use super::candidate::Candidate;
-use super::floor::rms;
-use super::problem::Problem;
-use super::round::QUIET;
-use super::search::{ROWS_PER_SAMPLE, Screen};
-use super::state::{Setting, State};
+use super::search::{Hypothesis, Search};
+use super::state::Setting;
+use denavit_evidence::policy;
 
 /// An effect of one parameter, and how large it must be to be seen in a joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,43 +48,26 @@ const LARGE: f64 = 0.5;
 /// A joint that covers less of its limits is at rest: what grows with position or speed is small.
 const LEAST_RANGE: f64 = 0.05;
 
-/// How small effects of one parameter would have been seen in the logs that are searched.
-pub(super) fn visible(setting: &Setting<'_>, screen: &Screen, state: &State) -> Vec<Visible> {
-    let data = setting.train;
-    let plain = Problem::new(data, &state.deviation[0], &[]);
-    let given = plain.responses(&setting.fitted(&state.taken), &state.torques[0]);
-    let problem = Problem::new(data, &state.deviation[0], &given).holding(&state.held);
-    let asked = ROWS_PER_SAMPLE * (data.rows() as f64 / ROWS_PER_SAMPLE).ln();
-    let rows = |joint: usize, of: &dyn Fn(usize, usize) -> Vec<f64>| -> Vec<f64> {
-        let own = data.stretches.iter().filter(|stretch| stretch.equation == joint);
-        own.flat_map(|stretch| of(stretch.first, stretch.rows)).collect()
+/// How small effects of one parameter would have been seen.
+pub(super) fn visible(
+    setting: &Setting<'_>,
+    search: &Search<'_, '_>,
+    after: &Hypothesis,
+) -> Vec<Visible> {
+    // What lowers the squares by that has the odds that a name asks for.
+    let errors = search.least_errors();
+    let of = |(candidate, error, share): (usize, f64, f64)| {
+        let joint = setting.candidates[candidate].joint?;
+        // What the model's own numbers explain whole is left as rounding.
+        let seen = if share < NEVER { errors } else { f64::INFINITY };
+        let worth = (policy::WORTH / share).max(seen);
+        Some(Visible { candidate, joint, least: worth * error, share: worth * share })
     };
-    let of_candidate = |(candidate, own): (usize, &Candidate)| {
-        let joint = own.joint.filter(|_| own.law.parameters().len() == 1)?;
-        if state.taken.iter().any(|taken| taken.candidate == candidate) {
-            return None;
-        }
-        let (_, response) = screen.of(candidate).first()?;
-        let measured = rows(joint, &|first, count| data.torque[first..first + count].to_vec());
-        if measured.is_empty() {
-            return None;
-        }
-        let own = response.stretches.iter().zip(&response.gradient);
-        let own = own.filter(|(stretch, _)| stretch.equation == joint);
-        let unit: Vec<f64> = own.flat_map(|(_, gradient)| gradient[0].clone()).collect();
-        let view = problem.look(std::slice::from_ref(response));
-        let seen = view.normal[(0, 0)];
-        // What z explains whole is left as rounding.
-        let asked = asked.max((QUIET - 1.0) * measured.len() as f64);
-        let least = match seen > 1e-9 * view.lengths[0] {
-            true => (asked / seen).sqrt(),
-            false => f64::INFINITY,
-        };
-        let share = if least.is_finite() { least * rms(&unit) / rms(&measured) } else { least };
-        Some(Visible { candidate, joint, least, share })
-    };
-    setting.candidates.iter().enumerate().filter_map(of_candidate).collect()
+    search.precisions(after).into_iter().filter_map(of).collect()
 }
+
+/// Errors of this share of a torque say that nothing is seen.
+const NEVER: f64 = 1e3;
 
 /// Joints of which the logs say too little for the answer that nothing is missing.
 pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> {

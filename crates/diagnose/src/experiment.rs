@@ -8,12 +8,11 @@
 
 use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
-use super::evidence::{block_costs, paired};
+use super::blocks::{block_costs, paired};
 use super::floor::{NoiseFloor, rms};
 use super::followed::Follower;
 use super::nominal::Nominal;
 use super::problem::{Fitted, Problem};
-use super::search::{DISTINCT, ROWS_PER_SAMPLE};
 use super::signals::{Filters, Signals};
 use super::state::{Taken, within};
 use super::turning::turning;
@@ -25,6 +24,12 @@ use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
 use std::fmt;
+
+/// Standard errors from which on one name is worse than another.
+const DISTINCT: f64 = 2.5;
+
+/// Rows that count as one: what is left is correlated over the time of the filter.
+const ROWS_PER_SAMPLE: f64 = 4.0;
 
 /// How an experiment is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,6 @@ use super::data::{Data, Stretch};
 use super::floor::{NoiseFloor, rms};
 
 /// gap = sqrt(mean over joints and springs of (rms of what is left / rms of the torque)^2).
-///
-/// A row counts for the share of its variance that does not come from friction that turns around:
-/// its trust, from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// Over all joints.
@@ -17,16 +14,16 @@ pub struct Gap {
 
 impl Gap {
     /// The gap of what is left in the rows of data.
-    pub fn new(data: &Data<'_>, residual: &[f64], trust: &[f64]) -> Self {
-        Self::of(data, trust, |row, _| residual[row].powi(2))
+    pub fn new(data: &Data<'_>, residual: &[f64]) -> Self {
+        Self::of(data, |row, _| residual[row].powi(2))
     }
 
     /// The gap that noise alone leaves.
-    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor], trust: &[f64]) -> Self {
-        Self::of(data, trust, |_, stretch| floors[stretch.log].deviation[stretch.equation].powi(2))
+    pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
+        Self::of(data, |_, stretch| floors[stretch.log].deviation[stretch.equation].powi(2))
     }
 
-    fn of(data: &Data<'_>, trust: &[f64], left: impl Fn(usize, &Stretch) -> f64) -> Self {
+    fn of(data: &Data<'_>, left: impl Fn(usize, &Stretch) -> f64) -> Self {
         let of = |equation: usize| {
             let own = data.stretches.iter().filter(|stretch| stretch.equation == equation);
             let rows = own.flat_map(|stretch| {
@@ -34,8 +31,8 @@ impl Gap {
             });
             let (mut over, mut under) = (0.0, 0.0);
             for (row, stretch) in rows {
-                over += trust[row] * left(row, stretch);
-                under += trust[row] * data.torque[row].powi(2);
+                over += left(row, stretch);
+                under += data.torque[row].powi(2);
             }
             (under > 0.0).then(|| (over / under).sqrt())
         };

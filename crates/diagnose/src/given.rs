@@ -6,7 +6,7 @@ use super::catalogue::law_of;
 use super::law::{Law, Motion, Response};
 use super::nominal::Uncertainty;
 use super::state::Taken;
-use denavit_codegen::effect::Channel;
+use denavit_codegen::effect::{Channel, Occurrence};
 use denavit_plants::effect::{AddedLaw, LawParameter};
 
 /// Deviations beyond which a parameter is not moved.
@@ -41,6 +41,10 @@ impl Law for GivenLaw {
     fn beliefs(&self) -> &[Belief] {
         &self.beliefs
     }
+
+    fn follows_accelerations(&self) -> bool {
+        self.law.follows_accelerations()
+    }
 }
 
 /// The effects of a model as candidates that are taken already: those of logged rates are none,
@@ -66,8 +70,8 @@ pub fn given_candidates(
         }
         let effect = law.name.clone();
         let law = Box::new(GivenLaw { law: law_of(law, joint, second), parameters, beliefs });
-        let joint = Some(joint);
-        (Candidate { effect, title, at, joint, is_body: false, law }, Taken { candidate, values })
+        let (joint, occurrence) = (Some(joint), Occurrence::default());
+        (Candidate { effect, title, at, joint, is_body: false, occurrence, law }, Taken { candidate, values })
     };
     laws.enumerate().map(of).unzip()
 }

@@ -44,6 +44,10 @@ impl Law for JointLaw {
         &self.law.parameters
     }
 
+    fn follows_accelerations(&self) -> bool {
+        self.law.follows_accelerations()
+    }
+
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let mut response = Response::default();
         let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
@@ -112,7 +116,7 @@ impl Law for SpringLaw {
 
 /// The share of the time in which a drive gives what was demanded, at least, and what may lack
 /// then.
-const LEAST_GIVEN: f64 = 0.25;
+const LEAST_GIVEN: f64 = 0.05;
 const ALL_GIVEN: f64 = 0.02;
 
 /// An effect that makes a drive give another torque than is logged: what was demanded of it.
@@ -167,6 +171,10 @@ impl Law for DelayLaw {
         self.law.parameters()
     }
 
+    fn follows_accelerations(&self) -> bool {
+        true
+    }
+
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let joint = self.law.joint;
         let delay = self.law.law.delay(values);
@@ -191,6 +199,10 @@ pub(super) struct RobotLaw {
 impl Law for RobotLaw {
     fn parameters(&self) -> &[LawParameter] {
         &self.effect.parameters
+    }
+
+    fn follows_accelerations(&self) -> bool {
+        self.effect.follows_accelerations()
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
@@ -244,6 +256,10 @@ impl ReadingLaw {
 impl Law for ReadingLaw {
     fn parameters(&self) -> &[LawParameter] {
         &self.law.parameters
+    }
+
+    fn follows_accelerations(&self) -> bool {
+        true
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {

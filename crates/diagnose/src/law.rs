@@ -52,6 +52,12 @@ pub trait Law {
     /// What it adds to the torques of a motion.
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response;
 
+    /// Whether what it adds is made of accelerations, or of torques that answer them: beyond the
+    /// frequencies that references drive these have the same noise as what they would explain.
+    fn follows_accelerations(&self) -> bool {
+        false
+    }
+
     /// What the model says of its parameters; nothing of laws that the model does not have.
     fn beliefs(&self) -> &[Belief] {
         &[]

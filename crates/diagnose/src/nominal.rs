@@ -6,6 +6,10 @@
 
 use super::data::SPRING_ZERO;
 use super::elastic::SeriesSpring;
+use super::floor::rms;
+use super::signals::Signals;
+use super::turning::PER_JOINT;
+use denavit_codegen::model::JointEntry;
 use denavit_plants::regression::{ModelParameter, RegressionModel, StandardParameter};
 
 /// How far numbers of a model may be off that say nothing of it, as a share of their value.
@@ -53,6 +57,9 @@ pub struct Nominal<'a> {
     directions: Vec<Vec<f64>>,
     /// Springs whose balance is measured: an equation each, after those of the joints' torques.
     pub springs: Vec<Spring>,
+    /// For each joint torque and rate (root of mean square) of the logs that it is asked about,
+    /// which say how large errors of every model are: 0 where that is not known.
+    pub(super) usual: Vec<[f64; 2]>,
 }
 
 /// A spring between a motor and its joint, on the side of the joint.
@@ -107,7 +114,7 @@ impl<'a> Nominal<'a> {
                 is_positive: parameter.is_positive,
             });
         }
-        Self { model, uncertain, places, theta, directions, springs: Vec::new() }
+        Self { model, uncertain, places, theta, directions, springs: Vec::new(), usual: vec![[0.0; 2]; model.joints.len()] }
     }
 
     /// With springs whose balance is measured; deviations that are not stated as for joints.
@@ -120,6 +127,26 @@ impl<'a> Nominal<'a> {
         };
         self.springs = springs.iter().map(of).collect();
         self
+    }
+
+    /// Knowing the torques and rates of logs.
+    pub(super) fn moving_as(mut self, logs: &[Signals]) -> Self {
+        for (joint, usual) in self.usual.iter_mut().enumerate() {
+            let torques = logs.iter().filter_map(|log| log.torque[joint].as_ref());
+            let torques: Vec<f64> = torques.flatten().copied().collect();
+            let rates = logs.iter().flat_map(|log| log.of_drive(joint)[0]);
+            *usual = [rms(&torques), rms(&rates.copied().collect::<Vec<f64>>())];
+        }
+        self
+    }
+
+    /// Whether a number of the model is of friction, or an offset.
+    pub(super) fn is_friction(&self, name: &str) -> bool {
+        let rotor = JointEntry::RotorInertia.prefix();
+        let mut standard = self.model.standard.iter().filter(|one| one.name == name);
+        standard.any(|one| {
+            one.is_of_joint() && one.owner.as_ref().is_none_or(|(_, prefix)| *prefix != rotor)
+        })
     }
 
     /// Number of equations: one for the torque of each joint, one for each spring.
@@ -150,7 +177,7 @@ impl<'a> Nominal<'a> {
 
     /// The place in z of the first entry of a spring: of its stiffness; its zero follows.
     pub(super) fn place_of_spring(&self, spring: usize) -> usize {
-        self.len() + 1 + self.model.joints.len() + 2 * spring
+        self.len() + 1 + PER_JOINT * self.model.joints.len() + 2 * spring
     }
 
     /// What the motor of each spring reads more than its joint where the spring is relaxed, with z

@@ -150,23 +150,6 @@ impl<'a> Problem<'a> {
         self.products(responses).view(&self.held)
     }
 
-    /// The least cost of laws with these responses, to first order, with z within a bound: entries
-    /// that would be beyond are held there.
-    pub fn least_cost(&self, responses: &[RowResponse], bound: f64) -> f64 {
-        let products = self.products(responses);
-        let mut held = vec![None; self.data.columns.len()];
-        let mut problem = self.holding(&held);
-        loop {
-            let view = products.view(&problem.held);
-            let step = view.best_step();
-            let z = problem.z(&(&view.explained - &view.inside * &step));
-            if !hold(&mut held, &z, bound) {
-                return view.cost - view.gradient.dot(&step);
-            }
-            problem = self.holding(&held);
-        }
-    }
-
     fn products(&self, responses: &[RowResponse]) -> Products {
         let mut rho = self.residual.clone();
         let mut columns: Vec<Vec<(usize, Vec<f64>)>> = Vec::new();
@@ -189,51 +172,6 @@ impl<'a> Problem<'a> {
             }
         }
         Products::new(&self.factors.q, &rho, &columns)
-    }
-
-    /// The same problem with laws evaluated on coarse views.
-    pub fn coarse<'c>(&self, signals: &'c [Signals]) -> Problem<'c>
-    where
-        'a: 'c,
-    {
-        Problem { signals, ..self.clone() }
-    }
-
-    /// The weighted columns of the laws' parameters less what z explains of them.
-    pub fn beyond_z(&self, responses: &[RowResponse]) -> DMatrix<f64> {
-        let of_response = |response: &RowResponse| {
-            let parameters = response.gradient.first().map_or(0, Vec::len);
-            let mut columns = DMatrix::zeros(self.weights.len(), parameters);
-            for (stretch, gradient) in response.stretches.iter().zip(&response.gradient) {
-                for (parameter, gradient) in gradient.iter().enumerate() {
-                    for (k, entry) in gradient.iter().enumerate() {
-                        let row = stretch.first + k;
-                        columns[(row, parameter)] += self.weights[row] * entry;
-                    }
-                }
-            }
-            columns
-        };
-        let all: Vec<DMatrix<f64>> = responses.iter().map(of_response).collect();
-        let width = all.iter().map(DMatrix::ncols).sum();
-        let mut columns = DMatrix::zeros(self.weights.len(), width);
-        let mut begin = 0;
-        for own in all {
-            columns.columns_mut(begin, own.ncols()).copy_from(&own);
-            begin += own.ncols();
-        }
-        let mut inside = self.factors.q.tr_mul(&columns);
-        self.held.free(&mut inside);
-        columns - &self.factors.q * inside
-    }
-
-    /// The part of rows that z cannot explain, weighted.
-    pub fn outside(&self, rows: &[f64]) -> DVector<f64> {
-        let weighted = rows.iter().zip(&self.weights).map(|(row, weight)| row * weight);
-        let weighted = DVector::from_iterator(rows.len(), weighted);
-        let q = &self.factors.q;
-        let inside = q * q.tr_mul(&weighted);
-        weighted - inside
     }
 
     /// Searches the values of laws from those given: Levenberg and Marquardt's steps within bounds.
@@ -411,15 +349,6 @@ impl View {
             }
         }
         scaled_solve(&normal, &gradient).unwrap_or_else(|| DVector::zeros(count))
-    }
-
-    /// How much the cost would fall with the best linear step.
-    pub fn gain(&self) -> f64 {
-        self.gradient.dot(&self.best_step())
-    }
-
-    fn best_step(&self) -> DVector<f64> {
-        self.step(1e-9, &vec![false; self.gradient.len()])
     }
 
     fn rank(&self) -> usize {

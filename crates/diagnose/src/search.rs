@@ -1,402 +1,502 @@
-//! Which effects: forward, with swaps and removals, judged by logs that were not fitted.
+//! Which effects: one more as long as the evidence asks for it, each exchanged for what does better
+//! in its place.
 
-use super::candidate::{Candidate, starts};
-use super::data::{Data, RowResponse};
-use super::driven::stands_for;
-use super::evidence::paired;
-use super::problem::{Fitted, Problem};
-use super::round::{closed, forward};
-use super::state::{MOST_Z, Setting, State, Taken, Trial};
+use super::candidate::{Candidate, Start, starts};
+use super::data::Data;
+use super::hypothesis::{Placed, Weighing};
+use denavit_codegen::effect::Occurrence;
+use denavit_evidence::{Glance, Terms, Weighed, policy};
 
-/// What a search is allowed, and asks for.
+/// What a search is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchOptions {
     /// Most effects that are added.
     pub most_effects: usize,
-    /// Standard errors by which an effect must lower the squares that are left of held-out logs.
-    pub significance: f64,
-    /// The share of what can still be explained that an effect must close, in squares.
-    pub least_share: f64,
-    /// Candidates that are fitted in each round, of all that are scored.
-    pub refined: usize,
-    /// What the turns of decoys begin with.
-    pub seed: u64,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { most_effects: 6, significance: 3.0, least_share: 0.1, refined: 10, seed: 1 }
+        Self { most_effects: 6 }
     }
 }
 
-/// A candidate with what it would explain.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Scored {
-    /// Its number.
-    pub candidate: usize,
-    /// By how much the weighted squares that are left would fall, to first order.
-    pub gain: f64,
-    /// The values where that is most.
-    pub values: Vec<f64>,
+/// An effect where it is placed, with its terms.
+#[derive(Clone)]
+pub(super) struct Part {
+    pub(super) placed: Placed,
+    pub(super) terms: Terms,
+}
+
+/// Effects together, weighed.
+#[derive(Clone)]
+pub(super) struct Hypothesis {
+    pub(super) parts: Vec<Part>,
+    pub(super) weighed: Weighed,
+    /// Log of evidence and prior odds.
+    pub(super) posterior: f64,
 }
 
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// The candidate that explained most.
+    /// The candidate that was weighed.
     pub added: usize,
-    /// The one that explains it together with this, where neither does alone.
-    pub with: Option<usize>,
     /// Whether it was added: the last one of a search may not have been.
     pub is_taken: bool,
-    /// By how much the weighted squares that are left of the training logs fall.
-    pub gain: f64,
-    /// The same of the best decoy, to first order.
-    pub decoy: f64,
-    /// Standard errors by which held-out logs are better.
-    pub significance: f64,
-    /// The share of what can be explained that it closes.
-    pub share: f64,
-    /// The gap of held-out logs with it.
-    pub held_out_gap: f64,
-    /// Standard errors by which held-out logs are better when the model is moved along them; none
-    /// if it was not, or if that says nothing.
-    pub in_motion: Option<f64>,
-    /// The candidates that came next, with the held-out gap that each would have left.
+    /// The log of the odds that it is missing.
+    pub log_odds: f64,
+    /// What it does at the joint where that is most, as a share of its torque.
+    pub size: f64,
+    /// The candidates that came next, with their log odds.
     pub runners_up: Vec<(usize, f64)>,
 }
 
-/// Why a search ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stop {
-    /// What is left is noise.
-    Floor,
-    /// No candidate explains more than chance, or enough.
-    NothingLeft,
-    /// As many effects as are allowed were found.
-    MostEffects,
-}
-
 /// What a search found.
-pub struct Outcome {
-    /// The nominal model, re-estimated.
-    pub before: State,
+pub(super) struct Found {
+    /// The model without effects.
+    pub(super) before: Hypothesis,
     /// The model with what was found.
-    pub after: State,
-    /// What the candidates do to the training logs.
-    pub screen: Screen,
+    pub(super) after: Hypothesis,
+    /// For each effect that was found, others in its place.
+    pub(super) rivals: Vec<Vec<Hypothesis>>,
     /// How it came about.
-    pub steps: Vec<Step>,
-    /// Why it ended.
-    pub stop: Stop,
+    pub(super) steps: Vec<Step>,
+    /// Whether as many effects were found as are allowed.
+    pub(super) is_full: bool,
+    /// Whether the search was stopped.
+    pub(super) is_stopped: bool,
 }
 
-/// Rows that count as one: what is left is correlated over the time of the filter.
-pub(super) const ROWS_PER_SAMPLE: f64 = 4.0;
-
-/// Searches which candidates are missing. `watch` hears of every step.
-pub fn search(
-    setting: &Setting<'_>,
-    options: &SearchOptions,
-    watch: &mut dyn FnMut(&State),
-) -> Outcome {
-    let before = setting.state(&setting.given);
-    let screen = Screen::new(setting, &before);
-    let mut state = before.clone();
-    let (mut steps, mut idle) = (Vec::new(), Vec::new());
-    // Exchanges and removals must not lead round in circles.
-    let mut seen = vec![state.candidates()];
-    let stop = loop {
-        watch(&state);
-        if state.taken.len() >= setting.given.len() + options.most_effects {
-            break Stop::MostEffects;
-        }
-        if idle.len() > options.refined || steps.len() >= 2 * options.most_effects {
-            break Stop::NothingLeft;
-        }
-        let left = setting.held_out_squares(&state, &state.held_out_residual);
-        let is_driven = state.held.iter().any(Option::is_some);
-        if !is_driven && left.iter().all(|[left, noise]| left <= noise) {
-            break Stop::Floor;
-        }
-        let Some((next, step)) =
-            forward((setting, &screen), options, (&state, &idle), &before.held_out_residual)
-        else {
-            break Stop::NothingLeft;
-        };
-        if !step.is_taken {
-            steps.push(step);
-            break Stop::NothingLeft;
-        }
-        let swapped = swap((setting, &screen), options, setting.state(&next.taken));
-        let next = without_idle(setting, &before.held_out_residual, swapped);
-        // An effect that the model's own uncertainty makes idle is not tried again, nor is one that
-        // leads back.
-        if seen.contains(&next.candidates()) {
-            idle.push(step.added);
-            continue;
-        }
-        idle.clear();
-        seen.push(next.candidates());
-        state = next;
-        steps.push(step);
-    };
-    let after = if state.taken.is_empty() { state } else { setting.settled(state) };
-    Outcome { before, after, screen, steps, stop }
+/// What every candidate does from where its search begins.
+pub(super) struct Search<'w, 'a> {
+    weighing: &'w Weighing<'a>,
+    /// For each candidate its starts.
+    screen: Vec<Vec<Part>>,
+    /// The log of what all candidates are expected to weigh together.
+    log_choices: f64,
+    options: SearchOptions,
 }
 
-/// All candidates that are not `taken`, by what they would explain; as decoys, if they are turned.
-pub fn score(
-    setting: &Setting<'_>,
-    screen: &Screen,
-    (state, taken): (&State, &[Taken]),
-    turn: Option<f64>,
-) -> Vec<Scored> {
-    let given = {
-        let plain = Problem::new(setting.train, &state.deviation[0], &[]);
-        plain.responses(&setting.fitted(taken), &state.torques[0])
-    };
-    let problem = Problem::new(setting.train, &state.deviation[0], &given);
-    let own_cost = problem.least_cost(&[], MOST_Z);
-    let best_of = |(candidate, starts): (usize, &Vec<(Vec<f64>, RowResponse)>)| {
-        if taken.iter().any(|taken| taken.candidate == candidate) {
-            return None;
+/// The log odds of an effect before any log is looked at.
+fn log_occurrence(candidate: &Candidate) -> f64 {
+    match candidate.occurrence {
+        Occurrence::Common => 0.0,
+        Occurrence::Uncommon => policy::UNCOMMON,
+        Occurrence::Rare => policy::RARE,
+    }
+}
+
+impl<'w, 'a> Search<'w, 'a> {
+    /// Evaluates all candidates that the model does not have. `watch` hears which share is done,
+    /// and says whether to go on.
+    pub(super) fn new(
+        weighing: &'w Weighing<'a>,
+        (given, options): (usize, SearchOptions),
+        watch: &mut dyn FnMut(f64) -> bool,
+    ) -> Self {
+        let candidates = weighing.candidates;
+        let mut screen: Vec<Vec<Part>> = vec![Vec::new(); candidates.len()];
+        for (number, candidate) in candidates.iter().enumerate().skip(given) {
+            if !watch(number as f64 / candidates.len() as f64) {
+                break;
+            }
+            let all = starts_of(weighing, candidate);
+            let log_share = -(all.len().max(1) as f64).ln();
+            let placed = all.iter().filter_map(|start| weighing.start(number, start, log_share));
+            screen[number] = placed.map(|(placed, terms)| Part { placed, terms }).collect();
         }
-        let of_start = |(values, response): &(Vec<f64>, RowResponse)| {
-            let turned = turn.map(|turn| response.turned(turn));
-            let response = std::slice::from_ref(turned.as_ref().unwrap_or(response));
-            let gain = own_cost - problem.least_cost(response, MOST_Z);
-            Scored { candidate, gain, values: values.clone() }
-        };
-        let all = starts.iter().map(of_start).filter(|one| one.gain.is_finite());
-        all.max_by(|a, b| a.gain.total_cmp(&b.gain))
-    };
-    let mut scored: Vec<Scored> = screen.responses.iter().enumerate().filter_map(best_of).collect();
-    scored.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    scored
-}
-
-/// What every candidate does to the training logs from where its search begins.
-pub struct Screen {
-    /// For each candidate its starts with their responses in the rows.
-    responses: Vec<Vec<(Vec<f64>, RowResponse)>>,
-}
-
-impl Screen {
-    /// The starts of a candidate with their responses.
-    pub(super) fn of(&self, candidate: usize) -> &[(Vec<f64>, RowResponse)] {
-        &self.responses[candidate]
+        let weights = candidates.iter().skip(given).map(|one| log_occurrence(one).exp());
+        let log_choices = weights.sum::<f64>().max(1.0).ln();
+        Self { weighing, screen, log_choices, options }
     }
 
-    /// Evaluates all candidates on the motion, or coarse views of it.
-    pub fn new(setting: &Setting<'_>, state: &State) -> Self {
-        let problem = Problem::new(setting.train, &state.deviation[0], &[]);
-        let (problem, torques) = match &setting.coarse {
-            Some(coarse) => (problem.coarse(coarse), &state.coarse),
-            None => (problem.coarse(&setting.train.signals), &state.torques[0]),
+    /// Searches which candidates are missing. `watch` hears of what was found so far, and says
+    /// whether to go on.
+    pub(super) fn run(&self, watch: &mut dyn FnMut(&[usize]) -> bool) -> Found {
+        let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
+        let mut now = before.clone();
+        let (mut steps, mut rivals) = (Vec::new(), Vec::new());
+        // Exchanges must not lead round in circles.
+        let mut seen = vec![now.names()];
+        let (is_full, is_stopped) = loop {
+            let is_stopped = !watch(&now.candidates());
+            let is_full = now.parts.len() >= self.options.most_effects;
+            if is_full || is_stopped {
+                break (is_full, is_stopped);
+            }
+            let all = self.with_one_more(&now, &now.parts, &|_| true);
+            let Some(step) = self.step(&now, &all) else { break (false, false) };
+            let is_taken = step.is_taken;
+            steps.push(step);
+            if !is_taken {
+                break (false, false);
+            }
+            let next = self.chosen(&now, all).expect("a step was taken");
+            let (next, others) = self.exchanged(next);
+            if seen.contains(&next.names()) {
+                break (false, false);
+            }
+            seen.push(next.names());
+            (now, rivals) = (next, others);
         };
-        let of = |candidate: &Candidate| -> Vec<(Vec<f64>, RowResponse)> {
-            let law = candidate.law.as_ref();
-            let of_start = |values: Vec<f64>| {
-                let fitted = [Fitted { law, values: values.clone() }];
-                (values, problem.responses(&fitted, torques).remove(0))
+        Found { before, after: now, rivals, steps, is_full, is_stopped }
+    }
+
+    /// The step to the best of some hypotheses.
+    fn step(&self, now: &Hypothesis, all: &[Hypothesis]) -> Option<Step> {
+        let worth = |one: &Hypothesis| self.is_worth(now, one, one.parts.len() - 1);
+        let best = all.iter().find(|one| worth(one)).or(all.first())?;
+        let added = best.parts.last()?.placed.candidate;
+        let log_odds = best.posterior - now.posterior;
+        let others = all.iter().filter_map(|one| {
+            let candidate = one.parts.last()?.placed.candidate;
+            (candidate != added).then_some((candidate, one.posterior - now.posterior))
+        });
+        Some(Step {
+            added,
+            is_taken: worth(best) && log_odds > policy::NAMED,
+            log_odds,
+            size: self.size(best, best.parts.len() - 1),
+            runners_up: others.take(5).collect(),
+        })
+    }
+
+    /// The best of hypotheses of one more effect that is worth it, by its plainest name.
+    fn chosen(&self, now: &Hypothesis, all: Vec<Hypothesis>) -> Option<Hypothesis> {
+        let best = all.iter().find(|one| self.is_worth(now, one, one.parts.len() - 1))?;
+        Some(self.plainest(best, best.parts.len() - 1, &all).clone())
+    }
+
+    /// Whether an effect is large enough for a name beside the others, which are all that `without`
+    /// has: one that others nearly do is none.
+    fn is_worth(&self, without: &Hypothesis, with: &Hypothesis, place: usize) -> bool {
+        let joint = |part: &Part| self.weighing.candidates[part.placed.candidate].joint;
+        let own = joint(&with.parts[place]);
+        let others = (0..without.parts.len()).filter(|&at| joint(&without.parts[at]) == own);
+        let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
+        self.size(with, place) > policy::WORTH
+            && (most == 0.0 || self.apart(with, without) > policy::FURTHER * most)
+    }
+
+    /// What an effect does at the joint where that is most, as a share of its torque.
+    pub(super) fn size(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        let spectrum = hypothesis.torque(place);
+        self.weighing.spectra.largest_share(&spectrum)
+    }
+
+    /// Of hypotheses that have another effect in one place: that which is met most often of those
+    /// that differ little from the best.
+    fn plainest<'h>(
+        &self,
+        best: &'h Hypothesis,
+        place: usize,
+        all: &'h [Hypothesis],
+    ) -> &'h Hypothesis {
+        let plain = all.iter().filter(|one| self.is_plainer(one, best, place));
+        plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best)
+    }
+
+    /// Whether an effect in a place is met more often than that of another hypothesis, and does
+    /// nearly the same.
+    fn is_plainer(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
+        let [own, other] = [one, than].map(|of| self.candidate(of, place));
+        log_occurrence(own) > log_occurrence(other) && self.is_same(one, than, place)
+    }
+
+    /// Whether an effect leaves hardly more than that of another hypothesis in the same place.
+    fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
+        let [own, other] = [one, than].map(|of| self.candidate(of, place));
+        own.at == other.at && self.apart(than, one) < policy::SAME * self.size(than, place)
+    }
+
+    fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {
+        &self.weighing.candidates[hypothesis.parts[place].placed.candidate]
+    }
+
+    /// How much more a hypothesis leaves than another, as a share of the torque where that is most.
+    fn apart(&self, than: &Hypothesis, other: &Hypothesis) -> f64 {
+        let [a, b] = [than, other].map(|one| self.left(one));
+        let more = a.iter().zip(&b).map(|(a, b)| (b * b - a * a).max(0.0).sqrt());
+        more.fold(0.0, f64::max)
+    }
+
+    /// What a hypothesis leaves of each channel, as a share of its torque.
+    pub(super) fn left(&self, hypothesis: &Hypothesis) -> Vec<f64> {
+        let base = &self.weighing.base;
+        let mut left = base.left(&hypothesis.weighed.own);
+        for place in 0..hypothesis.parts.len() {
+            super::hypothesis::subtract(&mut left, &hypothesis.torque(place));
+        }
+        (0..left.len()).map(|channel| self.weighing.spectra.share(&left, channel)).collect()
+    }
+
+    /// Exchanges effects for what does better in their place, until nothing does; with what else
+    /// would do in the place of each.
+    fn exchanged(&self, mut now: Hypothesis) -> (Hypothesis, Vec<Vec<Hypothesis>>) {
+        let mut rivals = Vec::new();
+        let mut place = 0;
+        let mut exchanges = 0;
+        while place < now.parts.len() {
+            let mut others = now.parts.clone();
+            let own = others.remove(place);
+            let rest = self.weighed(others.clone(), Some(&now), policy::ROUNDS[0]);
+            // what others took over is not needed any more
+            let is_idle = now.posterior - rest.posterior < policy::NAMED
+                || !self.is_worth(&rest, &now, place);
+            if is_idle && exchanges < MOST_EXCHANGES {
+                now = rest;
+                exchanges += 1;
+                (rivals, place) = (Vec::new(), 0);
+                continue;
+            }
+            let mut all = self.with_one_more(&rest, &others, &|candidate| {
+                candidate != own.placed.candidate
+            });
+            // the new one stands last there
+            for one in &mut all {
+                let last = one.parts.len() - 1;
+                one.parts[place..=last].rotate_right(1);
+            }
+            let better = all.iter().find(|one| self.is_worth(&rest, one, place));
+            let is_better = better.is_some_and(|one| {
+                one.posterior > now.posterior && !self.is_plainer(&now, one, place)
+            });
+            if let Some(better) = better.filter(|_| is_better && exchanges < MOST_EXCHANGES) {
+                let next = self.plainest(better, place, &all).clone();
+                now = self.weighed(next.parts.clone(), Some(&next), policy::ROUNDS[1]);
+                exchanges += 1;
+                (rivals, place) = (Vec::new(), 0);
+                continue;
+            }
+            // other formulas of the same are no rivals
+            let is_met_less = |one: &Hypothesis| {
+                let [own, other] = [&now, one].map(|of| log_occurrence(self.candidate(of, place)));
+                own > other
             };
-            let range = candidate.joint.map(|joint| range(setting.train, joint));
-            let largest = candidate.joint.and_then(|joint| largest(setting.train, joint));
-            starts(law.parameters(), range, largest).into_iter().map(of_start).collect()
+            all.retain(|one| !(is_met_less(one) && self.is_same(&now, one, place)));
+            rivals.push(all);
+            place += 1;
+            if place == now.parts.len()
+                && exchanges < MOST_EXCHANGES
+                && let Some(merged) = self.merged(&now)
+            {
+                now = merged;
+                exchanges += 1;
+                (rivals, place) = (Vec::new(), 0);
+            }
+        }
+        (now, rivals)
+    }
+
+    /// One effect in place of two that act at one place, if that is more likely.
+    fn merged(&self, now: &Hypothesis) -> Option<Hypothesis> {
+        let at = |place: usize| &self.weighing.candidates[now.parts[place].placed.candidate].at;
+        let count = now.parts.len();
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
+        for (a, b) in pairs.filter(|&(a, b)| at(a) == at(b)) {
+            let mut others = now.parts.clone();
+            others.remove(b);
+            others.remove(a);
+            let rest = self.weighed(others.clone(), Some(now), policy::ROUNDS[0]);
+            let all = self.with_one_more(&rest, &others, &|_| true);
+            let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
+            if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
+                let next = self.plainest(best, best.parts.len() - 1, &all);
+                return Some(self.weighed(next.parts.clone(), Some(next), policy::ROUNDS[1]));
+            }
+        }
+        None
+    }
+
+    /// Hypotheses of one more effect beside `parts`, those that the evidence asks for most first.
+    fn with_one_more(
+        &self,
+        now: &Hypothesis,
+        parts: &[Part],
+        is_asked: &dyn Fn(usize) -> bool,
+    ) -> Vec<Hypothesis> {
+        let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
+        let glance = Glance::new(&self.weighing.base, &terms, &now.weighed.variances);
+        let is_there = |candidate: usize| {
+            parts.iter().any(|part| part.placed.candidate == candidate)
         };
-        Self { responses: setting.candidates.iter().map(of).collect() }
+        let mut seen: Vec<(f64, &Part)> = Vec::new();
+        for (candidate, own) in self.screen.iter().enumerate() {
+            if is_there(candidate) || !is_asked(candidate) {
+                continue;
+            }
+            let prior = log_occurrence(&self.weighing.candidates[candidate]);
+            let gains = own.iter().map(|part| {
+                (glance.see(&part.terms).gain + prior + part.placed.log_share, part)
+            });
+            seen.extend(gains.max_by(|a, b| a.0.total_cmp(&b.0)));
+        }
+        seen.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let most = seen.first().map_or(0.0, |(gain, _)| *gain);
+        let near = |(gain, _): &&(f64, &Part)| gain.is_finite() && *gain > most - policy::FAR;
+        let chosen = seen.iter().filter(near).take(policy::WEIGHED);
+        let mut all: Vec<Hypothesis> = chosen
+            .map(|(_, part)| {
+                let parts = [parts, &[(*part).clone()]].concat();
+                let first = self.weighed(parts, Some(now), policy::ROUNDS[0]);
+                self.linearised(first, policy::ROUNDS[0])
+            })
+            .collect();
+        all.sort_by(|a, b| b.posterior.total_cmp(&a.posterior));
+        all
+    }
+
+    /// A hypothesis whose effects are linearised at their most likely values. Where an effect is
+    /// off its shape has no slope, so that the first round says how large it is, and the next ones
+    /// how it is shaped.
+    pub(super) fn linearised(&self, first: Hypothesis, rounds: usize) -> Hypothesis {
+        let (mut now, mut best) = (first.clone(), first);
+        for round in 0..policy::LINEARISED {
+            let Some(parts) = self.moved(&now) else { break };
+            now = self.weighed(parts, Some(&now), rounds);
+            let gain = now.posterior - best.posterior;
+            if gain > 0.0 {
+                best = now.clone();
+            }
+            let is_lost = round > 2 && gain < -policy::FAR;
+            if round > 0 && now.weighed.away < policy::SETTLED || is_lost {
+                break;
+            }
+        }
+        best
+    }
+
+    /// The parts at their most likely values; none if no law is curved.
+    fn moved(&self, hypothesis: &Hypothesis) -> Option<Vec<Part>> {
+        let curved = |part: &Part| part.terms.is_curved.iter().any(|is| *is);
+        if !hypothesis.parts.iter().any(curved) {
+            return None;
+        }
+        let move_part = |(part, factors): (&Part, &[f64])| {
+            if !curved(part) {
+                return part.clone();
+            }
+            let values = part.placed.moved(self.weighing.candidates, factors);
+            let placed = Placed { values, ..part.placed.clone() };
+            Part { terms: self.weighing.terms(&placed), placed }
+        };
+        Some(hypothesis.parts.iter().zip(hypothesis.factors()).map(move_part).collect())
+    }
+
+    /// Effects together, weighed.
+    pub(super) fn weighed(
+        &self,
+        parts: Vec<Part>,
+        from: Option<&Hypothesis>,
+        rounds: usize,
+    ) -> Hypothesis {
+        let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
+        let start = from.map(|from| from.weighed.variances.as_slice());
+        let weighed = self.weighing.base.weigh(&terms, start, rounds);
+        let prior = |part: &Part| {
+            let candidate = &self.weighing.candidates[part.placed.candidate];
+            part.placed.log_share + log_occurrence(candidate) - self.log_choices
+        };
+        let of_parts: f64 = parts.iter().map(prior).sum();
+        let more = policy::ONE_MORE * parts.len().saturating_sub(1) as f64;
+        Hypothesis { posterior: weighed.settled() + of_parts + more, parts, weighed }
+    }
+
+    /// Errors from which on an effect of one parameter has the odds that a name asks for.
+    pub(super) fn least_errors(&self) -> f64 {
+        (2.0 * (policy::NAMED + self.log_choices)).sqrt()
+    }
+
+    /// What is seen of every candidate of one parameter beside what was found: its number, how far
+    /// its value may be off, and what that is of its joint's torque.
+    pub(super) fn precisions(&self, after: &Hypothesis) -> Vec<(usize, f64, f64)> {
+        let terms: Vec<&Terms> = after.parts.iter().map(|part| &part.terms).collect();
+        let glance = Glance::new(&self.weighing.base, &terms, &after.weighed.variances);
+        let there = after.candidates();
+        let mut all = Vec::new();
+        for (candidate, own) in self.screen.iter().enumerate() {
+            let one = &self.weighing.candidates[candidate];
+            let (Some(part), Some(joint)) = (own.first(), one.joint) else { continue };
+            if part.terms.len() != 1 || there.contains(&candidate) {
+                continue;
+            }
+            let precision = glance.see(&part.terms).precision[0];
+            let share = self.weighing.spectra.share(&part.terms.columns[0], joint);
+            let error = precision.sqrt().recip();
+            all.push((candidate, error * part.placed.deviations[0], error * share));
+        }
+        all
+    }
+}
+
+/// Exchanges of one round, at most.
+const MOST_EXCHANGES: usize = 8;
+
+/// Where the search of a candidate's parameters begins.
+fn starts_of(weighing: &Weighing<'_>, candidate: &Candidate) -> Vec<Start> {
+    let range = candidate.joint.map(|joint| range(&weighing.sets, joint));
+    let largest = candidate.joint.and_then(|joint| largest(&weighing.sets, joint));
+    starts(candidate.law.parameters(), range, largest)
+}
+
+impl Hypothesis {
+    /// The numbers of the effects' candidates.
+    pub(super) fn candidates(&self) -> Vec<usize> {
+        self.parts.iter().map(|part| part.placed.candidate).collect()
+    }
+
+    /// The same in order.
+    fn names(&self) -> Vec<usize> {
+        let mut names = self.candidates();
+        names.sort_unstable();
+        names
+    }
+
+    /// The factors of each part.
+    fn factors(&self) -> Vec<&[f64]> {
+        let mut rest = self.weighed.factors.as_slice();
+        let of = |part: &Part| {
+            let (own, others) = rest.split_at(part.terms.len());
+            rest = others;
+            own
+        };
+        self.parts.iter().map(of).collect()
+    }
+
+    /// The spectrum of what an effect does.
+    fn torque(&self, place: usize) -> denavit_evidence::Spectrum {
+        self.parts[place].terms.torque(self.factors()[place])
+    }
+
+    /// The values of an effect's parameters.
+    pub(super) fn values(&self, place: usize) -> Vec<f64> {
+        let Placed { values, deviations, .. } = &self.parts[place].placed;
+        let moved = values.iter().zip(deviations).zip(self.factors()[place]);
+        moved.map(|((value, deviation), factor)| value + deviation * factor).collect()
+    }
+
+    /// The standard deviations of an effect's parameters.
+    pub(super) fn deviations(&self, place: usize) -> Vec<f64> {
+        let before: usize = self.parts[..place].iter().map(|part| part.terms.len()).sum();
+        let of = |(k, deviation): (usize, &f64)| {
+            let at = before + k;
+            deviation * self.weighed.covariance[(at, at)].max(0.0).sqrt()
+        };
+        self.parts[place].placed.deviations.iter().enumerate().map(of).collect()
     }
 }
 
 /// The largest measured torque of a joint.
-fn largest(data: &Data<'_>, joint: usize) -> Option<f64> {
-    let own = data.stretches.iter().filter(|stretch| stretch.equation == joint);
-    let all = own.flat_map(|stretch| &data.torque[stretch.first..stretch.first + stretch.rows]);
-    all.map(|torque| torque.abs()).max_by(f64::total_cmp)
+fn largest(sets: &[&Data<'_>], joint: usize) -> Option<f64> {
+    let of_set = |data: &&Data<'_>| {
+        let logs = data.signals.iter().filter_map(|log| log.measured[joint].as_ref());
+        logs.flatten().map(|torque| torque.abs()).max_by(f64::total_cmp)
+    };
+    sets.iter().filter_map(of_set).max_by(f64::total_cmp)
 }
 
 /// The least and the largest position of a joint.
-pub(super) fn range(data: &Data<'_>, joint: usize) -> [f64; 2] {
-    let all = data.signals.iter().flat_map(|signals| &signals.q[joint]);
+fn range(sets: &[&Data<'_>], joint: usize) -> [f64; 2] {
+    let all = sets.iter().flat_map(|data| &data.signals).flat_map(|signals| &signals.q[joint]);
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
-}
-
-/// How many are fitted to the whole motion, of all that are fitted roughly; and how much more the
-/// rough fits of others may leave that are fitted as well.
-const FINE: usize = 3;
-const ROUGHLY: f64 = 1.1;
-
-/// The best scored candidates, each fitted together with what a state has; best first.
-pub(super) fn refine(
-    setting: &Setting<'_>,
-    count: usize,
-    state: &State,
-    (problem, scored): (&Problem<'_>, &[Scored]),
-) -> Vec<Trial> {
-    let candidates = scored.iter().take(count).filter(|one| one.gain > 0.0);
-    let of = |one: &Scored| Taken { candidate: one.candidate, values: one.values.clone() };
-    let added: Vec<Vec<Taken>> = candidates.map(|one| vec![of(one)]).collect();
-    fitted(setting, state, problem, &added)
-}
-
-/// Effects that are added to those of a state, fitted together with these; best first.
-pub(super) fn fitted(
-    setting: &Setting<'_>,
-    state: &State,
-    problem: &Problem<'_>,
-    added: &[Vec<Taken>],
-) -> Vec<Trial> {
-    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    let rough = |added: &Vec<Taken>| {
-        let taken = [state.taken.as_slice(), added].concat();
-        let taken = setting.roughly(problem, state, &taken);
-        // Judged on the whole motion, with the values as they are.
-        setting.judged(problem, state, &taken)
-    };
-    let mut trials: Vec<Trial> = added.iter().map(rough).collect();
-    let sort = |trials: &mut [Trial]| {
-        trials.sort_by(|a, b| a.score(samples).total_cmp(&b.score(samples)));
-    };
-    sort(&mut trials);
-    let mut least: Option<(f64, usize)> = None;
-    for (place, trial) in trials.iter_mut().enumerate() {
-        let is_near = least.is_none_or(|(cost, parameters)| {
-            trial.cost() < ROUGHLY * cost && trial.parameters() <= parameters
-        });
-        if place < FINE || is_near {
-            *trial = setting.trial(problem, state, &trial.taken);
-            let own = (trial.cost(), trial.parameters());
-            least = least.filter(|(cost, _)| *cost <= own.0).or(Some(own));
-        }
-    }
-    sort(&mut trials);
-    trials
-}
-
-/// By which share a held-out gap may be larger for a law with fewer parameters.
-pub(super) const ALIKE: f64 = 0.03;
-
-/// Standard errors from which on one name is worse than another.
-pub(super) const DISTINCT: f64 = 2.5;
-
-/// The share of what the best trial explains that one with fewer parameters may leave.
-const LEAVES: f64 = 0.1;
-
-/// The trial that explains most of held-out logs, or nearly that with fewer parameters; `idle` is
-/// without it.
-pub(super) fn best<'t>(
-    setting: &Setting<'_>,
-    state: &State,
-    trials: &'t [Trial],
-    idle: &Trial,
-) -> Option<&'t Trial> {
-    let by_cost = |a: &&Trial, b: &&Trial| a.held_out_cost().total_cmp(&b.held_out_cost());
-    let least = trials.iter().min_by(by_cost)?;
-    let most = alike([idle, least]);
-    let alike = trials
-        .iter()
-        .filter(|trial| trial.held_out_cost() <= most && !is_worse(setting, state, trial, least));
-    // A tilt of the base that is an offset of one joint is one direction in two numbers.
-    let size = |trial: &Trial| (trial.parameters(), trial.numbers());
-    alike.min_by(|a, b| size(a).cmp(&size(b)).then(by_cost(a, b)))
-}
-
-/// What a law may leave of held-out logs to be like another one, that is `least`.
-pub(super) fn alike([idle, least]: [&Trial; 2]) -> f64 {
-    let [none, least] = [idle, least].map(Trial::held_out_cost);
-    // Joints that this is not about weigh in the whole, but not in what is explained.
-    ((1.0 + ALIKE).powi(2) * least).min(least + LEAVES * (none - least).max(0.0))
-}
-
-/// Whether a trial is worse than another for sure, and by more than a parameter costs (Schwarz
-/// 1978), of the logs that were fitted or of the others: laws that become each other differ by
-/// little, but for sure; and what one log has may not happen in the other.
-pub(super) fn is_worse(setting: &Setting<'_>, state: &State, trial: &Trial, than: &Trial) -> bool {
-    let costs_more = |set: usize| {
-        let of = |one: &Trial| setting.squares(set, state, one.residuals()[set]);
-        let (of_trial, of_other, rows) = (of(trial), of(than), setting.rows(set));
-        let all: f64 = rows.iter().sum();
-        let own = of_trial.iter().zip(&of_other).zip(rows);
-        let more =
-            own.map(|(([a, noise], [b, _]), rows)| rows * (a - b) / noise.max(f64::MIN_POSITIVE));
-        more.sum::<f64>() > ROWS_PER_SAMPLE * (all / ROWS_PER_SAMPLE).ln()
-    };
-    (costs_more(0) || costs_more(1))
-        && paired(&trial.blocks.concat(), &than.blocks.concat()) >= DISTINCT
-}
-
-/// Exchanges effects for candidates that explain more in their place, or as much with fewer
-/// parameters.
-fn swap(
-    (setting, screen): (&Setting<'_>, &Screen),
-    options: &SearchOptions,
-    mut state: State,
-) -> State {
-    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    for place in setting.given.len()..state.taken.len().saturating_sub(1) {
-        let mut others = state.taken.clone();
-        let own = others.remove(place);
-        let rest = setting.state(&others);
-        let scored = score(setting, screen, (&rest, &rest.taken), None);
-        let problem = Problem::new(setting.train, &state.deviation[0], &[]);
-        // Weighed as the others are: by what is left without it.
-        let now = setting.trial(&problem, &rest, &state.taken);
-        let trials = refine(setting, options.refined, &rest, (&problem, &scored));
-        let idle = setting.trial(&problem, &rest, &rest.taken);
-        let is_other =
-            |trial: &&Trial| trial.taken.last().is_some_and(|last| last.candidate != own.candidate);
-        let is_driven = stands_for(setting, [&idle, &now]);
-        let stands = |trial: &&Trial| !is_driven || stands_for(setting, [&idle, trial]);
-        let is_better = |trial: &&Trial| {
-            paired(&now.blocks.concat(), &trial.blocks.concat()) > options.significance
-                && trial.score(samples) < now.score(samples)
-        };
-        let better =
-            best(setting, &state, &trials, &idle).filter(is_other).filter(is_better).filter(stands);
-        let is_simpler = |trial: &&Trial| {
-            trial.parameters() < now.parameters() && !is_worse(setting, &state, trial, &now)
-        };
-        let simplest = trials.iter().filter(is_other).filter(is_simpler).filter(stands);
-        let simplest = simplest.min_by_key(|trial| trial.parameters());
-        if let Some(best) = better.or(simplest) {
-            state = setting.state(&best.taken);
-        }
-    }
-    state
-}
-
-/// The least share of what could be explained at its joints in the beginning that an effect must
-/// close, or else of what would be left without it.
-const IDLE: f64 = 0.05;
-const IDLE_OF_REST: f64 = 0.3;
-
-/// Takes effects out that the others have made idle, the idlest first.
-fn without_idle(setting: &Setting<'_>, before: &[f64], mut state: State) -> State {
-    let samples = setting.train.rows() as f64 / ROWS_PER_SAMPLE;
-    while state.taken.len() > setting.given.len() + 1 {
-        let problem = Problem::new(setting.train, &state.deviation[0], &[]);
-        let now = setting.trial(&problem, &state, &state.taken);
-        let squares = |left: &[f64]| setting.held_out_squares(&state, left);
-        let (from, then) = (squares(before), squares(&now.held_out_residual));
-        let mut idlest: Option<(f64, Vec<Taken>)> = None;
-        for place in setting.given.len()..state.taken.len() {
-            let mut others = state.taken.clone();
-            others.remove(place);
-            let less = setting.trial(&problem, &state, &others);
-            // Rows are weighted by what is left of them: squares count as those of unit noise.
-            let worth = (less.cost() - now.cost()) / ROWS_PER_SAMPLE;
-            let parameters = now.parameters().saturating_sub(less.parameters()) as f64;
-            let [share, of_rest] = closed(&from, &squares(&less.held_out_residual), &then);
-            let is_small = share < IDLE && of_rest < IDLE_OF_REST;
-            let is_idle = (worth <= parameters * samples.ln() || is_small)
-                && !stands_for(setting, [&less, &now]);
-            if is_idle && idlest.as_ref().is_none_or(|(least, _)| worth < *least) {
-                idlest = Some((worth, others));
-            }
-        }
-        let Some((_, others)) = idlest else { break };
-        state = setting.state(&others);
-    }
-    state
 }

@@ -8,12 +8,13 @@
 use super::between::{between, cubic};
 use super::floor::white_noise;
 use super::law::derivative;
+use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
+use denavit_evidence::policy;
 use denavit_measure::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use std::ops::Range;
-use std::rc::Rc;
 
 /// The filters of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,15 @@ impl Filters {
     pub fn new(step_s: f64, share: f64) -> Self {
         Self { motion_hz: share / step_s, torque_hz: 0.5 * share / step_s }
     }
+
+    /// The filters for a cutoff of torques: positions have three times that.
+    pub fn of_torques(torque_hz: f64) -> Self {
+        Self { motion_hz: 3.0 * torque_hz, torque_hz }
+    }
 }
+
+/// Rows in a period of the cutoff: what the filter passes is below half their rate.
+const ROWS_PER_PERIOD: f64 = 2.5;
 
 /// Order of one pass of both filters.
 const ORDER: usize = 4;
@@ -69,8 +78,6 @@ pub struct Signals {
     pub motor_noise: Vec<Vec<f64>>,
     /// Torques as they were measured, at the samples of the log.
     pub measured: Vec<Option<Vec<f64>>>,
-    /// What a coarse view is of.
-    whole: Option<Rc<Signals>>,
     /// Where the rows are among the samples of the motion.
     rows: Rows,
     filter: Butterworth,
@@ -85,9 +92,15 @@ struct Rows {
     within: usize,
 }
 
-/// Samples of the motion to a sample of the log. A step of friction is not at a sample, and the
-/// mean of a cell knows where it is.
-const WITHIN: usize = 3;
+/// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a cell
+/// knows where it is.
+const LEAST_RATE_HZ: f64 = 1000.0;
+
+/// Samples of the motion to a sample of the log: odd, so that one of them is at its time.
+fn samples_within(step_s: f64) -> usize {
+    let asked = (LEAST_RATE_HZ * step_s).ceil() as usize;
+    (asked / 2 * 2 + 1).min(9)
+}
 
 impl Signals {
     /// Filters a log.
@@ -101,20 +114,19 @@ impl Signals {
         let (wide, filter) = (filter_of(filters.motion_hz)?, filter_of(filters.torque_hz)?);
         let samples = joints.first().map_or(0, |joint| joint.q.len());
         let edge = STENCIL + wide.settling();
-        // Even, so that a coarse view can have two samples to a row.
-        let stride = ((0.2 / (filters.torque_hz * step_s)) as usize * 2).max(1);
+        let stride = ((ROWS_PER_PERIOD * filters.torque_hz * step_s).recip() as usize).max(1);
         let cut = edge + filter.settling();
         if samples < 2 * cut + 64 * stride {
             return Err(ConditionError::TooShort { samples, needed: 2 * cut + 64 * stride });
         }
         let kept = edge..samples - edge;
-        // Rows are where a coarse view of the motion has samples.
-        let first = filter.settling().next_multiple_of(stride);
-        let rows = Rows { range: first..kept.len() - filter.settling(), stride, within: WITHIN };
-        let fine = step_s / WITHIN as f64;
+        let first = filter.settling();
+        let within = samples_within(step_s);
+        let rows = Rows { range: first..kept.len() - filter.settling(), stride, within };
+        let fine = step_s / within as f64;
         // The cell of a sample is around it.
-        let offset = 0.5 * (WITHIN - 1) as f64 * fine;
-        let t = (0..kept.len() * WITHIN)
+        let offset = 0.5 * (within - 1) as f64 * fine;
+        let t = (0..kept.len() * within)
             .map(|k| start_s + step_s * kept.start as f64 + fine * k as f64 - offset)
             .collect();
         let [q, qd, qdd, position_noise, motor_noise] = [const { Vec::new() }; 5];
@@ -134,20 +146,17 @@ impl Signals {
             motor_noise,
             torque,
             measured,
-            whole: None,
             rows,
             filter,
         };
         let mut randoms = [Random::new(1), Random::new(2)];
         for joint in joints {
-            // An encoder's error is anywhere within its step. A spring is stiff: where its angles
-            // do not tell their steps, their noise counts as such.
-            let of_spring = |angle: &Vec<f64>| 12.0_f64.sqrt() * white_noise(angle);
-            let both = joint.motor.as_ref().map(|motor| {
-                let steps = [(joint.step, &joint.q), (joint.motor_step, motor)];
-                steps.map(|(step, angle)| step.unwrap_or_else(|| of_spring(angle)))
-            });
-            let [step, motor_step] = both.unwrap_or([joint.step.unwrap_or(0.0), 0.0]);
+            // An encoder's error is anywhere within its step. Where angles do not tell their steps,
+            // their noise counts as such.
+            let of_noise = |angle: &Vec<f64>| 12.0_f64.sqrt() * white_noise(angle);
+            let step = joint.step.unwrap_or_else(|| of_noise(&joint.q));
+            let motor = joint.motor.as_ref();
+            let motor_step = joint.motor_step.or(motor.map(of_noise)).unwrap_or(0.0);
             let mut noise = |random: usize, samples: usize, step: f64| {
                 let uniform = |_| step * (randoms[random].uniform() - 0.5);
                 let mut noise: Vec<f64> = (0..samples).map(uniform).collect();
@@ -249,53 +258,6 @@ impl Signals {
         self.rest(joint);
     }
 
-    /// The motion at one cell in so many, for a first look: laws cost less there. Rows are the
-    /// same.
-    pub fn coarse(&self) -> Option<Self> {
-        let Rows { range, stride, within } = &self.rows;
-        let thin = (stride / 2).max(1);
-        let coarse = self.log_step_s * thin as f64;
-        let thinned = |signal: &Vec<f64>| -> Vec<f64> {
-            signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
-        };
-        let all = |signals: &[Vec<f64>]| signals.iter().map(thinned).collect();
-        let filter = Butterworth::new(ORDER, self.torque_hz, coarse)?;
-        let rows = Rows {
-            range: range.start / thin..range.end.div_ceil(thin),
-            stride: stride / thin,
-            within: 1,
-        };
-        let mut found = Self {
-            file: self.file.clone(),
-            log_step_s: coarse,
-            step_s: coarse,
-            torque_hz: self.torque_hz,
-            t: thinned(&self.t),
-            q: all(&self.q),
-            qd: all(&self.qd),
-            qdd: all(&self.qdd),
-            motor: self
-                .motor
-                .iter()
-                .map(|m| m.as_ref().map(|m| m.each_ref().map(thinned)))
-                .collect(),
-            rests: self.rests.clone(),
-            position_noise: Vec::new(),
-            motor_noise: Vec::new(),
-            torque: Vec::new(),
-            measured: self
-                .measured
-                .iter()
-                .map(|m| m.as_ref().map(|m| m.iter().step_by(thin).copied().collect()))
-                .collect(),
-            whole: Some(Rc::new(self.clone())),
-            rows,
-            filter,
-        };
-        (0..found.joints()).for_each(|joint| found.rest(joint));
-        (stride % thin == 0 && found.rows() == self.rows()).then_some(found)
-    }
-
     /// The motion at a few of its samples, of which there are no rows.
     pub(super) fn at(&self, samples: &[usize]) -> Self {
         let at = |signal: &Vec<f64>| samples.iter().map(|&k| signal[k]).collect::<Vec<f64>>();
@@ -308,33 +270,6 @@ impl Signals {
             motor: self.motor.iter().map(|m| m.as_ref().map(|m| m.each_ref().map(at))).collect(),
             ..self.clone()
         }
-    }
-
-    /// The motion at the full rate, of which this is a coarse view or all.
-    pub(super) fn whole(&self) -> &Self {
-        self.whole.as_deref().unwrap_or(self)
-    }
-
-    /// What a signal of the whole motion is at the samples of this one: means, since a coarse view
-    /// must not mistake fast changes for slow ones.
-    pub(super) fn of_whole(&self, signal: Vec<f64>) -> Vec<f64> {
-        let Some(whole) = &self.whole else { return signal };
-        let within = whole.rows.within;
-        let by = within * (self.step_s / whole.log_step_s).round() as usize;
-        let mean = |k: usize| {
-            let middle = within / 2 + k * by;
-            let from = middle.saturating_sub(by / 2);
-            let own = &signal[from..(middle + by.div_ceil(2)).min(signal.len())];
-            own.iter().sum::<f64>() / own.len() as f64
-        };
-        (0..self.samples()).map(mean).collect()
-    }
-
-    /// What a signal of the fine motion is in this coarse one.
-    pub fn thinned(&self, fine: &Self, signal: &[f64]) -> Vec<f64> {
-        let within = fine.rows.within;
-        let thin = (self.step_s / fine.log_step_s).round() as usize;
-        signal.iter().skip(within / 2).step_by(within * thin).copied().collect()
     }
 
     /// Rate and acceleration of a joint's drive, on the joint's side: those of the joint, unless a
@@ -368,6 +303,15 @@ impl Signals {
         self.rows.range.len().div_ceil(self.rows.stride)
     }
 
+    /// The frequency up to which references drive the motion \[Hz\].
+    pub(super) fn driven_hz(&self) -> f64 {
+        let lines = |rate: &Vec<f64>| cosine_lines(&self.at_rows(rate));
+        let all: Vec<Vec<f64>> = self.qd.iter().map(lines).collect();
+        let line_hz = 0.5 / (self.rows() as f64 * self.row_step_s());
+        let of_joint = |lines: &Vec<f64>| line_hz * last_driven(lines) as f64;
+        policy::DRIVEN_REACH * all.iter().map(of_joint).fold(0.0, f64::max)
+    }
+
     /// The time between rows \[s\].
     pub fn row_step_s(&self) -> f64 {
         self.log_step_s * self.rows.stride as f64
@@ -375,6 +319,10 @@ impl Signals {
 
     /// What a signal of the motion's samples is in the rows: filtered, and fewer.
     pub fn rows_of(&self, signal: &[f64]) -> Vec<f64> {
+        // A law that is off has many columns of nothing.
+        if signal.iter().all(|sample| *sample == 0.0) {
+            return vec![0.0; self.rows()];
+        }
         self.row_samples(&self.filtered(self.cell_means(signal)))
     }
 
@@ -471,10 +419,10 @@ mod tests {
         }
     }
 
-    /// A torque that a signal of the motion explains whole, seen from all sides: rows of the log,
-    /// of the motion, and of a coarse view of it.
+    /// A torque that a signal of the motion explains whole, seen from both sides: rows of the log
+    /// and of the motion.
     #[test]
-    fn rows_of_log_motion_and_coarse_view_agree() {
+    fn rows_of_log_and_motion_agree() {
         let step_s = 0.002;
         let at = |k: usize| (TAU * 1.3 * step_s * k as f64).sin();
         let q: Vec<f64> = (0..6000).map(at).collect();
@@ -482,13 +430,11 @@ mod tests {
         let (file, joints) = ("made".to_owned(), vec![joint]);
         let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
         let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
-        let coarse = signals.coarse().expect("there is something to save");
         let measured = signals.torque[0].as_ref().expect("measured");
         let rows = signals.rows_of(&signals.q[0]);
-        let seen = coarse.rows_of(&coarse.q[0]);
-        assert_eq!((rows.len(), seen.len()), (measured.len(), measured.len()));
-        for ((a, b), c) in measured.iter().zip(&rows).zip(&seen) {
-            assert!((a - b).abs() < 1e-4 && (a - c).abs() < 1e-3, "{a} {b} {c}");
+        assert_eq!(rows.len(), measured.len());
+        for (a, b) in measured.iter().zip(&rows) {
+            assert!((a - b).abs() < 1e-4, "{a} {b}");
         }
         let rate = TAU * 1.3;
         let steepest = signals.qd[0].iter().fold(0.0_f64, |most, qd| most.max(qd.abs()));

@@ -13,7 +13,7 @@ pub struct Structure {
     pub at: String,
     /// The terms with their coefficients [N m, N per unit of the term], the largest share first.
     pub terms: Vec<(String, f64)>,
-    /// The share of the weighted squares of held-out logs that they explain.
+    /// The share of the squares of held-out logs that they explain.
     pub share: f64,
 }
 
@@ -36,7 +36,7 @@ pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) ->
     let sets = [(setting.train, 0), (setting.held_out, 1)];
     let [train, held_out] = sets.map(|(data, set)| {
         let left = if set == 0 { &state.residual } else { &state.held_out_residual };
-        Rows::new(data, &state.torques[set], (equation, left, &state.deviation[set]))
+        Rows::new(data, &state.torques[set], (equation, left))
     });
     let whole = held_out.left.norm_squared();
     let (mut places, mut found, mut least) = (Vec::new(), DVector::zeros(0), whole);
@@ -62,7 +62,7 @@ pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) ->
     (!terms.is_empty()).then(|| Structure { at, terms, share: 1.0 - least / whole })
 }
 
-/// What a joint leaves and the library, weighted.
+/// What a joint leaves and the library.
 struct Rows {
     names: Vec<String>,
     columns: Vec<DVector<f64>>,
@@ -73,17 +73,13 @@ impl Rows {
     fn new(
         data: &Data<'_>,
         torques: &[ModelTorques],
-        (equation, left, deviation): (usize, &[f64], &[f64]),
+        (equation, left): (usize, &[f64]),
     ) -> Self {
         let mut rows = Self { names: Vec::new(), columns: Vec::new(), left: DVector::zeros(0) };
         let (mut columns, mut all_left): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
         for stretch in data.stretches.iter().filter(|stretch| stretch.equation == equation) {
             let range = stretch.first..stretch.first + stretch.rows;
-            let weights: Vec<f64> = deviation[range.clone()].iter().map(|one| 1.0 / one).collect();
-            let weighted = |values: &[f64]| -> Vec<f64> {
-                values.iter().zip(&weights).map(|(value, weight)| value * weight).collect()
-            };
-            all_left.extend(weighted(&left[range]));
+            all_left.extend(&left[range]);
             let signals = &data.signals[stretch.log];
             let names = data.nominal.model.joints.iter().map(|one| one.name.as_str());
             let names: Vec<&str> = names.collect();
@@ -92,7 +88,7 @@ impl Rows {
             columns.resize(library.len(), Vec::new());
             rows.names = library.iter().map(|(name, _)| name.clone()).collect();
             for (column, (_, values)) in columns.iter_mut().zip(&library) {
-                column.extend(weighted(&signals.rows_of(values)));
+                column.extend(signals.rows_of(values));
             }
         }
         rows.columns = columns.into_iter().map(DVector::from_vec).collect();

@@ -11,6 +11,7 @@ use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
+use denavit_evidence::policy;
 use std::ops::Range;
 
 /// The time by which the filter of positions moves a corner of a rate, times the cutoff of torques.
@@ -58,7 +59,7 @@ pub(super) fn turning(
             }
             sum
         };
-        let bends = bends(signals, all);
+        let bends = bends(signals, 1.0, all);
         let rests = [-0.5, 0.5].map(|by| Some(all(&signals.with_rests_bent(by)?)));
         for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
             let sizes: Vec<f64> =
@@ -114,24 +115,58 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
     }
 }
 
-/// What torques would be less if friction kept its sign until a reversal has left the corner
-/// behind it: for each joint at the samples of the motion [N m, N].
-pub(super) fn late_friction(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
-    let mut bends = bends(signals, |moved| torques_of(nominal, moved, phi));
-    bends.truncate(signals.joints());
-    for (joint, bends) in bends.iter_mut().enumerate() {
-        let [_, accelerations] = signals.of_drive(joint);
-        for (bend, acceleration) in bends.iter_mut().zip(accelerations) {
-            *bend = -bend.abs() * acceleration.signum();
+/// What every joint may have that is too small for a name, one deviation of each.
+pub(super) const PER_JOINT: usize = 7;
+
+/// Corners of rates, over that of the filter, in which friction may pass from one side to the
+/// other.
+const CORNERS: [f64; 2] = [1.0, 4.0];
+
+/// For each joint what its equation may have that is too small for a name, at the samples of the
+/// motion [N m, N]: for two widths of a reversal friction that is late, or soft, there; then an
+/// offset, viscous and Coulomb friction.
+///
+/// The filter moves the moment of a reversal, and no drive passes it as a formula does: neither
+/// with the friction that the model has nor with what it may lack.
+pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Vec<PerJoint> {
+    let mut all: Vec<PerJoint> = vec![Vec::new(); signals.joints()];
+    for corner in CORNERS {
+        let bends = bends(signals, corner, |moved| {
+            let mut torques = torques_of(nominal, moved, phi);
+            for (joint, torque) in torques.iter_mut().take(signals.joints()).enumerate() {
+                let step = policy::STEP * nominal.usual[joint][0];
+                let [rates, _] = moved.of_drive(joint);
+                torque.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += step * rate.signum());
+            }
+            torques
+        });
+        for (joint, own) in all.iter_mut().enumerate() {
+            let [_, accelerations] = signals.of_drive(joint);
+            let late = |(bend, acceleration): (&f64, &f64)| -bend.abs() * acceleration.signum();
+            own.push(bends[joint].iter().zip(accelerations).map(late).collect());
+            own.push(bends[joint].clone());
         }
     }
-    bends
+    for (joint, own) in all.iter_mut().enumerate() {
+        let [torque, rate] = nominal.usual[joint];
+        let size = policy::UNNAMED * torque;
+        let [rates, _] = signals.of_drive(joint);
+        own.push(vec![size; rates.len()]);
+        let slope = if rate > 0.0 { size / rate } else { 0.0 };
+        own.push(rates.iter().map(|rate| slope * rate).collect());
+        own.push(rates.iter().map(|rate| size * rate.signum()).collect());
+    }
+    all
 }
 
 /// The second difference of torques by rates over what a corner of the filter hides of them: of a
 /// step its height, and nothing of a slope.
-fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint {
-    let corner_s = CORNER / signals.torque_hz;
+fn bends(
+    signals: &Signals,
+    corner: f64,
+    torques: impl Fn(&Signals) -> PerJoint,
+) -> PerJoint {
+    let corner_s = corner * CORNER / signals.torque_hz;
     let moved = |sign: f64| {
         let mut moved = signals.clone();
         for joint in 0..signals.joints() {

@@ -8,6 +8,7 @@ use denavit_diagnose::{
     Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Verdict,
     Where,
 };
+use std::f64::consts::LN_10;
 
 /// Joints whose torques are drawn, at most.
 const DRAWN: usize = 3;
@@ -210,9 +211,10 @@ impl DiagnosisPage<'_> {
         let own = &self.candidates[one.candidate];
         let doubt = if one.is_named { "New" } else { "Nearest to something without a name" };
         let text = format!(
-            "{doubt}: {} at {}. It closes {} of the gap.",
+            "{doubt}: {} at {}. Its odds are {}. It closes {} of the gap.",
             own.title,
             own.at,
+            odds(one.log_odds),
             percent(one.share)
         );
         let mut parts = vec![Part::Paragraph { text }];
@@ -247,10 +249,9 @@ impl DiagnosisPage<'_> {
         for other in &one.alternatives {
             let which = if other.is_exact { "No motion tells" } else { "These logs do not tell" };
             let text = format!(
-                "{which} it from {}, which would leave {} (cosine: {:.2}).",
+                "{which} it from {} for sure: its odds against that are {}.",
                 self.candidates[other.candidate].name(),
-                percent(other.held_out_gap),
-                other.cosine
+                odds(other.log_odds)
             );
             parts.push(Part::Paragraph { text });
         }
@@ -317,12 +318,14 @@ impl DiagnosisPage<'_> {
         let mut parts = Vec::new();
         for (round, step) in self.found.steps.iter().enumerate() {
             parts.push(Part::Paragraph { text: self.round(round, step) });
-            let columns = headings(&[("candidate", false), ("held-out gap", true)]);
-            let winner = (step.added, step.held_out_gap, true);
-            let others = step.runners_up.iter().map(|&(other, gap)| (other, gap, false));
-            let rows = std::iter::once(winner).chain(others).map(|(candidate, gap, is_marked)| {
+            let columns = headings(&[("candidate", false), ("log10 of odds", true)]);
+            let winner = (step.added, step.log_odds, true);
+            let others = step.runners_up.iter().map(|&(other, odds)| (other, odds, false));
+            let rows = std::iter::once(winner).chain(others).map(|(candidate, log, is_marked)| {
                 let name = Cell::text(self.candidates[candidate].name());
-                Row { cells: vec![name, share(gap)], is_marked }
+                let tens = log / LN_10;
+                let odds = Cell::number(tens, format!("{tens:.1}"));
+                Row { cells: vec![name, odds], is_marked }
             });
             let caption = "The best of the round, marked, and those that came next.".to_owned();
             parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
@@ -332,21 +335,20 @@ impl DiagnosisPage<'_> {
 
     fn round(&self, round: usize, step: &Step) -> String {
         format!(
-            "Round {}: {}{} {}. It lowers the weighted squares of the logs for training by {}, the \
-             best decoy by {}; held-out logs are better by {:.1} standard errors; it closes {} of \
-             what can be explained.",
+            "Round {}: {} {}. Its odds are {}, and it does {} of the torque of its joint.",
             round + 1,
             self.candidates[step.added].name(),
-            step.with.map_or_else(String::new, |with| {
-                format!(" together with {}", self.candidates[with].name())
-            }),
             if step.is_taken { "was taken" } else { "was not taken" },
-            short(step.gain),
-            short(step.decoy),
-            step.significance,
-            percent(step.share),
+            odds(step.log_odds),
+            percent(step.size),
         )
     }
+}
+
+/// Odds in words: as powers of ten where they are large.
+fn odds(log_odds: f64) -> String {
+    let tens = log_odds / LN_10;
+    if tens.abs() < 3.0 { short(log_odds.exp()) } else { format!("10^{tens:.0}") }
 }
 
 /// A line of a law as a new term of the equation that it is part of.

@@ -23,9 +23,16 @@ struct DiagnosisJson<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     given: Vec<GivenJson<'a>>,
     effects: Vec<EffectJson<'a>>,
+    /// Effects that are only near to what has no name.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    nearest: Vec<EffectJson<'a>>,
     visible: Vec<VisibleJson<'a>>,
     unnamed: Vec<StructureJson<'a>>,
     rounds: Vec<RoundJson<'a>>,
+    /// What joints and springs have left in the bands in which the robot moves.
+    leftover: Vec<LeftoverJson<'a>>,
+    /// The cutoff of the filter of torques [Hz].
+    filter_hz: f64,
     noise_floor: f64,
     gap: GapJson,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -52,11 +59,11 @@ struct WhereJson<'a> {
 #[derive(Serialize)]
 struct EffectJson<'a> {
     effect: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    nearest: Option<&'a str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    other_law: Option<&'a str>,
     at: &'a str,
+    /// The log of the odds that it is there.
+    log_odds: f64,
+    /// What it does, as a share of the torque of its joint.
+    size: f64,
     share: f64,
     parameters: BTreeMap<&'a str, ValueJson<'a>>,
     indistinguishable: Vec<OtherJson<'a>>,
@@ -88,8 +95,8 @@ struct ValueJson<'a> {
 struct OtherJson<'a> {
     effect: &'a str,
     at: &'a str,
-    gap: f64,
-    cosine: f64,
+    /// The log of the odds of the effect that was found against it.
+    log_odds: f64,
     /// Whether no motion tells the two apart.
     exact: bool,
 }
@@ -114,19 +121,18 @@ struct StructureJson<'a> {
 }
 
 #[derive(Serialize)]
+struct LeftoverJson<'a> {
+    joint: &'a str,
+    share: f64,
+}
+
+#[derive(Serialize)]
 struct RoundJson<'a> {
     effect: &'a str,
     at: &'a str,
-    /// The effect that is needed together with it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    with: Option<Value>,
     is_taken: bool,
-    gain: f64,
-    decoy: f64,
-    significance: f64,
-    share: f64,
-    /// Standard errors by which simulated windows are better.
-    in_motion: Option<f64>,
+    log_odds: f64,
+    size: f64,
     runners_up: Vec<RunnerUpJson<'a>>,
 }
 
@@ -134,7 +140,7 @@ struct RoundJson<'a> {
 struct RunnerUpJson<'a> {
     effect: &'a str,
     at: &'a str,
-    gap: f64,
+    log_odds: f64,
 }
 
 #[derive(Serialize)]
@@ -165,7 +171,7 @@ impl From<&Gaps> for OneGapJson {
 }
 
 pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
-    let Shown { robot, candidates, found, remarks, .. } = shown;
+    let Shown { robot, found, remarks, .. } = shown;
     let of_joint = |one: &'_ Where| -> (Option<String>, Option<f64>) {
         let part = one.parts.first();
         (part.map(|part| part.regime.to_string()), part.map(|part| part.share))
@@ -181,30 +187,18 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
             over_noise: one.over_noise,
         }
     });
-    let effects = found.effects.iter().enumerate().map(|(number, one)| {
-        let own = &candidates[one.candidate];
-        let others = one.alternatives.iter().map(|other| OtherJson {
-            effect: &candidates[other.candidate].effect,
-            at: &candidates[other.candidate].at,
-            gap: other.held_out_gap,
-            cosine: other.cosine,
-            exact: other.is_exact,
-        });
-        EffectJson {
-            effect: if one.is_named { &own.effect } else { "unnamed" },
-            nearest: (!one.is_named).then_some(own.effect.as_str()),
-            other_law: one.outdone_by.as_deref(),
-            at: &own.at,
-            share: one.share,
-            parameters: values(&one.parameters),
-            indistinguishable: others.collect(),
-            exact_alias: &one.exact,
-            separating_experiment: experiment(shown, number, one),
-        }
-    });
+    let sorted = |is_named: bool| {
+        let all = found.effects.iter().enumerate();
+        let own = all.filter(|(_, one)| one.is_named == is_named);
+        own.map(|(number, one)| effect(shown, number, one)).collect()
+    };
     let structures = found.structures.iter().map(|one| StructureJson {
         joint: &one.at,
         formula: one.formula(),
+        share: one.share,
+    });
+    let leftover = found.leftovers.iter().map(|one| LeftoverJson {
+        joint: &found.places[one.equation],
         share: one.share,
     });
     let written = shown.written.as_ref();
@@ -215,10 +209,13 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         reasons: &found.reasons,
         r#where: places.collect(),
         given: shown.model_effects.iter().map(|becomes| given(shown, becomes)).collect(),
-        effects: effects.collect(),
+        effects: sorted(true),
+        nearest: sorted(false),
         visible: visible(shown),
         unnamed: structures.collect(),
         rounds: found.steps.iter().map(|step| round(shown, step)).collect(),
+        leftover: leftover.collect(),
+        filter_hz: found.filters.torque_hz,
         noise_floor: found.held_out.floor.all,
         gap: GapJson { train: (&found.train).into(), validate: (&found.held_out).into() },
         simulation_gap: motion(shown),
@@ -230,6 +227,28 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         report: written.map(|_| super::REPORT),
     };
     write_json(out, &answer)
+}
+
+fn effect<'a>(shown: &'a Shown, number: usize, one: &'a FoundEffect) -> EffectJson<'a> {
+    let candidates = &shown.candidates;
+    let own = &candidates[one.candidate];
+    let others = one.alternatives.iter().map(|other| OtherJson {
+        effect: &candidates[other.candidate].effect,
+        at: &candidates[other.candidate].at,
+        log_odds: other.log_odds,
+        exact: other.is_exact,
+    });
+    EffectJson {
+        effect: &own.effect,
+        at: &own.at,
+        log_odds: one.log_odds,
+        size: one.size,
+        share: one.share,
+        parameters: values(&one.parameters),
+        indistinguishable: others.collect(),
+        exact_alias: &one.exact,
+        separating_experiment: experiment(shown, number, one),
+    }
 }
 
 /// How small effects would have been seen.
@@ -309,25 +328,17 @@ fn given<'a>(shown: &'a Shown, becomes: &'a EffectUse) -> GivenJson<'a> {
 fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {
     let added = &shown.candidates[step.added];
     let others = step.runners_up.iter();
-    let with = step.with.map(|with| {
-        let Candidate { effect, at, .. } = &shown.candidates[with];
-        json!({"effect": effect, "at": at})
-    });
     RoundJson {
         effect: &added.effect,
         at: &added.at,
-        with,
         is_taken: step.is_taken,
-        gain: step.gain,
-        decoy: step.decoy,
-        significance: step.significance,
-        share: step.share,
-        in_motion: step.in_motion,
-        runners_up: others.map(|&(other, gap)| runner_up(shown, other, gap)).collect(),
+        log_odds: step.log_odds,
+        size: step.size,
+        runners_up: others.map(|&(other, log_odds)| runner_up(shown, other, log_odds)).collect(),
     }
 }
 
-fn runner_up<'a>(shown: &'a Shown, candidate: usize, gap: f64) -> RunnerUpJson<'a> {
+fn runner_up<'a>(shown: &'a Shown, candidate: usize, log_odds: f64) -> RunnerUpJson<'a> {
     let other = &shown.candidates[candidate];
-    RunnerUpJson { effect: &other.effect, at: &other.at, gap }
+    RunnerUpJson { effect: &other.effect, at: &other.at, log_odds }
 }

@@ -35,15 +35,13 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         let share = percent(one.share);
         writeln!(out, "\n{name} still lacks, without a name: {} ({share} of it)", one.formula())?;
     }
-    if let Some(step) = found.steps.last().filter(|step| !step.is_taken && step.gain > 0.0) {
+    if let Some(step) = found.steps.last().filter(|step| !step.is_taken && step.log_odds > 0.0) {
         writeln!(
             out,
-            "\nnot taken: {}, which would close {} ({:.1} standard errors; the best decoy does {} \
-             as much)",
+            "\nnot named: {}, odds {}, {} of the torque",
             candidates[step.added].name(),
-            percent(step.share),
-            step.significance,
-            percent(step.decoy / step.gain)
+            odds(step.log_odds),
+            percent(step.size)
         )?;
     }
     if found.effects.is_empty() {
@@ -55,6 +53,12 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         writeln!(out, "{file}: {remark}")?;
     }
     files(out, shown)
+}
+
+/// Odds in words: as powers of ten where they are large.
+fn odds(log_odds: f64) -> String {
+    let tens = log_odds / std::f64::consts::LN_10;
+    if tens.abs() < 3.0 { format!("{:.2}", log_odds.exp()) } else { format!("10^{tens:.0}") }
 }
 
 /// Effects that are listed for each joint: those that are seen worst.
@@ -110,15 +114,22 @@ fn value(value: &EffectValue) -> String {
 
 fn effect(out: &mut dyn Write, shown: &Shown, one: &FoundEffect) -> Result<(), Failure> {
     let own = &shown.candidates[one.candidate];
-    let closes = percent(one.share);
     let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
-    writeln!(out, "\n{doubt}{} ({}) at {}: closes {closes}", own.title, own.effect, own.at)?;
+    writeln!(
+        out,
+        "\n{doubt}{} ({}) at {}: odds {}, {} of the torque, closes {}",
+        own.title,
+        own.effect,
+        own.at,
+        odds(one.log_odds),
+        percent(one.size),
+        percent(one.share)
+    )?;
     one.parameters.iter().try_for_each(|one| writeln!(out, "  {}", value(one)))?;
     for other in &one.alternatives {
         let name = shown.candidates[other.candidate].name();
-        let left = percent(other.held_out_gap);
         let exact = if other.is_exact { "; no motion tells them apart" } else { "" };
-        writeln!(out, "  or {name}, which would leave {left}{exact}")?;
+        writeln!(out, "  or {name}, odds {} against it{exact}", odds(other.log_odds))?;
     }
     match &one.experiment {
         Some(Ok(found)) => writeln!(

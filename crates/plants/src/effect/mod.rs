@@ -233,6 +233,14 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_inverse)
     }
 
+    /// Whether the law is made of accelerations, or changes a logged torque in proportion or in
+    /// time, which answers them.
+    pub fn follows_accelerations(&self) -> bool {
+        let answers = ["qdd", "qdd_2", "tau_load_rate", "tau_load_rate_2"];
+        let uses = self.columns.iter().any(|&column| answers.contains(&COLUMNS[column]));
+        uses || self.channel.is_some() && !self.is_inverse()
+    }
+
     /// What the effect adds to the torque that is logged of its joint [N m, N], sample by sample:
     /// 0 for an effect on another channel.
     pub fn torque(&self, samples: &JointSamples<'_>, values: &[f64]) -> Vec<f64> {

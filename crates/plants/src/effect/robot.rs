@@ -3,7 +3,7 @@
 use super::program::LawProgram;
 use super::{EffectError, LawParameter, gradient};
 use denavit_codegen::derive::{Flavour, derive};
-use denavit_codegen::effect::{Effect, Law, Property, attach, with_term};
+use denavit_codegen::effect::{Effect, Law, ModelTerm, Property, attach, with_term};
 use denavit_codegen::expr::{ExprId, substitute};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{
@@ -52,6 +52,18 @@ pub struct RobotEffect {
     joints: usize,
     /// Torques, then their derivatives: for each parameter one row for each joint.
     program: LawProgram,
+    follows_accelerations: bool,
+}
+
+/// Whether what a law adds is made of accelerations.
+fn is_of_accelerations(law: &Law) -> bool {
+    match law {
+        Law::Term(term) => matches!(term, ModelTerm::Rotor),
+        Law::Moves(moves) => {
+            moves.iter().any(|(property, _)| !matches!(property, Property::Gravity(_)))
+        }
+        Law::Torque(_) | Law::Measured(_) => false,
+    }
 }
 
 /// Whether what a law adds depends on numbers of the model: what turns or leaves out what is there
@@ -118,7 +130,9 @@ impl RobotEffect {
         let joints = entries.len();
         let program = LawProgram::new(&dag, numbers, first.inputs, entries)
             .map_err(RobotEffectError::Lower)?;
-        Ok(Self { name: effect.name.clone(), parameters: Vec::new(), joints, program })
+        let follows_accelerations = is_of_accelerations(&effect.law);
+        let (name, parameters) = (effect.name.clone(), Vec::new());
+        Ok(Self { name, parameters, joints, program, follows_accelerations })
     }
 
     fn of_moved(
@@ -155,7 +169,14 @@ impl RobotEffect {
             _ => JointKind::Revolute,
         };
         let parameters = effect.parameters.iter().map(|p| LawParameter::new(p, joint)).collect();
-        Ok(Self { name: effect.name.clone(), parameters, joints, program })
+        let follows_accelerations = is_of_accelerations(&effect.law);
+        let name = effect.name.clone();
+        Ok(Self { name, parameters, joints, program, follows_accelerations })
+    }
+
+    /// Whether what the effect adds is made of accelerations.
+    pub fn follows_accelerations(&self) -> bool {
+        self.follows_accelerations
     }
 
     /// What the effect adds to the torques, and the derivative by each parameter. `q`, `qd` and

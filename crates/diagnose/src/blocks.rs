@@ -47,22 +47,6 @@ pub fn paired(worse: &[f64], better: &[f64]) -> f64 {
     }
 }
 
-/// The same by the ranks of the differences (Wilcoxon 1945): what is missing where little happens
-/// counts no less, and one block with much of it no more.
-pub fn by_ranks(worse: &[f64], better: &[f64]) -> f64 {
-    let mut differences: Vec<f64> =
-        worse.iter().zip(better).map(|(a, b)| a - b).filter(|d| *d != 0.0).collect();
-    differences.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
-    let count = differences.len() as f64;
-    let ranked = differences.iter().enumerate();
-    let sum: f64 = ranked.filter(|(_, d)| **d > 0.0).map(|(rank, _)| rank as f64 + 1.0).sum();
-    let variance = count * (count + 1.0) * (2.0 * count + 1.0) / 24.0;
-    match variance > 0.0 {
-        true => (sum - count * (count + 1.0) / 4.0) / variance.sqrt(),
-        false => 0.0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

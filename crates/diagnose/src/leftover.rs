@@ -1,0 +1,43 @@
+//! What is left of a channel when all is explained that has a name.
+//!
+//! Noise of sensors and of drives is as strong in the bands in which a robot moves as in the ones
+//! above. What has more in the slow ones is a disturbance, or physics without a name: which of
+//! both says a smooth function of the motion, that explains the one and not the other.
+
+use super::data::Data;
+use super::search::Hypothesis;
+use super::spectra::Spectra;
+use denavit_evidence::policy;
+
+/// The excess of one channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leftover {
+    /// The channel: a joint, or after all joints a spring.
+    pub equation: usize,
+    /// What slow bands have beyond the level of faster ones, as a share of the torque.
+    pub share: f64,
+}
+
+/// What each channel has left in slow bands beyond its level in faster ones.
+pub(super) fn leftovers(spectra: &Spectra, hypothesis: &Hypothesis) -> Vec<Leftover> {
+    let mut variances = hypothesis.weighed.variances.iter();
+    let of = |(equation, bands): (usize, &Vec<std::ops::Range<usize>>)| {
+        let filled = bands.iter().filter(|rows| !rows.is_empty());
+        let all: Vec<(f64, f64)> =
+            filled.map(|rows| (rows.len() as f64, *variances.next().expect("a cell"))).collect();
+        // the fastest band is where the filter already takes away
+        let inner = &all[..all.len().saturating_sub(1)];
+        let fast = &inner[inner.len().min(inner.len() / 2)..];
+        let mut levels: Vec<f64> = fast.iter().map(|(_, variance)| *variance).collect();
+        levels.sort_by(f64::total_cmp);
+        let flat = policy::FLAT * levels.get(levels.len() / 2).copied().unwrap_or(0.0);
+        let squares = inner.iter().map(|(rows, variance)| rows * (variance - flat).max(0.0));
+        Leftover { equation, share: spectra.share_of_squares(equation, squares.sum()) }
+    };
+    spectra.layout.bands.iter().enumerate().map(of).collect()
+}
+
+/// Names of channels.
+pub(super) fn name(data: &Data<'_>, leftover: &Leftover) -> String {
+    data.nominal.equation_name(leftover.equation)
+}

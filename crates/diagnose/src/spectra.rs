@@ -1,0 +1,195 @@
+//! Rows as spectra: the cosine transform of each stretch, lines below the cutoff of torques.
+//!
+//! Stationary noise of any colour is independent from line to line there, but for the ends of a
+//! stretch (Ahmed, Natarajan, Rao 1974). Lines of one joint and one band of frequencies make a
+//! cell, whose noise has a variance of its own.
+
+use super::data::{Data, RowResponse, Stretch};
+use super::floor::rms;
+use denavit_evidence::{Layout, Spectrum, policy};
+use rustdct::{DctPlanner, TransformType2And3};
+use std::sync::Arc;
+
+/// One line of a spectrum: a stretch of a set of logs, and the number of the line.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    set: usize,
+    stretch: usize,
+    number: usize,
+    /// Its frequency \[Hz\].
+    hz: f64,
+}
+
+/// Which lines there are, and how rows become them.
+pub(super) struct Spectra {
+    /// For each channel its lines, band by band.
+    lines: Vec<Vec<Line>>,
+    /// Where the bands are, and how much noise is expected.
+    pub(super) layout: Layout,
+    /// The torque of each channel (root of mean square) [N m, N].
+    pub(super) torque: Vec<f64>,
+    /// Rows in time of each channel.
+    rows: Vec<f64>,
+    plans: Vec<(usize, Arc<dyn TransformType2And3<f64>>)>,
+}
+
+impl Spectra {
+    /// The spectra of sets of logs, with bands of their cutoff frequency.
+    pub(super) fn new(sets: &[&Data<'_>], cutoff_hz: f64) -> Self {
+        let channels = sets[0].nominal.equations();
+        let mut spectra = Self {
+            lines: vec![Vec::new(); channels],
+            layout: Layout { bands: vec![Vec::new(); channels], levels: vec![0.0; channels] },
+            torque: vec![0.0; channels],
+            rows: vec![0.0; channels],
+            plans: Vec::new(),
+        };
+        let mut planner = DctPlanner::new();
+        let mut torques: Vec<Vec<f64>> = vec![Vec::new(); channels];
+        for (set, data) in sets.iter().enumerate() {
+            for (place, stretch) in data.stretches.iter().enumerate() {
+                let Stretch { log, equation, first, rows, .. } = *stretch;
+                let line_hz = 0.5 / (rows as f64 * data.signals[log].row_step_s());
+                let line = |number: usize| {
+                    let hz = line_hz * number as f64;
+                    Line { set, stretch: place, number, hz }
+                };
+                let lines = (0..rows).map(line).filter(|line| line.hz < cutoff_hz);
+                spectra.lines[equation].extend(lines);
+                spectra.rows[equation] += rows as f64;
+                torques[equation].extend(&data.torque[first..first + rows]);
+                if spectra.plans.iter().all(|(length, _)| *length != rows) {
+                    spectra.plans.push((rows, planner.plan_dct2(rows)));
+                }
+            }
+        }
+        for (channel, lines) in spectra.lines.iter_mut().enumerate() {
+            let band = |line: &Line| {
+                policy::BANDS.iter().filter(|share| line.hz >= **share * cutoff_hz).count() - 1
+            };
+            lines.sort_by_key(band);
+            let mut first = 0;
+            for number in 0..policy::BANDS.len() {
+                let end = first + lines[first..].iter().filter(|line| band(line) == number).count();
+                spectra.layout.bands[channel].push(first..end);
+                first = end;
+            }
+            spectra.torque[channel] = rms(&torques[channel]);
+            let least = f64::MIN_POSITIVE.sqrt();
+            spectra.layout.levels[channel] =
+                (policy::NOISE_LEVEL * spectra.torque[channel]).max(least);
+        }
+        spectra
+    }
+
+    /// The spectrum of what stretches have, if they have anything.
+    fn of<'r>(&self, rows: &dyn Fn(usize, usize) -> Option<&'r [f64]>) -> Spectrum {
+        let of_channel = |lines: &Vec<Line>| {
+            let mut transformed: Vec<(usize, usize, Option<Vec<f64>>)> = Vec::new();
+            let mut all = Vec::with_capacity(lines.len());
+            let mut is_filled = false;
+            for line in lines {
+                let is_it =
+                    |(set, stretch, _): &&(usize, usize, _)| (*set, *stretch) == (line.set, line.stretch);
+                if transformed.iter().find(is_it).is_none() {
+                    let own = rows(line.set, line.stretch).map(|rows| self.transformed(rows));
+                    is_filled |= own.is_some();
+                    transformed.push((line.set, line.stretch, own));
+                }
+                let (_, _, own) = transformed.iter().find(is_it).expect("made just now");
+                all.push(own.as_ref().map_or(0.0, |own| own[line.number]));
+            }
+            if is_filled { all } else { Vec::new() }
+        };
+        self.lines.iter().map(of_channel).collect()
+    }
+
+    /// The orthonormal cosine transform.
+    fn transformed(&self, rows: &[f64]) -> Vec<f64> {
+        let mut lines = rows.to_vec();
+        let plan = self.plans.iter().find(|(length, _)| *length == rows.len());
+        plan.expect("every stretch has a plan").1.process_dct2(&mut lines);
+        let scale = (2.0 / rows.len() as f64).sqrt();
+        lines.iter_mut().for_each(|line| *line *= scale);
+        lines[0] *= 0.5_f64.sqrt();
+        lines
+    }
+
+    /// The spectrum of rows of all sets.
+    pub(super) fn of_rows(&self, sets: &[&Data<'_>], rows: &[&[f64]]) -> Spectrum {
+        self.of(&|set, stretch| {
+            let Stretch { first, rows: count, .. } = sets[set].stretches[stretch];
+            Some(&rows[set][first..first + count])
+        })
+    }
+
+    /// The spectra of the torque of a response to all sets, and of its gradient.
+    pub(super) fn of_response(
+        &self,
+        sets: &[&Data<'_>],
+        responses: &[RowResponse],
+    ) -> (Spectrum, Vec<Spectrum>) {
+        let place = |set: usize, stretch: usize| {
+            let first = sets[set].stretches[stretch].first;
+            responses[set].stretches.iter().position(|own| own.first == first)
+        };
+        let torque = self.of(&|set, stretch| {
+            Some(responses[set].torque[place(set, stretch)?].as_slice())
+        });
+        let parameters = responses
+            .iter()
+            .filter_map(|response| response.gradient.first().map(Vec::len))
+            .max()
+            .unwrap_or(0);
+        let of_parameter = |parameter: usize| {
+            self.of(&|set, stretch| {
+                Some(responses[set].gradient[place(set, stretch)?][parameter].as_slice())
+            })
+        };
+        (torque, (0..parameters).map(of_parameter).collect())
+    }
+
+    /// Takes lines above a frequency away.
+    pub(super) fn cut(&self, spectrum: &mut Spectrum, above_hz: f64) {
+        for (rows, lines) in spectrum.iter_mut().zip(&self.lines) {
+            let both = rows.iter_mut().zip(lines);
+            both.filter(|(_, line)| line.hz > above_hz).for_each(|(row, _)| *row = 0.0);
+        }
+    }
+
+    /// The root of the mean square of a channel in time, over that of its torque.
+    pub(super) fn share(&self, spectrum: &Spectrum, channel: usize) -> f64 {
+        let rows = spectrum.get(channel).into_iter().flatten();
+        self.share_of_squares(channel, rows.map(|row| row * row).sum())
+    }
+
+    /// The same of the sum of squares of all lines.
+    pub(super) fn share_of_squares(&self, channel: usize, squares: f64) -> f64 {
+        let mean = squares / self.rows[channel].max(1.0);
+        mean.sqrt() / self.torque[channel].max(f64::MIN_POSITIVE)
+    }
+
+    /// The largest share of a channel.
+    pub(super) fn largest_share(&self, spectrum: &Spectrum) -> f64 {
+        (0..self.lines.len()).map(|channel| self.share(spectrum, channel)).fold(0.0, f64::max)
+    }
+}
+
+/// The cosine transform of rows, up to a factor.
+pub(super) fn cosine_lines(rows: &[f64]) -> Vec<f64> {
+    let mut lines = rows.to_vec();
+    DctPlanner::new().plan_dct2(rows.len()).process_dct2(&mut lines);
+    lines
+}
+
+/// The line up to which nearly all of the power of a rate is.
+pub(super) fn last_driven(lines: &[f64]) -> usize {
+    let power = |line: &f64| line * line;
+    let whole: f64 = lines.iter().map(power).sum();
+    let mut sum = 0.0;
+    let mut is_below = |line: &f64| {
+        sum += power(line);
+        sum < policy::DRIVEN_SHARE * whole
+    };
+    lines.iter().take_while(|line| is_below(line)).count()
+}

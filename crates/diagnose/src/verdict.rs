@@ -1,0 +1,162 @@
+//! The answer in one word, and why.
+
+use super::data::Data;
+use super::diagnosis::Diagnosis;
+use super::effects_found::FoundEffect;
+use super::excitation::unseen;
+use super::leftover::{Leftover, name};
+use super::search::Found;
+use super::signals::Signals;
+use super::state::Setting;
+use denavit_evidence::policy;
+
+/// The answer in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// What is left is noise.
+    NothingMissing,
+    /// Effects were found that leave noise.
+    Explained,
+    /// Effects were found, and more than noise is left.
+    PartlyExplained,
+    /// More than noise is left, and no effect of the catalogue explains it.
+    Unexplained,
+    /// The logs do not say.
+    CannotTell,
+}
+
+impl Verdict {
+    /// The word in files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::NothingMissing => "nothing_missing",
+            Self::Explained => "explained",
+            Self::PartlyExplained => "partly_explained",
+            Self::Unexplained => "unexplained",
+            Self::CannotTell => "cannot_tell",
+        }
+    }
+}
+
+
+/// Judges what was found.
+pub(super) fn judge(diagnosis: &mut Diagnosis, setting: &Setting<'_>, found: &Found) {
+    for one in &mut diagnosis.effects {
+        let left = left_beside(setting, &diagnosis.leftovers, one);
+        one.is_named = left.is_none_or(|left| !is_unexplained(left, one.size));
+    }
+    let (verdict, mut reasons) = said(diagnosis, setting);
+    reasons.extend(doubts(diagnosis, setting, found));
+    (diagnosis.verdict, diagnosis.reasons) = (verdict, reasons);
+    if found.is_stopped {
+        diagnosis.verdict = Verdict::CannotTell;
+    }
+}
+
+fn is_unexplained(left: &Leftover, explained: f64) -> bool {
+    left.share > policy::LEFT && left.share > policy::LEFT_OF_EXPLAINED * explained
+}
+
+/// What is left most of where an effect acts.
+fn left_beside<'l>(
+    setting: &Setting<'_>,
+    leftovers: &'l [Leftover],
+    one: &FoundEffect,
+) -> Option<&'l Leftover> {
+    let candidate = &setting.candidates[one.candidate];
+    let nominal = setting.train.nominal;
+    let is_there = |left: &&Leftover| {
+        let joint = nominal.joint_of(left.equation);
+        candidate.is_body || candidate.joint.is_none_or(|own| own == joint)
+    };
+    let own = leftovers.iter().filter(is_there);
+    own.max_by(|a, b| a.share.total_cmp(&b.share))
+}
+
+/// The verdict with its first reasons.
+fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let most = diagnosis.leftovers.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+    let explained = diagnosis.effects.iter().map(|one| one.size).fold(0.0, f64::max);
+    let unexplained = most.filter(|left| is_unexplained(left, explained));
+    let of_data: &Data<'_> = setting.train;
+    if diagnosis.held_out.after.all > policy::NOTHING_LIKE {
+        let why = format!(
+            "the model is nothing like the logs: {} of the torque is left; a column of another \
+             joint, sign or unit, or another robot",
+            percent(diagnosis.held_out.after.all)
+        );
+        return (Verdict::CannotTell, vec![why]);
+    }
+    if let Some(left) = unexplained {
+        let what = format!(
+            "{} of the torque of {} is left in the bands in which the robot moves",
+            percent(left.share),
+            name(of_data, left)
+        );
+        let has_names = diagnosis.effects.iter().any(|one| one.is_named);
+        let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
+        return (verdict, vec![what]);
+    }
+    if diagnosis.effects.is_empty() {
+        return nothing_found(diagnosis, setting);
+    }
+    let ambiguous: Vec<String> = diagnosis
+        .effects
+        .iter()
+        .filter(|one| probability(one) < 0.5)
+        .map(|one| setting.candidates[one.candidate].name())
+        .collect();
+    if !ambiguous.is_empty() {
+        let why = format!("alias: others would do as well as {}", ambiguous.join(", "));
+        return (Verdict::CannotTell, vec![why]);
+    }
+    (Verdict::Explained, Vec::new())
+}
+
+/// The probability of an effect among all that would do in its place.
+fn probability(one: &FoundEffect) -> f64 {
+    let others: f64 = one.alternatives.iter().map(|other| (-other.log_odds).exp()).sum();
+    1.0 / (1.0 + others)
+}
+
+/// What it means that no effect was found, and why.
+fn nothing_found(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
+    let joints = &setting.train.nominal.model.joints;
+    let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+    let unseen = unseen(setting, &diagnosis.visible);
+    // Numbers that are driven beyond what the model says stand for something else.
+    let is_model_right = unseen.is_empty() && diagnosis.driven[1].is_empty();
+    let verdict = if is_model_right { Verdict::NothingMissing } else { Verdict::CannotTell };
+    (verdict, unseen.iter().map(|one| one.sentence(&names)).collect())
+}
+
+/// What else must be known to trust the answer.
+fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<String> {
+    let mut reasons = Vec::new();
+    let is_searched = |log: &Signals| setting.train.signals.iter().any(|other| other.q == log.q);
+    if setting.held_out.signals.iter().any(is_searched) {
+        reasons.push("judged with a log that was searched: nothing is held out".to_owned());
+    }
+    for one in diagnosis.effects.iter().filter(|one| !one.exact.is_empty()) {
+        let name = setting.candidates[one.candidate].name();
+        reasons.push(format!(
+            "exact alias: {name} does what parameters of the model do in every motion ({}); what \
+             is told is that they are off by more than the model states",
+            one.exact.join(", ")
+        ));
+    }
+    if found.is_full {
+        reasons.push("as many effects were found as are allowed".to_owned());
+    }
+    if found.is_stopped {
+        reasons.push("the search was stopped: not all was compared".to_owned());
+    }
+    if !diagnosis.driven[1].is_empty() {
+        reasons.push(format!(
+            "the logs would move parameters beyond their uncertainty: {}",
+            diagnosis.driven[1].join(", ")
+        ));
+    }
+    reasons
+}

@@ -1,0 +1,63 @@
+//! The data, and what every hypothesis has: the model's own parameters.
+
+use crate::layout::{Layout, Spectrum};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Data with the columns of everything that the model itself is not sure of.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Channels and bands.
+    pub layout: Layout,
+    /// What is to be explained.
+    pub data: Spectrum,
+    /// For each channel the columns of the model's own parameters, one deviation of each.
+    pub(crate) own: Vec<DMatrix<f64>>,
+    /// For each cell the products of data and own columns with each other, the data first.
+    pub(crate) products: Vec<DMatrix<f64>>,
+    /// Number of own parameters.
+    pub(crate) parameters: usize,
+}
+
+impl Base {
+    /// Data and own columns, each a spectrum with the prior N(0, 1) of its factor.
+    pub fn new(layout: Layout, data: Spectrum, own: &[Spectrum]) -> Self {
+        let parameters = own.len();
+        let of_channel = |channel: usize| {
+            let mut columns = DMatrix::zeros(layout.rows(channel), parameters);
+            for (place, spectrum) in own.iter().enumerate() {
+                let filled = spectrum.get(channel).filter(|one| !one.is_empty());
+                if let Some(column) = filled {
+                    columns.column_mut(place).copy_from_slice(column);
+                }
+            }
+            columns
+        };
+        let own: Vec<DMatrix<f64>> = (0..layout.channels()).map(of_channel).collect();
+        let mut base = Self { layout, data, own, products: Vec::new(), parameters };
+        let cells: Vec<(usize, Range<usize>)> = base.layout.cells().collect();
+        let of_cell = |(channel, rows): &(usize, Range<usize>)| {
+            let mut all = DMatrix::zeros(rows.len(), 1 + parameters);
+            all.column_mut(0).copy_from_slice(&base.data[*channel][rows.clone()]);
+            all.columns_mut(1, parameters)
+                .copy_from(&base.own[*channel].rows(rows.start, rows.len()));
+            all.tr_mul(&all)
+        };
+        base.products = cells.iter().map(of_cell).collect();
+        base
+    }
+
+    /// What factors of the own columns leave of the data.
+    pub fn left(&self, factors: &[f64]) -> Spectrum {
+        let factors = DVector::from_column_slice(factors);
+        let of = |(data, own): (&Vec<f64>, &DMatrix<f64>)| {
+            (DVector::from_column_slice(data) - own * &factors).as_slice().to_vec()
+        };
+        self.data.iter().zip(&self.own).map(of).collect()
+    }
+
+    /// Number of the model's own parameters.
+    pub fn parameters(&self) -> usize {
+        self.parameters
+    }
+}

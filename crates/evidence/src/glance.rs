@@ -1,0 +1,159 @@
+//! A first look at many terms: with the variances of a hypothesis that is known, and then once
+//! with those that the look leaves.
+
+use crate::base::Base;
+use crate::layout::Spectrum;
+use crate::policy;
+use crate::terms::Terms;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::ops::Range;
+
+/// A hypothesis to which terms are added one at a time.
+pub struct Glance {
+    cells: Vec<(usize, Range<usize>)>,
+    /// One over the deviation of each row, channel by channel.
+    weights: Vec<Vec<f64>>,
+    /// The data less known parts, weighted.
+    data: Vec<DVector<f64>>,
+    /// Own columns and those of the hypothesis, weighted.
+    columns: Vec<DMatrix<f64>>,
+    factor: Cholesky<f64, Dyn>,
+    /// What the hypothesis explains of the data.
+    right: DVector<f64>,
+    square: f64,
+    /// For each cell, of its variance, what the inverse gamma prior adds.
+    expected: Vec<f64>,
+    idle: f64,
+}
+
+/// What was seen of terms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// By how much the log evidence grows, roughly.
+    pub gain: f64,
+    /// What the data say of each factor alone: one over its squared error.
+    pub precision: Vec<f64>,
+    /// The most likely factors.
+    pub factors: Vec<f64>,
+}
+
+impl Glance {
+    /// A look from a hypothesis with variances.
+    pub fn new(base: &Base, terms: &[&Terms], variances: &[f64]) -> Self {
+        let cells: Vec<(usize, Range<usize>)> = base.layout.cells().collect();
+        let mut weights: Vec<Vec<f64>> =
+            (0..base.layout.channels()).map(|c| vec![0.0; base.layout.rows(c)]).collect();
+        for ((channel, rows), variance) in cells.iter().zip(variances) {
+            weights[*channel][rows.clone()].fill(1.0 / variance.sqrt());
+        }
+        let more: Vec<&Spectrum> = terms.iter().flat_map(|one| &one.columns).collect();
+        let width = base.parameters + more.len();
+        let (mut data, mut columns) = (Vec::new(), Vec::new());
+        for (channel, weights) in weights.iter().enumerate() {
+            let mut rows = base.data[channel].clone();
+            terms.iter().for_each(|one| one.less_known(channel, &mut rows));
+            data.push(weighted(&rows, weights));
+            let mut all = DMatrix::zeros(weights.len(), width);
+            all.columns_mut(0, base.parameters).copy_from(&base.own[channel]);
+            for (place, spectrum) in more.iter().enumerate() {
+                if let Some(column) = spectrum.get(channel).filter(|one| !one.is_empty()) {
+                    all.column_mut(base.parameters + place).copy_from_slice(column);
+                }
+            }
+            for mut column in all.column_iter_mut() {
+                column.iter_mut().zip(weights).for_each(|(entry, weight)| *entry *= weight);
+            }
+            columns.push(all);
+        }
+        let mut normal = DMatrix::identity(width, width);
+        let mut right = DVector::zeros(width);
+        for (columns, data) in columns.iter().zip(&data) {
+            normal += columns.tr_mul(columns);
+            right += columns.tr_mul(data);
+        }
+        let square = data.iter().map(DVector::norm_squared).sum();
+        let factor = normal.cholesky().expect("a sum of squares and 1");
+        let levels = base.layout.expected();
+        let expected = levels.iter().zip(variances).map(|(level, v)| level / v).collect();
+        let own = Self { cells, weights, data, columns, factor, right, square, expected, idle: 0.0 };
+        let solved = own.factor.solve(&own.right);
+        let idle = own.of_rows(&|channel| {
+            &own.data[channel] - &own.columns[channel] * &solved
+        });
+        Self { idle, ..own }
+    }
+
+    /// Looks at terms.
+    pub fn see(&self, terms: &Terms) -> Seen {
+        let (width, count) = (self.right.len(), terms.len());
+        let mut cross = DMatrix::zeros(width, count);
+        let mut normal = DMatrix::zeros(count, count);
+        let (mut right, mut inner) = (self.right.clone(), DVector::zeros(count));
+        let mut square = self.square;
+        let mut touched: Vec<Option<(DVector<f64>, DMatrix<f64>)>> = Vec::new();
+        for (channel, weights) in self.weights.iter().enumerate() {
+            if !terms.touches(channel) {
+                touched.push(None);
+                continue;
+            }
+            let mut known = vec![0.0; weights.len()];
+            terms.less_known(channel, &mut known);
+            let known = weighted(&known, weights);
+            let data = &self.data[channel] + &known;
+            let mut columns = DMatrix::zeros(weights.len(), count);
+            for (place, spectrum) in terms.columns.iter().enumerate() {
+                if let Some(column) = spectrum.get(channel).filter(|one| !one.is_empty()) {
+                    columns.column_mut(place).copy_from(&weighted(column, weights));
+                }
+            }
+            cross += self.columns[channel].tr_mul(&columns);
+            normal += columns.tr_mul(&columns);
+            inner += columns.tr_mul(&data);
+            right += self.columns[channel].tr_mul(&known);
+            square += data.norm_squared() - self.data[channel].norm_squared();
+            touched.push(Some((data, columns)));
+        }
+        let solved = self.factor.solve(&cross);
+        let beyond = &normal - cross.tr_mul(&solved);
+        let slope = inner - solved.tr_mul(&right);
+        let precision = (0..count).map(|k| beyond[(k, k)].max(0.0)).collect();
+        let mut posterior = beyond;
+        (0..count).for_each(|k| posterior[(k, k)] += 1.0);
+        let Some(chol) = posterior.cholesky() else {
+            return Seen { gain: f64::NEG_INFINITY, precision, factors: vec![0.0; count] };
+        };
+        let mut factors = chol.solve(&slope);
+        for k in 0..count {
+            factors[k] = factors[k].max(terms.lowest[k] - terms.believed[k]);
+        }
+        let own = self.factor.solve(&(right - &cross * &factors));
+        let left = self.of_rows(&|channel| match &touched[channel] {
+            Some((data, columns)) => {
+                data - columns * &factors - &self.columns[channel] * &own
+            }
+            None => &self.data[channel] - &self.columns[channel] * &own,
+        });
+        let determinant: f64 =
+            (0..count).map(|k| chol.l_dirty()[(k, k)].ln()).sum();
+        let gain = left - self.idle - determinant - 0.5 * factors.norm_squared();
+        let gain = if gain.is_finite() && square.is_finite() { gain } else { f64::NEG_INFINITY };
+        let factors = (0..count).map(|k| factors[k] + terms.believed[k]).collect();
+        Seen { gain, precision, factors }
+    }
+
+    /// The log density of rows that are left, with the variances that they have.
+    fn of_rows(&self, left: &dyn Fn(usize) -> DVector<f64>) -> f64 {
+        let left: Vec<DVector<f64>> = (0..self.data.len()).map(left).collect();
+        let shape = policy::NOISE_SHAPE;
+        let of = |((channel, rows), level): (&(usize, Range<usize>), &f64)| {
+            let squares = left[*channel].rows(rows.start, rows.len()).norm_squared();
+            let count = rows.len() as f64 + 2.0 * shape + 2.0;
+            -0.5 * count * ((squares + 2.0 * shape * level) / count).ln()
+        };
+        self.cells.iter().zip(&self.expected).map(of).sum()
+    }
+}
+
+fn weighted(rows: &[f64], weights: &[f64]) -> DVector<f64> {
+    DVector::from_iterator(rows.len(), rows.iter().zip(weights).map(|(row, weight)| row * weight))
+}

@@ -1,0 +1,102 @@
+//! Every number that decides a verdict, with its unit and where it is from.
+
+/// Shape of the inverse gamma prior of a cell's variance: one row's worth of belief, so that a
+/// cell of many rows says its variance itself.
+pub const NOISE_SHAPE: f64 = 1.0;
+
+/// The level of that prior, as a share of the joint's torque (root mean squares): between the
+/// resolution of good torque sensors (0.05 %) and the hysteresis of usual ones (1 %).
+pub const NOISE_LEVEL: f64 = 2e-3;
+
+/// The least share of the expected variance with which the search for variances begins.
+pub const LEAST_OF_LEVEL: f64 = 0.1;
+
+/// Nats by which the evidence may still change where the search for variances ends.
+pub const SETTLED: f64 = 1e-2;
+
+/// Ends of the bands of a joint's cells, as shares of the cutoff frequency: octaves, wide enough
+/// that the lowest has tens of lines in a log of 15 s.
+pub const BANDS: [f64; 8] = [0.0, 1.0 / 30.0, 1.0 / 15.0, 0.1, 1.0 / 6.0, 4.0 / 15.0, 7.0 / 15.0, 2.0 / 3.0];
+
+/// The share of the power of rates that is driven by references, and how much further than that
+/// frequency a motion is taken to be driven: what is beyond answers disturbances, and columns made
+/// of accelerations have the same noise there as the torque that answers them.
+pub const DRIVEN_SHARE: f64 = 0.995;
+/// See [`DRIVEN_SHARE`].
+pub const DRIVEN_REACH: f64 = 2.0;
+
+/// The cutoff of torques over the driven frequency, which leaves bands above the motion that tell
+/// noise, and its bounds \[Hz\] and as a share of the rate of sampling.
+pub const CUTOFF_OVER_DRIVEN: f64 = 5.0;
+/// See [`CUTOFF_OVER_DRIVEN`].
+pub const CUTOFF_HZ: [f64; 2] = [4.0, 15.0];
+/// See [`CUTOFF_OVER_DRIVEN`].
+pub const CUTOFF_OF_RATE: f64 = 0.05;
+
+/// What is believed of the size of an effect, as a share of its joint's torque.
+pub const SIZE: f64 = 0.3;
+
+/// The same of angles that are off [rad, m], and of lengths that start at 0 \[m\].
+pub const ANGLE: f64 = 0.1;
+/// See [`ANGLE`].
+pub const LENGTH: f64 = 0.1;
+
+/// Errors of every model that are too small for a name, as shares of the torque: offset, friction
+/// and gain.
+pub const UNNAMED: f64 = 1e-3;
+
+/// Friction that a model may lack, as a share of the torque, whose reversals are not known better
+/// than those of the friction that it has.
+pub const STEP: f64 = 0.05;
+
+/// Log odds of an effect that is met less often than the common ones, and of one that is hardly
+/// ever met: 1 to 20 and 1 to 400.
+pub const UNCOMMON: f64 = -3.0;
+/// See [`UNCOMMON`].
+pub const RARE: f64 = -6.0;
+
+/// Log odds that one more effect is missing where one was found: 1 to 20.
+pub const ONE_MORE: f64 = -3.0;
+
+/// Log odds from which on an effect is named rather than not: 20 to 1.
+pub const NAMED: f64 = 3.0;
+
+/// The least share of its joint's torque that is worth a name.
+pub const WORTH: f64 = 3e-3;
+
+/// The least size of a further effect over that of the largest one on its joint.
+pub const FURTHER: f64 = 0.15;
+
+/// Two laws of one place that differ by less than this share of what they do are one to a
+/// user: the one that is met more often is named. Laws of friction are not better than that.
+pub const SAME: f64 = 0.1;
+
+/// A rival within these log odds of what is named is told beside it.
+pub const RIVAL: f64 = 4.6;
+
+/// Candidates that are weighed whole after the first look, and the nats below the best from which
+/// on none is.
+pub const WEIGHED: usize = 14;
+/// See [`WEIGHED`].
+pub const FAR: f64 = 60.0;
+
+/// Rounds in which variances are found, of candidates and of what is told.
+pub const ROUNDS: [usize; 2] = [8, 25];
+
+/// Rounds in which curved parameters are linearised anew.
+pub const LINEARISED: usize = 8;
+
+/// What is left of slow bands beyond this many times the level of the faster ones has structure;
+/// it is missing physics or a disturbance if more than a share of the torque, and than a share of
+/// what was explained.
+pub const FLAT: f64 = 1.5;
+/// See [`FLAT`].
+pub const LEFT: f64 = 8e-3;
+/// See [`FLAT`].
+pub const LEFT_OF_EXPLAINED: f64 = 0.35;
+
+/// The least share of torque that an effect must do at one deviation to be looked at.
+pub const LEAST_FELT: f64 = 1e-7;
+
+/// Above this share of the torque, what is left says that model and logs are not of one robot.
+pub const NOTHING_LIKE: f64 = 0.6;

@@ -1,0 +1,265 @@
+//! The evidence of a hypothesis.
+//!
+//! With y what is left of the data after the known parts, X all columns, b their factors and L the
+//! variances of the rows, y = X b + e, b ~ N(0, 1), e ~ N(0, L):
+//!
+//! log p(y | L) = -1/2 (sum log L + log det A + y' L^-1 y - r' A^-1 r), A = 1 + X' L^-1 X,
+//! r = X' L^-1 y, up to a constant that all hypotheses share. The variance of each cell is the most
+//! likely one under an inverse gamma prior, found by expectation and maximisation (Dempster, Laird,
+//! Rubin 1977), the trace of the factors' covariance included.
+
+use crate::base::Base;
+use crate::orthant::bounded;
+use crate::policy;
+use crate::terms::Terms;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::ops::Range;
+
+/// What was found of a hypothesis.
+#[derive(Clone, Debug)]
+pub struct Weighed {
+    /// Its log evidence, up to a constant that all hypotheses on the same data share.
+    pub log_evidence: f64,
+    /// What of that is not to be had: curved effects were linearised elsewhere than at their most
+    /// likely values, and what they would do there is not known.
+    pub away: f64,
+    /// The variance of a row of each cell.
+    pub variances: Vec<f64>,
+    /// The most likely factors of the model's own parameters.
+    pub own: Vec<f64>,
+    /// The most likely factors of all terms, in order.
+    pub factors: Vec<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+}
+
+impl Weighed {
+    /// The log evidence with what was linearised elsewhere taken away.
+    pub fn settled(&self) -> f64 {
+        self.log_evidence - self.away
+    }
+}
+
+/// The products of one cell: of data, own columns and those of terms, in this order.
+struct Cell {
+    rows: f64,
+    products: DMatrix<f64>,
+}
+
+/// What all terms of a hypothesis make of the data of one channel.
+struct Touched {
+    /// The data less known parts, then all columns of terms.
+    columns: DMatrix<f64>,
+}
+
+impl Base {
+    /// Weighs a set of terms. Variances begin at those given, or else at what the data have.
+    pub fn weigh(&self, terms: &[&Terms], start: Option<&[f64]>, rounds: usize) -> Weighed {
+        let width = terms.iter().map(|one| one.len()).sum::<usize>();
+        let cells = self.cells_with(terms, width);
+        let expected = self.layout.expected();
+        let mut variances = match start {
+            Some(start) => start.to_vec(),
+            None => {
+                let mean = |(cell, expected): (&Cell, &f64)| {
+                    (cell.products[(0, 0)] / cell.rows).max(policy::LEAST_OF_LEVEL * expected)
+                };
+                cells.iter().zip(&expected).map(mean).collect()
+            }
+        };
+        let mut before = f64::NEG_INFINITY;
+        for _ in 0..rounds {
+            let posterior = Posterior::new(&cells, &variances);
+            let evidence = posterior.log_evidence(&cells, &variances, &expected);
+            variances = posterior.variances(&cells, &expected);
+            if (evidence - before).abs() < policy::SETTLED {
+                break;
+            }
+            before = evidence;
+        }
+        let posterior = Posterior::new(&cells, &variances);
+        let evidence = posterior.log_evidence(&cells, &variances, &expected);
+        posterior.told(terms, self.parameters, (evidence, variances))
+    }
+
+    /// The products of every cell with those of terms.
+    fn cells_with(&self, terms: &[&Terms], width: usize) -> Vec<Cell> {
+        let own = self.parameters;
+        let size = 1 + own + width;
+        let touched: Vec<Option<Touched>> =
+            (0..self.layout.channels()).map(|channel| self.touched(terms, channel, width)).collect();
+        let of_cell = |((channel, rows), base): ((usize, Range<usize>), &DMatrix<f64>)| {
+            let mut products = DMatrix::zeros(size, size);
+            products.view_mut((0, 0), (1 + own, 1 + own)).copy_from(base);
+            if let Some(Touched { columns }) = &touched[channel] {
+                let columns = columns.rows(rows.start, rows.len());
+                let with_own = self.own[channel].rows(rows.start, rows.len()).tr_mul(&columns);
+                let each_other = columns.tr_mul(&columns);
+                let place = |k: usize| if k == 0 { 0 } else { own + k };
+                for a in 0..=width {
+                    for k in 0..own {
+                        products[(1 + k, place(a))] = with_own[(k, a)];
+                        products[(place(a), 1 + k)] = with_own[(k, a)];
+                    }
+                    for b in 0..=width {
+                        products[(place(a), place(b))] = each_other[(a, b)];
+                    }
+                }
+            }
+            Cell { rows: rows.len() as f64, products }
+        };
+        self.layout.cells().zip(&self.products).map(of_cell).collect()
+    }
+
+    fn touched(&self, terms: &[&Terms], channel: usize, width: usize) -> Option<Touched> {
+        if !terms.iter().any(|one| one.touches(channel)) {
+            return None;
+        }
+        let mut columns = DMatrix::zeros(self.layout.rows(channel), 1 + width);
+        columns.column_mut(0).copy_from_slice(&self.data[channel]);
+        let mut place = 1;
+        for one in terms {
+            one.less_known(channel, columns.column_mut(0).as_mut_slice());
+            for column in &one.columns {
+                if let Some(column) = column.get(channel).filter(|column| !column.is_empty()) {
+                    columns.column_mut(place).copy_from_slice(column);
+                }
+                place += 1;
+            }
+        }
+        Some(Touched { columns })
+    }
+}
+
+impl Terms {
+    /// Takes the known part and what is believed of factors away from rows of a channel.
+    pub(crate) fn less_known(&self, channel: usize, rows: &mut [f64]) {
+        let known = std::iter::once((&self.known, 1.0));
+        let believed = self.columns.iter().zip(self.believed.iter().copied());
+        for (spectrum, factor) in known.chain(believed).filter(|(_, factor)| *factor != 0.0) {
+            let column = spectrum.get(channel).into_iter().flatten();
+            rows.iter_mut().zip(column).for_each(|(row, entry)| *row -= factor * entry);
+        }
+    }
+}
+
+/// The factors of all columns, given variances.
+struct Posterior {
+    factor: Cholesky<f64, Dyn>,
+    mean: DVector<f64>,
+    covariance: DMatrix<f64>,
+    right: DVector<f64>,
+    square: f64,
+}
+
+impl Posterior {
+    fn new(cells: &[Cell], variances: &[f64]) -> Self {
+        let size = cells.first().map_or(1, |cell| cell.products.nrows());
+        let mut sum = DMatrix::zeros(size, size);
+        for (cell, variance) in cells.iter().zip(variances) {
+            let weight = 1.0 / variance;
+            let entries = sum.as_mut_slice().iter_mut().zip(cell.products.as_slice());
+            entries.for_each(|(sum, product)| *sum += weight * product);
+        }
+        let columns = size - 1;
+        let right = DVector::from_fn(columns, |k, _| sum[(1 + k, 0)]);
+        let mut normal = sum.view((1, 1), (columns, columns)).into_owned();
+        (0..columns).for_each(|k| normal[(k, k)] += 1.0);
+        let factor = normal.clone().cholesky().unwrap_or_else(|| {
+            // Rounding of huge columns: what is lost there was beyond its digits.
+            let scale = normal.diagonal().max();
+            let more: DMatrix<f64> = DMatrix::identity(columns, columns) * (scale * f64::EPSILON * 1e3);
+            (normal + more).cholesky().expect("a matrix that is positive but for rounding")
+        });
+        let mean = factor.solve(&right);
+        Self { covariance: factor.inverse(), mean, factor, right, square: sum[(0, 0)] }
+    }
+
+    fn log_evidence(&self, cells: &[Cell], variances: &[f64], expected: &[f64]) -> f64 {
+        let of_rows: f64 = cells.iter().zip(variances).map(|(cell, v)| cell.rows * v.ln()).sum();
+        let triangle = self.factor.l_dirty();
+        let determinant: f64 = (0..self.mean.len()).map(|k| 2.0 * triangle[(k, k)].ln()).sum();
+        let shape = policy::NOISE_SHAPE;
+        let of_noise: f64 = variances
+            .iter()
+            .zip(expected)
+            .map(|(v, level)| -(shape + 1.0) * (v / level).ln() - shape * level / v)
+            .sum();
+        let explained = self.right.dot(&self.mean);
+        of_noise - 0.5 * (of_rows + determinant + self.square - explained)
+    }
+
+    /// The variances that are most likely with these factors.
+    fn variances(&self, cells: &[Cell], expected: &[f64]) -> Vec<f64> {
+        let shape = policy::NOISE_SHAPE;
+        let of = |(cell, level): (&Cell, &f64)| {
+            let squares = self.left(cell);
+            (squares + 2.0 * shape * level) / (cell.rows + 2.0 * shape + 2.0)
+        };
+        cells.iter().zip(expected).map(of).collect()
+    }
+
+    /// The expected squares of what is left of a cell.
+    fn left(&self, cell: &Cell) -> f64 {
+        let products = &cell.products;
+        let columns = self.mean.len();
+        let mut squares = products[(0, 0)];
+        for a in 0..columns {
+            let column = &products.as_slice()[(1 + a) * (1 + columns)..(2 + a) * (1 + columns)];
+            let covariance = &self.covariance.as_slice()[a * columns..(1 + a) * columns];
+            let mean = self.mean.as_slice();
+            let mut inner = 0.0;
+            let mut trace = 0.0;
+            for b in 0..columns {
+                inner += column[1 + b] * mean[b];
+                trace += column[1 + b] * covariance[b];
+            }
+            squares += mean[a] * (inner - 2.0 * column[0]) + trace;
+        }
+        squares.max(0.0)
+    }
+
+    fn told(&self, terms: &[&Terms], own: usize, (evidence, variances): (f64, Vec<f64>)) -> Weighed {
+        let width = self.mean.len() - own;
+        let covariance = self.covariance.view((own, own), (width, width)).into_owned();
+        let all = |of: &dyn Fn(&Terms) -> Vec<f64>| -> Vec<f64> {
+            terms.iter().flat_map(|one| of(one)).collect()
+        };
+        let believed = all(&|one| one.believed.clone());
+        let mean = DVector::from_fn(width, |k, _| self.mean[own + k] + believed[k]);
+        let lowest = all(&|one| one.lowest.clone());
+        let (factors, gained) = bounded(&mean, &covariance, (&lowest, &believed));
+        // own parameters follow the factors that bounds move
+        let moved = &factors - &mean;
+        let mut of_model = self.mean.rows(0, own).into_owned();
+        if moved.norm_squared() > 0.0 {
+            let across = self.covariance.view((0, own), (own, width));
+            if let Some(solved) = covariance.clone().cholesky().map(|own| own.solve(&moved)) {
+                of_model += across * solved;
+            }
+        }
+        let curved: Vec<bool> = terms.iter().flat_map(|one| one.is_curved.clone()).collect();
+        let away = away(&factors, &covariance, &curved);
+        Weighed {
+            log_evidence: evidence + gained,
+            away,
+            variances,
+            own: of_model.as_slice().to_vec(),
+            factors: factors.as_slice().to_vec(),
+            covariance,
+        }
+    }
+}
+
+/// What is lost if curved factors stay where they were linearised and others follow.
+fn away(factors: &DVector<f64>, covariance: &DMatrix<f64>, curved: &[bool]) -> f64 {
+    let places: Vec<usize> = (0..curved.len()).filter(|&k| curved[k]).collect();
+    if places.is_empty() {
+        return 0.0;
+    }
+    let own = DMatrix::from_fn(places.len(), places.len(), |a, b| {
+        covariance[(places[a], places[b])] + if a == b { 1e-12 } else { 0.0 }
+    });
+    let off = DVector::from_fn(places.len(), |k, _| factors[places[k]]);
+    own.cholesky().map_or(0.0, |factor| 0.5 * off.dot(&factor.solve(&off)))
+}

@@ -4,6 +4,7 @@ use super::law::Law;
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
+use std::f64::consts::TAU;
 
 /// An effect in one place.
 pub struct Candidate {
@@ -29,6 +30,9 @@ impl Candidate {
         format!("{} at {}", self.effect, self.at)
     }
 }
+
+/// Units of laws that repeat along a joint.
+const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 
 /// Most points from which one law's parameters are searched.
 const MOST_STARTS: usize = 48;
@@ -89,7 +93,9 @@ fn values_of(
     let is_anywhere = is_position && low.is_infinite() && high.is_infinite();
     let is_limit = !parameter.linear && ["1/(N m)", "1/N"].contains(&parameter.unit.as_str());
     let values: Vec<f64> = match (parameter.nominal, range, largest) {
-        (Some(off), ..) if parameter.linear => return vec![(off, None)],
+        (Some(off), ..) if parameter.linear && parameter.start.is_empty() => {
+            return vec![(off, is_position.then_some(policy::ANGLE))];
+        }
         (Some(off), ..) if parameter.start.is_empty() => {
             let deviation = if is_position { Some(policy::ANGLE) } else { None };
             return vec![(off, deviation)];
@@ -102,6 +108,18 @@ fn values_of(
         }
         (nominal, ..) if parameter.start.is_empty() => vec![nominal.unwrap_or(0.0)],
         _ => parameter.start.clone(),
+    };
+    let values: Vec<f64> = match range.filter(|_| PER_POSITION.contains(&parameter.unit.as_str())) {
+        // of less than that of a period a law that repeats could be any function
+        Some([low, high]) => {
+            let least = policy::PERIODS * TAU / (high - low);
+            let has_enough = |value: &f64| value.abs() >= least;
+            match values.iter().any(has_enough) {
+                true => values.into_iter().filter(has_enough).collect(),
+                false => values,
+            }
+        }
+        None => values,
     };
     let span = range.map_or(0.0, |[low, high]| high - low);
     let alone = |value: f64| match (is_position, value == 0.0) {
@@ -142,6 +160,7 @@ mod tests {
         };
         let open = [f64::NEG_INFINITY, f64::INFINITY];
         let stiffness = of("N m/rad", Some(0.0), [0.0, f64::INFINITY], true);
+        let stiffness = LawParameter { start: Vec::new(), ..stiffness };
         let place = of("rad", None, open, false);
         let within = starts(&[stiffness.clone(), place.clone()], Some([1.0, 3.0]), None);
         assert_eq!(within.len(), PLACES.len());

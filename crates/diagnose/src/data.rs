@@ -5,6 +5,7 @@ use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
 use super::turning::{PER_JOINT, settle, unnamed};
+use denavit_evidence::policy;
 use denavit_plants::effect::Drive;
 
 /// A stretch of rows: those of one equation in one log.
@@ -78,9 +79,9 @@ impl<'a> Data<'a> {
             torque: Vec::new(),
             signals,
         };
-        // Channels of a log are sampled and held: when is known to half a sample.
+        // Channels of a log are not read at once.
         let of_time = |signals: &Signals| -> PerJoint {
-            let shift_s = -0.5 * signals.log_step_s;
+            let shift_s = -policy::TIME * signals.log_step_s;
             let shifted = |torque: &Vec<f64>| -> Vec<f64> {
                 let rate = derivative(torque, signals.step_s);
                 signals.rows_of(&rate.iter().map(|rate| shift_s * rate).collect::<Vec<f64>>())

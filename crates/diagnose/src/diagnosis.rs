@@ -59,9 +59,9 @@ pub struct Request<'a> {
 /// Gaps of one set of logs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaps {
-    /// Of the nominal model, re-estimated.
+    /// Of the model as it is given.
     pub before: Gap,
-    /// With the effects.
+    /// Of the model with its own numbers estimated again, and with the effects.
     pub after: Gap,
     /// Of noise alone.
     pub floor: Gap,
@@ -205,6 +205,7 @@ impl Told<'_, '_> {
         let Self { setting, filters, found, before, after } = self;
         let Setting { train, held_out, train_floor, held_out_floor, .. } = setting;
         let nominal = train.nominal;
+        let as_given = |set: usize| setting.as_given(set);
         let filter_s = 0.35 / filters.torque_hz;
         let left =
             |of: &State| where_left(train, &of.residual, &of.torques[0], train_floor, filter_s);
@@ -220,10 +221,10 @@ impl Told<'_, '_> {
             after: left(after),
             given: given_effects(setting, after),
             effects,
-            train: Gaps::new((train, train_floor), [&before.residual, &after.residual]),
+            train: Gaps::new((train, train_floor), [&as_given(0), &after.residual]),
             held_out: Gaps::new(
                 (held_out, held_out_floor),
-                [&before.held_out_residual, &after.held_out_residual],
+                [&as_given(1), &after.held_out_residual],
             ),
             visible,
             leftovers,
@@ -255,7 +256,7 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
     let signals = conditioned(logs.to_vec(), widest)?;
     let driven_hz = signals.iter().map(Signals::driven_hz).fold(0.0, f64::max);
     let wanted_hz = (policy::CUTOFF_OVER_DRIVEN * driven_hz).max(least_hz).min(widest_hz);
-    Ok(Filters::of_torques(wanted_hz))
+    Ok(Filters { torque_hz: wanted_hz, ..widest })
 }
 
 /// The gaps of the models before and after in motion.

@@ -22,7 +22,7 @@ pub struct NoiseFloor {
 }
 
 /// Laps that differ by so many times their noise do not repeat.
-pub(super) const UNREPEATABLE: f64 = 3.0;
+const UNREPEATABLE: f64 = 3.0;
 
 /// The least share of a torque that its floor is taken to be: logs without noise have digits.
 const LEAST: f64 = 1e-6;
@@ -99,12 +99,6 @@ impl NoiseFloor {
             period_s: laps.map(|laps| laps.period * signals.log_step_s),
             laps: of_laps,
         }
-    }
-
-    /// Whether laps differ so much that the floor of some joint was found without them.
-    pub(super) fn is_exceeded_by_laps(&self) -> bool {
-        let mut both = self.laps.iter().flatten().zip(&self.deviation);
-        both.any(|(laps, deviation)| *laps >= UNREPEATABLE * deviation)
     }
 }
 

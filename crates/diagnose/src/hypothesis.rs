@@ -180,8 +180,48 @@ impl<'a> Weighing<'a> {
             lowest: lowest.collect(),
             is_curved: parameters.iter().map(|parameter| !parameter.linear).collect(),
             believed: believed.collect(),
+            unpredicted: self.unpredicted(placed),
             columns,
         }
+    }
+
+    /// The share of the samples of which an effect says nothing.
+    fn unpredicted(&self, placed: &Placed) -> f64 {
+        let law = self.candidates[placed.candidate].law.as_ref();
+        let (mut sum, mut all) = (0.0, 0.0);
+        for (data, torques) in self.sets.iter().zip(&self.torques) {
+            for (signals, torques) in data.signals.iter().zip(torques) {
+                let samples = signals.samples() as f64;
+                let motion = torques.motion(data.nominal, signals);
+                sum += samples * law.unpredicted(motion, &placed.values);
+                all += samples;
+            }
+        }
+        sum / f64::max(all, 1.0)
+    }
+
+    /// What an effect does at the joint where that is most, as a share of its torque, but for times
+    /// near a reversal.
+    pub(super) fn between_reversals(&self, taken: &Taken) -> f64 {
+        let law = self.candidates[taken.candidate].law.as_ref();
+        let channels = self.spectra.torque.len();
+        let (mut squares, mut samples) = (vec![0.0; channels], vec![0.0; channels]);
+        for (data, torques) in self.sets.iter().zip(&self.torques) {
+            for (signals, torques) in data.signals.iter().zip(torques) {
+                let response = law.response(torques.motion(data.nominal, signals), &taken.values);
+                for (&equation, torque) in response.equations.iter().zip(&response.torque) {
+                    let near = signals.near_reversals(data.nominal.joint_of(equation));
+                    let far = torque.iter().zip(near).filter(|(_, is_near)| !is_near);
+                    squares[equation] += far.map(|(torque, _)| torque * torque).sum::<f64>();
+                    samples[equation] += torque.len() as f64;
+                }
+            }
+        }
+        let of = |channel: usize| {
+            let mean: f64 = squares[channel] / f64::max(samples[channel], 1.0);
+            mean.sqrt() / self.spectra.torque[channel].max(f64::MIN_POSITIVE)
+        };
+        (0..channels).map(of).fold(0.0, f64::max)
     }
 
     /// The values of the effects that the model has, with own factors.

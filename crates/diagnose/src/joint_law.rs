@@ -1,5 +1,6 @@
 //! Effects of the catalogue as laws on the torques of a robot's joints.
 
+use super::floor::rms;
 use super::law::{Law, Motion, Response};
 use super::rows::PerJoint;
 use super::signals::Signals;
@@ -114,17 +115,19 @@ impl Law for SpringLaw {
     }
 }
 
-/// The share of the time in which a drive gives what was demanded, at least, and what may lack
-/// then.
-const LEAST_GIVEN: f64 = 0.05;
+/// A drive that lacks more than this share of what was demanded does not give what was demanded.
 const ALL_GIVEN: f64 = 0.02;
+
+/// What a drive lacks is more than so many times the noise of the torque: a clip of noise would make
+/// a log look better, whatever is demanded.
+const OF_NOISE: f64 = 4.0;
 
 /// An effect that makes a drive give another torque than is logged: what was demanded of it.
 ///
 /// It changes what was measured and not what is computed, so that the law has no torque where
 /// nothing was measured. A clip of what was measured has what the model lacks in it only as far as
-/// that is beyond the clip, and what is left is then that of the model at the clip. A law that
-/// leaves too little of what was measured leaves nothing to compare, which explains nothing.
+/// that is beyond the clip, and what is left is then that of the model at the clip. Of what was
+/// demanded beyond a clip it says nothing.
 pub(super) struct DemandLaw {
     /// The law.
     pub(super) law: EffectLaw,
@@ -132,20 +135,35 @@ pub(super) struct DemandLaw {
     pub(super) joint: usize,
 }
 
+impl DemandLaw {
+    fn measured(&self, motion: &Motion<'_>) -> Vec<f64> {
+        let measured = motion.signals.measured_within(self.joint);
+        measured.unwrap_or_else(|| vec![0.0; motion.signals.samples()])
+    }
+}
+
 impl Law for DemandLaw {
     fn parameters(&self) -> &[LawParameter] {
         &self.law.parameters
     }
 
+    fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> f64 {
+        let measured = self.measured(&motion);
+        let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
+        let torque = self.law.torque(&samples, values);
+        let is_cut = |(all, less): &(&f64, &f64)| less.abs() > ALL_GIVEN * all.abs();
+        let cut = measured.iter().zip(&torque).filter(is_cut).count();
+        cut as f64 / measured.len().max(1) as f64
+    }
+
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let measured = motion.signals.measured_within(self.joint);
-        let measured = measured.unwrap_or_else(|| vec![0.0; motion.signals.samples()]);
+        let measured = self.measured(&motion);
         let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
         let mut torque = self.law.torque(&samples, values);
         let mut gradient = self.law.gradient(&samples, values);
-        let is_given = |(all, less): &(&f64, &f64)| less.abs() <= ALL_GIVEN * all.abs();
-        let given = measured.iter().zip(&torque).filter(is_given).count();
-        if (given as f64) < LEAST_GIVEN * measured.len() as f64 {
+        let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
+        let noise = motion.signals.torque_noise[self.joint];
+        if rms(&lacks) < OF_NOISE * noise {
             torque.fill(0.0);
             gradient.iter_mut().for_each(|column| column.fill(0.0));
         }

@@ -58,6 +58,11 @@ pub trait Law {
         false
     }
 
+    /// The share of the samples of which the law says nothing: it takes what was measured as it is.
+    fn unpredicted(&self, _motion: Motion<'_>, _values: &[f64]) -> f64 {
+        0.0
+    }
+
     /// What the model says of its parameters; nothing of laws that the model does not have.
     fn beliefs(&self) -> &[Belief] {
         &[]

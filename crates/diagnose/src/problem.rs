@@ -5,7 +5,7 @@
 //! projection, Golub and Pereyra 1973).
 
 use super::data::{Data, ModelTorques, RowResponse};
-use super::held::{Held, hold};
+use super::held::Held;
 use super::law::Law;
 use super::signals::Signals;
 use nalgebra::{DMatrix, DVector};
@@ -248,8 +248,6 @@ pub struct View {
     /// Squared length of each column before z is eliminated.
     pub lengths: Vec<f64>,
     explained: DVector<f64>,
-    /// What of the laws' columns z can do.
-    inside: DMatrix<f64>,
 }
 
 /// Products of the rows and of the laws' columns with Q, whatever is held.
@@ -310,7 +308,7 @@ impl Products {
         let normal = &self.normal - inside.tr_mul(&inside);
         let offset = held.offset.norm_squared() - 2.0 * held.offset.dot(&self.all);
         let cost = self.square - explained.norm_squared() + offset;
-        View { cost, gradient, normal, lengths: self.lengths.clone(), explained, inside }
+        View { cost, gradient, normal, lengths: self.lengths.clone(), explained }
     }
 }
 

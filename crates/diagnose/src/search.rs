@@ -5,7 +5,9 @@ use super::candidate::{Candidate, Start, starts};
 use super::data::Data;
 use super::hypothesis::{Placed, Weighing};
 use denavit_codegen::effect::Occurrence;
+use super::state::Taken;
 use denavit_evidence::{Glance, Terms, Weighed, policy};
+use nalgebra::{DMatrix, DVector};
 
 /// What a search is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,7 +177,47 @@ impl<'w, 'a> Search<'w, 'a> {
         let others = (0..without.parts.len()).filter(|&at| joint(&without.parts[at]) == own);
         let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
         self.size(with, place) > policy::WORTH
-            && (most == 0.0 || self.apart(with, without) > policy::FURTHER * most)
+            && (most == 0.0 || self.beyond(with, place) > policy::FURTHER * most)
+            && self.between_reversals(with, place) > policy::WORTH
+    }
+
+    /// What an effect does that others of its hypothesis cannot, as a share of the torque where that
+    /// is most.
+    fn beyond(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        let spectra = &self.weighing.spectra;
+        let torque = spectra.stacked(&hypothesis.torque(place));
+        let others = hypothesis.parts.iter().enumerate().filter(|(at, _)| *at != place);
+        let columns: Vec<DVector<f64>> = others
+            .flat_map(|(at, part)| {
+                part.terms.columns.iter().chain([&part.terms.known]).map(move |one| (at, one))
+            })
+            .map(|(_, spectrum)| spectra.stacked(spectrum))
+            .filter(|column| column.norm() > 0.0)
+            .map(|column| column.normalize())
+            .collect();
+        let left = match columns.is_empty() {
+            true => torque,
+            false => {
+                let svd = DMatrix::from_columns(&columns).svd(true, false);
+                let base = svd.u.expect("asked for");
+                let kept: Vec<usize> = (0..svd.singular_values.len())
+                    .filter(|&k| svd.singular_values[k] > RANK * svd.singular_values[0])
+                    .collect();
+                let base = base.select_columns(&kept);
+                &torque - &base * base.tr_mul(&torque)
+            }
+        };
+        spectra.largest_share(&spectra.unstacked(&left))
+    }
+
+    /// What an effect does where its joint does not turn around just then, as a share of the torque
+    /// where that is most. When a joint turns around is known to some time only.
+    fn between_reversals(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        let candidate = hypothesis.parts[place].placed.candidate;
+        let parameters = self.weighing.candidates[candidate].law.parameters();
+        let values = hypothesis.values(place).into_iter().zip(parameters);
+        let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
+        self.weighing.between_reversals(&Taken { candidate, values: values.collect() })
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.
@@ -268,12 +310,13 @@ impl<'w, 'a> Search<'w, 'a> {
                 (rivals, place) = (Vec::new(), 0);
                 continue;
             }
-            // other formulas of the same are no rivals
+            // a better formula of the same is no rival of the plain name
             let is_met_less = |one: &Hypothesis| {
                 let [own, other] = [&now, one].map(|of| log_occurrence(self.candidate(of, place)));
                 own > other
             };
-            all.retain(|one| !(is_met_less(one) && self.is_same(&now, one, place)));
+            let is_better = |one: &Hypothesis| one.posterior > now.posterior && is_met_less(one);
+            all.retain(|one| !(is_better(one) && self.is_same(&now, one, place)));
             rivals.push(all);
             place += 1;
             if place == now.parts.len()
@@ -380,7 +423,8 @@ impl<'w, 'a> Search<'w, 'a> {
             let placed = Placed { values, ..part.placed.clone() };
             Part { terms: self.weighing.terms(&placed), placed }
         };
-        Some(hypothesis.parts.iter().zip(hypothesis.factors()).map(move_part).collect())
+        let steps = hypothesis.by_parts(&hypothesis.weighed.step);
+        Some(hypothesis.parts.iter().zip(steps).map(move_part).collect())
     }
 
     /// Effects together, weighed.
@@ -399,7 +443,7 @@ impl<'w, 'a> Search<'w, 'a> {
         };
         let of_parts: f64 = parts.iter().map(prior).sum();
         let more = policy::ONE_MORE * parts.len().saturating_sub(1) as f64;
-        Hypothesis { posterior: weighed.settled() + of_parts + more, parts, weighed }
+        Hypothesis { posterior: weighed.log_evidence + of_parts + more, parts, weighed }
     }
 
     /// Errors from which on an effect of one parameter has the odds that a name asks for.
@@ -429,6 +473,9 @@ impl<'w, 'a> Search<'w, 'a> {
     }
 }
 
+/// Columns that are independent have at least this share of the largest singular value.
+const RANK: f64 = 1e-6;
+
 /// Exchanges of one round, at most.
 const MOST_EXCHANGES: usize = 8;
 
@@ -454,7 +501,11 @@ impl Hypothesis {
 
     /// The factors of each part.
     fn factors(&self) -> Vec<&[f64]> {
-        let mut rest = self.weighed.factors.as_slice();
+        self.by_parts(&self.weighed.factors)
+    }
+
+    fn by_parts<'f>(&self, factors: &'f [f64]) -> Vec<&'f [f64]> {
+        let mut rest = factors;
         let of = |part: &Part| {
             let (own, others) = rest.split_at(part.terms.len());
             rest = others;

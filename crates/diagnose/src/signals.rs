@@ -78,6 +78,8 @@ pub struct Signals {
     pub motor_noise: Vec<Vec<f64>>,
     /// Torques as they were measured, at the samples of the log.
     pub measured: Vec<Option<Vec<f64>>>,
+    /// The deviation of white noise in them [N m, N].
+    pub(super) torque_noise: Vec<f64>,
     /// Where the rows are among the samples of the motion.
     rows: Rows,
     filter: Butterworth,
@@ -146,6 +148,7 @@ impl Signals {
             motor_noise,
             torque,
             measured,
+            torque_noise: Vec::new(),
             rows,
             filter,
         };
@@ -202,6 +205,7 @@ impl Signals {
         let measured = tau.map(|tau| tau[kept].to_vec());
         let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
         self.torque.push(rows);
+        self.torque_noise.push(measured.as_ref().map_or(0.0, |tau| white_noise(tau)));
         self.measured.push(measured);
     }
 
@@ -301,6 +305,20 @@ impl Signals {
     /// Number of rows of a joint.
     pub fn rows(&self) -> usize {
         self.rows.range.len().div_ceil(self.rows.stride)
+    }
+
+    /// For each sample of the motion whether a joint's drive turns around near it.
+    pub(super) fn near_reversals(&self, joint: usize) -> Vec<bool> {
+        let rates = self.creeping(joint);
+        let reach = (policy::NEAR_S / self.step_s).ceil() as usize;
+        let mut near = vec![false; rates.len()];
+        for k in 1..rates.len() {
+            if rates[k - 1] * rates[k] < 0.0 {
+                let end = (k + reach).min(rates.len());
+                near[k.saturating_sub(reach)..end].fill(true);
+            }
+        }
+        near
     }
 
     /// The frequency up to which references drive the motion \[Hz\].

@@ -7,6 +7,7 @@
 use super::data::{Data, RowResponse, Stretch};
 use super::floor::rms;
 use denavit_evidence::{Layout, Spectrum, policy};
+use nalgebra::DVector;
 use rustdct::{DctPlanner, TransformType2And3};
 use std::sync::Arc;
 
@@ -167,6 +168,29 @@ impl Spectra {
     pub(super) fn share_of_squares(&self, channel: usize, squares: f64) -> f64 {
         let mean = squares / self.rows[channel].max(1.0);
         mean.sqrt() / self.torque[channel].max(f64::MIN_POSITIVE)
+    }
+
+    /// All channels of a spectrum, over their torques.
+    pub(super) fn stacked(&self, spectrum: &Spectrum) -> DVector<f64> {
+        let of_channel = |(channel, lines): (usize, &Vec<Line>)| {
+            let unit = 1.0 / self.torque[channel].max(f64::MIN_POSITIVE);
+            match spectrum.get(channel).filter(|rows| !rows.is_empty()) {
+                Some(rows) => rows.iter().map(|row| unit * row).collect(),
+                None => vec![0.0; lines.len()],
+            }
+        };
+        DVector::from_vec(self.lines.iter().enumerate().flat_map(of_channel).collect())
+    }
+
+    /// The spectrum of stacked channels.
+    pub(super) fn unstacked(&self, stacked: &DVector<f64>) -> Spectrum {
+        let mut rest = stacked.as_slice();
+        let of_channel = |(channel, lines): (usize, &Vec<Line>)| {
+            let (own, others) = rest.split_at(lines.len());
+            rest = others;
+            own.iter().map(|row| row * self.torque[channel]).collect()
+        };
+        self.lines.iter().enumerate().map(of_channel).collect()
     }
 
     /// The largest share of a channel.

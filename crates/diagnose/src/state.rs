@@ -20,38 +20,38 @@ pub struct Taken {
 }
 
 /// Logs, candidates and floors: what does not change during a search.
-pub struct Setting<'a> {
+pub(super) struct Setting<'a> {
     /// Logs to fit.
-    pub train: &'a Data<'a>,
+    pub(super) train: &'a Data<'a>,
     /// Logs to judge with.
-    pub held_out: &'a Data<'a>,
+    pub(super) held_out: &'a Data<'a>,
     /// What may be missing.
-    pub candidates: &'a [Candidate],
+    pub(super) candidates: &'a [Candidate],
     /// What the model has of them: the first effects of every state.
-    pub given: Vec<Taken>,
+    pub(super) given: Vec<Taken>,
     /// The model as a file, to be moved along the logs, with the filter of these \[Hz\].
-    pub moved: Option<(&'a Moved<'a>, f64)>,
+    pub(super) moved: Option<(&'a Moved<'a>, f64)>,
     /// Floors of the logs to fit.
-    pub train_floor: &'a [NoiseFloor],
+    pub(super) train_floor: &'a [NoiseFloor],
     /// Floors of the logs to judge with.
-    pub held_out_floor: &'a [NoiseFloor],
+    pub(super) held_out_floor: &'a [NoiseFloor],
 }
 
 /// A model with effects, fitted to the logs for training.
 #[derive(Clone)]
-pub struct State {
+pub(super) struct State {
     /// The effects.
-    pub taken: Vec<Taken>,
+    pub(super) taken: Vec<Taken>,
     /// For each effect the standard deviations of its parameters.
-    pub deviations: Vec<Vec<f64>>,
+    pub(super) deviations: Vec<Vec<f64>>,
     /// The nominal model's own parameters, in their deviations.
-    pub z: Vec<f64>,
+    pub(super) z: Vec<f64>,
     /// What is left of the logs that were fitted [N m, N].
-    pub residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// What is left of the others.
-    pub held_out_residual: Vec<f64>,
+    pub(super) held_out_residual: Vec<f64>,
     /// Torques that the model gives the motion of the logs.
-    pub torques: [Vec<ModelTorques>; 2],
+    pub(super) torques: [Vec<ModelTorques>; 2],
 }
 
 /// Entries of z beyond which the model's own parameters are not moved.
@@ -110,8 +110,15 @@ impl<'a> Setting<'a> {
         }
     }
 
+    /// What the model as it is given leaves of a set of logs: those fitted, or the others.
+    pub(super) fn as_given(&self, set: usize) -> Vec<f64> {
+        let data = [self.train, self.held_out][set];
+        let z = vec![0.0; data.columns.len()];
+        data.left(&self.fitted(&self.given), &z, &data.model_torques(&z))
+    }
+
     /// The laws of effects with their values.
-    pub fn fitted(&self, taken: &[Taken]) -> Vec<Fitted<'a>> {
+    fn fitted(&self, taken: &[Taken]) -> Vec<Fitted<'a>> {
         let of = |one: &Taken| Fitted {
             law: self.candidates[one.candidate].law.as_ref(),
             values: one.values.clone(),

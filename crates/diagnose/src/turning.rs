@@ -6,7 +6,7 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
-use super::law::Motion;
+use super::law::{Motion, derivative};
 use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
@@ -59,7 +59,7 @@ pub(super) fn turning(
             }
             sum
         };
-        let bends = bends(signals, 1.0, all);
+        let bends = bends(signals, all);
         let rests = [-0.5, 0.5].map(|by| Some(all(&signals.with_rests_bent(by)?)));
         for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
             let sizes: Vec<f64> =
@@ -116,57 +116,80 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
 }
 
 /// What every joint may have that is too small for a name, one deviation of each.
-pub(super) const PER_JOINT: usize = 7;
-
-/// Corners of rates, over that of the filter, in which friction may pass from one side to the
-/// other.
-const CORNERS: [f64; 2] = [1.0, 4.0];
+pub(super) const PER_JOINT: usize = 9;
 
 /// For each joint what its equation may have that is too small for a name, at the samples of the
-/// motion [N m, N]: for two widths of a reversal friction that is late, or soft, there; then an
-/// offset, viscous and Coulomb friction.
+/// motion [N m, N]: friction that is soft at a reversal, that is late by the filter, by a time, or
+/// by a slip; then an offset, viscous and Coulomb friction.
 ///
 /// The filter moves the moment of a reversal, and no drive passes it as a formula does: neither
 /// with the friction that the model has nor with what it may lack.
 pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Vec<PerJoint> {
-    let mut all: Vec<PerJoint> = vec![Vec::new(); signals.joints()];
-    for corner in CORNERS {
-        let bends = bends(signals, corner, |moved| {
-            let mut torques = torques_of(nominal, moved, phi);
-            for (joint, torque) in torques.iter_mut().take(signals.joints()).enumerate() {
-                let step = policy::STEP * nominal.usual[joint][0];
-                let [rates, _] = moved.of_drive(joint);
-                torque.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += step * rate.signum());
-            }
-            torques
-        });
-        for (joint, own) in all.iter_mut().enumerate() {
-            let [_, accelerations] = signals.of_drive(joint);
-            let late = |(bend, acceleration): (&f64, &f64)| -bend.abs() * acceleration.signum();
-            own.push(bends[joint].iter().zip(accelerations).map(late).collect());
-            own.push(bends[joint].clone());
-        }
-    }
-    for (joint, own) in all.iter_mut().enumerate() {
+    let heights = heights(nominal, signals, phi);
+    let of_joint = |(joint, heights): (usize, &Vec<f64>)| {
+        let [rates, accelerations] = signals.of_drive(joint);
+        let width = CORNER / signals.torque_hz * rms(accelerations);
         let [torque, rate] = nominal.usual[joint];
         let size = policy::UNNAMED * torque;
-        let [rates, _] = signals.of_drive(joint);
-        own.push(vec![size; rates.len()]);
         let slope = if rate > 0.0 { size / rate } else { 0.0 };
-        own.push(rates.iter().map(|rate| slope * rate).collect());
-        own.push(rates.iter().map(|rate| size * rate.signum()).collect());
-    }
-    all
+        let of_rates = |of: &dyn Fn(usize) -> f64| (0..rates.len()).map(of).collect::<Vec<f64>>();
+        let step = of_rates(&|k| heights[k] * rates[k].signum());
+        let creeping = signals.creeping(joint);
+        let bristles = policy::SLIPS.map(|slip| bristle(&creeping, signals.step_s, slip));
+        vec![
+            of_rates(&|k| heights[k] * (rates[k] / width).tanh() - step[k]),
+            of_rates(&|k| {
+                heights[k] * (rates[k] - width * accelerations[k].signum()).signum() - step[k]
+            }),
+            derivative(&step, signals.step_s).iter().map(|by| policy::LATE_S * by).collect(),
+            of_rates(&|k| heights[k] * bristles[0][k] - step[k]),
+            of_rates(&|k| heights[k] * bristles[1][k] - step[k]),
+            of_rates(&|k| heights[k] * bristles[2][k] - step[k]),
+            vec![size; rates.len()],
+            of_rates(&|k| slope * rates[k]),
+            of_rates(&|k| size * rates[k].signum()),
+        ]
+    };
+    heights.iter().enumerate().map(of_joint).collect()
+}
+
+/// How high the step of each joint's friction is at a reversal, with what a model may lack of it.
+fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
+    let creeping = |direction: f64| {
+        let mut moved = signals.clone();
+        for joint in 0..signals.joints() {
+            moved.drive_mut(joint)[0].fill(direction * CREEP);
+            moved.qd[joint].fill(direction * CREEP);
+        }
+        torques_of(nominal, &moved, phi)
+    };
+    let [forth, back] = [1.0, -1.0].map(creeping);
+    let of_joint = |joint: usize| {
+        let lacking = policy::STEP * nominal.usual[joint][0];
+        let both = forth[joint].iter().zip(&back[joint]);
+        both.map(|(forth, back)| 0.5 * (forth - back).abs() + lacking).collect()
+    };
+    (0..signals.joints()).map(of_joint).collect()
+}
+
+/// A rate that is none but for its sign [rad/s, m/s].
+const CREEP: f64 = 1e-9;
+
+/// The state of a bristle of some slip, which a reversal turns around.
+fn bristle(rates: &[f64], step_s: f64, slip: f64) -> Vec<f64> {
+    let mut state = 0.0;
+    let next = |rate: &f64| {
+        let decay = (-rate.abs() * step_s / slip).exp();
+        state = rate.signum() + (state - rate.signum()) * decay;
+        state
+    };
+    rates.iter().map(next).collect()
 }
 
 /// The second difference of torques by rates over what a corner of the filter hides of them: of a
 /// step its height, and nothing of a slope.
-fn bends(
-    signals: &Signals,
-    corner: f64,
-    torques: impl Fn(&Signals) -> PerJoint,
-) -> PerJoint {
-    let corner_s = corner * CORNER / signals.torque_hz;
+fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint {
+    let corner_s = CORNER / signals.torque_hz;
     let moved = |sign: f64| {
         let mut moved = signals.clone();
         for joint in 0..signals.joints() {

@@ -98,6 +98,16 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
         return (verdict, vec![what]);
     }
+    if let Some((place, share)) = broad(diagnosis) {
+        let what = format!(
+            "{} of the torque of {place} is left, evenly over all frequencies: more than sensors \
+             have",
+            percent(share)
+        );
+        let has_names = diagnosis.effects.iter().any(|one| one.is_named);
+        let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
+        return (verdict, vec![what]);
+    }
     if diagnosis.effects.is_empty() {
         return nothing_found(diagnosis, setting);
     }
@@ -112,6 +122,18 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         return (Verdict::CannotTell, vec![why]);
     }
     (Verdict::Explained, Vec::new())
+}
+
+/// The joint or spring of which most is left that sensors do not have, with its share.
+fn broad(diagnosis: &Diagnosis) -> Option<(&str, f64)> {
+    let gaps = &diagnosis.train;
+    let both = gaps.after.per_joint.iter().zip(&gaps.floor.per_joint).zip(&diagnosis.places);
+    let left = both.filter_map(|((after, floor), place)| Some(((*after)?, (*floor)?, place)));
+    let broad = left.filter(|(after, floor, _)| {
+        *after > policy::BROAD && *after > policy::BROAD_OF_NOISE * floor
+    });
+    let most = broad.max_by(|a, b| a.0.total_cmp(&b.0));
+    most.map(|(after, _, place)| (place.as_str(), after))
 }
 
 /// The probability of an effect among all that would do in its place.

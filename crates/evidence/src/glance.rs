@@ -20,7 +20,6 @@ pub struct Glance {
     factor: Cholesky<f64, Dyn>,
     /// What the hypothesis explains of the data.
     right: DVector<f64>,
-    square: f64,
     /// For each cell, of its variance, what the inverse gamma prior adds.
     expected: Vec<f64>,
     idle: f64,
@@ -71,15 +70,14 @@ impl Glance {
             normal += columns.tr_mul(columns);
             right += columns.tr_mul(data);
         }
-        let square = data.iter().map(DVector::norm_squared).sum();
         let factor = normal.cholesky().expect("a sum of squares and 1");
         let levels = base.layout.expected();
         let expected = levels.iter().zip(variances).map(|(level, v)| level / v).collect();
-        let own = Self { cells, weights, data, columns, factor, right, square, expected, idle: 0.0 };
+        let own = Self { cells, weights, data, columns, factor, right, expected, idle: 0.0 };
         let solved = own.factor.solve(&own.right);
-        let idle = own.of_rows(&|channel| {
-            &own.data[channel] - &own.columns[channel] * &solved
-        });
+        let variances =
+            own.variances(&|channel| &own.data[channel] - &own.columns[channel] * &solved);
+        let idle = own.density(&variances) - 0.5 * solved.norm_squared();
         Self { idle, ..own }
     }
 
@@ -89,7 +87,6 @@ impl Glance {
         let mut cross = DMatrix::zeros(width, count);
         let mut normal = DMatrix::zeros(count, count);
         let (mut right, mut inner) = (self.right.clone(), DVector::zeros(count));
-        let mut square = self.square;
         let mut touched: Vec<Option<(DVector<f64>, DMatrix<f64>)>> = Vec::new();
         for (channel, weights) in self.weights.iter().enumerate() {
             if !terms.touches(channel) {
@@ -110,7 +107,6 @@ impl Glance {
             normal += columns.tr_mul(&columns);
             inner += columns.tr_mul(&data);
             right += self.columns[channel].tr_mul(&known);
-            square += data.norm_squared() - self.data[channel].norm_squared();
             touched.push(Some((data, columns)));
         }
         let solved = self.factor.solve(&cross);
@@ -127,31 +123,56 @@ impl Glance {
             factors[k] = factors[k].max(terms.lowest[k] - terms.believed[k]);
         }
         let own = self.factor.solve(&(right - &cross * &factors));
-        let left = self.of_rows(&|channel| match &touched[channel] {
-            Some((data, columns)) => {
-                data - columns * &factors - &self.columns[channel] * &own
-            }
+        let variances = self.variances(&|channel| match &touched[channel] {
+            Some((data, columns)) => data - columns * &factors - &self.columns[channel] * &own,
             None => &self.data[channel] - &self.columns[channel] * &own,
         });
-        let determinant: f64 =
-            (0..count).map(|k| chol.l_dirty()[(k, k)].ln()).sum();
-        let gain = left - self.idle - determinant - 0.5 * factors.norm_squared();
-        let gain = if gain.is_finite() && square.is_finite() { gain } else { f64::NEG_INFINITY };
+        let determinant: f64 = (0..count).map(|k| chol.l_dirty()[(k, k)].ln()).sum();
+        let gain = self.density(&variances)
+            - self.idle
+            - determinant
+            - 0.5 * factors.norm_squared()
+            - 0.5 * own.norm_squared()
+            - self.unpredicted(terms, &variances);
+        let gain = if gain.is_finite() { gain } else { f64::NEG_INFINITY };
         let factors = (0..count).map(|k| factors[k] + terms.believed[k]).collect();
         Seen { gain, precision, factors }
     }
 
-    /// The log density of rows that are left, with the variances that they have.
-    fn of_rows(&self, left: &dyn Fn(usize) -> DVector<f64>) -> f64 {
+    /// The variance of each cell of what is left, in units of those that are known.
+    fn variances(&self, left: &dyn Fn(usize) -> DVector<f64>) -> Vec<f64> {
         let left: Vec<DVector<f64>> = (0..self.data.len()).map(left).collect();
         let shape = policy::NOISE_SHAPE;
         let of = |((channel, rows), level): (&(usize, Range<usize>), &f64)| {
             let squares = left[*channel].rows(rows.start, rows.len()).norm_squared();
-            let count = rows.len() as f64 + 2.0 * shape + 2.0;
-            -0.5 * count * ((squares + 2.0 * shape * level) / count).ln()
+            (squares + 2.0 * shape * level) / counted(rows)
         };
-        self.cells.iter().zip(&self.expected).map(of).sum()
+        self.cells.iter().zip(&self.expected).map(of).collect()
     }
+
+    /// The log density of rows with the variances that they have.
+    fn density(&self, variances: &[f64]) -> f64 {
+        let cells = self.cells.iter().zip(variances);
+        cells.map(|((_, rows), variance)| -0.5 * counted(rows) * variance.ln()).sum()
+    }
+
+    /// What terms do not earn, since they say nothing of some rows.
+    fn unpredicted(&self, terms: &Terms, variances: &[f64]) -> f64 {
+        let of = |((channel, rows), variance): (&(usize, Range<usize>), &f64)| {
+            let known = terms.known.get(*channel).filter(|own| !own.is_empty());
+            let weights = &self.weights[*channel][rows.clone()];
+            let known = known.into_iter().flat_map(|own| own[rows.clone()].iter().zip(weights));
+            let mean =
+                known.map(|(own, weight)| (own * weight).powi(2)).sum::<f64>() / rows.len() as f64;
+            0.5 * terms.unpredicted * rows.len() as f64 * (mean / variance).ln_1p()
+        };
+        self.cells.iter().zip(variances).map(of).sum()
+    }
+}
+
+/// Rows with those that the prior of a variance counts for.
+fn counted(rows: &Range<usize>) -> f64 {
+    rows.len() as f64 + 2.0 * policy::NOISE_SHAPE + 2.0
 }
 
 fn weighted(rows: &[f64], weights: &[f64]) -> DVector<f64> {

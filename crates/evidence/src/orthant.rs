@@ -12,8 +12,8 @@ const ROUNDS: usize = 300;
 ///
 /// A factor that is believed to be on one side of its bound has twice the density there, of which
 /// the posterior keeps the share on that side. Where the mean is beyond a bound the density at the
-/// nearest allowed point is what counts: signs are judged jointly, since each of two columns that
-/// are nearly one may have either sign alone.
+/// nearest allowed point is what counts, with the room that is left beside it: signs are judged
+/// jointly, since each of two columns that are nearly one may have either sign alone.
 pub(crate) fn bounded(
     mean: &DVector<f64>,
     covariance: &DMatrix<f64>,
@@ -51,6 +51,19 @@ pub(crate) fn bounded(
         }
     }
     let off = &at - mean;
-    let squares = (off.transpose() * precision * &off)[(0, 0)];
-    (at, gained - 0.5 * squares)
+    let slopes = &precision * &off;
+    let squares = off.dot(&slopes);
+    // beside its bound a factor has less room than a normal variable of its width
+    let room = |&k: &usize| {
+        let width = precision[(k, k)].max(f64::MIN_POSITIVE).sqrt();
+        match at[k] > lowest[k] {
+            true => log_below((at[k] - lowest[k]) * width),
+            false => {
+                let slope = slopes[k] / width;
+                0.5 * slope * slope + log_below(-slope)
+            }
+        }
+    };
+    let rooms: f64 = places.iter().map(room).sum();
+    (at, gained - 0.5 * squares + rooms)
 }

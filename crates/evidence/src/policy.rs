@@ -49,6 +49,18 @@ pub const UNNAMED: f64 = 1e-3;
 /// than those of the friction that it has.
 pub const STEP: f64 = 0.05;
 
+/// By which time \[s\] and slips [rad, m] friction may be late at a reversal: a period of a control
+/// loop, and what teeth and bearings give way.
+pub const LATE_S: f64 = 5e-3;
+/// See [`LATE_S`].
+pub const SLIPS: [f64; 3] = [3e-5, 3e-4, 3e-3];
+
+/// What an effect does within this time of a reversal \[s\] is not worth a name.
+pub const NEAR_S: f64 = 4.0 * LATE_S;
+
+/// The share of a sample of the log by which torque and motion may be of different times.
+pub const TIME: f64 = 0.1;
+
 /// Log odds of an effect that is met less often than the common ones, and of one that is hardly
 /// ever met: 1 to 20 and 1 to 400.
 pub const UNCOMMON: f64 = -3.0;
@@ -58,8 +70,8 @@ pub const RARE: f64 = -6.0;
 /// Log odds that one more effect is missing where one was found: 1 to 20.
 pub const ONE_MORE: f64 = -3.0;
 
-/// Log odds from which on an effect is named rather than not: 20 to 1.
-pub const NAMED: f64 = 3.0;
+/// Log odds from which on an effect is named rather than not: 100 to 1.
+pub const NAMED: f64 = 4.6;
 
 /// The least share of its joint's torque that is worth a name.
 pub const WORTH: f64 = 3e-3;
@@ -100,3 +112,12 @@ pub const LEAST_FELT: f64 = 1e-7;
 
 /// Above this share of the torque, what is left says that model and logs are not of one robot.
 pub const NOTHING_LIKE: f64 = 0.6;
+
+/// Periods of a law that repeats along a joint, of what the logs cover of it, at least.
+pub const PERIODS: f64 = 1.5;
+
+/// Above this share of the torque, and this many times the noise that sensors have, what is left is
+/// no noise, however even its spectrum is.
+pub const BROAD: f64 = 0.04;
+/// See [`BROAD`].
+pub const BROAD_OF_NOISE: f64 = 4.0;

@@ -16,6 +16,8 @@ pub struct Terms {
     /// For each factor what it would be by what is believed alone: columns begin at the values
     /// where the effect was linearised.
     pub believed: Vec<f64>,
+    /// The share of the rows of which the effect says nothing but that the data are as they are.
+    pub unpredicted: f64,
 }
 
 impl Terms {
@@ -27,6 +29,20 @@ impl Terms {
     /// Whether nothing is unknown.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty()
+    }
+
+    /// The terms without the columns that are curved.
+    pub(crate) fn linear(&self) -> Self {
+        let places = (0..self.len()).filter(|&k| !self.is_curved[k]);
+        let (known, unpredicted) = (self.known.clone(), self.unpredicted);
+        let mut linear = Self { known, unpredicted, ..Self::default() };
+        for k in places {
+            linear.columns.push(self.columns[k].clone());
+            linear.lowest.push(self.lowest[k]);
+            linear.is_curved.push(false);
+            linear.believed.push(self.believed[k]);
+        }
+        linear
     }
 
     /// What the effect does with factors.

@@ -7,6 +7,10 @@
 //! r = X' L^-1 y, up to a constant that all hypotheses share. The variance of each cell is the most
 //! likely one under an inverse gamma prior, found by expectation and maximisation (Dempster, Laird,
 //! Rubin 1977), the trace of the factors' covariance included.
+//!
+//! Parameters that an effect is not linear in have the values where it was linearised: what it does
+//! there is known, and what it would do elsewhere is not. Their part of the evidence is Laplace's:
+//! the density of what is believed of them there, and how much narrower the data make it.
 
 use crate::base::Base;
 use crate::orthant::bounded;
@@ -20,24 +24,19 @@ use std::ops::Range;
 pub struct Weighed {
     /// Its log evidence, up to a constant that all hypotheses on the same data share.
     pub log_evidence: f64,
-    /// What of that is not to be had: curved effects were linearised elsewhere than at their most
-    /// likely values, and what they would do there is not known.
+    /// By how much it would grow at other values of parameters that effects are not linear in, to
+    /// second order.
     pub away: f64,
     /// The variance of a row of each cell.
     pub variances: Vec<f64>,
     /// The most likely factors of the model's own parameters.
     pub own: Vec<f64>,
-    /// The most likely factors of all terms, in order.
+    /// The most likely factors of all terms, in order; 0 of curved ones.
     pub factors: Vec<f64>,
-    /// Their covariance.
+    /// The factors to go to if curved ones may change as well.
+    pub step: Vec<f64>,
+    /// The covariance of all factors.
     pub covariance: DMatrix<f64>,
-}
-
-impl Weighed {
-    /// The log evidence with what was linearised elsewhere taken away.
-    pub fn settled(&self) -> f64 {
-        self.log_evidence - self.away
-    }
 }
 
 /// The products of one cell: of data, own columns and those of terms, in this order.
@@ -55,6 +54,18 @@ struct Touched {
 impl Base {
     /// Weighs a set of terms. Variances begin at those given, or else at what the data have.
     pub fn weigh(&self, terms: &[&Terms], start: Option<&[f64]>, rounds: usize) -> Weighed {
+        if terms.iter().all(|one| one.is_curved.iter().all(|is| !is)) {
+            return self.weigh_linear(terms, start, rounds);
+        }
+        let plain: Vec<Terms> = terms.iter().map(|one| one.linear()).collect();
+        let mut weighed = self.weigh_linear(&plain.iter().collect::<Vec<_>>(), start, rounds);
+        let cells = self.cells_with(terms, terms.iter().map(|one| one.len()).sum());
+        Posterior::new(&cells, &weighed.variances).curve(terms, self.parameters, &mut weighed);
+        weighed
+    }
+
+    /// Weighs terms that are linear in all their factors.
+    fn weigh_linear(&self, terms: &[&Terms], start: Option<&[f64]>, rounds: usize) -> Weighed {
         let width = terms.iter().map(|one| one.len()).sum::<usize>();
         let cells = self.cells_with(terms, width);
         let expected = self.layout.expected();
@@ -79,7 +90,25 @@ impl Base {
         }
         let posterior = Posterior::new(&cells, &variances);
         let evidence = posterior.log_evidence(&cells, &variances, &expected);
+        let evidence = evidence - self.unpredicted(terms, &variances);
         posterior.told(terms, self.parameters, (evidence, variances))
+    }
+
+    /// What is not earned where effects take away what data are, whatever that is: rows that are
+    /// not predicted have the density of what was taken away, and not that of noise.
+    fn unpredicted(&self, terms: &[&Terms], variances: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for one in terms.iter().filter(|one| one.unpredicted > 0.0) {
+            for ((channel, rows), variance) in self.layout.cells().zip(variances) {
+                let Some(known) = one.known.get(channel).filter(|own| !own.is_empty()) else {
+                    continue;
+                };
+                let (count, own) = (rows.len() as f64, &known[rows]);
+                let mean = own.iter().map(|entry| entry * entry).sum::<f64>() / count;
+                sum += 0.5 * one.unpredicted * count * (mean / variance).ln_1p();
+            }
+        }
+        sum
     }
 
     /// The products of every cell with those of terms.
@@ -238,28 +267,42 @@ impl Posterior {
                 of_model += across * solved;
             }
         }
-        let curved: Vec<bool> = terms.iter().flat_map(|one| one.is_curved.clone()).collect();
-        let away = away(&factors, &covariance, &curved);
+        let factors = factors.as_slice().to_vec();
         Weighed {
             log_evidence: evidence + gained,
-            away,
+            away: 0.0,
             variances,
             own: of_model.as_slice().to_vec(),
-            factors: factors.as_slice().to_vec(),
+            step: factors.clone(),
+            factors,
             covariance,
         }
     }
-}
 
-/// What is lost if curved factors stay where they were linearised and others follow.
-fn away(factors: &DVector<f64>, covariance: &DMatrix<f64>, curved: &[bool]) -> f64 {
-    let places: Vec<usize> = (0..curved.len()).filter(|&k| curved[k]).collect();
-    if places.is_empty() {
-        return 0.0;
+    /// Adds the part of curved factors to what was found with their values.
+    fn curve(&self, terms: &[&Terms], own: usize, weighed: &mut Weighed) {
+        let curved: Vec<bool> = terms.iter().flat_map(|one| one.is_curved.clone()).collect();
+        let believed: Vec<f64> = terms.iter().flat_map(|one| one.believed.clone()).collect();
+        let width = curved.len();
+        let mut linear = weighed.factors.iter();
+        weighed.factors = curved
+            .iter()
+            .map(|is_curved| if *is_curved { 0.0 } else { *linear.next().expect("one of each") })
+            .collect();
+        let covariance = self.covariance.view((own, own), (width, width)).into_owned();
+        let step: Vec<f64> = (0..width).map(|k| self.mean[own + k] + believed[k]).collect();
+        let places: Vec<usize> = (0..width).filter(|&k| curved[k]).collect();
+        let of_curved = DMatrix::from_fn(places.len(), places.len(), |a, b| {
+            covariance[(places[a], places[b])] + if a == b { 1e-14 } else { 0.0 }
+        });
+        let off = DVector::from_fn(places.len(), |k, _| step[places[k]]);
+        let of_prior: f64 = places.iter().map(|&k| 0.5 * believed[k].powi(2)).sum();
+        if let Some(factor) = of_curved.cholesky() {
+            let narrower: f64 =
+                (0..places.len()).map(|k| factor.l_dirty()[(k, k)].ln()).sum();
+            weighed.log_evidence += narrower - of_prior;
+            weighed.away = 0.5 * off.dot(&factor.solve(&off));
+        }
+        (weighed.covariance, weighed.step) = (covariance, step);
     }
-    let own = DMatrix::from_fn(places.len(), places.len(), |a, b| {
-        covariance[(places[a], places[b])] + if a == b { 1e-12 } else { 0.0 }
-    });
-    let off = DVector::from_fn(places.len(), |k, _| factors[places[k]]);
-    own.cholesky().map_or(0.0, |factor| 0.5 * off.dot(&factor.solve(&off)))
 }

@@ -3,6 +3,7 @@
 mod circles;
 mod errata;
 mod ignored;
+mod policy;
 mod reached;
 mod shipped;
 mod walls;

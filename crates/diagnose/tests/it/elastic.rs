@@ -176,7 +176,7 @@ fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), DiagnosisErr
         options: SearchOptions::default(),
         filters: None,
     };
-    let diagnosis = diagnose(request, &mut |_, _| ())?;
+    let diagnosis = diagnose(request, &mut |_| true)?;
     Ok((diagnosis, candidates))
 }
 

@@ -7,6 +7,7 @@ use denavit_plants::effect::LawParameter;
 pub(super) struct Handwritten {
     pub(super) parameters: Vec<LawParameter>,
     pub(super) joint: usize,
+    pub(super) follows_accelerations: bool,
     pub(super) at: fn(Sample, &[f64]) -> (f64, Vec<f64>),
 }
 
@@ -23,6 +24,10 @@ pub(super) struct Sample {
 impl Law for Handwritten {
     fn parameters(&self) -> &[LawParameter] {
         &self.parameters
+    }
+
+    fn follows_accelerations(&self) -> bool {
+        self.follows_accelerations
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {

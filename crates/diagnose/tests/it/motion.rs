@@ -55,7 +55,4 @@ fn a_missing_force_moves_a_mass_by_half_its_acceleration_times_the_square_of_tim
         assert!(after.all < 0.05 * expected, "{} {expected}", after.all);
         assert_eq!(before.windows.len(), 40);
     }
-    // It was taken since it moves the sled rightly, too.
-    let step = found.steps.iter().find(|step| step.is_taken).expect("a step");
-    assert!(step.in_motion.is_some_and(|better| better > 5.0), "{:?}", step.in_motion);
 }

@@ -1,10 +1,10 @@
 //! The search alone: laws by hand, hidden in motion that is given.
 
 use super::laws::{Handwritten, Sample, kinds};
+use denavit_codegen::effect::Occurrence;
 use denavit_codegen::regressor::{RegressorOptions, Unknowns};
 use denavit_diagnose::{
-    Candidate, Data, Filters, Gap, NoiseFloor, Nominal, SearchOptions, Setting, Signals, State,
-    Uncertainty, search, share_closed,
+    Candidate, Gap, Gaps, Nominal, Request, SearchOptions, Uncertainty, diagnose, share_closed,
 };
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
@@ -94,7 +94,13 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
                 at: described.name.clone(),
                 joint: Some(joint),
                 is_body: false,
-                law: Box::new(Handwritten { parameters, joint, at }),
+                occurrence: Occurrence::Common,
+                law: Box::new(Handwritten {
+                    parameters,
+                    joint,
+                    follows_accelerations: ["rotor_inertia", "torque_gain", "delay"].contains(&name),
+                    at,
+                }),
             });
         }
     }
@@ -112,34 +118,28 @@ fn found(
     let mut random = Random::new(seed);
     let truth: Vec<f64> = (0..nominal.len()).map(|_| random.normal().clamp(-0.9, 2.0)).collect();
     let phi = nominal.phi(&truth);
-    let filters = Filters::new(STEP_S, 0.03);
-    let read =
-        |seed| Signals::new(log(&model, (seed, 7500), &phi.axes, &hidden), filters).expect("long");
-    let (train, held_out) = (read(seed + 1), read(seed + 2));
-    let [train, held_out] = [train, held_out].map(|log| Data::new(&nominal, vec![log]));
+    let made = |seed| vec![log(&model, (seed, 7500), &phi.axes, &hidden)];
     let candidates = candidates(&model);
-    let floors = |data: &Data<'_>| NoiseFloor::of_logs(&nominal, &data.signals);
-    let (train_floor, held_out_floor) = (floors(&train), floors(&held_out));
-    let setting = Setting {
-        train: &train,
-        held_out: &held_out,
+    let request = Request {
+        model: &model,
+        springs: &[],
+        train: made(seed + 1),
+        held_out: made(seed + 2),
         candidates: &candidates,
         given: Vec::new(),
+        uncertainty: Uncertainty::default(),
+        aliases: None,
+        experiment: None,
         moved: None,
-        coarse: train.signals.iter().map(Signals::coarse).collect(),
-        train_floor: &train_floor,
-        held_out_floor: &held_out_floor,
+        options: SearchOptions::default(),
+        filters: None,
     };
-    let outcome = search(&setting, &SearchOptions::default(), &mut |_| ());
-    for step in &outcome.steps {
+    let found = diagnose(request, &mut |_| true).expect("a diagnosis");
+    for step in &found.steps {
         eprintln!("{} {step:?}", candidates[step.added].name());
     }
-    let taken = outcome.after.taken.iter();
-    let names = taken.map(|one| candidates[one.candidate].name()).collect();
-    let [_, trust] = outcome.after.trust();
-    let floor = Gap::of_floor(&held_out, &held_out_floor, &trust);
-    let gap = |state: &State| Gap::new(&held_out, &state.held_out_residual, &trust);
-    let (before, after) = (gap(&outcome.before), gap(&outcome.after));
+    let names = found.effects.iter().map(|one| candidates[one.candidate].name()).collect();
+    let Gaps { before, after, floor } = found.held_out;
     let at = |gap: &Gap| gap.per_joint[joint].expect("measured");
     (names, share_closed(at(&before), at(&after), at(&floor)))
 }

@@ -118,7 +118,7 @@ fn diagnosed(references: [&Reference; 2]) -> (Diagnosis, Vec<Candidate>) {
         options: SearchOptions::default(),
         filters: None,
     };
-    let found = diagnose(request, &mut |_, _| ()).expect("logs that say something");
+    let found = diagnose(request, &mut |_| true).expect("logs that say something");
     (found, all)
 }
 
@@ -152,13 +152,14 @@ fn friction_of_a_motor_behind_a_spring_is_told_along_the_motion_that_is_computed
     let slow = |lap_s: f64, reach: f64, seed: u64| {
         Reference::draw(&leg, lap_s, [reach, reach], &mut Random::new(seed, "slow"))
     };
-    let (found, all) = diagnosed([&slow(4.0, 0.06, 1), &slow(3.5, 0.05, 2)]);
+    let (found, all) = diagnosed([&slow(4.0, 0.02, 1), &slow(3.5, 0.02, 2)]);
     let said = names(&found, &all);
     assert!(said.iter().any(|one| one == right) && said.iter().any(|one| one == rival), "{said:?}");
     let experiment = found.effects[0].experiment.as_ref().expect("asked for");
     let experiment = experiment.as_ref().expect("the leg has limits");
     let separations = [experiment.separation, experiment.separation_before];
-    assert!(experiment.power > 0.9, "{}", experiment.power);
+    // against three rivals at once, of which one may be nearly the same
+    assert!(experiment.power > 0.6, "{}", experiment.power);
     assert!(separations[0] > 3.0 * separations[1], "{separations:?}");
     let motions = [0.0, 2.3].map(|later| along(&experiment.file, &leg, later));
     let (found, all) = diagnosed(motions.each_ref());

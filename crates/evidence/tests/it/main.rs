@@ -1,0 +1,3 @@
+//! Evidence against densities of whole covariances.
+
+mod weigh;

@@ -1,0 +1,107 @@
+//! The numbers that decide a diagnosis: all in one table, whose page is made from the code, and how
+//! many stand elsewhere.
+
+use super::{root, rust_files};
+use std::fs;
+
+/// A constant of the table: its name, its value as it is written, and what it is.
+struct Entry {
+    name: String,
+    value: String,
+    text: String,
+}
+
+fn entries(source: &str) -> Vec<Entry> {
+    let (mut all, mut text, mut open) = (Vec::new(), Vec::new(), String::new());
+    for line in source.lines() {
+        if let Some(doc) = line.strip_prefix("/// ") {
+            text.push(doc.to_owned());
+            continue;
+        }
+        if line.starts_with("pub const ") || !open.is_empty() {
+            open.push_str(line.trim());
+            open.push(' ');
+        }
+        if !open.is_empty() && line.ends_with(';') {
+            let (name, rest) = open["pub const ".len()..].split_once(':').expect("a type");
+            let (_, value) = rest.split_once(" = ").expect("a value");
+            let value = value.trim().trim_end_matches(';').to_owned();
+            let text = std::mem::take(&mut text).join(" ");
+            all.push(Entry { name: name.to_owned(), value, text });
+            open.clear();
+        } else if line.is_empty() {
+            text.clear();
+        }
+    }
+    all
+}
+
+fn page(entries: &[Entry]) -> String {
+    let mut page = String::from(
+        "# The numbers that decide a diagnosis\n\n\
+         Made from `crates/evidence/src/policy.rs`, which is the table \
+         (`UPDATE_EXPECT=1 cargo test --release --test it policy` writes it anew).\n",
+    );
+    for Entry { name, value, text } in entries {
+        let text = text.replace("\\[", "[").replace("\\]", "]").replace("[`", "`");
+        let text = text.replace("`]", "`");
+        page += &format!("\n**{name}** = {value}\n: {text}\n");
+    }
+    page
+}
+
+#[test]
+fn the_page_of_the_policy_is_that_of_the_code() {
+    let source = fs::read_to_string(root().join("crates/evidence/src/policy.rs")).unwrap();
+    let entries = entries(&source);
+    assert!(entries.len() > 20, "the table has {} entries", entries.len());
+    let page = page(&entries);
+    let path = root().join("docs/reference/policy.md");
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        fs::write(&path, &page).unwrap();
+    }
+    let written = fs::read_to_string(&path).unwrap_or_default();
+    assert!(written == page, "{}: UPDATE_EXPECT=1 writes it anew", path.display());
+}
+
+/// Constants of floating point and literals in comparisons that stand outside the table, in the
+/// packages that judge logs. They may become fewer.
+const MOST_ELSEWHERE: usize = 400;
+
+#[test]
+fn numbers_outside_the_policy_do_not_become_more() {
+    let mut count = 0;
+    for package in ["evidence", "measure", "identify", "diagnose"] {
+        for path in rust_files(&format!("crates/{package}/src")) {
+            if path.ends_with("policy.rs") {
+                continue;
+            }
+            let source = fs::read_to_string(&path).unwrap();
+            let code = source.split("#[cfg(test)]").next().unwrap_or_default();
+            count += code.lines().filter(|line| is_number(line)).count();
+        }
+    }
+    assert!(count <= MOST_ELSEWHERE, "{count} numbers outside policy.rs, not {MOST_ELSEWHERE}");
+}
+
+fn is_number(line: &str) -> bool {
+    let line = line.trim();
+    if line.starts_with("//") {
+        return false;
+    }
+    let is_constant = line.contains("const ") && line.contains("f64");
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let compared = words.windows(2).any(|pair| {
+        let is_sign = ["<", ">", "<=", ">="].contains(&pair[0]);
+        let literal = pair[1].trim_end_matches([',', ')', ';', '{']);
+        is_sign && literal.contains(['.', 'e']) && literal.parse::<f64>().is_ok_and(|x| x != 0.0)
+    });
+    is_constant || compared
+}
+
+#[test]
+fn constants_and_compared_literals_are_numbers() {
+    assert!(is_number("const LEAST: f64 = 0.3;") && is_number("if share > 0.95 {"));
+    assert!(!is_number("if share > 0.0 {") && !is_number("let x = 0.5 * y;"));
+    assert!(!is_number("// const LEAST: f64 = 0.3;"));
+}

@@ -15,8 +15,8 @@ use super::progress::Progress;
 use clap::Args;
 use denavit::diagnose::{
     BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, Filters,
-    FoundEffect, Moved, Progress as Stage, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates, diagnose,
-    given_candidates, spring_candidates,
+    FoundEffect, Moved, Progress as Stage, Request, SearchOptions, Uncertainty, Verdict,
+    before_springs, candidates, diagnose, given_candidates, spring_candidates,
 };
 use denavit::effect::{Channel, Effect};
 use denavit::identify::Ground;
@@ -36,9 +36,9 @@ use std::time::Instant;
 
 /// Diagnose: which physics does a model lack, where, and how sure is that
 ///
-/// The model's own parameters are estimated again within their standard deviations; what is left
-/// of the torques of --train is searched for effects of the catalogue, and every effect must lower
-/// what is left of --validate. Exits with 1 if what is left is not explained, or if logs of
+/// The model's own parameters are estimated again within their standard deviations. Effects of the
+/// catalogue are compared by the evidence of all logs, their values are fitted to --train, and
+/// --validate says what is then left. Exits with 1 if what is left is not explained, or if logs of
 /// --validate are among those of --train.
 #[derive(Debug, Args)]
 #[command(after_help = "\

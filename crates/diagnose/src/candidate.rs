@@ -38,8 +38,7 @@ const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 const MOST_STARTS: usize = 48;
 
 /// Where a position that may be anywhere is looked for first, as shares of a joint's range.
-const PLACES: [f64; 13] =
-    [0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98];
+const PLACES: [f64; 13] = [0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98];
 
 /// Where a limit of torques is looked for first, as shares of the largest.
 const LIMITS: [f64; 20] = [

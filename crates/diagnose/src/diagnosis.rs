@@ -13,7 +13,6 @@ use super::experiment::ExperimentOptions;
 use super::fault::DiagnosisError;
 use super::floor::NoiseFloor;
 use super::gap::{Gap, share_closed};
-use super::hypothesis::Weighing;
 use super::leftover::{Leftover, leftovers};
 use super::nominal::{Nominal, Uncertainty};
 use super::regime::{Where, where_left};
@@ -23,6 +22,7 @@ use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
 use super::state::{Setting, State, Taken};
 use super::structure::{Structure, describe};
 use super::verdict::{Verdict, judge};
+use super::weighing::Weighing;
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_measure::log::MeasuredLog;
@@ -68,10 +68,7 @@ pub struct Gaps {
 }
 
 impl Gaps {
-    fn new(
-        (data, floors): (&Data<'_>, &[NoiseFloor]),
-        [before, after]: [&[f64]; 2],
-    ) -> Self {
+    fn new((data, floors): (&Data<'_>, &[NoiseFloor]), [before, after]: [&[f64]; 2]) -> Self {
         Self {
             before: Gap::new(data, before),
             after: Gap::new(data, after),
@@ -256,7 +253,9 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
     let signals = conditioned(logs.to_vec(), widest)?;
     let driven_hz = signals.iter().map(Signals::driven_hz).fold(0.0, f64::max);
     let wanted_hz = (policy::CUTOFF_OVER_DRIVEN * driven_hz).max(least_hz).min(widest_hz);
-    Ok(Filters { torque_hz: wanted_hz, ..widest })
+    let wanted = Filters { torque_hz: wanted_hz, ..widest };
+    // A lower cutoff needs longer logs.
+    Ok(if conditioned(logs.to_vec(), wanted).is_ok() { wanted } else { widest })
 }
 
 /// The gaps of the models before and after in motion.

@@ -1,6 +1,7 @@
 //! What logs would have shown: an answer that nothing is missing says no more than that.
 
-use super::search::{Hypothesis, Search};
+use super::hypothesis::Hypothesis;
+use super::search::Search;
 use super::state::Setting;
 use denavit_evidence::policy;
 
@@ -11,9 +12,8 @@ pub struct Visible {
     pub candidate: usize,
     /// Its joint.
     pub joint: usize,
-    /// The least value of its parameter that would have been looked for: it lowers the squares by
-    /// what Schwarz's criterion asks for, and its joint has more than noise. Infinite where the
-    /// motion has nothing of it.
+    /// The least value of its parameter that would have been named: it has the odds for that and is
+    /// worth a name. Infinite where the motion has nothing of it.
     pub least: f64,
     /// What such an effect would be of the joint's torque (root mean squares).
     pub share: f64,

@@ -6,9 +6,9 @@
 //! The motion makes the least of these large. What it will say is then simulated: torques of the
 //! one or the other, with the noise of the logs, told apart as a diagnosis does.
 
+use super::blocks::{block_costs, paired};
 use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
-use super::blocks::{block_costs, paired};
 use super::floor::{NoiseFloor, rms};
 use super::followed::Follower;
 use super::nominal::Nominal;

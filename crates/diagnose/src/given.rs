@@ -71,7 +71,10 @@ pub fn given_candidates(
         let effect = law.name.clone();
         let law = Box::new(GivenLaw { law: law_of(law, joint, second), parameters, beliefs });
         let (joint, occurrence) = (Some(joint), Occurrence::default());
-        (Candidate { effect, title, at, joint, is_body: false, occurrence, law }, Taken { candidate, values })
+        (
+            Candidate { effect, title, at, joint, is_body: false, occurrence, law },
+            Taken { candidate, values },
+        )
     };
     laws.enumerate().map(of).unzip()
 }

@@ -1,275 +1,71 @@
-//! An effect near values of its parameters, as terms whose evidence can be weighed.
+//! Effects together, weighed.
 
-use super::candidate::{Candidate, Start};
-use super::data::{Data, ModelTorques, RowResponse};
-use super::nominal::Nominal;
-use super::spectra::Spectra;
-use super::state::Taken;
-use denavit_evidence::{Base, Spectrum, Terms, policy};
+use super::weighing::Placed;
+use denavit_evidence::{Spectrum, Terms, Weighed};
 
-/// An effect near values of its parameters, with what is believed of them.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Placed {
-    /// Its number among the candidates.
-    pub(super) candidate: usize,
-    /// Where it is linearised.
-    pub(super) values: Vec<f64>,
-    /// What is believed of its parameters.
-    pub(super) center: Vec<f64>,
-    /// How far they may be from that.
-    pub(super) deviations: Vec<f64>,
-    /// The log of the share of its start among all.
-    pub(super) log_share: f64,
+/// An effect where it is placed, with its terms.
+#[derive(Clone)]
+pub(super) struct Part {
+    pub(super) placed: Placed,
+    pub(super) terms: Terms,
 }
 
-/// Logs, a model and what it is not sure of, in which effects are weighed.
-pub(super) struct Weighing<'a> {
-    /// Sets of logs.
-    pub(super) sets: Vec<&'a Data<'a>>,
-    /// What may be missing.
-    pub(super) candidates: &'a [Candidate],
-    /// What the model has of that.
-    given: &'a [Taken],
-    /// Torques of the model along each log of each set.
-    pub(super) torques: Vec<Vec<ModelTorques>>,
-    pub(super) spectra: Spectra,
-    pub(super) base: Base,
-    /// Columns of accelerations count below this frequency \[Hz\].
-    pub(super) driven_hz: f64,
+/// Effects together, weighed.
+#[derive(Clone)]
+pub(super) struct Hypothesis {
+    pub(super) parts: Vec<Part>,
+    pub(super) weighed: Weighed,
+    /// Log of evidence and prior odds.
+    pub(super) posterior: f64,
 }
 
-impl<'a> Weighing<'a> {
-    /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has.
-    pub(super) fn new(
-        sets: Vec<&'a Data<'a>>,
-        (candidates, given): (&'a [Candidate], &'a [Taken]),
-        z: &[f64],
-    ) -> Self {
-        let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
-        let spectra = Spectra::new(&sets, cutoff_hz);
-        let logs = sets.iter().flat_map(|data| &data.signals);
-        let driven_hz = logs.map(super::signals::Signals::driven_hz).fold(0.0, f64::max);
-        let torques = sets.iter().map(|data| data.model_torques(z)).collect();
-        let rows: Vec<&[f64]> = sets.iter().map(|data| data.residual.as_slice()).collect();
-        let mut residual = spectra.of_rows(&sets, &rows);
-        let mut weighing = Self {
-            base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
-            sets,
-            candidates,
-            given,
-            torques,
-            spectra,
-            driven_hz,
+impl Hypothesis {
+    /// The numbers of the effects' candidates.
+    pub(super) fn candidates(&self) -> Vec<usize> {
+        self.parts.iter().map(|part| part.placed.candidate).collect()
+    }
+
+    /// The same in order.
+    pub(super) fn names(&self) -> Vec<usize> {
+        let mut names = self.candidates();
+        names.sort_unstable();
+        names
+    }
+
+    /// The factors of each part.
+    fn factors(&self) -> Vec<&[f64]> {
+        self.by_parts(&self.weighed.factors)
+    }
+
+    pub(super) fn by_parts<'f>(&self, factors: &'f [f64]) -> Vec<&'f [f64]> {
+        let mut rest = factors;
+        let of = |part: &Part| {
+            let (own, others) = rest.split_at(part.terms.len());
+            rest = others;
+            own
         };
-        let mut own = weighing.own();
-        for taken in given {
-            let law = weighing.candidates[taken.candidate].law.as_ref();
-            let (torque, gradient) = weighing.spectrum(taken);
-            subtract(&mut residual, &torque);
-            for (mut column, belief) in gradient.into_iter().zip(law.beliefs()) {
-                column.iter_mut().flatten().for_each(|entry| *entry *= belief.std);
-                own.push(column);
-            }
-        }
-        weighing.base = Base::new(weighing.spectra.layout.clone(), residual, &own);
-        weighing
+        self.parts.iter().map(of).collect()
     }
 
-    /// The columns of the model's own numbers, and of what is between them and the logs.
-    fn own(&self) -> Vec<Spectrum> {
-        let nominal = self.sets[0].nominal;
-        let count = self.sets[0].columns.len();
-        let of = |place: usize| {
-            let rows: Vec<&[f64]> =
-                self.sets.iter().map(|data| data.columns[place].as_slice()).collect();
-            let mut spectrum = self.spectra.of_rows(&self.sets, &rows);
-            if follows_accelerations(nominal, place) {
-                self.spectra.cut(&mut spectrum, self.driven_hz);
-            }
-            spectrum
+    /// The spectrum of what an effect does.
+    pub(super) fn torque(&self, place: usize) -> Spectrum {
+        self.parts[place].terms.torque(self.factors()[place])
+    }
+
+    /// The values of an effect's parameters.
+    pub(super) fn values(&self, place: usize) -> Vec<f64> {
+        let Placed { values, deviations, .. } = &self.parts[place].placed;
+        let moved = values.iter().zip(deviations).zip(self.factors()[place]);
+        moved.map(|((value, deviation), factor)| value + deviation * factor).collect()
+    }
+
+    /// The standard deviations of an effect's parameters.
+    pub(super) fn deviations(&self, place: usize) -> Vec<f64> {
+        let before: usize = self.parts[..place].iter().map(|part| part.terms.len()).sum();
+        let of = |(k, deviation): (usize, &f64)| {
+            let at = before + k;
+            deviation * self.weighed.covariance[(at, at)].max(0.0).sqrt()
         };
-        (0..count).map(of).collect()
-    }
-
-    /// What an effect does to all sets.
-    pub(super) fn responses(&self, taken: &Taken) -> Vec<RowResponse> {
-        let law = self.candidates[taken.candidate].law.as_ref();
-        let of_set = |(data, torques): (&&Data<'a>, &Vec<ModelTorques>)| {
-            let mut all = RowResponse::default();
-            for (log, torques) in torques.iter().enumerate() {
-                let signals = &data.signals[log];
-                let response = law.response(torques.motion(data.nominal, signals), &taken.values);
-                all.append(data.in_rows(log, signals, &response));
-            }
-            all
-        };
-        self.sets.iter().zip(&self.torques).map(of_set).collect()
-    }
-
-    /// The spectra of an effect's torque and of its gradient.
-    fn spectrum(&self, taken: &Taken) -> (Spectrum, Vec<Spectrum>) {
-        let (mut torque, mut gradient) =
-            self.spectra.of_response(&self.sets, &self.responses(taken));
-        if self.candidates[taken.candidate].law.follows_accelerations() {
-            let all = gradient.iter_mut().chain([&mut torque]);
-            all.for_each(|spectrum| self.spectra.cut(spectrum, self.driven_hz));
-        }
-        (torque, gradient)
-    }
-
-    /// An effect at one of its starts; none if it does nothing there.
-    pub(super) fn start(
-        &self,
-        candidate: usize,
-        start: &Start,
-        log_share: f64,
-    ) -> Option<(Placed, Terms)> {
-        let taken = Taken { candidate, values: start.values.clone() };
-        let spectra = self.spectrum(&taken);
-        let mut is_felt = self.spectra.largest_share(&spectra.0) > policy::LEAST_FELT;
-        let deviation = |(place, given): (usize, &Option<f64>)| {
-            let share = self.spectra.largest_share(&spectra.1[place]);
-            match given {
-                Some(deviation) => {
-                    is_felt |= share * deviation > policy::LEAST_FELT;
-                    *deviation
-                }
-                None if share > 0.0 && share.is_finite() => {
-                    is_felt = true;
-                    policy::SIZE / share
-                }
-                None => 0.0,
-            }
-        };
-        let is_term = start.values.is_empty();
-        let deviations: Vec<f64> = match is_term {
-            true => Vec::new(),
-            false if spectra.1.len() < start.values.len() => return None,
-            false => start.deviations.iter().enumerate().map(deviation).collect(),
-        };
-        let Taken { candidate, values } = taken;
-        let placed = Placed { candidate, center: values.clone(), values, deviations, log_share };
-        let terms = self.terms_of(&placed, spectra);
-        (is_felt || is_term).then_some((placed, terms))
-    }
-
-    /// The terms of an effect where it is placed.
-    pub(super) fn terms(&self, placed: &Placed) -> Terms {
-        let taken = Taken { candidate: placed.candidate, values: placed.values.clone() };
-        self.terms_of(placed, self.spectrum(&taken))
-    }
-
-    fn terms_of(&self, placed: &Placed, (known, mut columns): (Spectrum, Vec<Spectrum>)) -> Terms {
-        let parameters = self.candidates[placed.candidate].law.parameters();
-        for (column, deviation) in columns.iter_mut().zip(&placed.deviations) {
-            column.iter_mut().flatten().for_each(|entry| *entry *= deviation);
-        }
-        let factor = |by: f64, deviation: &f64| {
-            if *deviation > 0.0 { by / deviation } else { by.signum() * f64::INFINITY }
-        };
-        let all = || placed.values.iter().zip(&placed.deviations);
-        let lowest = all()
-            .zip(parameters)
-            .map(|((value, deviation), parameter)| factor(parameter.bounds[0] - value, deviation));
-        let lowest = lowest.map(|one| if one.is_nan() { f64::NEG_INFINITY } else { one });
-        let believed = all().zip(&placed.center).map(|((value, deviation), center)| {
-            if *deviation > 0.0 { (center - value) / deviation } else { 0.0 }
-        });
-        Terms {
-            known,
-            lowest: lowest.collect(),
-            is_curved: parameters.iter().map(|parameter| !parameter.linear).collect(),
-            believed: believed.collect(),
-            unpredicted: self.unpredicted(placed),
-            columns,
-        }
-    }
-
-    /// The share of the samples of which an effect says nothing.
-    fn unpredicted(&self, placed: &Placed) -> f64 {
-        let law = self.candidates[placed.candidate].law.as_ref();
-        let (mut sum, mut all) = (0.0, 0.0);
-        for (data, torques) in self.sets.iter().zip(&self.torques) {
-            for (signals, torques) in data.signals.iter().zip(torques) {
-                let samples = signals.samples() as f64;
-                let motion = torques.motion(data.nominal, signals);
-                sum += samples * law.unpredicted(motion, &placed.values);
-                all += samples;
-            }
-        }
-        sum / f64::max(all, 1.0)
-    }
-
-    /// What an effect does at the joint where that is most, as a share of its torque, but for times
-    /// near a reversal.
-    pub(super) fn between_reversals(&self, taken: &Taken) -> f64 {
-        let law = self.candidates[taken.candidate].law.as_ref();
-        let channels = self.spectra.torque.len();
-        let (mut squares, mut samples) = (vec![0.0; channels], vec![0.0; channels]);
-        for (data, torques) in self.sets.iter().zip(&self.torques) {
-            for (signals, torques) in data.signals.iter().zip(torques) {
-                let response = law.response(torques.motion(data.nominal, signals), &taken.values);
-                for (&equation, torque) in response.equations.iter().zip(&response.torque) {
-                    let near = signals.near_reversals(data.nominal.joint_of(equation));
-                    let far = torque.iter().zip(near).filter(|(_, is_near)| !is_near);
-                    squares[equation] += far.map(|(torque, _)| torque * torque).sum::<f64>();
-                    samples[equation] += torque.len() as f64;
-                }
-            }
-        }
-        let of = |channel: usize| {
-            let mean: f64 = squares[channel] / f64::max(samples[channel], 1.0);
-            mean.sqrt() / self.spectra.torque[channel].max(f64::MIN_POSITIVE)
-        };
-        (0..channels).map(of).fold(0.0, f64::max)
-    }
-
-    /// The values of the effects that the model has, with own factors.
-    pub(super) fn given(&self, own: &[f64]) -> Vec<Taken> {
-        let mut factors = own[self.sets[0].columns.len()..].iter();
-        let of = |taken: &Taken| {
-            let law = &self.candidates[taken.candidate].law;
-            let both = taken.values.iter().zip(law.beliefs()).zip(law.parameters());
-            let moved = both.map(|((value, belief), parameter)| {
-                let [low, high] = parameter.bounds;
-                let factor = factors.next().copied().unwrap_or(0.0);
-                (value + factor * belief.std).clamp(low.min(*value), high.max(*value))
-            });
-            Taken { candidate: taken.candidate, values: moved.collect() }
-        };
-        self.given.iter().map(of).collect()
-    }
-}
-
-impl Placed {
-    /// Values with factors of their deviations, within bounds; curved ones move by one deviation at
-    /// most.
-    pub(super) fn moved(&self, candidates: &[Candidate], factors: &[f64]) -> Vec<f64> {
-        let parameters = candidates[self.candidate].law.parameters().iter();
-        let all = self.values.iter().zip(&self.deviations).zip(factors).zip(parameters);
-        all.map(|(((value, deviation), factor), parameter)| {
-            let [low, high] = parameter.bounds;
-            let factor = if parameter.linear { *factor } else { factor.clamp(-1.0, 1.0) };
-            let by = if *deviation > 0.0 { factor * deviation } else { 0.0 };
-            (value + by).clamp(low, high)
-        })
-        .collect()
-    }
-}
-
-/// Whether a column of the model is made of accelerations: of bodies, rotors and time.
-fn follows_accelerations(nominal: &Nominal<'_>, place: usize) -> bool {
-    let bodies = nominal.uncertain.len();
-    match nominal.uncertain.get(place) {
-        Some(one) => !nominal.is_friction(&one.name),
-        // the time between torque and motion
-        None => place == bodies,
-    }
-}
-
-/// Takes a spectrum away from another.
-pub(super) fn subtract(from: &mut Spectrum, other: &Spectrum) {
-    for (from, other) in from.iter_mut().zip(other) {
-        from.iter_mut().zip(other).for_each(|(sum, entry)| *sum -= entry);
+        self.parts[place].placed.deviations.iter().enumerate().map(of).collect()
     }
 }

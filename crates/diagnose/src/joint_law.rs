@@ -118,8 +118,8 @@ impl Law for SpringLaw {
 /// A drive that lacks more than this share of what was demanded does not give what was demanded.
 const ALL_GIVEN: f64 = 0.02;
 
-/// What a drive lacks is more than so many times the noise of the torque: a clip of noise would make
-/// a log look better, whatever is demanded.
+/// What a drive lacks is more than so many times the noise of the torque: a clip of noise would
+/// make a log look better, whatever is demanded.
 const OF_NOISE: f64 = 4.0;
 
 /// An effect that makes a drive give another torque than is logged: what was demanded of it.

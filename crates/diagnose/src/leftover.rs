@@ -1,11 +1,10 @@
 //! What is left of a channel when all is explained that has a name.
 //!
 //! Noise of sensors and of drives is as strong in the bands in which a robot moves as in the ones
-//! above. What has more in the slow ones is a disturbance, or physics without a name: which of
-//! both says a smooth function of the motion, that explains the one and not the other.
+//! above. What has more in the slow ones is a disturbance, or physics without a name.
 
 use super::data::Data;
-use super::search::Hypothesis;
+use super::hypothesis::Hypothesis;
 use super::spectra::Spectra;
 use denavit_evidence::policy;
 

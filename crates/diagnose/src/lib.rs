@@ -44,6 +44,7 @@ mod state;
 mod structure;
 mod turning;
 mod verdict;
+mod weighing;
 
 pub use alias::{ExactAliases, Named};
 pub use candidate::{Candidate, Start, starts};

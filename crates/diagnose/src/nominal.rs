@@ -114,7 +114,15 @@ impl<'a> Nominal<'a> {
                 is_positive: parameter.is_positive,
             });
         }
-        Self { model, uncertain, places, theta, directions, springs: Vec::new(), usual: vec![[0.0; 2]; model.joints.len()] }
+        Self {
+            model,
+            uncertain,
+            places,
+            theta,
+            directions,
+            springs: Vec::new(),
+            usual: vec![[0.0; 2]; model.joints.len()],
+        }
     }
 
     /// With springs whose balance is measured; deviations that are not stated as for joints.

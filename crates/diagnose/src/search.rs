@@ -1,12 +1,12 @@
 //! Which effects: one more as long as the evidence asks for it, each exchanged for what does better
 //! in its place.
 
-use super::candidate::{Candidate, Start, starts};
-use super::data::Data;
-use super::hypothesis::{Placed, Weighing};
-use denavit_codegen::effect::Occurrence;
+use super::candidate::Candidate;
+use super::hypothesis::{Hypothesis, Part};
 use super::state::Taken;
-use denavit_evidence::{Glance, Terms, Weighed, policy};
+use super::weighing::{Placed, Weighing, subtract};
+use denavit_codegen::effect::Occurrence;
+use denavit_evidence::{Glance, Terms, policy};
 use nalgebra::{DMatrix, DVector};
 
 /// What a search is allowed.
@@ -20,22 +20,6 @@ impl Default for SearchOptions {
     fn default() -> Self {
         Self { most_effects: 6 }
     }
-}
-
-/// An effect where it is placed, with its terms.
-#[derive(Clone)]
-pub(super) struct Part {
-    pub(super) placed: Placed,
-    pub(super) terms: Terms,
-}
-
-/// Effects together, weighed.
-#[derive(Clone)]
-pub(super) struct Hypothesis {
-    pub(super) parts: Vec<Part>,
-    pub(super) weighed: Weighed,
-    /// Log of evidence and prior odds.
-    pub(super) posterior: f64,
 }
 
 /// One step of a search, for a report.
@@ -102,7 +86,7 @@ impl<'w, 'a> Search<'w, 'a> {
             if !watch(number as f64 / candidates.len() as f64) {
                 break;
             }
-            let all = starts_of(weighing, candidate);
+            let all = weighing.starts(candidate);
             let log_share = -(all.len().max(1) as f64).ln();
             let placed = all.iter().filter_map(|start| weighing.start(number, start, log_share));
             screen[number] = placed.map(|(placed, terms)| Part { placed, terms }).collect();
@@ -181,8 +165,8 @@ impl<'w, 'a> Search<'w, 'a> {
             && self.between_reversals(with, place) > policy::WORTH
     }
 
-    /// What an effect does that others of its hypothesis cannot, as a share of the torque where that
-    /// is most.
+    /// What an effect does that others of its hypothesis cannot, as a share of the torque where
+    /// that is most.
     fn beyond(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
         let spectra = &self.weighing.spectra;
         let torque = spectra.stacked(&hypothesis.torque(place));
@@ -267,7 +251,7 @@ impl<'w, 'a> Search<'w, 'a> {
         let base = &self.weighing.base;
         let mut left = base.left(&hypothesis.weighed.own);
         for place in 0..hypothesis.parts.len() {
-            super::hypothesis::subtract(&mut left, &hypothesis.torque(place));
+            subtract(&mut left, &hypothesis.torque(place));
         }
         (0..left.len()).map(|channel| self.weighing.spectra.share(&left, channel)).collect()
     }
@@ -291,9 +275,8 @@ impl<'w, 'a> Search<'w, 'a> {
                 (rivals, place) = (Vec::new(), 0);
                 continue;
             }
-            let mut all = self.with_one_more(&rest, &others, &|candidate| {
-                candidate != own.placed.candidate
-            });
+            let mut all =
+                self.with_one_more(&rest, &others, &|candidate| candidate != own.placed.candidate);
             // the new one stands last there
             for one in &mut all {
                 let last = one.parts.len() - 1;
@@ -360,18 +343,17 @@ impl<'w, 'a> Search<'w, 'a> {
     ) -> Vec<Hypothesis> {
         let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
         let glance = Glance::new(&self.weighing.base, &terms, &now.weighed.variances);
-        let is_there = |candidate: usize| {
-            parts.iter().any(|part| part.placed.candidate == candidate)
-        };
+        let is_there =
+            |candidate: usize| parts.iter().any(|part| part.placed.candidate == candidate);
         let mut seen: Vec<(f64, &Part)> = Vec::new();
         for (candidate, own) in self.screen.iter().enumerate() {
             if is_there(candidate) || !is_asked(candidate) {
                 continue;
             }
             let prior = log_occurrence(&self.weighing.candidates[candidate]);
-            let gains = own.iter().map(|part| {
-                (glance.see(&part.terms).gain + prior + part.placed.log_share, part)
-            });
+            let gains = own
+                .iter()
+                .map(|part| (glance.see(&part.terms).gain + prior + part.placed.log_share, part));
             seen.extend(gains.max_by(|a, b| a.0.total_cmp(&b.0)));
         }
         seen.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -478,76 +460,3 @@ const RANK: f64 = 1e-6;
 
 /// Exchanges of one round, at most.
 const MOST_EXCHANGES: usize = 8;
-
-/// Where the search of a candidate's parameters begins.
-fn starts_of(weighing: &Weighing<'_>, candidate: &Candidate) -> Vec<Start> {
-    let range = candidate.joint.map(|joint| range(&weighing.sets, joint));
-    let largest = candidate.joint.and_then(|joint| largest(&weighing.sets, joint));
-    starts(candidate.law.parameters(), range, largest)
-}
-
-impl Hypothesis {
-    /// The numbers of the effects' candidates.
-    pub(super) fn candidates(&self) -> Vec<usize> {
-        self.parts.iter().map(|part| part.placed.candidate).collect()
-    }
-
-    /// The same in order.
-    fn names(&self) -> Vec<usize> {
-        let mut names = self.candidates();
-        names.sort_unstable();
-        names
-    }
-
-    /// The factors of each part.
-    fn factors(&self) -> Vec<&[f64]> {
-        self.by_parts(&self.weighed.factors)
-    }
-
-    fn by_parts<'f>(&self, factors: &'f [f64]) -> Vec<&'f [f64]> {
-        let mut rest = factors;
-        let of = |part: &Part| {
-            let (own, others) = rest.split_at(part.terms.len());
-            rest = others;
-            own
-        };
-        self.parts.iter().map(of).collect()
-    }
-
-    /// The spectrum of what an effect does.
-    fn torque(&self, place: usize) -> denavit_evidence::Spectrum {
-        self.parts[place].terms.torque(self.factors()[place])
-    }
-
-    /// The values of an effect's parameters.
-    pub(super) fn values(&self, place: usize) -> Vec<f64> {
-        let Placed { values, deviations, .. } = &self.parts[place].placed;
-        let moved = values.iter().zip(deviations).zip(self.factors()[place]);
-        moved.map(|((value, deviation), factor)| value + deviation * factor).collect()
-    }
-
-    /// The standard deviations of an effect's parameters.
-    pub(super) fn deviations(&self, place: usize) -> Vec<f64> {
-        let before: usize = self.parts[..place].iter().map(|part| part.terms.len()).sum();
-        let of = |(k, deviation): (usize, &f64)| {
-            let at = before + k;
-            deviation * self.weighed.covariance[(at, at)].max(0.0).sqrt()
-        };
-        self.parts[place].placed.deviations.iter().enumerate().map(of).collect()
-    }
-}
-
-/// The largest measured torque of a joint.
-fn largest(sets: &[&Data<'_>], joint: usize) -> Option<f64> {
-    let of_set = |data: &&Data<'_>| {
-        let logs = data.signals.iter().filter_map(|log| log.measured[joint].as_ref());
-        logs.flatten().map(|torque| torque.abs()).max_by(f64::total_cmp)
-    };
-    sets.iter().filter_map(of_set).max_by(f64::total_cmp)
-}
-
-/// The least and the largest position of a joint.
-fn range(sets: &[&Data<'_>], joint: usize) -> [f64; 2] {
-    let all = sets.iter().flat_map(|data| &data.signals).flat_map(|signals| &signals.q[joint]);
-    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
-}

@@ -90,8 +90,9 @@ impl Spectra {
             let mut all = Vec::with_capacity(lines.len());
             let mut is_filled = false;
             for line in lines {
-                let is_it =
-                    |(set, stretch, _): &&(usize, usize, _)| (*set, *stretch) == (line.set, line.stretch);
+                let is_it = |(set, stretch, _): &&(usize, usize, _)| {
+                    (*set, *stretch) == (line.set, line.stretch)
+                };
                 if transformed.iter().find(is_it).is_none() {
                     let own = rows(line.set, line.stretch).map(|rows| self.transformed(rows));
                     is_filled |= own.is_some();
@@ -134,9 +135,8 @@ impl Spectra {
             let first = sets[set].stretches[stretch].first;
             responses[set].stretches.iter().position(|own| own.first == first)
         };
-        let torque = self.of(&|set, stretch| {
-            Some(responses[set].torque[place(set, stretch)?].as_slice())
-        });
+        let torque =
+            self.of(&|set, stretch| Some(responses[set].torque[place(set, stretch)?].as_slice()));
         let parameters = responses
             .iter()
             .filter_map(|response| response.gradient.first().map(Vec::len))

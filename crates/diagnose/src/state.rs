@@ -4,10 +4,11 @@
 use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::floor::NoiseFloor;
-use super::hypothesis::Weighing;
+use super::hypothesis::{Hypothesis, Part};
 use super::problem::{Fitted, Found, Problem};
-use super::search::{Hypothesis, Part, Search, SearchOptions};
+use super::search::{Search, SearchOptions};
 use super::simulated::{MotionGap, Moved, NotMoved};
+use super::weighing::Weighing;
 use denavit_evidence::policy;
 
 /// An effect that was taken into the model.
@@ -54,7 +55,8 @@ pub(super) struct State {
     pub(super) torques: [Vec<ModelTorques>; 2],
 }
 
-/// Entries of z beyond which the model's own parameters are not moved.
+/// Entries of z that are further from 0 say that the model's own numbers are off by more than it
+/// states; experiments do not move them beyond.
 pub(super) const MOST_Z: f64 = 3.0;
 
 /// Rounds in which entries of z are held.
@@ -67,10 +69,8 @@ impl<'a> Setting<'a> {
         let weighing = Weighing::new(vec![self.train], given, z);
         let options = (self.candidates.len(), SearchOptions::default());
         let search = Search::new(&weighing, options, &mut |_| true);
-        let place = |part: &Part| Part {
-            terms: weighing.terms(&part.placed),
-            placed: part.placed.clone(),
-        };
+        let place =
+            |part: &Part| Part { terms: weighing.terms(&part.placed), placed: part.placed.clone() };
         let parts: Vec<Part> = parts.iter().map(place).collect();
         let first = search.weighed(parts, None, policy::ROUNDS[1]);
         let fitted = search.linearised(first, policy::ROUNDS[1]);

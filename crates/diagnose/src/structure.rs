@@ -70,11 +70,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn new(
-        data: &Data<'_>,
-        torques: &[ModelTorques],
-        (equation, left): (usize, &[f64]),
-    ) -> Self {
+    fn new(data: &Data<'_>, torques: &[ModelTorques], (equation, left): (usize, &[f64])) -> Self {
         let mut rows = Self { names: Vec::new(), columns: Vec::new(), left: DVector::zeros(0) };
         let (mut columns, mut all_left): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
         for stretch in data.stretches.iter().filter(|stretch| stretch.equation == equation) {

@@ -38,12 +38,12 @@ impl Verdict {
     }
 }
 
-
 /// Judges what was found.
 pub(super) fn judge(diagnosis: &mut Diagnosis, setting: &Setting<'_>, found: &Found) {
     for one in &mut diagnosis.effects {
         let left = left_beside(setting, &diagnosis.leftovers, one);
-        one.is_named = left.is_none_or(|left| !is_unexplained(left, one.size));
+        // what does not help logs that it was not fitted to is no name
+        one.is_named = one.share > 0.0 && left.is_none_or(|left| !is_unexplained(left, one.size));
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
@@ -108,13 +108,13 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
         return (verdict, vec![what]);
     }
-    if diagnosis.effects.is_empty() {
+    if diagnosis.effects.iter().all(|one| !one.is_named) {
         return nothing_found(diagnosis, setting);
     }
     let ambiguous: Vec<String> = diagnosis
         .effects
         .iter()
-        .filter(|one| probability(one) < 0.5)
+        .filter(|one| one.is_named && probability(one) < 0.5)
         .map(|one| setting.candidates[one.candidate].name())
         .collect();
     if !ambiguous.is_empty() {

@@ -5,6 +5,7 @@ use crate::base::Base;
 use crate::layout::Spectrum;
 use crate::policy;
 use crate::terms::Terms;
+use crate::weigh::positive;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::Range;
 
@@ -70,7 +71,7 @@ impl Glance {
             normal += columns.tr_mul(columns);
             right += columns.tr_mul(data);
         }
-        let factor = normal.cholesky().expect("a sum of squares and 1");
+        let factor = positive(normal);
         let levels = base.layout.expected();
         let expected = levels.iter().zip(variances).map(|(level, v)| level / v).collect();
         let own = Self { cells, weights, data, columns, factor, right, expected, idle: 0.0 };

@@ -12,7 +12,7 @@
 //! - [`Base`]: the data with the columns that every hypothesis has
 //! - [`Terms`]: what one effect adds to that
 //! - [`Base::weigh`]: the evidence of a set of terms; [`Glance`]: a first look at many
-//! - [`policy`]: every number that decides a verdict
+//! - [`policy`]: the numbers that decide a verdict
 
 mod base;
 mod gaussian;

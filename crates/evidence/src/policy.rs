@@ -1,4 +1,4 @@
-//! Every number that decides a verdict, with its unit and where it is from.
+//! The numbers that decide a verdict, each with its unit and where it is from.
 
 /// Shape of the inverse gamma prior of a cell's variance: one row's worth of belief, so that a
 /// cell of many rows says its variance itself.
@@ -14,9 +14,10 @@ pub const LEAST_OF_LEVEL: f64 = 0.1;
 /// Nats by which the evidence may still change where the search for variances ends.
 pub const SETTLED: f64 = 1e-2;
 
-/// Ends of the bands of a joint's cells, as shares of the cutoff frequency: octaves, wide enough
-/// that the lowest has tens of lines in a log of 15 s.
-pub const BANDS: [f64; 8] = [0.0, 1.0 / 30.0, 1.0 / 15.0, 0.1, 1.0 / 6.0, 4.0 / 15.0, 7.0 / 15.0, 2.0 / 3.0];
+/// Ends of the bands of a joint's cells, as shares of the cutoff frequency: finer where the motion
+/// is, wide enough that the lowest has tens of lines in a log of 15 s.
+pub const BANDS: [f64; 8] =
+    [0.0, 1.0 / 30.0, 1.0 / 15.0, 0.1, 1.0 / 6.0, 4.0 / 15.0, 7.0 / 15.0, 2.0 / 3.0];
 
 /// The share of the power of rates that is driven by references, and how much further than that
 /// frequency a motion is taken to be driven: what is beyond answers disturbances, and columns made
@@ -41,8 +42,8 @@ pub const ANGLE: f64 = 0.1;
 /// See [`ANGLE`].
 pub const LENGTH: f64 = 0.1;
 
-/// Errors of every model that are too small for a name, as shares of the torque: offset, friction
-/// and gain.
+/// Errors of every model that are too small for a name, as shares of the torque: offset, viscous
+/// and Coulomb friction.
 pub const UNNAMED: f64 = 1e-3;
 
 /// Friction that a model may lack, as a share of the torque, whose reversals are not known better

@@ -115,8 +115,9 @@ impl Base {
     fn cells_with(&self, terms: &[&Terms], width: usize) -> Vec<Cell> {
         let own = self.parameters;
         let size = 1 + own + width;
-        let touched: Vec<Option<Touched>> =
-            (0..self.layout.channels()).map(|channel| self.touched(terms, channel, width)).collect();
+        let touched: Vec<Option<Touched>> = (0..self.layout.channels())
+            .map(|channel| self.touched(terms, channel, width))
+            .collect();
         let of_cell = |((channel, rows), base): ((usize, Range<usize>), &DMatrix<f64>)| {
             let mut products = DMatrix::zeros(size, size);
             products.view_mut((0, 0), (1 + own, 1 + own)).copy_from(base);
@@ -194,12 +195,7 @@ impl Posterior {
         let right = DVector::from_fn(columns, |k, _| sum[(1 + k, 0)]);
         let mut normal = sum.view((1, 1), (columns, columns)).into_owned();
         (0..columns).for_each(|k| normal[(k, k)] += 1.0);
-        let factor = normal.clone().cholesky().unwrap_or_else(|| {
-            // Rounding of huge columns: what is lost there was beyond its digits.
-            let scale = normal.diagonal().max();
-            let more: DMatrix<f64> = DMatrix::identity(columns, columns) * (scale * f64::EPSILON * 1e3);
-            (normal + more).cholesky().expect("a matrix that is positive but for rounding")
-        });
+        let factor = positive(normal);
         let mean = factor.solve(&right);
         Self { covariance: factor.inverse(), mean, factor, right, square: sum[(0, 0)] }
     }
@@ -248,7 +244,12 @@ impl Posterior {
         squares.max(0.0)
     }
 
-    fn told(&self, terms: &[&Terms], own: usize, (evidence, variances): (f64, Vec<f64>)) -> Weighed {
+    fn told(
+        &self,
+        terms: &[&Terms],
+        own: usize,
+        (evidence, variances): (f64, Vec<f64>),
+    ) -> Weighed {
         let width = self.mean.len() - own;
         let covariance = self.covariance.view((own, own), (width, width)).into_owned();
         let all = |of: &dyn Fn(&Terms) -> Vec<f64>| -> Vec<f64> {
@@ -298,11 +299,29 @@ impl Posterior {
         let off = DVector::from_fn(places.len(), |k, _| step[places[k]]);
         let of_prior: f64 = places.iter().map(|&k| 0.5 * believed[k].powi(2)).sum();
         if let Some(factor) = of_curved.cholesky() {
-            let narrower: f64 =
-                (0..places.len()).map(|k| factor.l_dirty()[(k, k)].ln()).sum();
+            let narrower: f64 = (0..places.len()).map(|k| factor.l_dirty()[(k, k)].ln()).sum();
             weighed.log_evidence += narrower - of_prior;
             weighed.away = 0.5 * off.dot(&factor.solve(&off));
         }
         (weighed.covariance, weighed.step) = (covariance, step);
     }
 }
+
+/// The factor of a sum of squares and 1. What huge columns lose by rounding was beyond their
+/// digits; where numbers are not finite nothing is known.
+pub(crate) fn positive(normal: DMatrix<f64>) -> Cholesky<f64, Dyn> {
+    let size = normal.nrows();
+    let identity = || DMatrix::<f64>::identity(size, size);
+    let largest = normal.diagonal().max();
+    let mut more = 0.0;
+    for _ in 0..ROUNDINGS {
+        if let Some(factor) = (&normal + identity() * more).cholesky() {
+            return factor;
+        }
+        more = (more * 100.0).max(largest * f64::EPSILON);
+    }
+    identity().cholesky().expect("ones are positive")
+}
+
+/// How often more is added to a matrix whose digits are lost, a hundred times as much each time.
+const ROUNDINGS: usize = 7;

@@ -197,10 +197,10 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         formula: one.formula(),
         share: one.share,
     });
-    let leftover = found.leftovers.iter().map(|one| LeftoverJson {
-        joint: &found.places[one.equation],
-        share: one.share,
-    });
+    let leftover = found
+        .leftovers
+        .iter()
+        .map(|one| LeftoverJson { joint: &found.places[one.equation], share: one.share });
     let written = shown.written.as_ref();
     let has_model = written.is_some_and(|written| written.model == Ok(true));
     let answer = DiagnosisJson {

@@ -98,7 +98,8 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
                 law: Box::new(Handwritten {
                     parameters,
                     joint,
-                    follows_accelerations: ["rotor_inertia", "torque_gain", "delay"].contains(&name),
+                    follows_accelerations: ["rotor_inertia", "torque_gain", "delay"]
+                        .contains(&name),
                     at,
                 }),
             });

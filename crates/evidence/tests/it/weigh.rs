@@ -34,7 +34,8 @@ fn problem(seed: u64) -> (Spectrum, Vec<Spectrum>, Terms) {
 
 fn stacked(spectrum: &Spectrum) -> DVector<f64> {
     let rows = [19, 9].into_iter().zip(spectrum);
-    let all = rows.flat_map(|(rows, own)| if own.is_empty() { vec![0.0; rows] } else { own.clone() });
+    let all =
+        rows.flat_map(|(rows, own)| if own.is_empty() { vec![0.0; rows] } else { own.clone() });
     DVector::from_vec(all.collect())
 }
 
@@ -100,16 +101,16 @@ fn factors_are_those_of_weighted_least_squares() {
     let base = Base::new(layout(), data.clone(), &own);
     let found = base.weigh(&[&terms], Some(&VARIANCES), 0);
     let columns: Vec<DVector<f64>> = own.iter().chain(&terms.columns).map(stacked).collect();
-    let weights = [7, 12, 9].iter().zip(VARIANCES).flat_map(|(n, v)| {
-        std::iter::repeat_n(1.0 / v.sqrt(), *n)
-    });
+    let weights =
+        [7, 12, 9].iter().zip(VARIANCES).flat_map(|(n, v)| std::iter::repeat_n(1.0 / v.sqrt(), *n));
     let weights: Vec<f64> = weights.collect();
     let rows = stacked(&data) - stacked(&terms.known) - stacked(&terms.columns[0]) * 0.3;
     let matrix = DMatrix::from_fn(32, 4, |row, column| match row < 28 {
         true => weights[row] * columns[column][row],
         false => f64::from(u8::from(row - 28 == column)),
     });
-    let target = DVector::from_fn(32, |row, _| if row < 28 { weights[row] * rows[row] } else { 0.0 });
+    let target =
+        DVector::from_fn(32, |row, _| if row < 28 { weights[row] * rows[row] } else { 0.0 });
     let solved = matrix.clone().svd(true, true).solve(&target, 1e-14).expect("full rank");
     let all = [found.own.as_slice(), &[found.factors[0] - 0.3, found.factors[1]]].concat();
     for (found, expected) in all.iter().zip(solved.iter()) {
@@ -118,7 +119,9 @@ fn factors_are_those_of_weighted_least_squares() {
     let inverse = (matrix.transpose() * &matrix).try_inverse().expect("full rank");
     assert!((found.covariance[(0, 1)] - inverse[(2, 3)]).abs() < 1e-10);
     let left = base.left(&found.own);
-    assert!((left[0][3] - (data[0][3] - own[0][0][3] * all[0] - own[1][0][3] * all[1])).abs() < 1e-12);
+    assert!(
+        (left[0][3] - (data[0][3] - own[0][0][3] * all[0] - own[1][0][3] * all[1])).abs() < 1e-12
+    );
 }
 
 /// Half of a normal prior: the density with the bound is twice what the allowed half has of it.

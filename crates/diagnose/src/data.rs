@@ -105,7 +105,7 @@ impl<'a> Data<'a> {
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
                 for (place, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
-                    let own = (place / PER_JOINT == joint).then(|| place % PER_JOINT);
+                    let own = (place / PER_JOINT == joint).then_some(place % PER_JOINT);
                     match own {
                         Some(own) => {
                             column.extend(data.signals[log].rows_of(&unnamed[log][joint][own]));

@@ -135,7 +135,9 @@ pub fn diagnose(
     DiagnosisError::check(&request)?;
     let nominal = Nominal::new(request.model, request.uncertainty)
         .with_springs(request.springs, request.uncertainty);
-    let filters = request.filters.map_or_else(|| filters_of(&request.train), Ok)?;
+    let filters = request
+        .filters
+        .map_or_else(|| filters_of(&[request.train.as_slice(), &request.held_out].concat()), Ok)?;
     let read = |logs: Vec<MeasuredLog>| conditioned(logs, filters);
     let (train, held_out) = (read(request.train)?, read(request.held_out)?);
     let nominal = nominal.moving_as(&train);

@@ -9,7 +9,6 @@ mod one_joint;
 mod saturation;
 mod search;
 mod separate;
-mod separate_elastic;
 mod transmission;
 
 use denavit_codegen::model::{self, Robot};

@@ -160,9 +160,18 @@ pub fn diagnose(
     let search = Search::new(&weighing, (setting.given.len(), request.options), &mut |share| {
         watch(&Progress::Evaluated(share))
     });
-    let found = search.run(&mut |taken| watch(&Progress::Found(taken.to_vec())));
-    let [before, after] = [&found.before, &found.after].map(|of| setting.state(&of.parts, &z));
-    let mut effects = found_effects(&setting, &search, (&found, [&before, &after]));
+    let mut found = search.run(&mut |taken| watch(&Progress::Found(taken.to_vec())));
+    let before = setting.state(&found.before.parts, &z);
+    // What does not help logs that its values were not fitted to is not told.
+    let (after, mut effects) = loop {
+        let after = setting.state(&found.after.parts, &z);
+        let effects = found_effects(&setting, &search, (&found, [&before, &after]));
+        let idle = effects.iter().position(|one| one.share <= 0.0);
+        match idle {
+            Some(place) => search.drop(&mut found, place),
+            None => break (after, effects),
+        }
+    };
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);
     }

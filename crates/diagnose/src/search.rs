@@ -51,6 +51,8 @@ pub(super) struct Found {
     pub(super) is_full: bool,
     /// Whether the search was stopped.
     pub(super) is_stopped: bool,
+    /// Candidates that explain all logs together, and not those that values were not fitted to.
+    pub(super) dropped: Vec<usize>,
 }
 
 /// What every candidate does from where its search begins.
@@ -125,7 +127,16 @@ impl<'w, 'a> Search<'w, 'a> {
             seen.push(next.names());
             (now, rivals) = (next, others);
         };
-        Found { before, after: now, rivals, steps, is_full, is_stopped }
+        let dropped = Vec::new();
+        Found { before, after: now, rivals, steps, is_full, is_stopped, dropped }
+    }
+
+    /// What was found without the effect in one place.
+    pub(super) fn drop(&self, found: &mut Found, place: usize) {
+        let mut parts = found.after.parts.clone();
+        found.dropped.push(parts.remove(place).placed.candidate);
+        let rest = self.weighed(parts, Some(&found.after), policy::ROUNDS[1]);
+        (found.after, found.rivals) = self.exchanged(rest);
     }
 
     /// The step to the best of some hypotheses.

@@ -108,13 +108,13 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
         let verdict = if has_names { Verdict::PartlyExplained } else { Verdict::Unexplained };
         return (verdict, vec![what]);
     }
-    if diagnosis.effects.iter().all(|one| !one.is_named) {
+    if diagnosis.effects.is_empty() {
         return nothing_found(diagnosis, setting);
     }
     let ambiguous: Vec<String> = diagnosis
         .effects
         .iter()
-        .filter(|one| one.is_named && probability(one) < 0.5)
+        .filter(|one| probability(one) < 0.5)
         .map(|one| setting.candidates[one.candidate].name())
         .collect();
     if !ambiguous.is_empty() {
@@ -166,6 +166,13 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
             "exact alias: {name} does what parameters of the model do in every motion ({}); what \
              is told is that they are off by more than the model states",
             one.exact.join(", ")
+        ));
+    }
+    for &candidate in &found.dropped {
+        reasons.push(format!(
+            "not told: {}, which explains all logs together, and not those that its values were \
+             not fitted to",
+            setting.candidates[candidate].name()
         ));
     }
     if found.is_full {

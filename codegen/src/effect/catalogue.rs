@@ -36,7 +36,6 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "gear_efficiency",
     "gravity",
     "hard_stop",
-    "hard_stop_below",
     "hardening_spring",
     "joint_compliance",
     "joint_elasticity",

@@ -1,5 +1,6 @@
 //! Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
 
+use super::known::weights;
 use super::law::{Motion, Response, derivative};
 use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
@@ -41,6 +42,8 @@ pub struct Data<'a> {
     pub columns: Vec<Vec<f64>>,
     /// The torque of every row, filtered: measured, or by the deflection of a spring [N m, N].
     pub torque: Vec<f64>,
+    /// What every row counts, from 0 to 1.
+    pub weights: Vec<f64>,
 }
 
 /// How far the zero of a spring's deflection may be off: where none is stated the logs say it
@@ -77,6 +80,7 @@ impl<'a> Data<'a> {
             residual: Vec::new(),
             columns: vec![Vec::new(); nominal.place_of_spring(nominal.springs.len())],
             torque: Vec::new(),
+            weights: Vec::new(),
             signals,
         };
         // Channels of a log are not read at once.
@@ -90,7 +94,9 @@ impl<'a> Data<'a> {
         };
         let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
         let unnamed: Vec<Vec<PerJoint>> =
-            data.signals.iter().map(|signals| unnamed(nominal, signals, &given)).collect();
+            data.signals.iter().map(|signals| unnamed(nominal, signals)).collect();
+        let weights: Vec<PerJoint> =
+            data.signals.iter().map(|signals| weights(nominal, signals, &given)).collect();
         for joint in 0..joints {
             for (log, rows) in rows.iter().enumerate() {
                 let Some(target) = &rows.target[joint] else { continue };
@@ -100,6 +106,7 @@ impl<'a> Data<'a> {
                 let computed = rows.torque(nominal, joint, &given.axes);
                 data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
                 data.torque.extend(data.signals[log].torque[joint].iter().flatten());
+                data.weights.extend(&weights[log][joint]);
                 for (column, direction) in data.columns.iter_mut().zip(&directions) {
                     column.extend(rows.torque(nominal, joint, &direction.axes));
                 }
@@ -136,6 +143,7 @@ impl<'a> Data<'a> {
                 let left = rows.unknown(joint, passed.clone());
                 self.residual.extend(left.iter().zip(computed).map(|(a, b)| a - b));
                 self.torque.extend(passed);
+                self.weights.resize(first + count, 1.0);
                 for (column, direction) in self.columns.iter_mut().zip(directions) {
                     column.extend(rows.torque(nominal, joint, &direction.loads));
                 }
@@ -172,6 +180,12 @@ impl<'a> Data<'a> {
                 }
             }
         }
+    }
+
+    /// What the rows of a stretch count.
+    pub(super) fn weights_of(&self, stretch: usize) -> Vec<f64> {
+        let Stretch { first, rows, .. } = self.stretches[stretch];
+        self.weights[first..first + rows].to_vec()
     }
 
     /// Number of rows.

@@ -166,7 +166,7 @@ pub fn diagnose(
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, (&found, [&before, &after]));
-        let idle = effects.iter().position(|one| one.share <= 0.0);
+        let idle = effects.iter().position(|one| one.log_predicted < -policy::NAMED);
         match idle {
             Some(place) => search.drop(&mut found, place),
             None => break (after, effects),

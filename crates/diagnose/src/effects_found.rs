@@ -53,6 +53,9 @@ pub struct FoundEffect {
     pub size: f64,
     /// The share of what can be explained that is open again without it, on held-out logs.
     pub share: f64,
+    /// By how much more likely held-out logs are with it, after those that were fitted: a log of
+    /// odds.
+    pub log_predicted: f64,
     /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
     pub is_named: bool,
     /// Effects that would do as well in its place.
@@ -90,13 +93,18 @@ pub(super) fn found_effects(
         let mut parts = all.parts.clone();
         parts.remove(place);
         let without = search.weighed(parts.clone(), Some(all), policy::ROUNDS[1]);
+        let without = search.linearised(without, policy::ROUNDS[1]);
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
+        // p(held out | fitted) = p(both) / p(fitted), with it and without it.
+        let predicted =
+            |both: &Hypothesis, fitted: &State| both.weighed.log_evidence - fitted.log_evidence;
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
             size: search.size(all, place),
             share: (gap(&reopened) - gap(after)) / whole,
+            log_predicted: predicted(all, after) - predicted(&without, &reopened),
             is_named: true,
             parameters: values(setting, (all, after), place),
             alternatives: alternatives(found, place),

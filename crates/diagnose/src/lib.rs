@@ -29,6 +29,7 @@ mod given;
 mod held;
 mod hypothesis;
 mod joint_law;
+mod known;
 mod law;
 mod leftover;
 mod nominal;

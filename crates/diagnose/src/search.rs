@@ -165,15 +165,14 @@ impl<'w, 'a> Search<'w, 'a> {
     }
 
     /// Whether an effect is large enough for a name beside the others, which are all that `without`
-    /// has: one that others nearly do is none.
+    /// has: one that others nearly do is none, and neither is one that acts where rows hardly count.
     fn is_worth(&self, without: &Hypothesis, with: &Hypothesis, place: usize) -> bool {
         let joint = |part: &Part| self.weighing.candidates[part.placed.candidate].joint;
         let own = joint(&with.parts[place]);
         let others = (0..without.parts.len()).filter(|&at| joint(&without.parts[at]) == own);
-        let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
-        self.size(with, place) > policy::WORTH
+        let most = others.map(|at| self.told(without, at)).fold(0.0, f64::max);
+        self.told(with, place) > policy::WORTH
             && (most == 0.0 || self.beyond(with, place) > policy::FURTHER * most)
-            && self.between_reversals(with, place) > policy::WORTH
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where
@@ -205,20 +204,19 @@ impl<'w, 'a> Search<'w, 'a> {
         spectra.largest_share(&spectra.unstacked(&left))
     }
 
-    /// What an effect does where its joint does not turn around just then, as a share of the torque
-    /// where that is most. When a joint turns around is known to some time only.
-    fn between_reversals(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
-        let candidate = hypothesis.parts[place].placed.candidate;
-        let parameters = self.weighing.candidates[candidate].law.parameters();
-        let values = hypothesis.values(place).into_iter().zip(parameters);
-        let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
-        self.weighing.between_reversals(&Taken { candidate, values: values.collect() })
+    /// What an effect does at the joint where that is most, as a share of its torque, by what rows
+    /// count.
+    fn told(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        self.weighing.spectra.largest_share(&hypothesis.torque(place))
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.
     pub(super) fn size(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
-        let spectrum = hypothesis.torque(place);
-        self.weighing.spectra.largest_share(&spectrum)
+        let candidate = hypothesis.parts[place].placed.candidate;
+        let parameters = self.weighing.candidates[candidate].law.parameters();
+        let values = hypothesis.values(place).into_iter().zip(parameters);
+        let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
+        self.weighing.size(&Taken { candidate, values: values.collect() })
     }
 
     /// Of hypotheses that have another effect in one place: that which is met most often of those
@@ -243,7 +241,7 @@ impl<'w, 'a> Search<'w, 'a> {
     /// Whether an effect leaves hardly more than that of another hypothesis in the same place.
     fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
-        own.at == other.at && self.apart(than, one) < policy::SAME * self.size(than, place)
+        own.at == other.at && self.apart(than, one) < policy::SAME * self.told(than, place)
     }
 
     fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {

@@ -307,20 +307,6 @@ impl Signals {
         self.rows.range.len().div_ceil(self.rows.stride)
     }
 
-    /// For each sample of the motion whether a joint's drive turns around near it.
-    pub(super) fn near_reversals(&self, joint: usize) -> Vec<bool> {
-        let rates = self.creeping(joint);
-        let reach = (policy::NEAR_S / self.step_s).ceil() as usize;
-        let mut near = vec![false; rates.len()];
-        for k in 1..rates.len() {
-            if rates[k - 1] * rates[k] < 0.0 {
-                let end = (k + reach).min(rates.len());
-                near[k.saturating_sub(reach)..end].fill(true);
-            }
-        }
-        near
-    }
-
     /// The frequency up to which references drive the motion \[Hz\].
     pub(super) fn driven_hz(&self) -> f64 {
         let lines = |rate: &Vec<f64>| cosine_lines(&self.at_rows(rate));

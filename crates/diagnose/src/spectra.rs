@@ -32,6 +32,10 @@ pub(super) struct Spectra {
     /// Rows in time of each channel.
     rows: Vec<f64>,
     plans: Vec<(usize, Arc<dyn TransformType2And3<f64>>)>,
+    /// For each set and stretch what its rows count.
+    weights: Vec<Vec<Vec<f64>>>,
+    /// For each set and stretch the distance of its lines \[Hz\].
+    line_hz: Vec<Vec<f64>>,
 }
 
 impl Spectra {
@@ -44,13 +48,21 @@ impl Spectra {
             torque: vec![0.0; channels],
             rows: vec![0.0; channels],
             plans: Vec::new(),
+            weights: Vec::new(),
+            line_hz: Vec::new(),
         };
         let mut planner = DctPlanner::new();
         let mut torques: Vec<Vec<f64>> = vec![Vec::new(); channels];
         for (set, data) in sets.iter().enumerate() {
+            let weights = (0..data.stretches.len()).map(|place| data.weights_of(place));
+            spectra.weights.push(weights.collect());
+            let line_hz = |stretch: &Stretch| {
+                0.5 / (stretch.rows as f64 * data.signals[stretch.log].row_step_s())
+            };
+            spectra.line_hz.push(data.stretches.iter().map(line_hz).collect());
             for (place, stretch) in data.stretches.iter().enumerate() {
-                let Stretch { log, equation, first, rows, .. } = *stretch;
-                let line_hz = 0.5 / (rows as f64 * data.signals[log].row_step_s());
+                let Stretch { equation, first, rows, .. } = *stretch;
+                let line_hz = spectra.line_hz[set][place];
                 let line = |number: usize| {
                     let hz = line_hz * number as f64;
                     Line { set, stretch: place, number, hz }
@@ -84,7 +96,7 @@ impl Spectra {
     }
 
     /// The spectrum of what stretches have, if they have anything.
-    fn of<'r>(&self, rows: &dyn Fn(usize, usize) -> Option<&'r [f64]>) -> Spectrum {
+    fn of<'r>(&self, rows: &dyn Fn(usize, usize) -> Option<&'r [f64]>, up_to_hz: f64) -> Spectrum {
         let of_channel = |lines: &Vec<Line>| {
             let mut transformed: Vec<(usize, usize, Option<Vec<f64>>)> = Vec::new();
             let mut all = Vec::with_capacity(lines.len());
@@ -94,7 +106,9 @@ impl Spectra {
                     (*set, *stretch) == (line.set, line.stretch)
                 };
                 if transformed.iter().find(is_it).is_none() {
-                    let own = rows(line.set, line.stretch).map(|rows| self.transformed(rows));
+                    let own = rows(line.set, line.stretch);
+                    let place = (line.set, line.stretch);
+                    let own = own.map(|rows| self.transformed(rows, place, up_to_hz));
                     is_filled |= own.is_some();
                     transformed.push((line.set, line.stretch, own));
                 }
@@ -106,56 +120,66 @@ impl Spectra {
         self.lines.iter().map(of_channel).collect()
     }
 
-    /// The orthonormal cosine transform.
-    fn transformed(&self, rows: &[f64]) -> Vec<f64> {
-        let mut lines = rows.to_vec();
+    /// The orthonormal cosine transform of what a stretch has up to a frequency \[Hz\], its rows by
+    /// what they count.
+    fn transformed(&self, rows: &[f64], (set, stretch): (usize, usize), up_to_hz: f64) -> Vec<f64> {
         let plan = self.plans.iter().find(|(length, _)| *length == rows.len());
-        plan.expect("every stretch has a plan").1.process_dct2(&mut lines);
+        let plan = &plan.expect("every stretch has a plan").1;
+        let mut lines = rows.to_vec();
+        if up_to_hz.is_finite() {
+            plan.process_dct2(&mut lines);
+            let last = (up_to_hz / self.line_hz[set][stretch]) as usize;
+            lines.iter_mut().skip(last + 1).for_each(|line| *line = 0.0);
+            plan.process_dct3(&mut lines);
+            let scale = 2.0 / rows.len() as f64;
+            lines.iter_mut().for_each(|row| *row *= scale);
+        }
+        let weights = &self.weights[set][stretch];
+        lines.iter_mut().zip(weights).for_each(|(row, weight)| *row *= weight);
+        plan.process_dct2(&mut lines);
         let scale = (2.0 / rows.len() as f64).sqrt();
         lines.iter_mut().for_each(|line| *line *= scale);
         lines[0] *= 0.5_f64.sqrt();
         lines
     }
 
-    /// The spectrum of rows of all sets.
-    pub(super) fn of_rows(&self, sets: &[&Data<'_>], rows: &[&[f64]]) -> Spectrum {
-        self.of(&|set, stretch| {
+    /// The spectrum of what rows of all sets have up to a frequency \[Hz\].
+    pub(super) fn of_rows(&self, sets: &[&Data<'_>], rows: &[&[f64]], up_to_hz: f64) -> Spectrum {
+        let own = |set: usize, stretch: usize| {
             let Stretch { first, rows: count, .. } = sets[set].stretches[stretch];
             Some(&rows[set][first..first + count])
-        })
+        };
+        self.of(&own, up_to_hz)
     }
 
-    /// The spectra of the torque of a response to all sets, and of its gradient.
+    /// The spectra of what the torque of a response to all sets has up to a frequency \[Hz\], and of
+    /// its gradient.
     pub(super) fn of_response(
         &self,
         sets: &[&Data<'_>],
         responses: &[RowResponse],
+        up_to_hz: f64,
     ) -> (Spectrum, Vec<Spectrum>) {
         let place = |set: usize, stretch: usize| {
             let first = sets[set].stretches[stretch].first;
             responses[set].stretches.iter().position(|own| own.first == first)
         };
-        let torque =
-            self.of(&|set, stretch| Some(responses[set].torque[place(set, stretch)?].as_slice()));
+        let torque = |set: usize, stretch: usize| {
+            Some(responses[set].torque[place(set, stretch)?].as_slice())
+        };
+        let torque = self.of(&torque, up_to_hz);
         let parameters = responses
             .iter()
             .filter_map(|response| response.gradient.first().map(Vec::len))
             .max()
             .unwrap_or(0);
         let of_parameter = |parameter: usize| {
-            self.of(&|set, stretch| {
+            let own = |set: usize, stretch: usize| {
                 Some(responses[set].gradient[place(set, stretch)?][parameter].as_slice())
-            })
+            };
+            self.of(&own, up_to_hz)
         };
         (torque, (0..parameters).map(of_parameter).collect())
-    }
-
-    /// Takes lines above a frequency away.
-    pub(super) fn cut(&self, spectrum: &mut Spectrum, above_hz: f64) {
-        for (rows, lines) in spectrum.iter_mut().zip(&self.lines) {
-            let both = rows.iter_mut().zip(lines);
-            both.filter(|(_, line)| line.hz > above_hz).for_each(|(row, _)| *row = 0.0);
-        }
     }
 
     /// The root of the mean square of a channel in time, over that of its torque.

@@ -53,6 +53,8 @@ pub(super) struct State {
     pub(super) held_out_residual: Vec<f64>,
     /// Torques that the model gives the motion of the logs.
     pub(super) torques: [Vec<ModelTorques>; 2],
+    /// The log of the evidence of the logs that were fitted.
+    pub(super) log_evidence: f64,
 }
 
 /// Entries of z that are further from 0 say that the model's own numbers are off by more than it
@@ -107,6 +109,7 @@ impl<'a> Setting<'a> {
             deviations,
             z,
             torques,
+            log_evidence: fitted.weighed.log_evidence,
         }
     }
 

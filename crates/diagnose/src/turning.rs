@@ -1,4 +1,4 @@
-//! What nobody can know of friction while a joint turns around.
+//! What nobody can know of friction while a joint turns around, and what every model has.
 //!
 //! A drive that sticks for milliseconds has any friction up to that of sliding, and a filter moves
 //! the moment of its reversal: all that takes the sign of a rate is unsure there. While it is seen
@@ -6,7 +6,7 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
-use super::law::{Motion, derivative};
+use super::law::Motion;
 use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
@@ -116,74 +116,24 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
 }
 
 /// What every joint may have that is too small for a name, one deviation of each.
-pub(super) const PER_JOINT: usize = 9;
+pub(super) const PER_JOINT: usize = 3;
 
 /// For each joint what its equation may have that is too small for a name, at the samples of the
-/// motion [N m, N]: friction that is soft at a reversal, that is late by the filter, by a time, or
-/// by a slip; then an offset, viscous and Coulomb friction.
-///
-/// The filter moves the moment of a reversal, and no drive passes it as a formula does: neither
-/// with the friction that the model has nor with what it may lack.
-pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Vec<PerJoint> {
-    let heights = heights(nominal, signals, phi);
-    let of_joint = |(joint, heights): (usize, &Vec<f64>)| {
-        let [rates, accelerations] = signals.of_drive(joint);
-        let width = CORNER / signals.torque_hz * rms(accelerations);
+/// motion [N m, N]: an offset, viscous and Coulomb friction.
+pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals) -> Vec<PerJoint> {
+    let of_joint = |joint: usize| {
+        let rates = &signals.of_drive(joint)[0];
         let [torque, rate] = nominal.usual[joint];
         let size = policy::UNNAMED * torque;
         let slope = if rate > 0.0 { size / rate } else { 0.0 };
-        let of_rates = |of: &dyn Fn(usize) -> f64| (0..rates.len()).map(of).collect::<Vec<f64>>();
-        let step = of_rates(&|k| heights[k] * rates[k].signum());
-        let creeping = signals.creeping(joint);
-        let bristles = policy::SLIPS.map(|slip| bristle(&creeping, signals.step_s, slip));
+        let of_rates = |of: &dyn Fn(f64) -> f64| rates.iter().map(|rate| of(*rate)).collect();
         vec![
-            of_rates(&|k| heights[k] * (rates[k] / width).tanh() - step[k]),
-            of_rates(&|k| {
-                heights[k] * (rates[k] - width * accelerations[k].signum()).signum() - step[k]
-            }),
-            derivative(&step, signals.step_s).iter().map(|by| policy::LATE_S * by).collect(),
-            of_rates(&|k| heights[k] * bristles[0][k] - step[k]),
-            of_rates(&|k| heights[k] * bristles[1][k] - step[k]),
-            of_rates(&|k| heights[k] * bristles[2][k] - step[k]),
-            vec![size; rates.len()],
-            of_rates(&|k| slope * rates[k]),
-            of_rates(&|k| size * rates[k].signum()),
+            of_rates(&|_| size),
+            of_rates(&|rate| slope * rate),
+            of_rates(&|rate| size * rate.signum()),
         ]
     };
-    heights.iter().enumerate().map(of_joint).collect()
-}
-
-/// How high the step of each joint's friction is at a reversal, with what a model may lack of it.
-fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
-    let creeping = |direction: f64| {
-        let mut moved = signals.clone();
-        for joint in 0..signals.joints() {
-            moved.drive_mut(joint)[0].fill(direction * CREEP);
-            moved.qd[joint].fill(direction * CREEP);
-        }
-        torques_of(nominal, &moved, phi)
-    };
-    let [forth, back] = [1.0, -1.0].map(creeping);
-    let of_joint = |joint: usize| {
-        let lacking = policy::STEP * nominal.usual[joint][0];
-        let both = forth[joint].iter().zip(&back[joint]);
-        both.map(|(forth, back)| 0.5 * (forth - back).abs() + lacking).collect()
-    };
     (0..signals.joints()).map(of_joint).collect()
-}
-
-/// A rate that is none but for its sign [rad/s, m/s].
-const CREEP: f64 = 1e-9;
-
-/// The state of a bristle of some slip, which a reversal turns around.
-fn bristle(rates: &[f64], step_s: f64, slip: f64) -> Vec<f64> {
-    let mut state = 0.0;
-    let next = |rate: &f64| {
-        let decay = (-rate.abs() * step_s / slip).exp();
-        state = rate.signum() + (state - rate.signum()) * decay;
-        state
-    };
-    rates.iter().map(next).collect()
 }
 
 /// The second difference of torques by rates over what a corner of the filter hides of them: of a

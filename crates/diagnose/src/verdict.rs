@@ -42,8 +42,7 @@ impl Verdict {
 pub(super) fn judge(diagnosis: &mut Diagnosis, setting: &Setting<'_>, found: &Found) {
     for one in &mut diagnosis.effects {
         let left = left_beside(setting, &diagnosis.leftovers, one);
-        // what does not help logs that it was not fitted to is no name
-        one.is_named = one.share > 0.0 && left.is_none_or(|left| !is_unexplained(left, one.size));
+        one.is_named = left.is_none_or(|left| !is_unexplained(left, one.size));
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));

@@ -51,7 +51,7 @@ impl<'a> Weighing<'a> {
         let driven_hz = logs.map(super::signals::Signals::driven_hz).fold(0.0, f64::max);
         let torques = sets.iter().map(|data| data.model_torques(z)).collect();
         let rows: Vec<&[f64]> = sets.iter().map(|data| data.residual.as_slice()).collect();
-        let mut residual = spectra.of_rows(&sets, &rows);
+        let mut residual = spectra.of_rows(&sets, &rows, f64::INFINITY);
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
             sets,
@@ -82,11 +82,11 @@ impl<'a> Weighing<'a> {
         let of = |place: usize| {
             let rows: Vec<&[f64]> =
                 self.sets.iter().map(|data| data.columns[place].as_slice()).collect();
-            let mut spectrum = self.spectra.of_rows(&self.sets, &rows);
-            if follows_accelerations(nominal, place) {
-                self.spectra.cut(&mut spectrum, self.driven_hz);
-            }
-            spectrum
+            self.spectra.of_rows(
+                &self.sets,
+                &rows,
+                self.up_to(follows_accelerations(nominal, place)),
+            )
         };
         (0..count).map(of).collect()
     }
@@ -108,13 +108,13 @@ impl<'a> Weighing<'a> {
 
     /// The spectra of an effect's torque and of its gradient.
     fn spectrum(&self, taken: &Taken) -> (Spectrum, Vec<Spectrum>) {
-        let (mut torque, mut gradient) =
-            self.spectra.of_response(&self.sets, &self.responses(taken));
-        if self.candidates[taken.candidate].law.follows_accelerations() {
-            let all = gradient.iter_mut().chain([&mut torque]);
-            all.for_each(|spectrum| self.spectra.cut(spectrum, self.driven_hz));
-        }
-        (torque, gradient)
+        let up_to_hz = self.up_to(self.candidates[taken.candidate].law.follows_accelerations());
+        self.spectra.of_response(&self.sets, &self.responses(taken), up_to_hz)
+    }
+
+    /// Up to which frequency columns count \[Hz\].
+    fn up_to(&self, follows_accelerations: bool) -> f64 {
+        if follows_accelerations { self.driven_hz } else { f64::INFINITY }
     }
 
     /// An effect at one of its starts; none if it does nothing there.
@@ -207,28 +207,21 @@ impl<'a> Weighing<'a> {
         sum / f64::max(all, 1.0)
     }
 
-    /// What an effect does at the joint where that is most, as a share of its torque, but for times
-    /// near a reversal.
-    pub(super) fn between_reversals(&self, taken: &Taken) -> f64 {
-        let law = self.candidates[taken.candidate].law.as_ref();
+    /// What an effect does at the joint where that is most, as a share of its torque.
+    pub(super) fn size(&self, taken: &Taken) -> f64 {
         let channels = self.spectra.torque.len();
-        let (mut squares, mut samples) = (vec![0.0; channels], vec![0.0; channels]);
-        for (data, torques) in self.sets.iter().zip(&self.torques) {
-            for (signals, torques) in data.signals.iter().zip(torques) {
-                let response = law.response(torques.motion(data.nominal, signals), &taken.values);
-                for (&equation, torque) in response.equations.iter().zip(&response.torque) {
-                    let near = signals.near_reversals(data.nominal.joint_of(equation));
-                    let far = torque.iter().zip(near).filter(|(_, is_near)| !is_near);
-                    squares[equation] += far.map(|(torque, _)| torque * torque).sum::<f64>();
-                    samples[equation] += torque.len() as f64;
-                }
+        let (mut squares, mut rows) = (vec![0.0; channels], vec![0.0; channels]);
+        for response in self.responses(taken) {
+            for (stretch, torque) in response.stretches.iter().zip(&response.torque) {
+                squares[stretch.equation] += torque.iter().map(|row| row * row).sum::<f64>();
+                rows[stretch.equation] += stretch.rows as f64;
             }
         }
-        let of = |channel: usize| {
-            let mean: f64 = squares[channel] / f64::max(samples[channel], 1.0);
+        let share = |channel: usize| {
+            let mean: f64 = squares[channel] / f64::max(rows[channel], 1.0);
             mean.sqrt() / self.spectra.torque[channel].max(f64::MIN_POSITIVE)
         };
-        (0..channels).map(of).fold(0.0, f64::max)
+        (0..channels).map(share).fold(0.0, f64::max)
     }
 
     /// The values of the effects that the model has, with own factors.

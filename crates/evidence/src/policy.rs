@@ -46,18 +46,13 @@ pub const LENGTH: f64 = 0.1;
 /// and Coulomb friction.
 pub const UNNAMED: f64 = 1e-3;
 
-/// Friction that a model may lack, as a share of the torque, whose reversals are not known better
-/// than those of the friction that it has.
+/// Friction that a model may lack, as a share of the torque: a drive that rests has any of it, as of
+/// what the model has.
 pub const STEP: f64 = 0.05;
 
-/// By which time \[s\] and slips [rad, m] friction may be late at a reversal: a period of a control
-/// loop, and what teeth and bearings give way.
-pub const LATE_S: f64 = 5e-3;
-/// See [`LATE_S`].
-pub const SLIPS: [f64; 3] = [3e-5, 3e-4, 3e-3];
-
-/// What an effect does within this time of a reversal \[s\] is not worth a name.
-pub const NEAR_S: f64 = 4.0 * LATE_S;
+/// By which time each reversal is late \[s\]: control loops and logs have periods of 1 to 5 ms, and
+/// a drive sticks as long unseen.
+pub const LATE_S: f64 = 1.5e-3;
 
 /// The share of a sample of the log by which torque and motion may be of different times.
 pub const TIME: f64 = 0.1;
@@ -84,7 +79,7 @@ pub const FURTHER: f64 = 0.15;
 /// user: the one that is met more often is named. Laws of friction are not better than that.
 pub const SAME: f64 = 0.1;
 
-/// A rival within these log odds of what is named is told beside it.
+/// A rival within these log odds of what is named is told beside it: less than what a name asks for.
 pub const RIVAL: f64 = 4.6;
 
 /// Candidates that are weighed whole after the first look, and the nats below the best from which

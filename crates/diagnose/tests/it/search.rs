@@ -149,7 +149,7 @@ fn found(
 fn a_hidden_law_is_named() {
     let (names, share) = found(
         |joint, s| {
-            if joint == 2 { 1.5 * (-(s.qd / 0.1).powi(2)).exp() * s.qd.signum() } else { 0.0 }
+            if joint == 2 { 1.5 * (-(s.qd / 0.2).powi(2)).exp() * s.qd.signum() } else { 0.0 }
         },
         (7, 2),
     );
@@ -167,7 +167,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
 fn two_laws_are_named() {
     let (mut names, share) = found(
         |joint, s| match joint {
-            2 => 1.5 * (-(s.qd / 0.1).powi(2)).exp() * s.qd.signum(),
+            2 => 1.5 * (-(s.qd / 0.2).powi(2)).exp() * s.qd.signum(),
             4 => 0.8 * s.qd * s.qd.abs(),
             _ => 0.0,
         },

@@ -1,0 +1,78 @@
+//! What the rows of a joint tell of its torque, where its drive turns around or rests.
+//!
+//! A drive passes each reversal late by a time of its own: it sticks for milliseconds, and its
+//! readings are of another time than its torque. While it rests, its friction is anything. Noise is
+//! taken to be even in time, so that rows count by what is not known of them.
+
+use super::law::derivative;
+use super::nominal::{Nominal, Phi};
+use super::rows::{PerJoint, torques as torques_of};
+use super::signals::Signals;
+use denavit_evidence::policy;
+
+/// For each joint what each row of a log counts, from 0 to 1.
+pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
+    let heights = heights(nominal, signals, phi);
+    let of_joint = |(joint, heights): (usize, &Vec<f64>)| {
+        let level = policy::NOISE_LEVEL * nominal.usual[joint][0];
+        let weight = |unknown: &f64| {
+            if *unknown == 0.0 { 1.0 } else { level / level.hypot(*unknown) }
+        };
+        let [late, resting] = [late(signals, joint, heights), resting(signals, joint, heights)];
+        let unknown: Vec<f64> = late.iter().zip(resting).map(|(a, b)| a.hypot(b)).collect();
+        with_ringing(&unknown).iter().map(weight).collect()
+    };
+    heights.iter().enumerate().map(of_joint).collect()
+}
+
+/// What friction of some height may differ by in the rows, since it turns around at another time.
+fn late(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
+    let sides = heights.iter().zip(signals.of_drive(joint)[0].iter());
+    let step: Vec<f64> = sides.map(|(height, rate)| height * rate.signum()).collect();
+    let by = derivative(&step, signals.step_s);
+    signals.rows_of(&by.iter().map(|by| policy::LATE_S * by.abs()).collect::<Vec<f64>>())
+}
+
+/// What friction of some height may differ by in the rows, since the drive rests.
+fn resting(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
+    let mut resting = vec![0.0; heights.len()];
+    for rest in &signals.rests[joint] {
+        let samples = rest.samples(&signals.t);
+        resting[samples.clone()].copy_from_slice(&heights[samples]);
+    }
+    signals.rows_of(&resting)
+}
+
+/// What is unknown in rows, or beside them, where the filter rings.
+fn with_ringing(rows: &[f64]) -> Vec<f64> {
+    let of = |k: usize| {
+        let near = &rows[k.saturating_sub(1)..(k + 2).min(rows.len())];
+        near.iter().fold(rows[k].abs(), |most, row| most.max(RINGING * row.abs()))
+    };
+    (0..rows.len()).map(of).collect()
+}
+
+/// How high the step of each joint's friction is at a reversal, with what a model may lack of it.
+fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
+    let creeping = |direction: f64| {
+        let mut moved = signals.clone();
+        for joint in 0..signals.joints() {
+            moved.drive_mut(joint)[0].fill(direction * CREEP);
+            moved.qd[joint].fill(direction * CREEP);
+        }
+        torques_of(nominal, &moved, phi)
+    };
+    let [forth, back] = [1.0, -1.0].map(creeping);
+    let of_joint = |joint: usize| {
+        let lacking = policy::STEP * nominal.usual[joint][0];
+        let both = forth[joint].iter().zip(&back[joint]);
+        both.map(|(forth, back)| 0.5 * (forth - back).abs() + lacking).collect()
+    };
+    (0..signals.joints()).map(of_joint).collect()
+}
+
+/// A rate that is none but for its sign [rad/s, m/s].
+const CREEP: f64 = 1e-9;
+
+/// The share of an event that the filter rings with beside it.
+const RINGING: f64 = 0.3;

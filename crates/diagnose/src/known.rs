@@ -20,9 +20,15 @@ pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Pe
         };
         let [late, resting] = [late(signals, joint, heights), resting(signals, joint, heights)];
         let unknown: Vec<f64> = late.iter().zip(resting).map(|(a, b)| a.hypot(b)).collect();
-        with_ringing(&unknown).iter().map(weight).collect()
+        even(with_ringing(&unknown).iter().map(weight).collect())
     };
     heights.iter().enumerate().map(of_joint).collect()
+}
+
+/// Weights of which the largest is 1: where all rows are as little known, noise is even again.
+fn even(weights: Vec<f64>) -> Vec<f64> {
+    let most = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    weights.into_iter().map(|weight| weight / most).collect()
 }
 
 /// What friction of some height may differ by in the rows, since it turns around at another time.

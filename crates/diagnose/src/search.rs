@@ -165,7 +165,8 @@ impl<'w, 'a> Search<'w, 'a> {
     }
 
     /// Whether an effect is large enough for a name beside the others, which are all that `without`
-    /// has: one that others nearly do is none, and neither is one that acts where rows hardly count.
+    /// has: one that others nearly do is none, and neither is one that acts where rows hardly
+    /// count.
     fn is_worth(&self, without: &Hypothesis, with: &Hypothesis, place: usize) -> bool {
         let joint = |part: &Part| self.weighing.candidates[part.placed.candidate].joint;
         let own = joint(&with.parts[place]);

@@ -152,8 +152,8 @@ impl Spectra {
         self.of(&own, up_to_hz)
     }
 
-    /// The spectra of what the torque of a response to all sets has up to a frequency \[Hz\], and of
-    /// its gradient.
+    /// The spectra of what the torque of a response to all sets has up to a frequency \[Hz\], and
+    /// of its gradient.
     pub(super) fn of_response(
         &self,
         sets: &[&Data<'_>],

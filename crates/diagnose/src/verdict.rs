@@ -1,7 +1,7 @@
 //! The answer in one word, and why.
 
 use super::data::Data;
-use super::diagnosis::Diagnosis;
+use super::diagnosis::{Diagnosis, Gaps};
 use super::effects_found::FoundEffect;
 use super::excitation::unseen;
 use super::leftover::{Leftover, name};
@@ -79,11 +79,14 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     let explained = diagnosis.effects.iter().map(|one| one.size).fold(0.0, f64::max);
     let unexplained = most.filter(|left| is_unexplained(left, explained));
     let of_data: &Data<'_> = setting.train;
-    if diagnosis.held_out.after.all > policy::NOTHING_LIKE {
+    let Gaps { after, floor, .. } = &diagnosis.held_out;
+    // What is noise says nothing of the model.
+    let left = (after.all * after.all - floor.all * floor.all).max(0.0).sqrt();
+    if left > policy::NOTHING_LIKE {
         let why = format!(
             "the model is nothing like the logs: {} of the torque is left; a column of another \
              joint, sign or unit, or another robot",
-            percent(diagnosis.held_out.after.all)
+            percent(left)
         );
         return (Verdict::CannotTell, vec![why]);
     }

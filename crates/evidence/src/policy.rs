@@ -46,8 +46,8 @@ pub const LENGTH: f64 = 0.1;
 /// and Coulomb friction.
 pub const UNNAMED: f64 = 1e-3;
 
-/// Friction that a model may lack, as a share of the torque: a drive that rests has any of it, as of
-/// what the model has.
+/// Friction that a model may lack, as a share of the torque: a drive that rests has any of it, as
+/// of what the model has.
 pub const STEP: f64 = 0.05;
 
 /// By which time each reversal is late \[s\]: control loops and logs have periods of 1 to 5 ms, and
@@ -79,7 +79,8 @@ pub const FURTHER: f64 = 0.15;
 /// user: the one that is met more often is named. Laws of friction are not better than that.
 pub const SAME: f64 = 0.1;
 
-/// A rival within these log odds of what is named is told beside it: less than what a name asks for.
+/// A rival within these log odds of what is named is told beside it: less than what a name asks
+/// for.
 pub const RIVAL: f64 = 4.6;
 
 /// Candidates that are weighed whole after the first look, and the nats below the best from which

@@ -31,6 +31,11 @@ pub(super) enum Unseen {
         /// Those that were looked at.
         of: usize,
     },
+    /// It does not move.
+    Rest {
+        /// The joint.
+        joint: usize,
+    },
     /// It covers a small share of what its limits let it.
     Range {
         /// The joint.
@@ -84,6 +89,12 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> 
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
         };
         let [low, high] = range(&mut signals().flat_map(|log| log.q[joint].iter().copied()));
+        // What an encoder's noise does is no motion.
+        let [least, most] =
+            range(&mut signals().flat_map(|log| log.position_noise[joint].iter().copied()));
+        if high - low <= most - least {
+            found.push(Unseen::Rest { joint });
+        }
         let fastest =
             signals().flat_map(|log| &log.qd[joint]).fold(0.0, |a: f64, v| a.max(v.abs()));
         let of_range = described.position_limits.map(|[l, h]| ((high - low) / (h - l), false));
@@ -105,6 +116,9 @@ impl Unseen {
                  they were half of its torque",
                 names[*joint]
             ),
+            Self::Rest { joint } => {
+                format!("too little excitation: {} does not move", names[*joint])
+            }
             Self::Range { joint, share, is_speed } => format!(
                 "too little excitation: {} covers {} of {}",
                 names[*joint],

@@ -90,7 +90,7 @@ fn joints_that_rest_or_hardly_move_let_nothing_be_told() {
         let reasons = answer["reasons"].to_string();
         assert!(reasons.contains("too little excitation") && reasons.contains(why), "{reasons}");
     };
-    refused(&plain(1.0, true), "would not be seen at tip");
+    refused(&plain(1.0, true), "tip does not move");
     refused(&plain(0.02, false), "rod covers");
     let moved = plain(1.0, false);
     assert_eq!(moved["verdict"], "nothing_missing", "{moved:#}");

@@ -51,7 +51,7 @@ pub(super) struct Found {
     pub(super) is_full: bool,
     /// Whether the search was stopped.
     pub(super) is_stopped: bool,
-    /// Candidates that explain all logs together, and not those that values were not fitted to.
+    /// Candidates that make logs less likely that their values were not fitted to.
     pub(super) dropped: Vec<usize>,
 }
 
@@ -136,7 +136,10 @@ impl<'w, 'a> Search<'w, 'a> {
         let mut parts = found.after.parts.clone();
         found.dropped.push(parts.remove(place).placed.candidate);
         let rest = self.weighed(parts, Some(&found.after), policy::ROUNDS[1]);
-        (found.after, found.rivals) = self.exchanged(rest);
+        let (after, rivals) = self.exchanged(rest.clone());
+        // What was dropped must not come back, or this would not end.
+        let is_back = after.candidates().iter().any(|one| found.dropped.contains(one));
+        (found.after, found.rivals) = if is_back { (rest, Vec::new()) } else { (after, rivals) };
     }
 
     /// The step to the best of some hypotheses.

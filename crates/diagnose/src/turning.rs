@@ -6,6 +6,7 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
+use super::known::with_ringing;
 use super::law::Motion;
 use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
@@ -19,9 +20,6 @@ const CORNER: f64 = 0.05;
 
 /// The deviation of what is anywhere between two values, over their distance.
 const BETWEEN: f64 = 0.288_675_134_594_812_9;
-
-/// The share of an event that the filter rings with beside it.
-const RINGING: f64 = 0.3;
 
 /// How far a torque is not known [N m, N].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,12 +69,9 @@ pub(super) fn turning(
                 let both = a.iter().zip(&b).map(|(a, b)| (a - b).abs());
                 rows.iter_mut().zip(both).for_each(|(row, rest)| row.rest = rest);
             }
-            for (k, row) in rows.iter_mut().enumerate() {
-                // The filter rings, and what is unsure of its input shifts where it has no output.
-                let beside = [k.saturating_sub(1), (k + 1).min(apart.len() - 1)];
-                let beside = beside.iter().fold(0.0_f64, |most, &k| most.max(apart[k].abs()));
-                row.corner = apart[k].abs().max(RINGING * beside);
-            }
+            // What is unsure of the filter's input shifts where it has no output.
+            let corners = with_ringing(&apart);
+            rows.iter_mut().zip(corners).for_each(|(row, corner)| row.corner = corner);
         }
     }
     unsure

@@ -172,8 +172,7 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
     }
     for &candidate in &found.dropped {
         reasons.push(format!(
-            "not told: {}, which explains all logs together, and not those that its values were \
-             not fitted to",
+            "not told: {}, which makes logs less likely that its values were not fitted to",
             setting.candidates[candidate].name()
         ));
     }

@@ -39,11 +39,12 @@ fn late(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
     signals.rows_of(&by.iter().map(|by| policy::LATE_S * by.abs()).collect::<Vec<f64>>())
 }
 
-/// What friction of some height may differ by in the rows, since the drive rests.
+/// What friction of some height may differ by in the rows, since the drive rests: up to where it
+/// needs all that it slides with, for what it needs beyond that is to be told.
 fn resting(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
     let mut resting = vec![0.0; heights.len()];
     for rest in &signals.rests[joint] {
-        let samples = rest.samples(&signals.t);
+        let samples = rest.held(&signals.t);
         resting[samples.clone()].copy_from_slice(&heights[samples]);
     }
     signals.rows_of(&resting)

@@ -174,9 +174,11 @@ impl<'w, 'a> Search<'w, 'a> {
         let joint = |part: &Part| self.weighing.candidates[part.placed.candidate].joint;
         let own = joint(&with.parts[place]);
         let others = (0..without.parts.len()).filter(|&at| joint(&without.parts[at]) == own);
-        let most = others.map(|at| self.told(without, at)).fold(0.0, f64::max);
-        self.told(with, place) > policy::WORTH
-            && (most == 0.0 || self.beyond(with, place) > policy::FURTHER * most)
+        let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
+        let told = self.told(with, place);
+        let own_share = || self.beyond(with, place) / told;
+        told > policy::WORTH
+            && (most == 0.0 || own_share() * self.size(with, place) > policy::FURTHER * most)
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where

@@ -94,6 +94,11 @@ impl Rest {
         within(t, &self.time_s)
     }
 
+    /// Those among so many times at which it needs less than it slides with.
+    pub(super) fn held(&self, t: &[f64]) -> Range<usize> {
+        within(t, &(self.time_s.start..self.leaves_s))
+    }
+
     /// On which side friction is at a time \[s\] of the rest.
     fn side(&self, t: f64) -> f64 {
         let [came, leaves] = self.directions;

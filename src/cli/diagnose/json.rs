@@ -62,6 +62,7 @@ struct EffectJson<'a> {
     at: &'a str,
     /// The log of the odds that it is there.
     log_odds: f64,
+    log_predicted: f64,
     /// What it does, as a share of the torque of its joint.
     size: f64,
     share: f64,
@@ -242,6 +243,7 @@ fn effect<'a>(shown: &'a Shown, number: usize, one: &'a FoundEffect) -> EffectJs
         effect: &own.effect,
         at: &own.at,
         log_odds: one.log_odds,
+        log_predicted: one.log_predicted,
         size: one.size,
         share: one.share,
         parameters: values(&one.parameters),

@@ -94,7 +94,7 @@ impl<'a> Data<'a> {
         };
         let time: Vec<PerJoint> = data.signals.iter().map(of_time).collect();
         let unnamed: Vec<Vec<PerJoint>> =
-            data.signals.iter().map(|signals| unnamed(nominal, signals)).collect();
+            data.signals.iter().map(|signals| unnamed(nominal, signals, &given)).collect();
         let weights: Vec<PerJoint> =
             data.signals.iter().map(|signals| weights(nominal, signals, &given)).collect();
         for joint in 0..joints {

@@ -96,15 +96,12 @@ pub(super) fn found_effects(
         let without = search.linearised(without, policy::ROUNDS[1]);
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
-        // p(held out | fitted) = p(both) / p(fitted), with it and without it.
-        let predicted =
-            |both: &Hypothesis, fitted: &State| both.weighed.log_evidence - fitted.log_evidence;
         FoundEffect {
             candidate: taken.candidate,
             log_odds: all.posterior - without.posterior,
             size: search.size(all, place),
             share: (gap(&reopened) - gap(after)) / whole,
-            log_predicted: predicted(all, after) - predicted(&without, &reopened),
+            log_predicted: search.log_predicted(after) - search.log_predicted(&reopened),
             is_named: true,
             parameters: values(setting, (all, after), place),
             alternatives: alternatives(found, place),

@@ -18,7 +18,8 @@ pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Pe
         let weight = |unknown: &f64| {
             if *unknown == 0.0 { 1.0 } else { level / level.hypot(*unknown) }
         };
-        let [late, resting] = [late(signals, joint, heights), resting(signals, joint, heights)];
+        let late: Vec<f64> = late(signals, joint, heights).iter().map(|by| by.abs()).collect();
+        let [late, resting] = [signals.rows_of(&late), resting(signals, joint, heights)];
         let unknown: Vec<f64> = late.iter().zip(resting).map(|(a, b)| a.hypot(b)).collect();
         even(with_ringing(&unknown).iter().map(weight).collect())
     };
@@ -31,12 +32,19 @@ fn even(weights: Vec<f64>) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / most).collect()
 }
 
-/// What friction of some height may differ by in the rows, since it turns around at another time.
+/// What friction of some height lacks at the samples of the motion where it turns around later.
+/// What a drive holds with at rest is unknown itself, and has no side.
 fn late(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
-    let sides = heights.iter().zip(signals.of_drive(joint)[0].iter());
-    let step: Vec<f64> = sides.map(|(height, rate)| height * rate.signum()).collect();
-    let by = derivative(&step, signals.step_s);
-    signals.rows_of(&by.iter().map(|by| policy::LATE_S * by.abs()).collect::<Vec<f64>>())
+    let side = |rate: f64| if rate == 0.0 { 0.0 } else { rate.signum() };
+    let sides = heights.iter().zip(signals.creeping(joint));
+    let step: Vec<f64> = sides.map(|(height, rate)| height * side(rate)).collect();
+    derivative(&step, signals.step_s).iter().map(|by| -policy::LATE_S * by).collect()
+}
+
+/// For each joint what its friction lacks where all its reversals are late by the same time.
+pub(super) fn late_reversals(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
+    let heights = heights(nominal, signals, phi);
+    heights.iter().enumerate().map(|(joint, heights)| late(signals, joint, heights)).collect()
 }
 
 /// What friction of some height may differ by in the rows, since the drive rests: up to where it

@@ -3,7 +3,7 @@
 
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
-use super::state::Taken;
+use super::state::{State, Taken};
 use super::weighing::{Placed, Weighing, subtract};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
@@ -175,10 +175,9 @@ impl<'w, 'a> Search<'w, 'a> {
         let own = joint(&with.parts[place]);
         let others = (0..without.parts.len()).filter(|&at| joint(&without.parts[at]) == own);
         let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
-        let told = self.told(with, place);
-        let own_share = || self.beyond(with, place) / told;
-        told > policy::WORTH
-            && (most == 0.0 || own_share() * self.size(with, place) > policy::FURTHER * most)
+        let size = self.size(with, place);
+        let own = || size * self.beyond(with, place) / self.told(with, place);
+        size > policy::WORTH && (most == 0.0 || own() > policy::FURTHER * most)
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where
@@ -422,6 +421,14 @@ impl<'w, 'a> Search<'w, 'a> {
         };
         let steps = hypothesis.by_parts(&hypothesis.weighed.step);
         Some(hypothesis.parts.iter().zip(steps).map(move_part).collect())
+    }
+
+    /// The log of the density of held-out logs by what was fitted to the others: effects stay
+    /// linearised where these have them. p(held out | fitted) = p(both) / p(fitted).
+    pub(super) fn log_predicted(&self, fitted: &State) -> f64 {
+        let parts = fitted.placed.iter().map(|placed| self.weighing.part(placed)).collect();
+        let both = self.weighed(parts, None, policy::ROUNDS[1]);
+        both.weighed.log_evidence - fitted.log_evidence
     }
 
     /// Effects together, weighed.

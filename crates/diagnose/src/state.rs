@@ -8,7 +8,7 @@ use super::hypothesis::{Hypothesis, Part};
 use super::problem::{Fitted, Found, Problem};
 use super::search::{Search, SearchOptions};
 use super::simulated::{MotionGap, Moved, NotMoved};
-use super::weighing::Weighing;
+use super::weighing::{Placed, Weighing};
 use denavit_evidence::policy;
 
 /// An effect that was taken into the model.
@@ -53,7 +53,9 @@ pub(super) struct State {
     pub(super) held_out_residual: Vec<f64>,
     /// Torques that the model gives the motion of the logs.
     pub(super) torques: [Vec<ModelTorques>; 2],
-    /// The log of the evidence of the logs that were fitted.
+    /// Where the effects that were found were linearised by the logs that were fitted.
+    pub(super) placed: Vec<Placed>,
+    /// The log of the evidence of these logs.
     pub(super) log_evidence: f64,
 }
 
@@ -71,9 +73,7 @@ impl<'a> Setting<'a> {
         let weighing = Weighing::new(vec![self.train], given, z);
         let options = (self.candidates.len(), SearchOptions::default());
         let search = Search::new(&weighing, options, &mut |_| true);
-        let place =
-            |part: &Part| Part { terms: weighing.terms(&part.placed), placed: part.placed.clone() };
-        let parts: Vec<Part> = parts.iter().map(place).collect();
+        let parts = parts.iter().map(|part| weighing.part(&part.placed)).collect();
         let first = search.weighed(parts, None, policy::ROUNDS[1]);
         let fitted = search.linearised(first, policy::ROUNDS[1]);
         self.fitted_state(&weighing, &fitted)
@@ -109,6 +109,7 @@ impl<'a> Setting<'a> {
             deviations,
             z,
             torques,
+            placed: fitted.parts.iter().map(|part| part.placed.clone()).collect(),
             log_evidence: fitted.weighed.log_evidence,
         }
     }

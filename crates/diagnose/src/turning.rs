@@ -6,7 +6,7 @@
 
 use super::data::{Data, ModelTorques};
 use super::floor::rms;
-use super::known::with_ringing;
+use super::known::{late_reversals, with_ringing};
 use super::law::Motion;
 use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
@@ -111,11 +111,12 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
 }
 
 /// What every joint may have that is too small for a name, one deviation of each.
-pub(super) const PER_JOINT: usize = 3;
+pub(super) const PER_JOINT: usize = 4;
 
 /// For each joint what its equation may have that is too small for a name, at the samples of the
-/// motion [N m, N]: an offset, viscous and Coulomb friction.
-pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals) -> Vec<PerJoint> {
+/// motion [N m, N]: an offset, viscous and Coulomb friction, and reversals that are all late.
+pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Vec<PerJoint> {
+    let late = late_reversals(nominal, signals, phi);
     let of_joint = |joint: usize| {
         let rates = &signals.of_drive(joint)[0];
         let [torque, rate] = nominal.usual[joint];
@@ -126,6 +127,7 @@ pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals) -> Vec<PerJoint>
             of_rates(&|_| size),
             of_rates(&|rate| slope * rate),
             of_rates(&|rate| size * rate.signum()),
+            late[joint].clone(),
         ]
     };
     (0..signals.joints()).map(of_joint).collect()

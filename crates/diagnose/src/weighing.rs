@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, Start, starts};
 use super::data::{Data, ModelTorques, RowResponse};
+use super::hypothesis::Part;
 use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::Taken;
@@ -158,6 +159,11 @@ impl<'a> Weighing<'a> {
         let range = candidate.joint.map(|joint| range(&self.sets, joint));
         let largest = candidate.joint.and_then(|joint| largest(&self.sets, joint));
         starts(candidate.law.parameters(), range, largest)
+    }
+
+    /// An effect where it is placed, with its terms.
+    pub(super) fn part(&self, placed: &Placed) -> Part {
+        Part { terms: self.terms(placed), placed: placed.clone() }
     }
 
     /// The terms of an effect where it is placed.

@@ -155,12 +155,20 @@ pub fn diagnose(
     };
     let sets = vec![setting.train, setting.held_out];
     let own = (setting.candidates, setting.given.as_slice());
-    let z = null(&sets, own);
-    let weighing = Weighing::new(sets, own, &z);
-    let search = Search::new(&weighing, (setting.given.len(), request.options), &mut |share| {
-        watch(&Progress::Evaluated(share))
-    });
-    let mut found = search.run(&mut |taken| watch(&Progress::Found(taken.to_vec())));
+    let mut searched = |z: &[f64]| {
+        let weighing = Weighing::new(sets.clone(), own, z);
+        let options = (setting.given.len(), request.options);
+        let search =
+            Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
+        let found = search.run(&mut |taken| watch(&Progress::Found(taken.to_vec())));
+        (search, found)
+    };
+    let mut z = null(&sets, own);
+    let (mut search, mut found) = searched(&z);
+    if let Some(moved) = search.moved_numbers(&found) {
+        (search, found) = searched(&moved);
+        z = moved;
+    }
     let before = setting.state(&found.before.parts, &z);
     // What does not help logs that its values were not fitted to is not told.
     let (after, mut effects) = loop {
@@ -179,7 +187,7 @@ pub fn diagnose(
         separate(&setting, (robot, &options), (&after, filters), &mut effects);
     }
     let visible = visible(&setting, &search, &found.after);
-    let leftovers = leftovers(&weighing.spectra, &found.after);
+    let leftovers = leftovers(&search.weighing.spectra, &found.after);
     let told = Told { setting: &setting, filters, found, before, after };
     let mut diagnosis = told.diagnosis(effects, visible, leftovers);
     judge(&mut diagnosis, &setting, &told.found);

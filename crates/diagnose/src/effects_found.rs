@@ -80,7 +80,7 @@ pub struct GivenEffect {
 /// The effects of a state, each with its share, its errors and what would do as well.
 pub(super) fn found_effects(
     setting: &Setting<'_>,
-    search: &Search<'_, '_>,
+    search: &Search<'_>,
     (found, [before, after]): (&Found, [&State; 2]),
 ) -> Vec<FoundEffect> {
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual).all;

@@ -56,7 +56,7 @@ const LEAST_RANGE: f64 = 0.05;
 /// How small effects of one parameter would have been seen.
 pub(super) fn visible(
     setting: &Setting<'_>,
-    search: &Search<'_, '_>,
+    search: &Search<'_>,
     after: &Hypothesis,
 ) -> Vec<Visible> {
     // What lowers the squares by that has the odds that a name asks for.

@@ -56,8 +56,8 @@ pub(super) struct Found {
 }
 
 /// What every candidate does from where its search begins.
-pub(super) struct Search<'w, 'a> {
-    weighing: &'w Weighing<'a>,
+pub(super) struct Search<'a> {
+    pub(super) weighing: Weighing<'a>,
     /// For each candidate its starts.
     screen: Vec<Vec<Part>>,
     /// The log of what all candidates are expected to weigh together.
@@ -74,11 +74,11 @@ fn log_occurrence(candidate: &Candidate) -> f64 {
     }
 }
 
-impl<'w, 'a> Search<'w, 'a> {
+impl<'a> Search<'a> {
     /// Evaluates all candidates that the model does not have. `watch` hears which share is done,
     /// and says whether to go on.
     pub(super) fn new(
-        weighing: &'w Weighing<'a>,
+        weighing: Weighing<'a>,
         (given, options): (usize, SearchOptions),
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Self {
@@ -140,6 +140,21 @@ impl<'w, 'a> Search<'w, 'a> {
         // What was dropped must not come back, or this would not end.
         let is_back = after.candidates().iter().any(|one| found.dropped.contains(one));
         (found.after, found.rivals) = if is_back { (rest, Vec::new()) } else { (after, rivals) };
+    }
+
+    /// The model's own numbers by what was found, if the logs are more likely where laws are
+    /// evaluated with these: a law of an angle that is off by much turns what the numbers do, too.
+    pub(super) fn moved_numbers(&self, found: &Found) -> Option<Vec<f64>> {
+        let Weighing { sets, candidates, given, .. } = &self.weighing;
+        let z = &found.after.weighed.own[..sets[0].columns.len()];
+        let other = Weighing::new(sets.clone(), (candidates, given), z);
+        let parts = found.after.parts.iter().map(|part| other.part(&part.placed)).collect();
+        let other = Self { weighing: other, screen: Vec::new(), ..*self };
+        let start = Some(&found.after);
+        let moved =
+            other.linearised(other.weighed(parts, start, policy::ROUNDS[1]), policy::ROUNDS[1]);
+        let gain = moved.weighed.log_evidence - found.after.weighed.log_evidence;
+        (gain > policy::NAMED).then(|| z.to_vec())
     }
 
     /// The step to the best of some hypotheses.

@@ -72,11 +72,11 @@ impl<'a> Setting<'a> {
         let given = (self.candidates, self.given.as_slice());
         let weighing = Weighing::new(vec![self.train], given, z);
         let options = (self.candidates.len(), SearchOptions::default());
-        let search = Search::new(&weighing, options, &mut |_| true);
-        let parts = parts.iter().map(|part| weighing.part(&part.placed)).collect();
+        let search = Search::new(weighing, options, &mut |_| true);
+        let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
         let first = search.weighed(parts, None, policy::ROUNDS[1]);
         let fitted = search.linearised(first, policy::ROUNDS[1]);
-        self.fitted_state(&weighing, &fitted)
+        self.fitted_state(&search.weighing, &fitted)
     }
 
     fn fitted_state(&self, weighing: &Weighing<'_>, fitted: &Hypothesis) -> State {

@@ -30,7 +30,7 @@ pub(super) struct Weighing<'a> {
     /// What may be missing.
     pub(super) candidates: &'a [Candidate],
     /// What the model has of that.
-    given: &'a [Taken],
+    pub(super) given: &'a [Taken],
     /// Torques of the model along each log of each set.
     pub(super) torques: Vec<Vec<ModelTorques>>,
     pub(super) spectra: Spectra,

@@ -110,8 +110,9 @@ pub const LEAST_FELT: f64 = 1e-7;
 /// Above this share of the torque, what is left says that model and logs are not of one robot.
 pub const NOTHING_LIKE: f64 = 0.6;
 
-/// Periods of a law that repeats along a joint, of what the logs cover of it, at least.
-pub const PERIODS: f64 = 1.5;
+/// Periods of a law that repeats along a joint, of what the logs cover of it, at least: over less of
+/// one a sine is a parabola.
+pub const PERIODS: f64 = 0.4;
 
 /// Above this share of the torque, and this many times the noise that sensors have, what is left is
 /// no noise, however even its spectrum is.

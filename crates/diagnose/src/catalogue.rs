@@ -3,6 +3,7 @@
 use super::candidate::Candidate;
 use super::drive_law::DriveLaw;
 use super::elastic::SeriesSpring;
+use super::elastic_law::ElasticLaw;
 use super::joint_law::{DelayLaw, DemandLaw, JointLaw, ReadingLaw, RobotLaw, SpringLaw};
 use super::law::Law;
 use denavit_codegen::effect::{
@@ -96,7 +97,8 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
 pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<dyn Law> {
     match law.channel() {
         None if law.at == EffectSite::Spring => Box::new(SpringLaw { law, joint }),
-        Some(Channel::Torque) if law.is_transmission() => Box::new(DriveLaw { law, joint }),
+        Some(Channel::Torque) if law.has_play() => Box::new(DriveLaw { law, joint }),
+        Some(Channel::Torque) if law.is_transmission() => Box::new(ElasticLaw { law, joint }),
         Some(Channel::Torque) if law.is_inverse() => Box::new(DemandLaw { law, joint }),
         Some(Channel::Torque) if law.is_delay() => {
             Box::new(DelayLaw { law: JointLaw { law, joint, other } })

@@ -155,20 +155,21 @@ pub fn diagnose(
     };
     let sets = vec![setting.train, setting.held_out];
     let own = (setting.candidates, setting.given.as_slice());
-    let mut searched = |z: &[f64]| {
+    let mut searched = |z: &[f64], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
         let options = (setting.given.len(), request.options);
         let search =
             Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
-        let found = search.run(&mut |taken| watch(&Progress::Found(taken.to_vec())));
+        let found = search.run(may_move, &mut |taken| watch(&Progress::Found(taken.to_vec())));
         (search, found)
     };
     let mut z = null(&sets, own);
-    let (mut search, mut found) = searched(&z);
-    if let Some(moved) = search.moved_numbers(&found) {
-        (search, found) = searched(&moved);
-        z = moved;
-    }
+    let mut moves = 0;
+    let (search, mut found) = loop {
+        let (search, found) = searched(&z, moves < MOST_MOVES);
+        let Some(moved) = found.moved else { break (search, found) };
+        (z, moves) = (moved, moves + 1);
+    };
     let before = setting.state(&found.before.parts, &z);
     // What does not help logs that its values were not fitted to is not told.
     let (after, mut effects) = loop {
@@ -253,6 +254,9 @@ impl Told<'_, '_> {
         }
     }
 }
+
+/// How often a search begins again with other numbers of the model, at most.
+const MOST_MOVES: usize = 2;
 
 /// Logs through filters.
 fn conditioned(logs: Vec<MeasuredLog>, filters: Filters) -> Result<Vec<Signals>, DiagnosisError> {

@@ -19,6 +19,7 @@ mod diagnosis;
 mod drive_law;
 mod effects_found;
 mod elastic;
+mod elastic_law;
 mod excitation;
 mod experiment;
 mod fault;

@@ -53,6 +53,9 @@ pub(super) struct Found {
     pub(super) is_stopped: bool,
     /// Candidates that make logs less likely that their values were not fitted to.
     pub(super) dropped: Vec<usize>,
+    /// The model's own numbers to begin again with: the search ended since what it found moves
+    /// them.
+    pub(super) moved: Option<Vec<f64>>,
 }
 
 /// What every candidate does from where its search begins.
@@ -100,10 +103,10 @@ impl<'a> Search<'a> {
 
     /// Searches which candidates are missing. `watch` hears of what was found so far, and says
     /// whether to go on.
-    pub(super) fn run(&self, watch: &mut dyn FnMut(&[usize]) -> bool) -> Found {
+    pub(super) fn run(&self, may_move: bool, watch: &mut dyn FnMut(&[usize]) -> bool) -> Found {
         let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
         let mut now = before.clone();
-        let (mut steps, mut rivals) = (Vec::new(), Vec::new());
+        let (mut steps, mut rivals, mut moved) = (Vec::new(), Vec::new(), None);
         // Exchanges must not lead round in circles.
         let mut seen = vec![now.names()];
         let (is_full, is_stopped) = loop {
@@ -126,9 +129,13 @@ impl<'a> Search<'a> {
             }
             seen.push(next.names());
             (now, rivals) = (next, others);
+            moved = if may_move { self.moved_numbers(&now) } else { None };
+            if moved.is_some() {
+                break (false, false);
+            }
         };
         let dropped = Vec::new();
-        Found { before, after: now, rivals, steps, is_full, is_stopped, dropped }
+        Found { before, after: now, rivals, steps, is_full, is_stopped, dropped, moved }
     }
 
     /// What was found without the effect in one place.
@@ -144,16 +151,16 @@ impl<'a> Search<'a> {
 
     /// The model's own numbers by what was found, if the logs are more likely where laws are
     /// evaluated with these: a law of an angle that is off by much turns what the numbers do, too.
-    pub(super) fn moved_numbers(&self, found: &Found) -> Option<Vec<f64>> {
+    fn moved_numbers(&self, now: &Hypothesis) -> Option<Vec<f64>> {
         let Weighing { sets, candidates, given, .. } = &self.weighing;
-        let z = &found.after.weighed.own[..sets[0].columns.len()];
+        let z = &now.weighed.own[..sets[0].columns.len()];
         let other = Weighing::new(sets.clone(), (candidates, given), z);
-        let parts = found.after.parts.iter().map(|part| other.part(&part.placed)).collect();
+        let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
         let other = Self { weighing: other, screen: Vec::new(), ..*self };
-        let start = Some(&found.after);
+        let start = Some(now);
         let moved =
             other.linearised(other.weighed(parts, start, policy::ROUNDS[1]), policy::ROUNDS[1]);
-        let gain = moved.weighed.log_evidence - found.after.weighed.log_evidence;
+        let gain = moved.weighed.log_evidence - now.weighed.log_evidence;
         (gain > policy::NAMED).then(|| z.to_vec())
     }
 

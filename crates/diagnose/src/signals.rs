@@ -246,20 +246,25 @@ impl Signals {
 
     /// Gives a joint other positions, with the rates and accelerations that the difference adds.
     pub fn move_joint(&mut self, joint: usize, positions: &[f64]) {
-        let h = self.log_step_s;
         let cells: Vec<f64> = positions.iter().zip(&self.q[joint]).map(|(a, b)| a - b).collect();
         let cells = self.cell_means(&cells);
-        let count = cells.len();
-        // At the ends, which the rows leave out, the difference rests.
+        let [rates, accelerations] = self.derivatives(&cells);
+        add(&mut self.qd[joint], &rates);
+        add(&mut self.qdd[joint], &accelerations);
+        self.q[joint] = positions.to_vec();
+        self.rest(joint);
+    }
+
+    /// Rates and accelerations of what is at the log's samples, at those of the motion; at the
+    /// ends, which the rows leave out, none.
+    pub(super) fn derivatives(&self, signal: &[f64]) -> [Vec<f64>; 2] {
+        let (h, count) = (self.log_step_s, signal.len());
         let inner = STENCIL..count.saturating_sub(STENCIL);
         let of = |value: &dyn Fn(usize) -> f64| {
             let all = (0..count).map(|k| if inner.contains(&k) { value(k) } else { 0.0 });
             between(&all.collect::<Vec<f64>>(), self.rows.within)
         };
-        add(&mut self.qd[joint], &of(&|k| rate(&cells, k) / h));
-        add(&mut self.qdd[joint], &of(&|k| acceleration(&cells, k) / (h * h)));
-        self.q[joint] = positions.to_vec();
-        self.rest(joint);
+        [of(&|k| rate(signal, k) / h), of(&|k| acceleration(signal, k) / (h * h))]
     }
 
     /// The motion at a few of its samples, of which there are no rows.

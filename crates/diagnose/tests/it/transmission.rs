@@ -47,7 +47,17 @@ fn a_soft_transmission_is_found_by_the_motion_of_its_rotor() {
     let torque = |at: [f64; 3]| at[2] + VISCOUS * at[1] + COULOMB * at[1].signum();
     let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&moved(phase), &torque, (seed, 0.02)));
     let (found, candidates) = diagnosed(SLED, logs);
-    let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
+    let names = found.effects.iter().map(|one| candidates[one.candidate].name());
+    let [one] = &found.effects[..] else {
+        panic!(
+            "{:?}: {:?} {:?} {:?} {:?}",
+            names.collect::<Vec<_>>(),
+            found.held_out.before.all,
+            found.held_out.after.all,
+            found.held_out.floor.all,
+            found.effects
+        )
+    };
     assert_eq!(candidates[one.candidate].effect, "joint_elasticity");
     let swing = (ROTOR / STIFFNESS).sqrt();
     let value = one.parameters[0].value;

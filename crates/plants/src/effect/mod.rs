@@ -17,7 +17,7 @@ mod transmission;
 
 pub use added::{AddedError, AddedLaw, ApartEffects, apart};
 pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
-pub use transmission::{Drive, Transmitted};
+pub use transmission::{Drive, GivesWay, Transmitted};
 
 use denavit_codegen::effect::{
     COLUMNS, Channel, Effect, EffectParameter, EffectSite, Law, SpringSide,

@@ -16,7 +16,7 @@
 //! stick while they turn around, which no model that takes the sign of a rate knows, is in both.
 
 use super::program::LawProgram;
-use super::{EffectError, EffectLaw, JointSamples, names};
+use super::{EffectError, EffectLaw, JointSamples, LawParameter, names};
 use crate::regression::{RegressionModel, RegressionRows};
 use denavit_codegen::effect::{Effect, Transmission};
 use denavit_codegen::expr::Dag;
@@ -159,6 +159,20 @@ impl EffectLaw {
         self.transmission().is_some()
     }
 
+    /// Whether the law is of a transmission that has play where its parameters start.
+    pub fn has_play(&self) -> bool {
+        let start = |one: &LawParameter| one.start.first().copied().or(one.nominal).unwrap_or(0.0);
+        let starts: Vec<f64> = self.parameters.iter().map(start).collect();
+        self.gives_way(&starts).is_some_and(|one| one.play > 0.0)
+    }
+
+    /// The transmission with these values of the parameters; none of other laws.
+    pub fn gives_way(&self, values: &[f64]) -> Option<GivesWay> {
+        let entries = self.transmission()?.0.run(&[], values, 1);
+        let [swing_s, play, damping] = [0, 1, 2].map(|place| entries[place][0]);
+        Some(GivesWay { swing_s, play, damping })
+    }
+
     fn transmission(&self) -> Option<&TransmissionLaw> {
         self.channel.as_ref()?.transmission.as_ref()
     }
@@ -187,6 +201,17 @@ impl EffectLaw {
             gradient: (0..values.len()).map(by).collect(),
         })
     }
+}
+
+/// How a transmission gives way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivesWay {
+    /// Root of the rotor's inertia times the compliance \[s\].
+    pub swing_s: f64,
+    /// The play, from one side to the other [rad, m].
+    pub play: f64,
+    /// The damping of the rotor, as a share of the critical one.
+    pub damping: f64,
 }
 
 /// What a transmission makes of a drive's torque.

@@ -259,6 +259,10 @@ impl ReadingLaw {
         let samples = samples(motion, joint, None);
         let truth = self.law.corrected(&samples, values);
         let mut signals: Signals = logged.clone();
+        if self.law.is_read_at_drive() && logged.motor[joint].is_none() {
+            let [q, qd, qdd] = [&logged.q, &logged.qd, &logged.qdd].map(|all| all[joint].clone());
+            signals.motor[joint] = Some([q, qd, qdd]);
+        }
         match self.law.channel() {
             Some(Channel::Position) => signals.move_joint(joint, &truth),
             _ => signals.qd[joint] = truth,

@@ -233,6 +233,12 @@ impl EffectLaw {
         self.channel.as_ref().is_some_and(|law| law.is_inverse)
     }
 
+    /// Whether a position is read before something that gives way: it is that of the drive.
+    pub fn is_read_at_drive(&self) -> bool {
+        let uses_load = self.columns.iter().any(|&column| COLUMNS[column] == "tau_load");
+        self.channel() == Some(Channel::Position) && uses_load
+    }
+
     /// Whether the law is made of accelerations, or changes a logged torque in proportion or in
     /// time, which answers them.
     pub fn follows_accelerations(&self) -> bool {

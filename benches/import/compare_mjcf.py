@@ -1,12 +1,9 @@
 """A model against MuJoCo's reading of the same MJCF."""
 
-import json
-import os
-
 import mujoco
 import numpy as np
 
-from compare_urdf import NotComparable, relative, row_name, turned
+from compare_urdf import NotComparable, relative, row_name, turned, with_terms
 
 STATES = 20
 
@@ -97,8 +94,7 @@ def differences(robot, model, folder, options):
     n = len(names)
     states = [{key: list(rng.uniform(-1, 1, n)) for key in ("q", "qd", "qdd")} for _ in range(STATES)]
     whole = model.evaluate(states, ["inverse_dynamics"])
-    model.text["terms"] = ["inertia", "coriolis", "gravity", "rotor"]
-    json.dump(model.text, open(model.path, "w"))
+    with_terms(model.path, ["inertia", "coriolis", "gravity", "rotor"])
     functions = ["inverse_dynamics", "mass_matrix", "gravity_vector", "link_jacobian"]
     answer = model.evaluate(states, functions)
     worst = dict.fromkeys(("tau", "all", "D", "G", "J"), 0.0)

@@ -1,5 +1,6 @@
 """A model against Pinocchio's reading of the same URDF."""
 
+import json
 import os
 import re
 import xml.etree.ElementTree as ElementTree
@@ -35,6 +36,21 @@ def meant(text):
     return value
 
 
+def near_planes(axis):
+    """An axis within rounding of a coordinate axis or plane lies there."""
+    x, y, z = axis
+    across = np.hypot(x, y)
+    if across <= 2e-7 * abs(z):
+        return [0.0, 0.0, z]
+    if abs(z) <= 2e-7 * across:
+        z = 0.0
+    if abs(y) <= 2e-7 * abs(x):
+        y = 0.0
+    if abs(x) <= 2e-7 * abs(y):
+        x = 0.0
+    return [x, y, z]
+
+
 def aligned(robot, folder):
     """The same URDF, its rounded quarter turns as Pinocchio has to read them to be compared."""
     tree = ElementTree.parse(robot)
@@ -42,11 +58,8 @@ def aligned(robot, folder):
         if "rpy" in element.attrib:
             element.set("rpy", " ".join(repr(meant(text)) for text in element.get("rpy").split()))
         if element.tag == "axis" and "xyz" in element.attrib:
-            axis = np.array([float(text) for text in element.get("xyz").split()])
-            largest = np.argmax(abs(axis))
-            if np.linalg.norm(np.delete(axis, largest)) <= 2e-7 * abs(axis[largest]):
-                axis = np.where(np.arange(3) == largest, axis, 0.0)
-                element.set("xyz", " ".join(repr(float(x)) for x in axis))
+            axis = near_planes([float(text) for text in element.get("xyz").split()])
+            element.set("xyz", " ".join(repr(x) for x in axis))
     for element in list(tree.getroot()):
         if element.tag in ("gazebo", "transmission") or not isinstance(element.tag, str):
             tree.getroot().remove(element)
@@ -170,15 +183,33 @@ def frame_rows(robot, text):
     return found
 
 
-def bare(text):
-    """The model without friction, rotors and springs, which Pinocchio's functions leave out."""
-    text = dict(text)
-    text["terms"] = ["inertia", "coriolis", "gravity"]
-    return text
+def with_terms(path, terms):
+    """The model with these terms alone: friction and springs are no part of the functions compared."""
+    text = open(path).read()
+    convention = '"convention": "modified",'
+    open(path, "w").write(text.replace(convention, f'{convention} "terms": {json.dumps(terms)},'))
+
+
+def round_trip(robot, model, folder, floats):
+    """Inverse dynamics by Pinocchio of the URDF that the model is written to (to 1e-12: times 1e3)."""
+    path = os.path.join(folder, "back.urdf")
+    model.run("export", model.path, "-o", path)
+    # what has not changed leaves the user's own file as it is
+    model.run("export", model.path, "--into", robot, "-o", os.path.join(folder, "same.urdf"))
+    same = open(os.path.join(folder, "same.urdf"), "rb").read()
+    if same != open(robot, "rb").read():
+        raise RuntimeError("values that have not changed were written")
+    read = pin.buildModelFromUrdf(path, pin.JointModelFreeFlyer()) if floats else pin.buildModelFromUrdf(path)
+    data, mapping = read.createData(), Mapping(read, model.names())
+
+    def torques(q, qd, qdd):
+        position, rate, acceleration, by_rate = mapping.state(q, qd, qdd)
+        return by_rate.T @ pin.rnea(read, data, position, rate, acceleration)
+
+    return torques
 
 
 def differences(robot, model, folder, options):
-    import json
     floats = "floating" in options
     path = aligned(robot, folder)
     try:
@@ -187,8 +218,7 @@ def differences(robot, model, folder, options):
     except Exception as error:
         raise NotComparable(f"Pinocchio: {str(error).splitlines()[0]}")
     data = read.createData()
-    model.text = bare(model.text)
-    json.dump(model.text, open(model.path, "w"))
+    with_terms(model.path, ["inertia", "coriolis", "gravity"])
     names = model.names()
     mapping = Mapping(read, names)
     rng = np.random.default_rng(7)
@@ -196,16 +226,18 @@ def differences(robot, model, folder, options):
     states = [{key: list(rng.uniform(-1, 1, n)) for key in ("q", "qd", "qdd")} for _ in range(STATES)]
     if n == 0:
         raise NotComparable("nothing moves")
+    again = round_trip(robot, model, folder, floats)
     frames = frame_rows(robot, model.text)
     functions = ["inverse_dynamics", "mass_matrix", "gravity_vector", "link_jacobian"]
     answer = model.evaluate(states, functions)
-    worst = {"tau": 0.0, "D": 0.0, "G": 0.0, "J": 0.0}
+    worst = {"tau": 0.0, "D": 0.0, "G": 0.0, "J": 0.0, "back": 0.0}
     for state, found in zip(states, answer["states"]):
         q, qd, qdd = (np.array(state[key]) for key in ("q", "qd", "qdd"))
         position, rate, acceleration, by_rate = mapping.state(q, qd, qdd)
         tau = by_rate.T @ pin.rnea(read, data, position, rate, acceleration)
         note = lambda key, value: worst.__setitem__(key, max(worst[key], value))
         note("tau", relative(np.array(found["inverse_dynamics"]["tau"]), tau))
+        note("back", 1e3 * relative(again(q, qd, qdd), tau))
         mass = pin.crba(read, data, position)
         mass = np.triu(mass) + np.triu(mass, 1).T
         note("D", relative(np.array(found["mass_matrix"]["mass_matrix"]), by_rate.T @ mass @ by_rate))

@@ -15,22 +15,22 @@ use std::path::{Path, PathBuf};
 
 /// Evaluate the functions of a model in given states
 ///
-/// The file has the states: {"states": [{"q": [0.1, ..], "qd": [..], "qdd": [..], "tau": [..]}]},
-/// one number for each joint of the model, in its order; what is left out is 0. The answer is JSON:
-/// the names of joints and, state by state, each function with its arrays, rows within rows.
+/// A file has the states: {"states": [{"q": [0.1, ..], "qd": [..], "qdd": [..], "tau": [..]}]}, one
+/// number for each joint of the model, in its order; what is left out is 0. The answer is JSON: the
+/// names of joints and links and, state by state, each function with its arrays, rows within rows.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Example:
-  echo '{\"states\": [{\"q\": [0, 0.3]}]}' | denavit evaluate planar_2r --at - \\
-    --functions mass_matrix,gravity_vector,link_jacobian")]
+Examples:
+  denavit evaluate planar_2r --functions mass_matrix,gravity_vector
+  denavit evaluate panda --functions link_jacobian,link_transforms")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     #[command(flatten)]
     effects: EffectsOption,
-    /// The states; - is standard input
+    /// The states; - is standard input. Without it: at rest, all joints at 0
     #[arg(long, value_name = "FILE")]
-    at: PathBuf,
+    at: Option<PathBuf>,
     #[command(flatten)]
     functions: FunctionList,
 }
@@ -70,7 +70,7 @@ enum Nested {
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let effects = arguments.effects.effects.as_deref();
     let robot = read_model_with_effects(&arguments.model.model, effects)?;
-    let states = states(&arguments.at, &robot)?;
+    let states = states(arguments.at.as_deref(), &robot)?;
     let wanted = arguments.functions.wanted();
     let derivation = derive(&robot, Flavour::Baked, &wanted).map_err(Failure::Bake)?;
     let program = lower(&derivation.dag, &derivation.functions)
@@ -98,12 +98,18 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     Ok(Answer::Done)
 }
 
-/// The states of a file, with one number for each joint.
-fn states(file: &Path, robot: &Robot) -> Result<Vec<State>, Failure> {
-    let refused = |said: String| Failure::States(file.display().to_string(), said);
-    let bytes = read_file(file)?;
-    let read: States = serde_json::from_slice(&bytes).map_err(|error| refused(error.to_string()))?;
-    let (joints, mut states) = (robot.degrees_of_freedom(), read.states);
+/// The states of a file, with one number for each joint; one of zeros without a file.
+fn states(file: Option<&Path>, robot: &Robot) -> Result<Vec<State>, Failure> {
+    let name = file.map_or(String::new(), |file| file.display().to_string());
+    let refused = |said: String| Failure::States(name.clone(), said);
+    let mut states = match file {
+        None => vec![State::default()],
+        Some(file) => {
+            let read = serde_json::from_slice::<States>(&read_file(file)?);
+            read.map_err(|error| refused(error.to_string()))?.states
+        }
+    };
+    let joints = robot.degrees_of_freedom();
     for (at, state) in states.iter_mut().enumerate() {
         let State { q, qd, qdd, tau, b } = state;
         let all = [("q", q), ("qd", qd), ("qdd", qdd), ("tau", tau), ("b", b)];

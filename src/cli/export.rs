@@ -20,7 +20,7 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Examples:
   denavit export panda -o panda.urdf
-  denavit export updated.json --into robot.urdf -o robot_updated.urdf")]
+  denavit export panda --into panda.urdf -o panda_updated.urdf")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,

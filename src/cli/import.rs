@@ -19,9 +19,9 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  denavit import robot.urdf -o robot.json
-  denavit import biped.urdf --base floating --contacts l_sole --contacts r_sole -o biped.json
-  denavit import arm.urdf --tip tool0")]
+  denavit import panda.urdf -o panda_of_urdf.json
+  denavit import panda.urdf --base floating
+  denavit import panda.urdf --tip joint5")]
 pub(crate) struct Arguments {
     /// Path of a URDF or MJCF file, or - for standard input
     #[arg(value_name = "ROBOT")]

@@ -141,7 +141,10 @@ fn both(first: Option<TreeBody>, second: TreeBody, way: &[Pose]) -> TreeBody {
 }
 
 fn rounded_all(values: Vec<Rational>) -> Vec<Rational> {
-    values.iter().map(|value| if exactly(value).is_some() { value.clone() } else { rounded(value) }).collect()
+    values
+        .iter()
+        .map(|value| if exactly(value).is_some() { value.clone() } else { rounded(value) })
+        .collect()
 }
 
 fn made(mass: Rational, com: Vec<Rational>, inertia: Vec<Rational>, at: usize) -> TreeBody {
@@ -197,5 +200,6 @@ pub(crate) fn tensor([xx, yy, zz, xy, xz, yz]: &[Rational; 6]) -> Matrix {
 
 /// xx, yy, zz, xy, xz, yz of a matrix.
 pub(crate) fn entries(matrix: &Matrix) -> [Rational; 6] {
-    [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(row, column)| matrix[row][column].clone())
+    [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+        .map(|(row, column)| matrix[row][column].clone())
 }

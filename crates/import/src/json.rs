@@ -129,7 +129,8 @@ mod tests {
     #[test]
     fn short_objects_stand_on_one_line() {
         let long = Json::List((0..30).map(|_| Json::Raw("1.25".into())).collect());
-        let short = Json::Object(vec![("x", Json::scalar("pi/2".into())), ("y", Json::text("a\"\n"))]);
+        let short =
+            Json::Object(vec![("x", Json::scalar("pi/2".into())), ("y", Json::text("a\"\n"))]);
         let file = Json::Object(vec![("short", short), ("long", long)]).file();
         let mut lines = file.lines();
         assert_eq!(lines.nth(1), Some("  \"short\": {\"x\": \"pi/2\", \"y\": \"a\\\"\\u000a\"},"));

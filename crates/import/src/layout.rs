@@ -186,7 +186,12 @@ impl Placer<'_> {
             }
         }
         // four were tried
-        best.unwrap_or(Way { start: 0, to_joint: vec![Row::nothing()], to_link: Vec::new(), back: Vec::new() })
+        best.unwrap_or(Way {
+            start: 0,
+            to_joint: vec![Row::nothing()],
+            to_link: Vec::new(),
+            back: Vec::new(),
+        })
     }
 
     fn push_rows(

@@ -70,6 +70,9 @@ pub fn import(
         "robot" => urdf::tree(name, root, options, &mut faults),
         "mujoco" => {
             let files = included_files(root, include, &mut faults);
+            if !faults.is_empty() {
+                return refused(faults);
+            }
             let sources: Vec<(String, Source<'_>, usize)> = files
                 .iter()
                 .filter_map(|(name, bytes, at)| match Source::read(name, bytes) {
@@ -86,12 +89,15 @@ pub fn import(
                 .collect();
             let included = documents
                 .iter()
-                .map(|(name, source, document, at)| ((*name).clone(), source.included(document, *at)))
+                .map(|(name, source, document, at)| {
+                    ((*name).clone(), source.included(document, *at))
+                })
                 .collect();
             mjcf::tree(name, root, included, options, &mut faults)
         }
         other => {
-            let said = format!("<{}> is neither <robot> (URDF) nor <mujoco> (MJCF)", fault::clip(other));
+            let said =
+                format!("<{}> is neither <robot> (URDF) nor <mujoco> (MJCF)", fault::clip(other));
             faults.push(root.at(), Cause::new(said));
             None
         }
@@ -118,14 +124,17 @@ fn included_files(
 ) -> Vec<(String, Vec<u8>, usize)> {
     let names = |root: xml::Element<'_>, at: Option<usize>| -> Vec<(String, usize)> {
         let all = root.everything().filter(|element| element.name() == "include");
-        let files = all.filter_map(|element| Some((element.get("file")?.text.to_owned(), element.at())));
+        let files =
+            all.filter_map(|element| Some((element.get("file")?.text.to_owned(), element.at())));
         files.map(|(name, own)| (name, at.unwrap_or(own))).collect()
     };
     let mut waiting = names(root, None);
     let mut found: Vec<(String, Vec<u8>, usize)> = Vec::new();
     while let Some((name, at)) = waiting.pop() {
+        // so that inclusions end, and no file becomes many
         if found.iter().any(|(known, ..)| *known == name) {
-            continue;
+            faults.push(at, Cause::new(format!("{} is included twice", fault::clip(&name))));
+            break;
         }
         if found.len() == MAX_INCLUDED {
             faults.push(at, Cause::new(format!("more than {MAX_INCLUDED} files are included")));
@@ -133,7 +142,8 @@ fn included_files(
         }
         match include(&name) {
             Err(why) => {
-                faults.push(at, Cause::new(format!("{} is not included: {why}", fault::clip(&name))));
+                faults
+                    .push(at, Cause::new(format!("{} is not included: {why}", fault::clip(&name))));
             }
             Ok(bytes) => {
                 if let Ok(source) = Source::read(&name, &bytes)

@@ -19,7 +19,10 @@ pub(crate) fn text(tree: &Tree, layout: &Layout) -> String {
     if !layout.changed.is_empty() {
         let changed: Vec<String> =
             layout.changed.iter().map(|(from, to)| format!("{from} as {to}")).collect();
-        notes.push(format!("names are letters, digits and underscores, each once: {}", listed(&changed)));
+        notes.push(format!(
+            "names are letters, digits and underscores, each once: {}",
+            listed(&changed)
+        ));
     }
     let mut file = vec![
         ("format", Json::text(FORMAT)),
@@ -35,7 +38,8 @@ pub(crate) fn text(tree: &Tree, layout: &Layout) -> String {
     let rows = layout.rows.iter().enumerate();
     let links = rows.map(|(at, row)| link(tree, row, at.checked_sub(1).map(|at| &layout.rows[at])));
     file.push(("links", Json::List(links.collect())));
-    let drives: Vec<(String, Json)> = layout.rows.iter().filter_map(|row| drive(tree, row)).collect();
+    let drives: Vec<(String, Json)> =
+        layout.rows.iter().filter_map(|row| drive(tree, row)).collect();
     if !drives.is_empty() {
         file.push(("drives", Json::Named(drives)));
     }
@@ -52,11 +56,8 @@ fn gravity(tree: &Tree, file: &mut Vec<(&'static str, Json)>) {
     if let [axis] = along[..] {
         let strength = &tree.gravity[axis];
         let value = Json::scalar(written(&strength.abs()));
-        let constant = vec![
-            ("value", value),
-            ("unit", Json::text("m/s^2")),
-            ("doc", Json::text("gravity")),
-        ];
+        let constant =
+            vec![("value", value), ("unit", Json::text("m/s^2")), ("doc", Json::text("gravity"))];
         let entries = (0..3).map(|k| match k == axis {
             true if strength.is_negative() => Json::text(format!("-{GRAVITY}")),
             true => Json::text(GRAVITY),
@@ -170,9 +171,9 @@ fn drive(tree: &Tree, row: &PlacedRow) -> Option<(String, Json)> {
         ("viscous", &drive.viscous),
         ("coulomb", &drive.coulomb),
     ];
-    let given = entries.into_iter().filter_map(|(key, text)| {
-        text.clone().map(|text| (key, Json::scalar(text)))
-    });
+    let given = entries
+        .into_iter()
+        .filter_map(|(key, text)| text.clone().map(|text| (key, Json::scalar(text))));
     Some((row.name.clone(), Json::Object(given.collect())))
 }
 

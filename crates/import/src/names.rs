@@ -22,7 +22,8 @@ impl Names {
         while self.is_taken(&name) {
             let ending =
                 if count == 1 { format!("_{otherwise}") } else { format!("_{otherwise}{count}") };
-            let kept: String = plain.chars().take(MAX_LENGTH - ending.len().min(MAX_LENGTH)).collect();
+            let kept: String =
+                plain.chars().take(MAX_LENGTH - ending.len().min(MAX_LENGTH)).collect();
             name = format!("{kept}{ending}");
             count += 1;
         }
@@ -47,7 +48,9 @@ impl Names {
     }
 
     fn is_taken(&self, name: &str) -> bool {
-        self.taken.contains(name) || name == "base" || name.starts_with("base_") && is_generated(name)
+        self.taken.contains(name)
+            || name == "base"
+            || name.starts_with("base_") && is_generated(name)
     }
 }
 

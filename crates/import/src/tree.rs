@@ -6,6 +6,9 @@ use denavit_codegen::model::Unphysical;
 use denavit_codegen::number::Rational;
 use num_traits::Signed;
 
+/// Most links of a robot.
+pub(crate) const MAX_LINKS: usize = 5000;
+
 /// A robot.
 #[derive(Debug)]
 pub(crate) struct Tree {

@@ -53,8 +53,14 @@ impl<'a> Source<'a> {
             report.into_error(file, bytes, None)
         };
         if bytes.len() > MAX_BYTES {
-            let said = format!("the file has {} bytes, more than the {MAX_BYTES} that are read", bytes.len());
-            return Err(refuse(0, Cause::with_hint(said, "such files have some hundred kilobytes")));
+            let said = format!(
+                "the file has {} bytes, more than the {MAX_BYTES} that are read",
+                bytes.len()
+            );
+            return Err(refuse(
+                0,
+                Cause::with_hint(said, "such files have some hundred kilobytes"),
+            ));
         }
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let cause = Cause::with_hint("the file is not UTF-8 text", "save the file as UTF-8");
@@ -258,9 +264,7 @@ impl<'s> Element<'s> {
     /// All attributes: their names and values.
     pub(crate) fn attributes(&self) -> impl Iterator<Item = (&'s str, Text<'s>)> + use<'s> {
         let element = *self;
-        self.node.attributes().map(move |attribute| {
-            (attribute.name(), element.text_of(&attribute))
-        })
+        self.node.attributes().map(move |attribute| (attribute.name(), element.text_of(&attribute)))
     }
 
     fn text_of(&self, attribute: &Attribute<'s, 's>) -> Text<'s> {
@@ -281,7 +285,8 @@ mod tests {
 
     #[test]
     fn prefixes_that_nobody_declared_are_no_fault_and_places_stay() {
-        let text = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n <x:a y=\"1\"/><b c=\"2\"/></robot>";
+        let text =
+            "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n <x:a y=\"1\"/><b c=\"2\"/></robot>";
         let source = Source::read("r.urdf", text.as_bytes()).expect("XML");
         let document = source.document().expect("XML");
         let root = source.root(&document);

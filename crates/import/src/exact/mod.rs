@@ -61,6 +61,17 @@ pub(crate) fn rounded(value: &Rational) -> Rational {
     (value / &unit).round() * unit
 }
 
+/// The number with at most fifty digits after the point: products of roundings need no more.
+pub(crate) fn shortened(value: Rational) -> Rational {
+    const LONG: u64 = 240;
+    if value.denom().bits() < LONG {
+        return value;
+    }
+    let unit = power_of_ten(50);
+    let whole = (value * &unit).round().to_integer();
+    Rational::new(whole, unit.to_integer())
+}
+
 fn rounded_text(value: &Rational) -> String {
     exactly(&rounded(value)).unwrap_or_else(|| value.to_string())
 }

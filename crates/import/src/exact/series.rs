@@ -46,7 +46,11 @@ pub(crate) fn sine_and_cosine(angle: &Rational) -> (Rational, Rational) {
     while !term.is_zero() {
         // 1, x, -x^2/2, -x^3/6, ..: even ones are those of the cosine
         let sum = &mut sums[order as usize % 2];
-        if order % 4 < 2 { *sum += &term } else { *sum -= &term }
+        if order % 4 < 2 {
+            *sum += &term
+        } else {
+            *sum -= &term
+        }
         order += 1;
         term = &term * &rest / (&unit * order);
     }

@@ -23,11 +23,7 @@ const ENTRIES: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// The description with the values of a model. Masses, centres of mass and inertias of its links,
 /// damping and friction of its joints become those of the model where they are others.
-pub fn export_into(
-    robot: &Robot,
-    file: &str,
-    description: &[u8],
-) -> Result<Exported, ExportError> {
+pub fn export_into(robot: &Robot, file: &str, description: &[u8]) -> Result<Exported, ExportError> {
     let source = Source::read(file, description).map_err(ExportError::Description)?;
     let mut faults = Report::default();
     let base = if robot.base == Base::Fixed { BaseChoice::Fixed } else { BaseChoice::Floating };
@@ -89,7 +85,9 @@ impl Writer<'_> {
             return;
         };
         let link = &tree.links[at];
-        let (Some(before), Some(inertial)) = (&link.body, element.first("inertial")) else { return };
+        let (Some(before), Some(inertial)) = (&link.body, element.first("inertial")) else {
+            return;
+        };
         let row = self.layout.rows.iter().find(|row| row.body_of == Some(at));
         let row = row.map(|row| row.name.clone());
         if row.is_none() {

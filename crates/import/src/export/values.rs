@@ -49,14 +49,7 @@ impl Numbers {
         let mut inertia = body.inertia.map(|entry| self.value(entry));
         if body.about == About::Origin {
             let [x, y, z] = &com;
-            let moved = [
-                y * y + z * z,
-                x * x + z * z,
-                x * x + y * y,
-                -(x * y),
-                -(x * z),
-                -(y * z),
-            ];
+            let moved = [y * y + z * z, x * x + z * z, x * x + y * y, -(x * y), -(x * z), -(y * z)];
             for (entry, away) in inertia.iter_mut().zip(moved) {
                 *entry -= &mass * away;
             }

@@ -45,7 +45,9 @@ fn notes(numbers: &Numbers) -> Vec<String> {
     let sprung = with(&|id| {
         let link = &robot.links[id];
         let drive = link.drive.unwrap_or_default();
-        link.joint.spring.is_some() || drive.series_elastic.is_some() || drive.return_spring.is_some()
+        link.joint.spring.is_some()
+            || drive.series_elastic.is_some()
+            || drive.return_spring.is_some()
     });
     if !sprung.is_empty() {
         notes.push(format!("a URDF has no springs; these have: {}", listed(&sprung)));
@@ -105,7 +107,8 @@ impl Writer {
                 Some(parent) if Some(parent) == root => Frame::identity(),
                 Some(parent) => self.frames(&self.numbers.robot.links[parent].joint).1,
             };
-            let parent = parent.map_or(root_name.clone(), |id| self.numbers.robot.links[id].name.clone());
+            let parent =
+                parent.map_or(root_name.clone(), |id| self.numbers.robot.links[id].name.clone());
             self.link(id, &beyond);
             self.joint(id, &parent, &before.times(&own));
         }
@@ -244,7 +247,9 @@ impl Frame {
 
     fn times(&self, other: &Self) -> Self {
         let turn = std::array::from_fn(|row| {
-            std::array::from_fn(|column| (0..3).map(|k| self.turn[row][k] * other.turn[k][column]).sum())
+            std::array::from_fn(|column| {
+                (0..3).map(|k| self.turn[row][k] * other.turn[k][column]).sum()
+            })
         });
         Self { turn, at: self.place(other.at) }
     }

@@ -8,7 +8,7 @@ use crate::exact::transformed;
 use crate::fault::{Cause, Faults, clip};
 use crate::options::BaseChoice;
 use crate::place::{Pose, matrix};
-use crate::tree::{Tree, TreeLink};
+use crate::tree::{MAX_LINKS, Tree, TreeLink};
 use crate::xml::Element;
 use std::collections::BTreeSet;
 
@@ -114,6 +114,13 @@ impl<'s, 'f> Reader<'s, 'f> {
 
     /// Adds a body and all that it carries.
     pub(crate) fn push(&mut self, element: Element<'s>, parent: Option<usize>, scope: &Scope<'s>) {
+        if self.tree.links.len() >= MAX_LINKS {
+            if self.tree.links.len() == MAX_LINKS {
+                let said = format!("the robot has more than {MAX_LINKS} links");
+                self.faults.push(element.at(), Cause::new(said));
+            }
+            return;
+        }
         let name = match element.get("name") {
             Some(name) => name.text.to_owned(),
             None => {
@@ -130,14 +137,8 @@ impl<'s, 'f> Reader<'s, 'f> {
             self.faults.push(element.at(), Cause::new(said));
         }
         let inertial = contents.inertial;
-        let body = mass_of(
-            &name,
-            inertial,
-            &contents.geoms,
-            self.settings,
-            &mut self.notes,
-            self.faults,
-        );
+        let body =
+            mass_of(&name, inertial, &contents.geoms, self.settings, &mut self.notes, self.faults);
         let mut before = [&scope.way[..], &[place]].concat();
         let freedoms = match parent {
             // what floats has its joint generated

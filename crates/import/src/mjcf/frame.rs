@@ -83,21 +83,18 @@ pub(crate) fn angle_of(text: &str, value: &Rational, settings: &Settings<'_>) ->
 }
 
 /// The columns of the matrix of a quaternion of any length.
-fn of_quaternion(w: &Rational, x: &Rational, y: &Rational, z: &Rational) -> Option<(Vec<Turn>, bool)> {
+fn of_quaternion(
+    w: &Rational,
+    x: &Rational,
+    y: &Rational,
+    z: &Rational,
+) -> Option<(Vec<Turn>, bool)> {
     if [w, x, y, z].iter().all(|part| part.is_zero()) {
         return None;
     }
     let two = integer(2);
-    let across = [
-        w * w + x * x - y * y - z * z,
-        (x * y + w * z) * &two,
-        (x * z - w * y) * &two,
-    ];
-    let up = [
-        (x * y - w * z) * &two,
-        w * w - x * x + y * y - z * z,
-        (y * z + w * x) * &two,
-    ];
+    let across = [w * w + x * x - y * y - z * z, (x * y + w * z) * &two, (x * z - w * y) * &two];
+    let up = [(x * y - w * z) * &two, w * w - x * x + y * y - z * z, (y * z + w * x) * &two];
     Some(onto_axes(&across, &up))
 }
 
@@ -123,7 +120,9 @@ fn of_euler(
     let values: [Rational; 3] = crate::urdf::numbers(angles, "`euler`", faults)?;
     let mut turns = Vec::new();
     let mut is_snapped = false;
-    for ((text, value), axis) in angles.text.split_whitespace().zip(&values).zip(settings.euler.chars()) {
+    for ((text, value), axis) in
+        angles.text.split_whitespace().zip(&values).zip(settings.euler.chars())
+    {
         let Some(made) = angle_of(text, value, settings) else {
             wrong(angles, "`euler`", "three angles", faults);
             return None;

@@ -45,7 +45,8 @@ pub(crate) fn lump(
     let hollow = geom.get("shellinertia").is_some_and(|shell| shell.text == "true");
     if matches!(kind, "mesh" | "sdf") || geom.get("mesh").is_some() || hollow {
         let what = if hollow { "shell" } else { "mesh" };
-        let said = format!("the mass of body `{}` is that of a {what}, which is not read", clip(body));
+        let said =
+            format!("the mass of body `{}` is that of a {what}, which is not read", clip(body));
         faults.push(geom.at, Cause::with_hint(said, "give the body an <inertial>"));
         return None;
     }
@@ -67,7 +68,10 @@ pub(crate) fn lump(
     let shape = shape(kind, geom, half_length, faults)?;
     let mass = mass.unwrap_or_else(|| &density * &shape.volume);
     if mass.is_negative() {
-        faults.push(geom.at, Cause::new(format!("a geom of body `{}` has a negative mass", clip(body))));
+        faults.push(
+            geom.at,
+            Cause::new(format!("a geom of body `{}` has a negative mass", clip(body))),
+        );
         return None;
     }
     let whole = [&outer.turns[..], &place.turns].concat();

@@ -33,15 +33,21 @@ pub(crate) fn joint(
     let kind = attributes.get("type").map_or("hinge", |kind| kind.text);
     if is_free {
         refuse_forces(name, "free joint", attributes, faults);
-        let slides = [("x", 0), ("y", 1), ("z", 2)].map(|(end, k)| part(name, end, Motion::Slides, k));
+        let slides =
+            [("x", 0), ("y", 1), ("z", 2)].map(|(end, k)| part(name, end, Motion::Slides, k));
         return slides.into_iter().chain(turns(name)).map(Freedom::of).collect();
     }
-    let at = attributes.numbers("pos", faults).unwrap_or_else(|| std::array::from_fn(|_| integer(0)));
+    let at =
+        attributes.numbers("pos", faults).unwrap_or_else(|| std::array::from_fn(|_| integer(0)));
     let there = Pose::moved(at);
     let back = there.inverse();
     let mut made: Vec<Freedom> = match kind {
-        "hinge" => single(name, Motion::Turns, attributes, is_driven, settings, faults).into_iter().collect(),
-        "slide" => single(name, Motion::Slides, attributes, is_driven, settings, faults).into_iter().collect(),
+        "hinge" => single(name, Motion::Turns, attributes, is_driven, settings, faults)
+            .into_iter()
+            .collect(),
+        "slide" => single(name, Motion::Slides, attributes, is_driven, settings, faults)
+            .into_iter()
+            .collect(),
         "ball" => {
             refuse_forces(name, "ball", attributes, faults);
             turns(name).map(Freedom::of).into_iter().collect()
@@ -65,7 +71,8 @@ pub(crate) fn joint(
 fn refuse_forces(name: &str, what: &str, attributes: &Attributes<'_>, faults: &mut Faults) {
     for key in ["stiffness", "damping", "armature", "frictionloss"] {
         if attributes.nonzero(key, faults).is_some() {
-            let said = format!("the {what} `{}` has {key}, which three hinges have not", clip(name));
+            let said =
+                format!("the {what} `{}` has {key}, which three hinges have not", clip(name));
             let hint = "a model file has hinges and slides; remove it, or make hinges of the joint";
             faults.push(attributes.at, Cause::with_hint(said, hint));
         }
@@ -182,7 +189,9 @@ fn drive(
         rotor_inertia: plain(rotor),
         viscous: plain(viscous),
         coulomb: plain(coulomb),
-        spring_angle: angle.filter(|_| stiffness.is_some()).map(|angle| position(&angle, motion, settings)),
+        spring_angle: angle
+            .filter(|_| stiffness.is_some())
+            .map(|angle| position(&angle, motion, settings)),
         stiffness: plain(stiffness),
     }
 }

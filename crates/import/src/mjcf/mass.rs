@@ -89,7 +89,14 @@ fn given<'n>(
             [a, b, c, d, e, f]
         }
     };
-    Some(GivenBody { link: name, mass, com: place.at, inertia, turns: place.turns, at: inertial.at })
+    Some(GivenBody {
+        link: name,
+        mass,
+        com: place.at,
+        inertia,
+        turns: place.turns,
+        at: inertial.at,
+    })
 }
 
 /// What the compiler makes of masses: at least as much as bounds say, and balanced.

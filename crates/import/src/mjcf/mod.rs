@@ -62,16 +62,23 @@ pub(crate) fn tree<'s>(
         }
     };
     note("angles within rounding of a quarter turn are quarter turns", &snapped);
-    note("tensors turned by what is no quarter turn are rounded at 17 digits", &notes.bodies.rounded);
+    note(
+        "tensors turned by what is no quarter turn are rounded at 17 digits",
+        &notes.bodies.rounded,
+    );
     note("moments of inertia that no body has are kept as they are", &notes.bodies.accepted);
     if notes.shaped > 0 {
         let count = notes.shaped;
-        tree.notes.push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
+        tree.notes
+            .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
     }
     settle(&mut tree, faults);
-    for (key, is_given) in [("--tip", options.tip.is_some()), ("--contacts", !options.contacts.is_empty())] {
+    for (key, is_given) in
+        [("--tip", options.tip.is_some()), ("--contacts", !options.contacts.is_empty())]
+    {
         if is_given {
-            faults.push(root.at(), Cause::new(format!("{key} is for URDF: MJCF has no such links")));
+            faults
+                .push(root.at(), Cause::new(format!("{key} is for URDF: MJCF has no such links")));
         }
     }
     if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
@@ -107,7 +114,8 @@ fn floating<'s>(
     let moves = |body: &Element<'s>| {
         body.everything().any(|part| matches!(part.name(), "joint" | "freejoint"))
     };
-    let moving: Vec<&(Element<'s>, Scope<'s>)> = tops.iter().filter(|(body, _)| moves(body)).collect();
+    let moving: Vec<&(Element<'s>, Scope<'s>)> =
+        tops.iter().filter(|(body, _)| moves(body)).collect();
     if reader.base == BaseChoice::Fixed {
         return None;
     }
@@ -118,7 +126,9 @@ fn floating<'s>(
     };
     let Some((body, scope)) = single else {
         if reader.base == BaseChoice::Floating {
-            reader.faults.push(root.at(), Cause::new("--base floating: no single body stands on the world"));
+            reader
+                .faults
+                .push(root.at(), Cause::new("--base floating: no single body stands on the world"));
         }
         return None;
     };
@@ -126,7 +136,8 @@ fn floating<'s>(
     let joints = reader.contents(*body, Scope::of(class)).joints;
     let is_free = |(element, scope): &(Element<'s>, Scope<'s>), reader: &mut Reader<'s, '_>| {
         let attributes = reader.settings.with_class(*element, scope.class, reader.faults);
-        element.name() == "freejoint" || attributes.get("type").is_some_and(|kind| kind.text == "free")
+        element.name() == "freejoint"
+            || attributes.get("type").is_some_and(|kind| kind.text == "free")
     };
     match &joints[..] {
         [one] if is_free(one, reader) => Some((*body, scope.clone())),

@@ -8,7 +8,9 @@ use crate::xml::Element;
 pub(crate) fn refuse<'s>(settings: &Settings<'s>, sections: &[Element<'s>], faults: &mut Faults) {
     for section in sections {
         match section.name() {
-            "equality" => settings.children(*section).into_iter().for_each(|one| equality(one, faults)),
+            "equality" => {
+                settings.children(*section).into_iter().for_each(|one| equality(one, faults))
+            }
             "tendon" => settings.children(*section).into_iter().for_each(|one| {
                 tendon(settings, one, faults);
             }),
@@ -30,7 +32,8 @@ fn equality(constraint: Element<'_>, faults: &mut Faults) {
     if constraint.get("active").is_some_and(|active| active.text == "false") {
         return;
     }
-    let name = constraint.get("name").map_or(String::new(), |name| format!(" `{}`", clip(name.text)));
+    let name =
+        constraint.get("name").map_or(String::new(), |name| format!(" `{}`", clip(name.text)));
     let said = format!("the equality constraint{name} ({}) closes a loop", clip(constraint.name()));
     let hint = "a model is a tree: remove it, or set active=\"false\", and the model is free of it";
     faults.push(constraint.at(), Cause::with_hint(said, hint));
@@ -45,7 +48,8 @@ fn tendon<'s>(settings: &Settings<'s>, tendon: Element<'s>, faults: &mut Faults)
             value.text.split_whitespace().any(|word| word.parse::<f64>() != Ok(0.0))
         });
         if pulls {
-            let name = tendon.get("name").map_or(String::new(), |name| format!(" `{}`", clip(name.text)));
+            let name =
+                tendon.get("name").map_or(String::new(), |name| format!(" `{}`", clip(name.text)));
             let said = format!("the tendon{name} has {key}, which acts on several joints");
             faults.push(tendon.at(), Cause::with_hint(said, "remove it from the file"));
         }

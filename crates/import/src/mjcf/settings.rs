@@ -7,9 +7,6 @@ use crate::xml::{Element, Text};
 use denavit_codegen::number::{Rational, integer, ratio};
 use std::collections::BTreeMap;
 
-/// Deepest inclusion of files in files.
-const MAX_INCLUSIONS: usize = 8;
-
 /// Attributes of elements that a class gives where an element has none: by element and attribute.
 type Class<'s> = BTreeMap<(&'s str, &'s str), Text<'s>>;
 
@@ -75,16 +72,17 @@ impl<'s> Settings<'s> {
     /// The elements in an element, with those of included files in place.
     pub(crate) fn children(&self, element: Element<'s>) -> Vec<Element<'s>> {
         let mut found = Vec::new();
-        self.collect(element, 0, &mut found);
+        self.collect(element, &mut found);
         found
     }
 
-    fn collect(&self, element: Element<'s>, depth: usize, found: &mut Vec<Element<'s>>) {
+    fn collect(&self, element: Element<'s>, found: &mut Vec<Element<'s>>) {
         for child in element.children() {
             let file = child.get("file").filter(|_| child.name() == "include");
             match file.and_then(|file| self.included.get(file.text)) {
-                Some(&root) if depth < MAX_INCLUSIONS => self.collect(root, depth + 1, found),
-                _ => found.push(child),
+                // each file is included once: this ends
+                Some(&root) => self.collect(root, found),
+                None => found.push(child),
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Angles as sums of quarter turns, decimals and arc tangents, none of them computed.
 
-use crate::exact::{decimal, exactly, pi, root, sine_and_cosine};
+use crate::exact::{decimal, exactly, pi, root, shortened, sine_and_cosine};
 use denavit_codegen::model::meant_quarter_turns;
 use denavit_codegen::number::{Rational, integer, ratio};
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -265,7 +265,8 @@ impl Angle {
         if let Some(Term::Degrees(value)) =
             self.terms.iter().find(|term| matches!(term, Term::Degrees(_)))
         {
-            let quarters_of = |n: u8| if n == 3 { integer(-90) } else { integer(90 * i64::from(n)) };
+            let quarters_of =
+                |n: u8| if n == 3 { integer(-90) } else { integer(90 * i64::from(n)) };
             degrees = Some(value + quarters_of(std::mem::take(&mut quarters)));
         }
         match quarters {
@@ -300,13 +301,13 @@ impl Angle {
                 Term::Degrees(value) => sine_and_cosine(&(value * pi() / integer(180))),
                 Term::Atan2 { y, x, minus } => {
                     let length = root(&(y.square() + x.square()));
-                    let sine = y.value() / &length;
-                    (if *minus { -sine } else { sine }, x.value() / length)
+                    let sine = shortened(y.value() / &length);
+                    (if *minus { -sine } else { sine }, shortened(x.value() / length))
                 }
             };
             found = (
-                &found.0 * &cosine + &found.1 * &sine,
-                &found.1 * &cosine - &found.0 * &sine,
+                shortened(&found.0 * &cosine + &found.1 * &sine),
+                shortened(&found.1 * &cosine - &found.0 * &sine),
             );
         }
         found
@@ -374,10 +375,7 @@ mod tests {
 
     #[test]
     fn sines_are_those_of_the_text() {
-        let made = Angle::atan2(
-            Surd::rational(ratio(-1, 3)),
-            Surd::new(integer(1), ratio(2, 9)),
-        );
+        let made = Angle::atan2(Surd::rational(ratio(-1, 3)), Surd::new(integer(1), ratio(2, 9)));
         let angle = made.angle.plus(&radians("0.3").angle).plus(&Angle::quarter(2));
         let value = (-1.0_f64 / 3.0).atan2((2.0_f64 / 9.0).sqrt()) + 0.3 + std::f64::consts::PI;
         let (sine, cosine) = angle.sine_and_cosine();

@@ -7,6 +7,4 @@ mod turn;
 
 pub(crate) use angle::{Angle, Made};
 pub(crate) use rows::{Row, RowSearch};
-pub(crate) use turn::{
-    Pose, Turn, about, direction, is_quarter, matrix, onto_axes, shortest,
-};
+pub(crate) use turn::{Pose, Turn, about, direction, is_quarter, matrix, onto_axes, shortest};

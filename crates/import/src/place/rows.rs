@@ -265,15 +265,17 @@ mod tests {
     }
 
     fn check(at: [i64; 3], turns: &[(usize, &str)], most: usize) {
-        let turns = turns.iter().map(|&(axis, text)| {
-            Turn::new(axis, Angle::radians(text).expect("a decimal").angle)
-        });
+        let turns = turns
+            .iter()
+            .map(|&(axis, text)| Turn::new(axis, Angle::radians(text).expect("a decimal").angle));
         let pose = Pose { at: at.map(|length| ratio(length, 10)), turns: turns.collect() };
         let rows = RowSearch::default().rows(&pose);
         assert!(rows.len() <= most, "{} rows for {pose:?}", rows.len());
         let (found, at) = composed(&rows);
         let wanted = matrix(&pose.turns);
-        for (a, b) in found.iter().flatten().zip(wanted.iter().flatten()).chain(at.iter().zip(&pose.at)) {
+        for (a, b) in
+            found.iter().flatten().zip(wanted.iter().flatten()).chain(at.iter().zip(&pose.at))
+        {
             assert!((a - b).abs() < ratio(1, 1_000_000_000_000), "{pose:?} as {rows:?}");
         }
     }

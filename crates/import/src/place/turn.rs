@@ -249,7 +249,15 @@ mod tests {
         let mut whole = matrix(&generic);
         let axes: [Vector; 3] = std::array::from_fn(|axis| {
             let (to, minus) = quarter.of_axis(axis);
-            std::array::from_fn(|k| integer(if k != to { 0 } else if minus { -1 } else { 1 }))
+            std::array::from_fn(|k| {
+                integer(if k != to {
+                    0
+                } else if minus {
+                    -1
+                } else {
+                    1
+                })
+            })
         });
         whole = exact::product(&whole, &exact::transposed(&axes));
         let wanted = matrix(&turns);

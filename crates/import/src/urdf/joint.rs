@@ -24,8 +24,9 @@ pub(crate) fn push(
     let (axis, is_snapped) = direction(&joint.axis).unwrap_or_default();
     let mimic = joint.element.first("mimic").filter(|_| joint.kind != Kind::Fixed);
     let before = vec![joint.origin.clone()];
-    let fixed = |before: Vec<Pose>| {
-        TreeLink { body: link.body.clone(), ..TreeLink::fixed(link.name.text, Some(parent), before) }
+    let fixed = |before: Vec<Pose>| TreeLink {
+        body: link.body.clone(),
+        ..TreeLink::fixed(link.name.text, Some(parent), before)
     };
     match (joint.kind, mimic, options.mimic) {
         (Kind::Fixed, ..) => tree.links.push(fixed(before)),
@@ -39,16 +40,25 @@ pub(crate) fn push(
             let offset = mimic.get("offset").map_or("0", |offset| offset.text).trim();
             let held = held(joint.kind, axis, offset);
             let Some(held) = held else {
-                faults.push(mimic.at(), Cause::new(format!("the offset `{}` is no number", clip(offset))));
+                faults.push(
+                    mimic.at(),
+                    Cause::new(format!("the offset `{}` is no number", clip(offset))),
+                );
                 return;
             };
-            tree.notes.push(format!("joint {} is fixed where it is when the one it follows is at 0", clip(joint.name.text)));
+            tree.notes.push(format!(
+                "joint {} is fixed where it is when the one it follows is at 0",
+                clip(joint.name.text)
+            ));
             tree.links.push(fixed([before, held].concat()));
         }
         (kind, mimic, _) => {
             if let Some(leader) = mimic.and_then(|mimic| mimic.get("joint")) {
                 let names = [joint.name.text, leader.text].map(clip);
-                tree.notes.push(format!("joint {} is a joint of its own and does not follow {}", names[0], names[1]));
+                tree.notes.push(format!(
+                    "joint {} is a joint of its own and does not follow {}",
+                    names[0], names[1]
+                ));
             }
             if is_snapped {
                 tree.notes.push(format!("the axis of joint {} is within rounding of a coordinate axis or plane, and lies there", clip(joint.name.text)));
@@ -88,7 +98,8 @@ fn steps(kind: Kind, name: &str, axis: Vec<Turn>) -> Steps {
         1 => vec![Turn::new(0, Angle::quarter(3))],
         _ => Vec::new(),
     };
-    let make = |ending: &str, motion, k| TreeJoint::new(&format!("{name}_{ending}"), motion, along(k));
+    let make =
+        |ending: &str, motion, k| TreeJoint::new(&format!("{name}_{ending}"), motion, along(k));
     use Motion::{Slides, Turns};
     let (joints, frame) = match kind {
         Kind::Planar => {
@@ -96,7 +107,8 @@ fn steps(kind: Kind, name: &str, axis: Vec<Turn>) -> Steps {
         }
         Kind::Floating => {
             let slides = [("x", 0), ("y", 1), ("z", 2)].map(|(name, k)| make(name, Slides, k));
-            let turns = [("yaw", 2), ("pitch", 1), ("roll", 0)].map(|(name, k)| make(name, Turns, k));
+            let turns =
+                [("yaw", 2), ("pitch", 1), ("roll", 0)].map(|(name, k)| make(name, Turns, k));
             (slides.into_iter().chain(turns).collect(), Vec::new())
         }
         Kind::Prismatic => (vec![TreeJoint::new(name, Slides, axis)], Vec::new()),
@@ -138,13 +150,15 @@ fn push_steps(
 fn drive(joint: &RawJoint<'_>, raw: &Raw<'_>, tree: &mut Tree, faults: &mut Faults) -> TreeDrive {
     let element = joint.element;
     let effort = element.first("limit").and_then(|limit| limit.get("effort"));
-    let is_idle = effort.is_some_and(|effort| decimal(effort.text.trim()).is_some_and(|e| e.is_zero()));
+    let is_idle =
+        effort.is_some_and(|effort| decimal(effort.text.trim()).is_some_and(|e| e.is_zero()));
     let mut drive = TreeDrive { is_driven: !is_idle, ..TreeDrive::default() };
     let dynamics = element.first("dynamics");
     let mut given = |key| dynamics.and_then(|dynamics| positive(dynamics, key, faults));
     let [viscous, coulomb] = ["damping", "friction"].map(&mut given);
     let known = raw.transmissions.get(joint.name.text);
-    let rotor = known.and_then(|known| known.rotor_inertia.clone()).filter(|rotor| !rotor.is_zero());
+    let rotor =
+        known.and_then(|known| known.rotor_inertia.clone()).filter(|rotor| !rotor.is_zero());
     let Some(rotor) = rotor else {
         drive.viscous = viscous.map(|value| written(&value));
         drive.coulomb = coulomb.map(|value| written(&value));
@@ -152,7 +166,10 @@ fn drive(joint: &RawJoint<'_>, raw: &Raw<'_>, tree: &mut Tree, faults: &mut Faul
     };
     let ratio = known.and_then(|known| known.reduction.clone()).filter(|ratio| !ratio.is_zero());
     let ratio = ratio.unwrap_or_else(Rational::one);
-    tree.notes.push(format!("friction of joint {} is that of the motor's shaft, since its rotor is", clip(joint.name.text)));
+    tree.notes.push(format!(
+        "friction of joint {} is that of the motor's shaft, since its rotor is",
+        clip(joint.name.text)
+    ));
     drive.rotor_inertia = Some(written(&rotor));
     drive.viscous = viscous.map(|value| written(&(value / (&ratio * &ratio))));
     drive.coulomb = coulomb.map(|value| written(&(value / ratio.abs())));
@@ -171,7 +188,12 @@ fn limits(joint: &RawJoint<'_>, tree: &mut Tree, faults: &mut Faults) -> TreeLim
     TreeLimits { position, velocity, torque }
 }
 
-fn position(limit: Element<'_>, joint: &str, tree: &mut Tree, faults: &mut Faults) -> Option<[String; 2]> {
+fn position(
+    limit: Element<'_>,
+    joint: &str,
+    tree: &mut Tree,
+    faults: &mut Faults,
+) -> Option<[String; 2]> {
     let ends = ["lower", "upper"].map(|key| limit.get(key));
     if ends.iter().all(Option::is_none) || ends.iter().flatten().any(|end| is_endless(end.text)) {
         return None;
@@ -179,7 +201,10 @@ fn position(limit: Element<'_>, joint: &str, tree: &mut Tree, faults: &mut Fault
     let [low, high] = ["lower", "upper"].map(|key| number_or_zero(limit, key, faults));
     let (low, high) = (low?, high?);
     if low > high {
-        tree.notes.push(format!("the limits of joint {} are left out: the lower one is above the upper one", clip(joint)));
+        tree.notes.push(format!(
+            "the limits of joint {} are left out: the lower one is above the upper one",
+            clip(joint)
+        ));
         return None;
     }
     Some([written(&low), written(&high)])

@@ -11,7 +11,7 @@ use crate::body;
 use crate::fault::{Cause, Faults, clip, listed};
 use crate::options::{BaseChoice, Options};
 use crate::place::Turn;
-use crate::tree::{Tree, TreeLink};
+use crate::tree::{MAX_LINKS, Tree, TreeLink};
 use crate::xml::Element;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::number::{integer, ratio};
@@ -19,8 +19,18 @@ use raw::{Kind, Raw};
 use std::collections::BTreeMap;
 
 /// The tree of a file; nothing if it is at fault.
-pub(crate) fn tree(file: &str, robot: Element<'_>, options: &Options, faults: &mut Faults) -> Option<Tree> {
+pub(crate) fn tree(
+    file: &str,
+    robot: Element<'_>,
+    options: &Options,
+    faults: &mut Faults,
+) -> Option<Tree> {
     let raw = raw::read(robot, faults);
+    if raw.links.len() > MAX_LINKS {
+        let said = format!("the robot has more than {MAX_LINKS} links");
+        faults.push(robot.at(), Cause::new(said));
+        return None;
+    }
     let order = Order::find(&raw, robot, faults)?;
     let kept = kept(&raw, &order, options, robot, faults)?;
     let mut tree = Tree {
@@ -52,7 +62,8 @@ pub(crate) fn tree(file: &str, robot: Element<'_>, options: &Options, faults: &m
     contacts::find(&mut tree, &raw, &places, options, faults);
     if tree.links.len() == 1 && !tree.floats {
         let hint = "`--base floating` makes a model of it: the base moves";
-        faults.push(robot.at(), Cause::with_hint("the robot has one link, and nothing moves", hint));
+        faults
+            .push(robot.at(), Cause::with_hint("the robot has one link, and nothing moves", hint));
     }
     faults.is_empty().then_some(tree)
 }
@@ -79,9 +90,16 @@ impl Order {
                 let found = links.get(end.text).copied();
                 if found.is_none() {
                     let names = raw.links.iter().map(|link| link.name.text);
-                    let hint = nearest(end.text, names).map(|name| format!("did you mean `{name}`?"));
+                    let hint =
+                        nearest(end.text, names).map(|name| format!("did you mean `{name}`?"));
                     let said = format!("no link is called `{}`", clip(end.text));
-                    faults.push(end.at, hint.map_or_else(|| Cause::new(&said), |hint| Cause::with_hint(&said, hint)));
+                    faults.push(
+                        end.at,
+                        hint.map_or_else(
+                            || Cause::new(&said),
+                            |hint| Cause::with_hint(&said, hint),
+                        ),
+                    );
                 }
                 found
             });
@@ -91,7 +109,11 @@ impl Order {
             };
             if let Some(other) = carriers[child] {
                 let other = raw.joints[other].name.text;
-                let said = format!("link `{}` is already carried by joint `{}`", clip(joint.child.text), clip(other));
+                let said = format!(
+                    "link `{}` is already carried by joint `{}`",
+                    clip(joint.child.text),
+                    clip(other)
+                );
                 let hint = "a robot is a tree: a loop has to be cut";
                 faults.push(joint.child.at, Cause::with_hint(said, hint));
                 is_whole = false;
@@ -100,10 +122,11 @@ impl Order {
             carriers[child] = Some(at);
             children[parent].push(child);
         }
-        if !is_whole {
+        if !is_whole || raw.is_partial {
             return None;
         }
-        let roots: Vec<usize> = (0..raw.links.len()).filter(|&link| carriers[link].is_none()).collect();
+        let roots: Vec<usize> =
+            (0..raw.links.len()).filter(|&link| carriers[link].is_none()).collect();
         let [root] = roots[..] else {
             faults.push(robot.at(), no_single_root(raw, &roots));
             return None;
@@ -120,7 +143,10 @@ impl Order {
                 .filter(is_left)
                 .map(|link| raw.links[link].name.text.to_owned())
                 .collect();
-            faults.push(robot.at(), Cause::new(format!("these links carry each other: {}", listed(&left))));
+            faults.push(
+                robot.at(),
+                Cause::new(format!("these links carry each other: {}", listed(&left))),
+            );
             return None;
         }
         Some(Self { links: order })
@@ -131,9 +157,12 @@ fn no_single_root(raw: &Raw<'_>, roots: &[usize]) -> Cause {
     if raw.links.is_empty() {
         return Cause::new("the robot has no link");
     }
-    let names: Vec<String> = roots.iter().map(|&link| raw.links[link].name.text.to_owned()).collect();
+    let names: Vec<String> =
+        roots.iter().map(|&link| raw.links[link].name.text.to_owned()).collect();
     match names.is_empty() {
-        true => Cause::new("every link is carried by another one: a robot stands on one that is not"),
+        true => {
+            Cause::new("every link is carried by another one: a robot stands on one that is not")
+        }
         false => Cause::with_hint(
             format!("these links are carried by no joint: {}", listed(&names)),
             "a robot stands on one link: join the others to it by joints",

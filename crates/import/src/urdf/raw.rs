@@ -55,6 +55,8 @@ pub(crate) struct Raw<'s> {
     pub(crate) transmissions: BTreeMap<&'s str, Transmission>,
     pub(crate) bodies: BodyNotes,
     pub(crate) snapped: Snapped,
+    /// Whether links or joints are at fault, so that the others are no tree.
+    pub(crate) is_partial: bool,
 }
 
 const KINDS: [(&str, Kind); 6] = [
@@ -79,6 +81,7 @@ pub(crate) fn read<'s>(robot: Element<'s>, faults: &mut Faults) -> Raw<'s> {
         transmissions: BTreeMap::new(),
         bodies: BodyNotes::default(),
         snapped: Vec::new(),
+        is_partial: false,
     };
     for element in robot.children() {
         if element.space().is_some_and(|space| space.contains("xacro")) {
@@ -86,16 +89,19 @@ pub(crate) fn read<'s>(robot: Element<'s>, faults: &mut Faults) -> Raw<'s> {
                 let said = format!("<xacro:{}> has not been expanded", clip(element.name()));
                 let hint = "run `xacro ROBOT.urdf.xacro -o ROBOT.urdf` first";
                 faults.push(element.at(), Cause::with_hint(said, hint));
+                raw.is_partial = true;
             }
             continue;
         }
         match element.name() {
             "link" => {
                 let link = link(element, &mut raw, faults);
+                raw.is_partial |= link.is_none();
                 raw.links.extend(link);
             }
             "joint" => {
                 let joint = joint(element, &mut raw.snapped, faults);
+                raw.is_partial |= joint.is_none();
                 raw.joints.extend(joint);
             }
             "transmission" => transmission(element, &mut raw.transmissions, faults),

@@ -262,10 +262,7 @@ impl Failure {
         match self {
             // place and hint are part of these
             Self::Model(error) => write!(f, "{error}")?,
-            Self::Import(error) => write!(f, "{error}")?,
-            Self::Export(_, ExportError::Description(error)) => write!(f, "{error}")?,
-            Self::Export(model, error) => write!(f, "{model}: {error}")?,
-            Self::States(file, why) => write!(f, "{file}: these are no states: {why}")?,
+            Self::Import(_) | Self::Export(..) | Self::States(..) => self.of_others(f)?,
             Self::Bake(error) => write!(f, "{error}")?,
             Self::Output(error) => write!(f, "{error}")?,
             Self::Equations(error) => write!(f, "{error}")?,
@@ -329,6 +326,19 @@ impl Failure {
             }
         }
         Ok(())
+    }
+}
+
+impl Failure {
+    /// What is wrong with descriptions in other formats, and with states.
+    fn of_others(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Import(error) => write!(f, "{error}"),
+            Self::Export(_, ExportError::Description(error)) => write!(f, "{error}"),
+            Self::Export(model, error) => write!(f, "{model}: {error}"),
+            Self::States(file, why) => write!(f, "{file}: these are no states: {why}"),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! 1. `xml`: text to elements with places, within bounds, nothing expanded
 //! 2. `urdf`, `mjcf`: elements to one tree of links and joints; decimals stay rationals, turns stay
-//!    what the file says ([`place`])
+//!    what the file says (`place`)
 //! 3. `layout`: the tree to rows, as few as can be
 //! 4. `model`: rows to the text of a model file
 //!
@@ -10,6 +10,7 @@
 //! that are turned by 0.3) is rounded at 17 digits, and reported.
 
 mod body;
+mod chain;
 mod exact;
 mod export;
 mod fault;
@@ -24,7 +25,7 @@ mod tree;
 mod urdf;
 mod xml;
 
-pub use export::{ExportError, Exported, export, export_into};
+pub use export::{ExportError, Exported, Format, export, export_into};
 pub use fault::{Cause, ImportError};
 pub use options::{BaseChoice, Mimic, Options};
 

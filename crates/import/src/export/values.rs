@@ -1,6 +1,7 @@
 //! Values of a model as numbers.
 
 use super::ExportError;
+use crate::fault::listed;
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::model::{About, Body, LinkId, Robot, bake};
 use denavit_codegen::number::Rational;
@@ -18,6 +19,40 @@ pub(super) struct BodyNumbers {
     pub(super) com: [Rational; 3],
     /// xx, yy, zz, xy, xz, yz.
     pub(super) inertia: [Rational; 6],
+}
+
+/// What a format does not say; a URDF says neither gravity nor springs.
+pub(super) fn notes(numbers: &Numbers, is_urdf: bool) -> Vec<String> {
+    let robot = &numbers.robot;
+    let mut notes = Vec::new();
+    let gravity = robot.gravity.map(|entry| numbers.number(entry));
+    if is_urdf && gravity != [0.0, 0.0, -9.81] {
+        notes.push(format!("gravity is {gravity:?} here, which a URDF cannot say"));
+    }
+    let with = |has: &dyn Fn(LinkId) -> bool| -> Vec<String> {
+        let links = robot.links.iter().filter(|(id, _)| has(*id));
+        links.map(|(_, link)| link.name.clone()).collect()
+    };
+    let sprung = with(&|id| {
+        let link = &robot.links[id];
+        let drive = link.drive.unwrap_or_default();
+        (is_urdf && link.joint.spring.is_some())
+            || drive.series_elastic.is_some()
+            || drive.return_spring.is_some()
+    });
+    if !sprung.is_empty() {
+        notes.push(format!("these have springs that cannot be said: {}", listed(&sprung)));
+    }
+    let offsets = with(&|id| robot.links[id].drive.is_some_and(|drive| drive.offset.is_some()));
+    if !offsets.is_empty() {
+        notes
+            .push(format!("these have constant torques that cannot be said: {}", listed(&offsets)));
+    }
+    if !robot.effects.is_empty() {
+        let names: Vec<String> = robot.effects.iter().map(|effect| effect.effect.clone()).collect();
+        notes.push(format!("effects are left out: {}", listed(&names)));
+    }
+    notes
 }
 
 impl Numbers {

@@ -102,10 +102,11 @@ fn shape(
         }
     };
     let round = matches!(kind, "capsule" | "cylinder");
-    let mut size = given.clone();
+    let mut size = given;
     if let Some(half) = half_length {
-        size.resize(if round { 1 } else { 2 }, size.last().cloned().unwrap_or_default());
-        size.push(half);
+        // across it is as wide as its first size
+        let width = size.first().cloned().unwrap_or_default();
+        size = if round { vec![width, half] } else { vec![width.clone(), width, half] };
     }
     let needed = match kind {
         "sphere" => 1,

@@ -9,6 +9,7 @@ mod refused;
 mod settings;
 
 use crate::body::settle;
+use crate::chain;
 use crate::fault::{Cause, Faults, listed};
 use crate::options::{BaseChoice, Options};
 use crate::tree::{Tree, TreeLink};
@@ -73,13 +74,12 @@ pub(crate) fn tree<'s>(
             .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
     }
     settle(&mut tree, faults);
-    for (key, is_given) in
-        [("--tip", options.tip.is_some()), ("--contacts", !options.contacts.is_empty())]
-    {
-        if is_given {
-            faults
-                .push(root.at(), Cause::new(format!("{key} is for URDF: MJCF has no such links")));
-        }
+    if let Some(tip) = &options.tip {
+        chain::cut(&mut tree, tip, root.at(), faults);
+    }
+    if !options.contacts.is_empty() {
+        let said = "--contacts is for URDF: an MJCF has no collision shapes apart";
+        faults.push(root.at(), Cause::with_hint(said, "write \"contacts\" into the model file"));
     }
     if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
         faults.push(root.at(), Cause::new("nothing moves: no body has a joint"));

@@ -33,7 +33,8 @@ pub(crate) fn push(
         (_, Some(mimic), Mimic::Refuse) => {
             let leader = mimic.get("joint").map_or("another one", |leader| leader.text);
             let said = format!("joint `{}` follows `{}`", clip(joint.name.text), clip(leader));
-            let hint = "`--mimic lock` fixes it where it is at 0, `--mimic free` makes it a joint of its own";
+            let hint = "`denavit import --mimic lock` fixes it where it is at 0, `--mimic free` \
+                        makes it a joint of its own";
             faults.push(mimic.at(), Cause::with_hint(said, hint));
         }
         (_, Some(mimic), Mimic::Lock) => {
@@ -61,7 +62,11 @@ pub(crate) fn push(
                 ));
             }
             if is_snapped {
-                tree.notes.push(format!("the axis of joint {} is within rounding of a coordinate axis or plane, and lies there", clip(joint.name.text)));
+                tree.notes.push(format!(
+                    "the axis of joint {} is within rounding of a coordinate axis or plane, and \
+                     lies there",
+                    clip(joint.name.text)
+                ));
             }
             let drive = drive(joint, raw, tree, faults);
             let limits = limits(joint, tree, faults);

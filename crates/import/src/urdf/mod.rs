@@ -8,14 +8,15 @@ mod values;
 pub(crate) use values::{number, numbers, wrong};
 
 use crate::body;
+use crate::chain;
 use crate::fault::{Cause, Faults, clip, listed};
 use crate::options::{BaseChoice, Options};
 use crate::place::Turn;
 use crate::tree::{MAX_LINKS, Tree, TreeLink};
-use crate::xml::Element;
+use crate::xml::{Element, Text};
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::number::{integer, ratio};
-use raw::{Kind, Raw};
+use raw::Raw;
 use std::collections::BTreeMap;
 
 /// The tree of a file; nothing if it is at fault.
@@ -32,7 +33,6 @@ pub(crate) fn tree(
         return None;
     }
     let order = Order::find(&raw, robot, faults)?;
-    let kept = kept(&raw, &order, options, robot, faults)?;
     let mut tree = Tree {
         name: raw.name.clone(),
         description: format!("Imported from {file} (URDF)."),
@@ -53,13 +53,16 @@ pub(crate) fn tree(
             places.insert(found.name.text, 0);
             continue;
         };
-        let Some(&parent) = places.get(joint.parent.text).filter(|_| kept[link]) else { continue };
+        let Some(&parent) = places.get(joint.parent.text) else { continue };
         joint::push(&mut tree, joint, found, parent, &raw, options, faults);
         places.insert(found.name.text, tree.links.len() - 1);
     }
     notes(&mut tree, &raw);
     body::settle(&mut tree, faults);
     contacts::find(&mut tree, &raw, &places, options, faults);
+    if let Some(tip) = &options.tip {
+        chain::cut(&mut tree, tip, robot.at(), faults);
+    }
     if tree.links.len() == 1 && !tree.floats {
         let hint = "`--base floating` makes a model of it: the base moves";
         faults
@@ -86,23 +89,7 @@ impl Order {
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); raw.links.len()];
         let mut is_whole = true;
         for (at, joint) in raw.joints.iter().enumerate() {
-            let ends = [joint.parent, joint.child].map(|end| {
-                let found = links.get(end.text).copied();
-                if found.is_none() {
-                    let names = raw.links.iter().map(|link| link.name.text);
-                    let hint =
-                        nearest(end.text, names).map(|name| format!("did you mean `{name}`?"));
-                    let said = format!("no link is called `{}`", clip(end.text));
-                    faults.push(
-                        end.at,
-                        hint.map_or_else(
-                            || Cause::new(&said),
-                            |hint| Cause::with_hint(&said, hint),
-                        ),
-                    );
-                }
-                found
-            });
+            let ends = [joint.parent, joint.child].map(|end| place(end, raw, &links, faults));
             let [Some(parent), Some(child)] = ends else {
                 is_whole = false;
                 continue;
@@ -153,6 +140,28 @@ impl Order {
     }
 }
 
+/// The link of a name; notes that there is none.
+fn place(
+    end: Text<'_>,
+    raw: &Raw<'_>,
+    links: &BTreeMap<&str, usize>,
+    faults: &mut Faults,
+) -> Option<usize> {
+    let found = links.get(end.text).copied();
+    if found.is_none() {
+        let names = raw.links.iter().map(|link| link.name.text);
+        let said = format!("no link is called `{}`", clip(end.text));
+        faults.push(
+            end.at,
+            match nearest(end.text, names) {
+                Some(name) => Cause::with_hint(said, format!("did you mean `{name}`?")),
+                None => Cause::new(said),
+            },
+        );
+    }
+    found
+}
+
 fn no_single_root(raw: &Raw<'_>, roots: &[usize]) -> Cause {
     if raw.links.is_empty() {
         return Cause::new("the robot has no link");
@@ -189,55 +198,8 @@ fn named<'s>(raw: &Raw<'s>, faults: &mut Faults) -> BTreeMap<&'s str, usize> {
     links
 }
 
-/// Which links are part of the model: all, or those on the way to a tip and what is fixed to them.
-fn kept(
-    raw: &Raw<'_>,
-    order: &Order,
-    options: &Options,
-    robot: Element<'_>,
-    faults: &mut Faults,
-) -> Option<Vec<bool>> {
-    let Some(tip) = &options.tip else { return Some(vec![true; raw.links.len()]) };
-    let Some(mut at) = raw.links.iter().position(|link| link.name.text == tip) else {
-        let names = raw.links.iter().map(|link| link.name.text);
-        let said = format!("--tip: no link is called `{}`", clip(tip));
-        let cause = match nearest(tip, names) {
-            Some(name) => Cause::with_hint(said, format!("did you mean `{name}`?")),
-            None => Cause::new(said),
-        };
-        faults.push(robot.at(), cause);
-        return None;
-    };
-    let place = |name: &str| raw.links.iter().position(|link| link.name.text == name);
-    let carrier = |link: usize| order.links.iter().find(|(known, _)| *known == link)?.1;
-    let mut kept = vec![false; raw.links.len()];
-    kept[at] = true;
-    while let Some(parent) = carrier(at).and_then(|joint| place(raw.joints[joint].parent.text)) {
-        kept[parent] = true;
-        at = parent;
-    }
-    for &(link, joint) in &order.links {
-        let Some(joint) = joint.map(|joint| &raw.joints[joint]) else { continue };
-        let parent = place(joint.parent.text);
-        kept[link] |= joint.kind == Kind::Fixed && parent.is_some_and(|parent| kept[parent]);
-    }
-    Some(kept)
-}
-
 /// What is said of the whole file.
 fn notes(tree: &mut Tree, raw: &Raw<'_>) {
-    let left: Vec<String> = raw
-        .joints
-        .iter()
-        .filter(|joint| {
-            let has = |name: &str| tree.links.iter().any(|link| link.name.as_deref() == Some(name));
-            has(joint.parent.text) && !has(joint.child.text)
-        })
-        .map(|joint| joint.name.text.to_owned())
-        .collect();
-    if !left.is_empty() {
-        tree.notes.push(format!("left out is what these joints carry: {}", listed(&left)));
-    }
     let bodies = &raw.bodies;
     if !raw.snapped.is_empty() {
         let said = "angles within rounding of a quarter turn are quarter turns";

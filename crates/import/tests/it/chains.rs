@@ -65,8 +65,10 @@ fn written(joints: &[Joint]) -> String {
     for (at, joint) in joints.iter().enumerate() {
         let [xx, yy, zz] = joint.inertia;
         text.push_str(&format!(
-            "<link name=\"l{own}\"><inertial><origin xyz=\"{com}\" rpy=\"{turn}\"/><mass value=\"{mass}\"/>\
-             <inertia ixx=\"{xx}\" iyy=\"{yy}\" izz=\"{zz}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
+            "<link name=\"l{own}\"><inertial><origin xyz=\"{com}\" rpy=\"{turn}\"/>\
+             <mass value=\"{mass}\"/>\
+             <inertia ixx=\"{xx}\" iyy=\"{yy}\" izz=\"{zz}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>\
+             </inertial></link>\
              <joint name=\"j{own}\" type=\"{kind}\"><origin xyz=\"{xyz}\" rpy=\"{rpy}\"/>\
              <parent link=\"l{parent}\"/><child link=\"l{own}\"/><axis xyz=\"{axis}\"/></joint>",
             own = at + 1,

@@ -3,7 +3,7 @@
 use crate::evaluated::{Random, called, imported};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{self, Robot};
-use denavit_import::{Options, export, export_into, import, nothing_included};
+use denavit_import::{Format, Options, export, export_into, import, nothing_included};
 
 const GANTRY: &str = include_str!("../robots/gantry.urdf");
 
@@ -68,34 +68,53 @@ fn compare(a: &Robot, b: &Robot) {
 #[test]
 fn a_whole_urdf_is_the_same_robot() {
     let robot = read(&gantry());
-    let text = export(&robot).expect("a URDF").text;
+    let text = export(&robot, Format::Urdf).expect("a URDF").text;
     compare(&robot, &imported(&text, &Options::default()));
+}
+
+#[test]
+fn a_whole_mjcf_is_the_same_robot_with_its_springs() {
+    let hopper = include_str!("../robots/hopper.xml");
+    let robot = imported(hopper, &Options::default());
+    let exported = export(&robot, Format::Mjcf).expect("an MJCF");
+    assert!(exported.notes.is_empty(), "{:?}", exported.notes);
+    compare(&robot, &imported(&exported.text, &Options::default()));
+    let gantry = read(&gantry());
+    let exported = export(&gantry, Format::Mjcf).expect("an MJCF");
+    compare(&gantry, &imported(&exported.text, &Options::default()));
 }
 
 #[test]
 fn both_conventions_are_written() {
     let standard = r#"{
-      "format": "denavit-model/1", "name": "arm", "convention": "standard", "gravity": [0, 0, -9.81],
+      "format": "denavit-model/1", "name": "arm", "convention": "standard",
+      "gravity": [0, 0, -9.81],
       "links": [
         {"name": "one", "joint": {"type": "revolute", "a": 0.1, "alpha": "pi/2", "d": 0.3},
-         "body": {"mass": 2, "com": [0.1, 0.2, 0.3], "inertia": {"xx": 0.1, "yy": 0.2, "zz": 0.25}, "about": "origin"}},
+         "body": {"mass": 2, "com": [0.1, 0.2, 0.3],
+                  "inertia": {"xx": 0.1, "yy": 0.2, "zz": 0.25}, "about": "com"}},
         {"name": "two", "joint": {"type": "prismatic", "a": 0.2, "alpha": 0.3, "theta": 0.4},
-         "body": {"mass": 1, "com": [0, 0.1, 0], "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.1, "xy": 0.01}, "about": "com"}},
+         "body": {"mass": 1, "com": [0, 0.1, 0],
+                  "inertia": {"xx": 0.2, "yy": 0.2, "zz": 0.2, "xy": 0.01}, "about": "origin"}},
         {"name": "tip", "joint": {"type": "fixed", "d": 0.1},
-         "body": {"mass": 1, "com": [0, 0, 0], "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.1}, "about": "com"}}],
-      "drives": {"one": {"gear_ratio": -50, "rotor_inertia": 1e-4, "viscous": 1e-3, "coulomb": 0.01}}}"#;
-    let robot = read(&standard.replace("\"about\": \"origin\"", "\"about\": \"com\""));
-    let exported = export(&robot).expect("a URDF");
+         "body": {"mass": 1, "com": [0, 0, 0],
+                  "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.1}, "about": "com"}}],
+      "drives": {"one": {"gear_ratio": -50, "rotor_inertia": 1e-4, "viscous": 1e-3,
+                         "coulomb": 0.01}}}"#;
+    let robot = read(standard);
+    let exported = export(&robot, Format::Urdf).expect("a URDF");
     assert!(exported.notes.is_empty(), "{:?}", exported.notes);
+    compare(&robot, &imported(&exported.text, &Options::default()));
+    let exported = export(&robot, Format::Mjcf).expect("an MJCF");
     compare(&robot, &imported(&exported.text, &Options::default()));
 }
 
 #[test]
 fn what_a_urdf_cannot_say_is_reported() {
     let text = gantry().replace("[0, 0, \"-g\"]", "[0, \"g\", 0]");
-    let exported = export(&read(&text)).expect("a URDF");
+    let exported = export(&read(&text), Format::Urdf).expect("a URDF");
     assert!(exported.notes[0].contains("gravity"));
     let text = gantry().replace("\"swing\": {}", "\"swing\": {\"offset\": 3}");
-    let exported = export(&read(&text)).expect("a URDF");
+    let exported = export(&read(&text), Format::Urdf).expect("a URDF");
     assert!(exported.notes[0].contains("constant torques") && exported.notes[0].contains("swing"));
 }

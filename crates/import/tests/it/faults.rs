@@ -33,7 +33,8 @@ fn all_faults_of_a_file_are_reported_with_their_places() {
 fn trees_are_trees() {
     let joint = |name: &str, parent: &str, child: &str| {
         format!(
-            "<joint name=\"{name}\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>"
+            "<joint name=\"{name}\" type=\"fixed\"><parent link=\"{parent}\"/>\
+             <child link=\"{child}\"/></joint>"
         )
     };
     let links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
@@ -60,8 +61,10 @@ fn trees_are_trees() {
 #[test]
 fn impossible_bodies_are_refused_as_model_files_refuse_them() {
     let text = "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"><inertial><mass value=\"1\"/>\
-                <inertia ixx=\"1\" iyy=\"-1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
-                <joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>";
+                <inertia ixx=\"1\" iyy=\"-1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>\
+                </inertial></link>\
+                <joint name=\"j\" type=\"continuous\"><parent link=\"a\"/>\
+                <child link=\"b\"/></joint></robot>";
     let found = said(text);
     assert!(found.contains("link `b`: about the centre of mass, Iyy = -1 is negative"), "{found}");
     // moments that no body has, with positive energies, are kept and said to be

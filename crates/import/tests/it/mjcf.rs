@@ -86,7 +86,8 @@ fn joints_have_what_defaults_and_they_say() {
 #[test]
 fn balls_and_free_bodies_are_three_and_six_joints() {
     let text = "<mujoco><worldbody><body name=\"b\"><freejoint name=\"f\"/><geom size=\"0.1\"/>\
-                <body name=\"c\" pos=\"0 0 1\"><joint name=\"ball\" type=\"ball\"/><geom size=\"0.1\"/></body>\
+                <body name=\"c\" pos=\"0 0 1\">\
+                <joint name=\"ball\" type=\"ball\"/><geom size=\"0.1\"/></body>\
                 </body></worldbody></mujoco>";
     let robot = imported(text, &Options::default());
     assert_eq!(robot.degrees_of_freedom(), 9);
@@ -107,7 +108,8 @@ fn what_is_no_tree_is_refused_by_name() {
     let with = |more: &str| said(&HOPPER.replace("</worldbody>", &format!("</worldbody>{more}")));
     let equality = "<equality><connect name=\"loop\" body1=\"shin\" anchor=\"0 0 0\"/></equality>";
     assert!(with(equality).contains("equality constraint `loop` (connect) closes a loop"));
-    let tendon = "<tendon><fixed name=\"t\" stiffness=\"3\"><joint joint=\"hip\" coef=\"1\"/></fixed></tendon>";
+    let tendon = "<tendon><fixed name=\"t\" stiffness=\"3\">\
+                  <joint joint=\"hip\" coef=\"1\"/></fixed></tendon>";
     assert!(with(tendon).contains("the tendon `t` has stiffness"));
     let mesh = HOPPER
         .replace("<inertial pos", "<site pos")

@@ -52,8 +52,10 @@ fn panda_like_chains_have_a_row_for_each_joint() {
             .enumerate()
     {
         text.push_str(&format!(
-            "<link name=\"l{own}\"/><joint name=\"j{own}\" type=\"revolute\"><parent link=\"l{at}\"/>\
-             <child link=\"l{own}\"/><origin xyz=\"{xyz}\" rpy=\"{roll} 0 0\"/><axis xyz=\"0 0 1\"/></joint>",
+            "<link name=\"l{own}\"/><joint name=\"j{own}\" type=\"revolute\">\
+             <parent link=\"l{at}\"/>\
+             <child link=\"l{own}\"/><origin xyz=\"{xyz}\" rpy=\"{roll} 0 0\"/>\
+             <axis xyz=\"0 0 1\"/></joint>",
             own = at + 1
         ));
     }
@@ -110,7 +112,8 @@ fn joints_that_follow_are_refused_locked_or_free() {
 fn planar_and_floating_joints_are_slides_and_turns() {
     let with = |kind: &str| {
         format!(
-            "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"{kind}\">\
+            "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/>\
+             <joint name=\"j\" type=\"{kind}\">\
              <origin xyz=\"1 2 3\" rpy=\"0.1 0.2 0.3\"/><axis xyz=\"0 0 1\"/><parent link=\"a\"/>\
              <child link=\"b\"/></joint></robot>"
         )

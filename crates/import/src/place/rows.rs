@@ -10,8 +10,9 @@ use super::quarter::Quarter;
 use super::turn::{Pose, Turn, normal};
 use denavit_codegen::number::Rational;
 use num_traits::Zero;
+use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::BinaryHeap;
 
 /// A row of constants.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,7 +76,7 @@ const MAX_TURNS: usize = 12;
 /// Searches rows, and remembers what it found for other poses of the same shape.
 #[derive(Debug, Default)]
 pub(crate) struct RowSearch {
-    known: HashMap<Shape, Vec<Step>>,
+    known: FxHashMap<Shape, Vec<Step>>,
 }
 
 impl RowSearch {
@@ -141,7 +142,7 @@ fn search(shape: &Shape) -> Vec<Step> {
     let moves = [0, 1, 2].map(|axis| shape.moves[axis].then_some((axis as u8, false)));
     let start = Left { moves, turned: 0, frame: Quarter::IDENTITY };
     let mut places = vec![(start, None::<(usize, Step)>)];
-    let mut cheapest = HashMap::from([(start, 0_u32)]);
+    let mut cheapest = FxHashMap::from_iter([(start, 0_u32)]);
     let mut waiting = BinaryHeap::from([(Reverse(0_u32), Reverse(0_usize))]);
     while let Some((Reverse(cost), Reverse(at))) = waiting.pop() {
         let left = places[at].0;

@@ -202,6 +202,9 @@ impl<'s, 'f> Reader<'s, 'f> {
             }
             let is_driven = self.driven.contains(name.as_str());
             let made = joint(&name, &attributes, (is_free, is_driven), self.settings, self.faults);
+            if made.iter().any(|freedom| freedom.is_snapped) {
+                self.snapped.push(name);
+            }
             found.extend(made);
         }
         found

@@ -25,8 +25,8 @@ struct Shape {
 pub(crate) fn lump(
     geom: &Attributes<'_>,
     settings: &Settings<'_>,
-    outer: &Pose,
-    body: &str,
+    (outer, body): (&Pose, &str),
+    snapped: &mut Snapped,
     faults: &mut Faults,
 ) -> Option<Lump> {
     let group = geom.number("group", faults).map_or(0, |group| super::whole(&group));
@@ -50,8 +50,7 @@ pub(crate) fn lump(
         faults.push(geom.at, Cause::with_hint(said, "give the body an <inertial>"));
         return None;
     }
-    let mut news = Snapped::new();
-    let mut place = pose(geom, settings, body, &mut news, faults);
+    let mut place = pose(geom, settings, body, snapped, faults);
     let mut half_length = None;
     if let Some(ends) = geom.numbers::<6>("fromto", faults) {
         let from: Vector = std::array::from_fn(|k| ends[k].clone());

@@ -14,11 +14,13 @@ pub(crate) struct Freedom {
     pub(crate) before: Vec<Pose>,
     pub(crate) joint: TreeJoint,
     pub(crate) after: Vec<Pose>,
+    /// Whether an angle of it was within rounding of a quarter turn.
+    pub(crate) is_snapped: bool,
 }
 
 impl Freedom {
     fn of(joint: TreeJoint) -> Self {
-        Self { before: Vec::new(), joint, after: Vec::new() }
+        Self { before: Vec::new(), joint, after: Vec::new(), is_snapped: false }
     }
 }
 
@@ -104,7 +106,7 @@ fn single(
         None => [0, 0, 1].map(integer),
         Some(_) => attributes.numbers("axis", faults)?,
     };
-    let Some((axis, _)) = direction(&axis) else {
+    let Some((axis, mut is_snapped)) = direction(&axis) else {
         let said = format!("the axis of joint `{}` has no direction", clip(name));
         faults.push(attributes.at, Cause::new(said));
         return None;
@@ -122,13 +124,14 @@ fn single(
                     crate::urdf::wrong(zero.0, "`ref`", "an angle", faults);
                     return None;
                 };
+                is_snapped |= made.is_snapped;
                 joint.zero.0 = made.angle.negated();
             }
         }
     }
     joint.limits = limits(motion, attributes, settings, faults);
     joint.drive = drive(motion, attributes, is_driven, settings, faults);
-    Some(Freedom::of(joint))
+    Some(Freedom { is_snapped, ..Freedom::of(joint) })
 }
 
 /// A position of a joint as the model file writes it.

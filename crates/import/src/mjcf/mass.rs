@@ -1,7 +1,7 @@
 //! The mass of a body: its own, or that of its shapes.
 
 use super::body::Scope;
-use super::frame::pose;
+use super::frame::{Snapped, pose};
 use super::geom::{Lump, lump, together};
 use super::settings::{Attributes, FromGeoms, Settings};
 use crate::body::{BodyNotes, GivenBody, body, entries};
@@ -16,6 +16,8 @@ use num_traits::Zero;
 #[derive(Default)]
 pub(crate) struct MassNotes {
     pub(crate) bodies: BodyNotes,
+    /// Bodies with turns that were within rounding of quarter turns.
+    pub(crate) snapped: Snapped,
     /// Bodies whose mass is that of shapes.
     pub(crate) shaped: usize,
 }
@@ -37,14 +39,14 @@ pub(crate) fn mass_of<'s>(
     if !shapes {
         let inertial = inertial?;
         let attributes = settings.with_class(inertial, None, faults);
-        let given = given(name, &attributes, settings, faults)?;
+        let given = given(name, &attributes, settings, &mut notes.snapped, faults)?;
         return body(bounded(given, settings), &mut notes.bodies);
     }
     let lumps: Vec<Lump> = geoms
         .iter()
         .filter_map(|(geom, scope)| {
             let attributes = settings.with_class(*geom, scope.class, faults);
-            lump(&attributes, settings, &scope.frame, name, faults)
+            lump(&attributes, settings, (&scope.frame, name), &mut notes.snapped, faults)
         })
         .collect();
     let whole = together(&lumps)?;
@@ -69,9 +71,10 @@ fn given<'n>(
     name: &'n str,
     inertial: &Attributes<'_>,
     settings: &Settings<'_>,
+    snapped: &mut Snapped,
     faults: &mut Faults,
 ) -> Option<GivenBody<'n>> {
-    let place = pose(inertial, settings, name, &mut Vec::new(), faults);
+    let place = pose(inertial, settings, name, snapped, faults);
     let Some(mass) = inertial.number("mass", faults) else {
         let said = format!("the <inertial> of body `{}` has no mass", clip(name));
         faults.push(inertial.at, Cause::new(said));

@@ -62,7 +62,10 @@ pub(crate) fn tree<'s>(
             tree.notes.push(format!("{said}: {}", listed(names)));
         }
     };
-    note("angles within rounding of a quarter turn are quarter turns", &snapped);
+    note(
+        "angles within rounding of a quarter turn are quarter turns",
+        &[snapped, notes.snapped].concat(),
+    );
     note(
         "tensors turned by what is no quarter turn are rounded at 17 digits",
         &notes.bodies.rounded,

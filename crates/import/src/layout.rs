@@ -113,7 +113,7 @@ impl Placer<'_> {
     }
 
     /// The rows from the frames of a parent along a way: the fewest, and from which frame.
-    fn from_parent(&mut self, parent: usize, way: &[Pose]) -> (usize, Vec<Row>) {
+    fn reach(&mut self, parent: usize, way: &[Pose]) -> (usize, Vec<Row>) {
         let mut best: Option<(usize, Vec<Row>)> = None;
         for (at, start) in self.starts[parent].iter().enumerate() {
             let whole: Vec<Pose> = start.way.iter().chain(way).cloned().collect();
@@ -127,7 +127,7 @@ impl Placer<'_> {
 
     fn fixed(&mut self, index: usize, link: &TreeLink, parent: usize) {
         let way: Vec<Pose> = link.before.iter().chain(&link.after).cloned().collect();
-        let (at, mut rows) = self.from_parent(parent, &way);
+        let (at, mut rows) = self.reach(parent, &way);
         if rows.is_empty() {
             rows.push(Row::nothing());
         }
@@ -171,7 +171,7 @@ impl Placer<'_> {
             let turned = Pose::turned(axis);
             let to_joint: Vec<Pose> = link.before.iter().chain([&turned]).cloned().collect();
             let back: Vec<Pose> = turned.inverse().iter().chain(&link.after).cloned().collect();
-            let (start, mut rows) = self.from_parent(parent, &to_joint);
+            let (start, mut rows) = self.reach(parent, &to_joint);
             if rows.is_empty() {
                 rows.push(Row::nothing());
             }

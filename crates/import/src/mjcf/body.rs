@@ -45,7 +45,11 @@ impl<'s> Scope<'s> {
             at: std::array::from_fn(|k| &self.frame.at[k] + &moved[k]),
             turns: [&self.frame.turns[..], &pose.turns].concat(),
         };
-        Self { class: class.or(self.class), way: [&self.way[..], &[pose.clone()]].concat(), frame }
+        Self {
+            class: class.or(self.class),
+            way: [&self.way[..], std::slice::from_ref(pose)].concat(),
+            frame,
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::evaluated::{
 };
 use denavit_codegen::function::FunctionName;
 use denavit_import::{BaseChoice, Options};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A joint with the link that it carries.
 struct Joint {
@@ -22,11 +23,15 @@ struct Joint {
 
 const KINDS: [&str; 4] = ["revolute", "continuous", "prismatic", "fixed"];
 
+/// Quarter turns, and what files have in their place.
+const ROUNDED: [(f64, &str); 3] =
+    [(FRAC_PI_2, "1.5708"), (-FRAC_PI_2, "-1.5707963"), (PI, "3.14159")];
+
 /// A decimal of three places: often 0, often a quarter turn where it is an angle.
 fn decimal(random: &mut Random, angle: bool) -> f64 {
     match random.whole(4) {
         0 => 0.0,
-        1 if angle => [1.5708, -1.5708, 3.14159, 0.785][random.whole(4) as usize],
+        1 if angle => ROUNDED[random.whole(3) as usize].0,
         _ => (random.next() * 1000.0).round() / 1000.0,
     }
 }
@@ -60,7 +65,11 @@ fn robot(random: &mut Random) -> Vec<Joint> {
 }
 
 fn written(joints: &[Joint]) -> String {
-    let list = |v: [f64; 3]| format!("{} {} {}", v[0], v[1], v[2]);
+    let one = |value: f64| match ROUNDED.iter().find(|(exact, _)| *exact == value) {
+        Some((_, text)) => (*text).to_owned(),
+        None => value.to_string(),
+    };
+    let list = |v: [f64; 3]| v.map(one).join(" ");
     let mut text = String::from("<robot name=\"random\"><link name=\"l0\"/>");
     for (at, joint) in joints.iter().enumerate() {
         let [xx, yy, zz] = joint.inertia;
@@ -85,22 +94,11 @@ fn written(joints: &[Joint]) -> String {
     text + "</robot>"
 }
 
-/// A decimal that is a rounded quarter turn means the quarter turn.
-fn meant(angles: [f64; 3]) -> [f64; 3] {
-    use std::f64::consts::{FRAC_PI_2, PI};
-    angles.map(|angle| match angle {
-        1.5708 => FRAC_PI_2,
-        -1.5708 => -FRAC_PI_2,
-        3.14159 => PI,
-        other => other,
-    })
-}
-
 /// Frames of all links.
 fn frames(joints: &[Joint], q: &[f64]) -> Vec<Transform> {
     let (mut frames, mut next) = (vec![IDENTITY], 0);
     for joint in joints {
-        let mut own = times(&frames[joint.parent], &origin(joint.xyz, meant(joint.rpy)));
+        let mut own = times(&frames[joint.parent], &origin(joint.xyz, joint.rpy));
         if joint.kind != "fixed" {
             let value = q[next];
             next += 1;
@@ -126,7 +124,7 @@ fn energies(joints: &[Joint], q: &[f64], qd: &[f64]) -> (f64, f64) {
     let (before, here, after) = (at(-1.0), at(0.0), at(1.0));
     let (mut kinetic, mut potential) = (0.0, 0.0);
     for (link, joint) in joints.iter().enumerate() {
-        let own = origin(joint.com, meant(joint.turn));
+        let own = origin(joint.com, joint.turn);
         let [xx, yy, zz] = joint.inertia;
         let second = [(yy + zz - xx) / 2.0, (xx + zz - yy) / 2.0, (xx + yy - zz) / 2.0];
         for axis in 0..3 {

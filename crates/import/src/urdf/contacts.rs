@@ -1,7 +1,7 @@
 //! Contact points of links, from their collision boxes and spheres.
 
 use super::raw::{Raw, RawLink};
-use super::values::{numbers, pose, wrong};
+use super::values::{Snapped, numbers, pose, wrong};
 use crate::exact::{Vector, rounded, transformed};
 use crate::fault::{Cause, Faults, clip};
 use crate::names::identifier;
@@ -58,7 +58,7 @@ fn down_in(tree: &Tree, link: usize) -> Vector {
 fn points(link: &RawLink<'_>, down: &Vector, faults: &mut Faults) -> Vec<Vector> {
     let mut found = Vec::new();
     for collision in link.element.all("collision") {
-        let mut news = Vec::new();
+        let mut news = Snapped::default();
         let place = pose(collision.first("origin"), link.name.text, &mut news, faults);
         let Some((geometry, place)) = collision.first("geometry").zip(place) else { continue };
         let turn = matrix(&place.turns);

@@ -18,6 +18,7 @@ use denavit_codegen::expr::text::nearest;
 use denavit_codegen::number::{integer, ratio};
 use raw::Raw;
 use std::collections::BTreeMap;
+use values::Snapped;
 
 /// The tree of a file; nothing if it is at fault.
 pub(crate) fn tree(
@@ -73,7 +74,7 @@ pub(crate) fn tree(
 
 /// The turns of an `origin`, for what has been read once without a fault.
 pub(crate) fn turns_of(origin: Option<Element<'_>>) -> Vec<Turn> {
-    let (mut snapped, mut faults) = (Vec::new(), Faults::default());
+    let (mut snapped, mut faults) = (Snapped::default(), Faults::default());
     values::pose(origin, "", &mut snapped, &mut faults).map_or_else(Vec::new, |pose| pose.turns)
 }
 
@@ -201,9 +202,13 @@ fn named<'s>(raw: &Raw<'s>, faults: &mut Faults) -> BTreeMap<&'s str, usize> {
 /// What is said of the whole file.
 fn notes(tree: &mut Tree, raw: &Raw<'_>) {
     let bodies = &raw.bodies;
-    if !raw.snapped.is_empty() {
-        let said = "angles within rounding of a quarter turn are quarter turns";
-        tree.notes.push(format!("{said}: {}", listed(&raw.snapped)));
+    let said = "angles within rounding of a quarter turn are quarter turns";
+    let snapped = &raw.snapped;
+    if !snapped.named.is_empty() {
+        tree.notes.push(format!("{said}: {}", listed(&snapped.named)));
+    }
+    if snapped.fine > 0 {
+        tree.notes.push(format!("{said}: {} that agree to ten digits", snapped.fine));
     }
     if !bodies.rounded.is_empty() {
         let said = "tensors turned by what is no quarter turn are rounded at 17 digits";

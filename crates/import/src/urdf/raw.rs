@@ -80,7 +80,7 @@ pub(crate) fn read<'s>(robot: Element<'s>, faults: &mut Faults) -> Raw<'s> {
         joints: Vec::new(),
         transmissions: BTreeMap::new(),
         bodies: BodyNotes::default(),
-        snapped: Vec::new(),
+        snapped: Snapped::default(),
         is_partial: false,
     };
     for element in robot.children() {

@@ -105,7 +105,23 @@ pub(crate) fn vector(element: Element<'_>, key: &str, faults: &mut Faults) -> Op
 }
 
 /// Turns that were within rounding of quarter turns, for a note about all of them.
-pub(crate) type Snapped = Vec<String>;
+#[derive(Debug, Default)]
+pub(crate) struct Snapped {
+    /// Those that a reader may not have meant as such, each with whose it is.
+    pub(crate) named: Vec<String>,
+    /// How many agree to ten digits.
+    pub(crate) fine: usize,
+}
+
+impl Snapped {
+    fn push(&mut self, text: &str, owner: &str) {
+        let digits = text.bytes().filter(u8::is_ascii_digit).count();
+        match digits {
+            0..10 => self.named.push(format!("{text} of {owner}")),
+            _ => self.fine += 1,
+        }
+    }
+}
 
 /// The pose of an `origin`, at identity without one. `owner` is whose it is, for notes.
 pub(crate) fn pose(
@@ -127,19 +143,12 @@ pub(crate) fn pose(
         return None;
     };
     for (axis, made) in made.into_iter().enumerate().rev() {
-        if made.is_snapped && is_news(texts[axis]) {
-            snapped.push(format!("{} of {owner}", texts[axis]));
+        if made.is_snapped {
+            snapped.push(texts[axis], owner);
         }
         if made.angle != Angle::zero() {
             pose.turns.push(Turn::new(axis, made.angle));
         }
     }
     Some(pose)
-}
-
-/// Whether somebody may want to know that a number became a quarter turn: pi/2 to as many digits as
-/// a double has is pi/2.
-fn is_news(text: &str) -> bool {
-    let digits = text.bytes().filter(u8::is_ascii_digit).count();
-    digits < 15
 }

@@ -6,6 +6,7 @@ use crate::body::{entries, tensor};
 use crate::exact::{decimal, product, transposed, written};
 use crate::fault::listed;
 use crate::layout::{Layout, layout};
+use crate::names::identifier;
 use crate::options::{BaseChoice, Mimic, Options};
 use crate::place::{Turn, is_quarter, matrix};
 use crate::tree::{Tree, TreeBody};
@@ -93,7 +94,10 @@ impl Writer<'_> {
         if row.is_none() {
             return; // what the robot stands on has no row
         }
-        let Some(found) = self.find(row.as_ref()).and_then(|row| self.numbers.body(row)) else {
+        // a joint that was locked has no row: the link has one of its own name then
+        let locked = identifier(name);
+        let place = self.find(row.as_ref()).or_else(|| self.find(Some(&locked)));
+        let Some(found) = place.and_then(|row| self.numbers.body(row)) else {
             self.missing.push(name.to_owned());
             return;
         };

@@ -3,7 +3,7 @@
 use crate::evaluated::{Random, called, imported};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::{self, Robot};
-use denavit_import::{Format, Options, export, export_into, import, nothing_included};
+use denavit_import::{Format, Mimic, Options, export, export_into, import, nothing_included};
 
 const GANTRY: &str = include_str!("../robots/gantry.urdf");
 
@@ -41,6 +41,22 @@ fn values_alone_change() {
     // and come back as they were written
     let again = import("g.urdf", found.as_bytes(), &Options::default(), &mut nothing_included);
     assert_eq!(read(&again.expect("a model").model).hash, read(&changed).hash);
+}
+
+#[test]
+fn values_of_locked_joints_go_back_too() {
+    let follows = "<mimic joint=\"swing\"/><axis xyz=\"0 0 1\"/>";
+    let text = GANTRY.replace("<axis xyz=\"0 1 0\"/>", follows);
+    let options = Options { mimic: Mimic::Lock, ..Options::default() };
+    let found = import("g.urdf", text.as_bytes(), &options, &mut nothing_included);
+    let model = found.unwrap_or_else(|error| panic!("{error}")).model;
+    let back = |model: &str| {
+        let found = export_into(&read(model), "g.urdf", text.as_bytes());
+        found.unwrap_or_else(|error| panic!("{error}")).text
+    };
+    assert_eq!(back(&model), text);
+    let changed = model.replace("\"mass\": 0.7", "\"mass\": 0.75");
+    assert_eq!(back(&changed), text.replace("value=\"0.7\"", "value=\"0.75\""));
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! - [`diagnose`]: what a model lacks, from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`identify`]: parameters from measured motion, and motion that shows them
+//! - [`import`]: URDF and MJCF as model files, and back
 //! - [`measure`]: logs: read, checked, filtered; noise of their positions
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
@@ -20,6 +21,7 @@ pub use denavit_codegen::{
 };
 pub use denavit_diagnose as diagnose;
 pub use denavit_identify as identify;
+pub use denavit_import as import;
 pub use denavit_measure as measure;
 pub use denavit_numerics as numerics;
 pub use denavit_plants as plants;

@@ -6,6 +6,7 @@ use denavit::diagnose::DiagnosisError;
 use denavit::emit::rust::EmitError;
 use denavit::function::FunctionName;
 use denavit::identify::excite::ExciteError;
+use denavit::import::{ExportError, ImportError};
 use denavit::model::{BakeError, ModelError};
 use denavit::plants::effect::AddedError;
 use denavit::program::LowerError;
@@ -22,6 +23,12 @@ use std::io;
 pub(crate) enum Failure {
     /// The model file is wrong.
     Model(ModelError),
+    /// A description of a robot in another format is wrong.
+    Import(ImportError),
+    /// A model is not described in another format; holds the model.
+    Export(String, ExportError),
+    /// A file of states is wrong; holds the file and why.
+    States(String, String),
     /// Neither a file nor a shipped model has this name; holds the name, the shipped model that was
     /// meant, perhaps, and whether it can only be a file.
     NoModel { name: String, nearest: Option<&'static str>, is_path: bool },
@@ -180,6 +187,9 @@ impl Failure {
             Self::ModelForScenario(name) => smallest_scenario(name),
             Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
+            | Self::Import(_)
+            | Self::Export(..)
+            | Self::States(..)
             | Self::Output(_)
             | Self::Scenario(_)
             | Self::Apart(..)
@@ -252,6 +262,7 @@ impl Failure {
         match self {
             // place and hint are part of these
             Self::Model(error) => write!(f, "{error}")?,
+            Self::Import(_) | Self::Export(..) | Self::States(..) => self.of_others(f)?,
             Self::Bake(error) => write!(f, "{error}")?,
             Self::Output(error) => write!(f, "{error}")?,
             Self::Equations(error) => write!(f, "{error}")?,
@@ -315,6 +326,19 @@ impl Failure {
             }
         }
         Ok(())
+    }
+}
+
+impl Failure {
+    /// What is wrong with descriptions in other formats, and with states.
+    fn of_others(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Import(error) => write!(f, "{error}"),
+            Self::Export(_, ExportError::Description(error)) => write!(f, "{error}"),
+            Self::Export(model, error) => write!(f, "{model}: {error}"),
+            Self::States(file, why) => write!(f, "{file}: these are no states: {why}"),
+            _ => Ok(()),
+        }
     }
 }
 

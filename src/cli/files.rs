@@ -3,14 +3,16 @@
 use super::failure::{Failure, reason};
 use super::model_effects::ModelApart;
 use super::remarks::print_remarks;
+use super::say_error;
 use denavit::effect::{self, Effect};
+use denavit::import;
 use denavit::model::Robot;
 use denavit::model::equations::{self, Equations};
 use denavit::shipped::{self, ShippedModel};
 use denavit::simulate::LogFile;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 
 /// More is not read: the limit of [`model::read`], which refuses what has more.
@@ -113,8 +115,50 @@ pub(crate) fn read_input(place: &Path, folder: Option<&Path>) -> Result<Input, F
     Ok(Input::Model(Box::new(ModelApart::of(place, folder, (&name, &bytes))?)))
 }
 
-/// Name and content of a path, of a file of one of these lists, or of standard input.
+/// The same, where a URDF or MJCF stays one.
+pub(crate) fn read_model_bytes_as_they_are(place: &Path) -> Result<(String, Vec<u8>), Failure> {
+    read_any(place, &[shipped::MODELS])
+}
+
+/// Name and content of a path, of a file of one of these lists, or of standard input: the model
+/// file of what URDF or MJCF describes.
 fn read_named(place: &Path, shipped: &[&[ShippedModel]]) -> Result<(String, Vec<u8>), Failure> {
+    let (name, bytes) = read_any(place, shipped)?;
+    if !import::is_description(&bytes) {
+        return Ok((name, bytes));
+    }
+    let options = import::Options::default();
+    let imported = import::import(&name, &bytes, &options, &mut |file| read_below(place, file));
+    let imported = imported.map_err(Failure::Import)?;
+    for note in &imported.notes {
+        say_error(&format_args!("note: {name}: {note}"));
+    }
+    Ok((name, imported.model.into_bytes()))
+}
+
+/// A file that another one includes: from its folder and below, from nowhere else.
+pub(crate) fn read_below(place: &Path, file: &str) -> Result<Vec<u8>, String> {
+    let outside = || "it is not in the folder of the file that includes it".to_owned();
+    let relative = Path::new(file);
+    let is_inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    if !place.is_file() || !relative.components().all(is_inside) {
+        return Err(outside());
+    }
+    let said = |error: io::Error| reason(&error);
+    let folder = match place.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let whole = folder.join(relative).canonicalize().map_err(said)?;
+    if !whole.starts_with(folder.canonicalize().map_err(said)?) || !whole.is_file() {
+        return Err(outside());
+    }
+    let mut bytes = Vec::new();
+    let read = open(&whole).and_then(|file| file.take(MAX_MODEL_BYTES).read_to_end(&mut bytes));
+    read.map(|_| bytes).map_err(said)
+}
+
+fn read_any(place: &Path, shipped: &[&[ShippedModel]]) -> Result<(String, Vec<u8>), Failure> {
     let name = place.to_string_lossy().into_owned();
     if name == "-" {
         let name = "standard input";
@@ -229,11 +273,22 @@ pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
     if bytes.len() as u64 > MAX_LOG_BYTES {
         return Err(format!("it has more than the {MAX_LOG_BYTES} bytes that are read"));
     }
-    read.map(|_| bytes).map_err(|error| {
+    let described = |bytes: Vec<u8>| {
+        if !import::is_description(&bytes) {
+            return Ok(bytes);
+        }
+        let place = directory.join(model);
+        let options = import::Options::default();
+        let imported =
+            import::import(model, &bytes, &options, &mut |file| read_below(&place, file));
+        imported.map(|found| found.model.into_bytes()).map_err(|error| error.to_string())
+    };
+    let read = read.map(|_| bytes).map_err(|error| {
         let shipped = shipped::MODELS.iter().chain(shipped::BODIES).map(|model| model.name);
         match denavit::expr::text::nearest(model, shipped) {
             Some(nearest) => format!("{} (`{nearest}` is a shipped model)", reason(&error)),
             None => reason(&error),
         }
-    })
+    });
+    read.and_then(described)
 }

@@ -48,6 +48,11 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
                 out.flush()?;
                 return Err(Failure::Model(error));
             }
+            Err(Failure::Import(error)) if arguments.json => {
+                write_json(out, &json::faults(&error))?;
+                out.flush()?;
+                return Err(Failure::Import(error));
+            }
             Err(failure) => return Err(failure),
         };
     if let Some(file) = &arguments.svg {

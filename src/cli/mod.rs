@@ -12,10 +12,13 @@ mod derive;
 mod diagnose;
 mod elimination;
 mod emit;
+mod evaluate;
 mod excite;
+mod export;
 mod failure;
 mod files;
 mod identify;
+mod import;
 mod inspect;
 mod json;
 mod model_effects;
@@ -49,7 +52,8 @@ struct Cli {
 }
 
 const EXAMPLE: &str = "\
-MODEL is the path of a model file, the name of a shipped model, or - for standard input.
+MODEL is the path of a model file, of a URDF or of an MJCF, the name of a shipped model, or - for
+standard input.
 Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
 
 Example:
@@ -58,10 +62,13 @@ Example:
 #[derive(Debug, Subcommand)]
 enum Command {
     Demo(demo::Arguments),
+    Import(import::Arguments),
+    Export(export::Arguments),
     Inspect(inspect::Arguments),
     Derive(derive::Arguments),
     Decompose(decompose::Arguments),
     Count(count::Arguments),
+    Evaluate(evaluate::Arguments),
     Emit(emit::Arguments),
     Base(base::Arguments),
     Verify(verify::Arguments),
@@ -146,10 +153,13 @@ impl Command {
         }
         match self {
             Self::Demo(arguments) => demo::run(arguments, out),
+            Self::Import(arguments) => import::run(arguments, out),
+            Self::Export(arguments) => export::run(arguments, out),
             Self::Inspect(arguments) => inspect::run(arguments, out),
             Self::Derive(arguments) => derive::run(arguments, out),
             Self::Decompose(arguments) => decompose::run(arguments, out),
             Self::Count(arguments) => count::run(arguments, out),
+            Self::Evaluate(arguments) => evaluate::run(arguments, out),
             Self::Emit(arguments) => emit::run(arguments, out),
             Self::Base(arguments) => base::run(arguments, out),
             Self::Verify(arguments) => verify::run(arguments, out),

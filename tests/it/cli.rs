@@ -21,6 +21,7 @@ mod identify_noise;
 mod identify_procedures;
 mod identify_rest;
 mod identify_told;
+mod import;
 mod landings;
 mod mutated_files;
 mod outputs;

@@ -38,7 +38,8 @@ impl Unphysical {
         matches!(self, Self::Triangle { .. } | Self::Products)
     }
 
-    pub(super) fn hint(&self) -> Option<String> {
+    /// What to do about it.
+    pub fn hint(&self) -> Option<String> {
         let hint = match self {
             Self::InertiaWithoutMass => "give the mass, or leave out the inertia",
             Self::NegativeMoment(..) | Self::NotPositive => {
@@ -108,7 +109,7 @@ pub(super) enum Violation {
 
 /// Finds the plainest reason why no body has this mass (kg) and this tensor about its centre of
 /// mass (xx, yy, zz, xy, xz, yz (kg m^2)), if there is one. Neither mass nor inertia is in order.
-pub(super) fn find_fault(mass: &Rational, inertia: &[Rational; 6]) -> Option<Unphysical> {
+pub fn find_fault(mass: &Rational, inertia: &[Rational; 6]) -> Option<Unphysical> {
     if mass.is_zero() {
         let has_inertia = inertia.iter().any(|entry| !entry.is_zero());
         return has_inertia.then_some(Unphysical::InertiaWithoutMass);

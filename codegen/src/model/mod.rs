@@ -30,8 +30,9 @@ mod tree;
 mod unit;
 
 pub use bake::{BakeError, bake, bake_geometry, bake_where, bake_zeros};
+pub use check::meant_quarter_turns;
 pub use fault::{Cause, Explained, Fault, FileError, MAX_FAULTS, ModelError};
-pub use inertia::Unphysical;
+pub use inertia::{Unphysical, find_fault};
 pub use parameter::{BodyEntry, JointEntry, Parameter, ParameterId, Role};
 pub use reader::{Fields, Node, Word, find_duplicate_keys, read_document};
 pub use remark::{Remark, remarks};

@@ -2,12 +2,14 @@
 
 use super::text::{kind_name, row_entries, term_names, total_mass};
 use denavit::expr::ExprId;
-use denavit::model::{Base, Contact, Convention, FallBody, Link, ModelError, Robot, Side};
+use denavit::model::{
+    Base, Contact, Convention, Explained, FallBody, FileError, Link, Robot, Side,
+};
 use denavit::report::Values;
 use serde_json::{Value, json};
 
 /// What is wrong with a file.
-pub(super) fn faults(error: &ModelError) -> Value {
+pub(super) fn faults<C: Explained>(error: &FileError<C>) -> Value {
     let faults: Vec<Value> = error
         .faults
         .iter()

@@ -3,9 +3,13 @@
 use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
-/// certificate.
-const COMMANDS: [&str; 13] = [
+/// certificate,
+/// `import` a URDF.
+const COMMANDS: [&str; 16] = [
     "demo",
+    "export",
+    "import",
+    "evaluate",
     "inspect",
     "derive",
     "decompose",

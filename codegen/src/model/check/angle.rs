@@ -3,6 +3,7 @@
 //! With `alpha = 1.5708` instead of `pi/2` a sum of parameters that should vanish is scaled by
 //! 4e-6 instead, and exact algebra keeps what it finds: the base parameters of another robot.
 
+use super::measure::near_pi;
 use crate::model::fault::Cause;
 use crate::number::{Rational, integer, parse_decimal, ratio};
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -38,6 +39,16 @@ pub(super) fn rounded_decimal(text: &str, pi: &Rational) -> Option<Cause> {
         let is_rounded = distance * integer(2) <= digit;
         (is_cut || is_rounded).then(|| fault(decimal, turns))
     })
+}
+
+/// The quarter turns that a decimal \[rad\] means, if it is a rounded multiple of them: what this
+/// reader refuses, and a reader of other formats takes for what was meant.
+pub fn meant_quarter_turns(decimal: &str) -> Option<i64> {
+    let pi = near_pi();
+    let value = parse_decimal(decimal).ok()?;
+    let (turns, _) = nearest(&value, &pi)?;
+    let found = rounded_decimal(decimal, &pi).or_else(|| nearly_aligned(decimal, &value, &pi));
+    found.map(|_| turns)
 }
 
 /// The nearest multiple in quarter turns, and how far it is.
@@ -102,7 +113,6 @@ fn places(decimal: &str) -> i64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::measure::near_pi;
     use super::*;
 
     fn meant(text: &str) -> Option<String> {

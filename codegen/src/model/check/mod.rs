@@ -25,6 +25,7 @@ use super::unit::Dimension;
 use crate::arena::PrimaryMap;
 use crate::expr::ExprId;
 use crate::expr::text::nearest;
+pub use angle::meant_quarter_turns;
 pub(super) use measure::{approximate, near_pi};
 use rustc_hash::FxHashMap;
 pub(crate) use scope::Scope;

@@ -1,0 +1,67 @@
+//! Back into descriptions: values into a user's own file, or a whole file from a model.
+
+mod frame;
+mod into;
+mod skeleton;
+mod values;
+mod whole_mjcf;
+mod whole_urdf;
+
+pub use into::export_into;
+
+use crate::fault::ImportError;
+use denavit_codegen::model::{Base, Robot};
+use std::fmt;
+use values::Numbers;
+
+/// A description made of a model.
+#[derive(Clone, Debug)]
+pub struct Exported {
+    /// The text of the description.
+    pub text: String,
+    /// What the description does not say as the model does.
+    pub notes: Vec<String>,
+}
+
+/// A format of descriptions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// That of ROS.
+    Urdf,
+    /// That of MuJoCo.
+    Mjcf,
+}
+
+/// The description of a model.
+pub fn export(robot: &Robot, format: Format) -> Result<Exported, ExportError> {
+    if robot.base == Base::PlanarFloating {
+        let said = "a description floats in space or not at all: this model floats in a plane";
+        return Err(ExportError::Model(said.to_owned()));
+    }
+    let numbers = Numbers::new(robot)?;
+    let (text, notes) = match format {
+        Format::Urdf => whole_urdf::urdf(numbers),
+        Format::Mjcf => whole_mjcf::mjcf(&numbers),
+    };
+    Ok(Exported { text, notes })
+}
+
+/// Why there is no description.
+#[derive(Clone, Debug)]
+pub enum ExportError {
+    /// The description that values should go into is wrong.
+    Description(ImportError),
+    /// A description cannot say what the model says; holds what.
+    Model(String),
+}
+
+impl fmt::Display for ExportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Description(error) => write!(f, "{error}"),
+            Self::Model(what) => f.write_str(what),
+        }
+    }
+}
+
+impl std::error::Error for ExportError {}

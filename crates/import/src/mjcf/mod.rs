@@ -1,0 +1,155 @@
+//! MJCF: bodies in bodies, with what rigid-body trees have of it.
+
+mod body;
+mod frame;
+mod geom;
+mod joint;
+mod mass;
+mod refused;
+mod settings;
+
+use crate::body::settle;
+use crate::chain;
+use crate::fault::{Cause, Faults, listed};
+use crate::options::{BaseChoice, Options};
+use crate::tree::{Tree, TreeLink};
+use crate::xml::Element;
+use body::{Reader, Scope};
+use denavit_codegen::number::Rational;
+use num_traits::ToPrimitive;
+use settings::Settings;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A whole number, 0 where there is none.
+fn whole(value: &Rational) -> i64 {
+    value.to_integer().to_i64().unwrap_or(0)
+}
+
+/// The tree of a file; nothing if it is at fault. `included` are the files that it includes.
+pub(crate) fn tree<'s>(
+    file: &str,
+    root: Element<'s>,
+    included: BTreeMap<String, Element<'s>>,
+    options: &Options,
+    faults: &mut Faults,
+) -> Option<Tree> {
+    let settings = Settings::read(root, included, faults);
+    let sections = settings.children(root);
+    refused::refuse(&settings, &sections, faults);
+    let of = |name: &'static str| sections.iter().copied().filter(move |one| one.name() == name);
+    let driven = of("actuator")
+        .flat_map(|actuators| settings.children(actuators))
+        .filter_map(|actuator| actuator.get("joint").or(actuator.get("jointinparent")))
+        .map(|joint| joint.text);
+    let driven: BTreeSet<&str> = driven.collect();
+    let name = root.get("model").map_or("robot", |name| name.text);
+    let tree = Tree {
+        name: name.to_owned(),
+        description: format!("Imported from {file} (MJCF)."),
+        gravity: settings.gravity.clone(),
+        floats: false,
+        links: Vec::new(),
+        notes: Vec::new(),
+        contacts: Vec::new(),
+    };
+    let mut reader = Reader::new(&settings, tree, driven, options.base, faults);
+    bodies(&mut reader, root, &of("worldbody").collect::<Vec<_>>());
+    let (snapped, notes) = (reader.snapped, reader.notes);
+    let mut tree = reader.tree;
+    mass::scale(&mut tree, &settings);
+    let mut note = |said: &str, names: &[String]| {
+        if !names.is_empty() {
+            tree.notes.push(format!("{said}: {}", listed(names)));
+        }
+    };
+    note(
+        "angles within rounding of a quarter turn are quarter turns",
+        &[snapped, notes.snapped].concat(),
+    );
+    note(
+        "tensors turned by what is no quarter turn are rounded at 17 digits",
+        &notes.bodies.rounded,
+    );
+    note("moments of inertia that no body has are kept as they are", &notes.bodies.accepted);
+    if notes.shaped > 0 {
+        let count = notes.shaped;
+        tree.notes
+            .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
+    }
+    settle(&mut tree, faults);
+    if let Some(tip) = &options.tip {
+        chain::cut(&mut tree, tip, root.at(), faults);
+    }
+    if !options.contacts.is_empty() {
+        let said = "--contacts is for URDF: an MJCF has no collision shapes apart";
+        faults.push(root.at(), Cause::with_hint(said, "write \"contacts\" into the model file"));
+    }
+    if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
+        faults.push(root.at(), Cause::new("nothing moves: no body has a joint"));
+    }
+    faults.is_empty().then_some(tree)
+}
+
+/// Reads all bodies: on the world, or on the one that floats.
+fn bodies<'s>(reader: &mut Reader<'s, '_>, root: Element<'s>, worlds: &[Element<'s>]) {
+    let mut tops = Vec::new();
+    for world in worlds {
+        let class = world.get("childclass").map(|class| class.text);
+        tops.extend(reader.contents(*world, Scope::of(class)).bodies);
+    }
+    if let Some((body, scope)) = floating(reader, root, &tops) {
+        reader.tree.floats = true;
+        reader.push(body, None, &scope);
+        return;
+    }
+    reader.tree.links.push(TreeLink::fixed("world", None, Vec::new()));
+    for (body, scope) in tops {
+        reader.push(body, Some(0), &scope);
+    }
+}
+
+/// The body that floats, if all that moves stands on it.
+fn floating<'s>(
+    reader: &mut Reader<'s, '_>,
+    root: Element<'s>,
+    tops: &[(Element<'s>, Scope<'s>)],
+) -> Option<(Element<'s>, Scope<'s>)> {
+    let moves = |body: &Element<'s>| {
+        body.everything().any(|part| matches!(part.name(), "joint" | "freejoint"))
+    };
+    let moving: Vec<&(Element<'s>, Scope<'s>)> =
+        tops.iter().filter(|(body, _)| moves(body)).collect();
+    if reader.base == BaseChoice::Fixed {
+        return None;
+    }
+    let single = match moving[..] {
+        [one] => Some(one),
+        [] if tops.len() == 1 => tops.first(),
+        _ => None,
+    };
+    let Some((body, scope)) = single else {
+        if reader.base == BaseChoice::Floating {
+            reader
+                .faults
+                .push(root.at(), Cause::new("--base floating: no single body stands on the world"));
+        }
+        return None;
+    };
+    let class = body.get("childclass").map(|class| class.text).or(scope.class);
+    let joints = reader.contents(*body, Scope::of(class)).joints;
+    let is_free = |(element, scope): &(Element<'s>, Scope<'s>), reader: &mut Reader<'s, '_>| {
+        let attributes = reader.settings.with_class(*element, scope.class, reader.faults);
+        element.name() == "freejoint"
+            || attributes.get("type").is_some_and(|kind| kind.text == "free")
+    };
+    match &joints[..] {
+        [one] if is_free(one, reader) => Some((*body, scope.clone())),
+        [] if reader.base == BaseChoice::Floating => Some((*body, scope.clone())),
+        _ if reader.base == BaseChoice::Floating => {
+            let said = "--base floating: the first body has joints of its own";
+            reader.faults.push(body.at(), Cause::new(said));
+            None
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,57 @@
+//! What is no rigid-body tree: refused by name, with the reason.
+
+use super::settings::Settings;
+use crate::fault::{Cause, Faults, clip};
+use crate::xml::Element;
+
+/// Notes everything of a file that would change its dynamics and has no place in a model.
+pub(crate) fn refuse<'s>(settings: &Settings<'s>, sections: &[Element<'s>], faults: &mut Faults) {
+    for section in sections {
+        match section.name() {
+            "equality" => {
+                settings.children(*section).into_iter().for_each(|one| equality(one, faults))
+            }
+            "tendon" => settings.children(*section).into_iter().for_each(|one| {
+                tendon(settings, one, faults);
+            }),
+            "deformable" => {
+                let said = "deformable bodies are no rigid bodies";
+                faults.push(section.at(), Cause::new(said));
+            }
+            "include" => {
+                let said = "this file is not included";
+                let hint = "files are included from the folder of the first one, and below it";
+                faults.push(section.at(), Cause::with_hint(said, hint));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn equality(constraint: Element<'_>, faults: &mut Faults) {
+    if constraint.get("active").is_some_and(|active| active.text == "false") {
+        return;
+    }
+    let name =
+        constraint.get("name").map_or(String::new(), |name| format!(" `{}`", clip(name.text)));
+    let said = format!("the equality constraint{name} ({}) closes a loop", clip(constraint.name()));
+    let hint = "a model is a tree: remove it, or set active=\"false\", and the model is free of it";
+    faults.push(constraint.at(), Cause::with_hint(said, hint));
+}
+
+/// Tendons that pass on what actuators do are no part of a model; those that pull by themselves
+/// would be.
+fn tendon<'s>(settings: &Settings<'s>, tendon: Element<'s>, faults: &mut Faults) {
+    let attributes = settings.with_class(tendon, None, faults);
+    for key in ["stiffness", "damping", "frictionloss", "armature"] {
+        let pulls = attributes.get(key).is_some_and(|value| {
+            value.text.split_whitespace().any(|word| word.parse::<f64>() != Ok(0.0))
+        });
+        if pulls {
+            let name =
+                tendon.get("name").map_or(String::new(), |name| format!(" `{}`", clip(name.text)));
+            let said = format!("the tendon{name} has {key}, which acts on several joints");
+            faults.push(tendon.at(), Cause::with_hint(said, "remove it from the file"));
+        }
+    }
+}

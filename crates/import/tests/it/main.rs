@@ -1,0 +1,9 @@
+//! The importer as its users see it: descriptions in, model files out, values back.
+
+mod chains;
+mod evaluated;
+mod export;
+mod faults;
+mod mjcf;
+mod mutated;
+mod urdf;

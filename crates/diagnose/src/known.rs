@@ -91,3 +91,74 @@ const CREEP: f64 = 1e-9;
 
 /// The share of an event that the filter rings with beside it.
 const RINGING: f64 = 0.3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Filters, Uncertainty};
+    use denavit_codegen::regressor::functions::modelled;
+    use denavit_measure::log::{JointSignals, MeasuredLog};
+    use denavit_plants::regression::RegressionModel;
+    use std::f64::consts::TAU;
+
+    const SLED: &str = r#"{
+      "format": "denavit-model/1", "name": "sled", "convention": "standard",
+      "gravity": [0, -9.81, 0],
+      "links": [{
+        "name": "sled", "joint": {"type": "prismatic", "theta": 0, "d": 0, "a": 0, "alpha": 0},
+        "body": {"mass": 2, "com": [0, 0, 0], "about": "com",
+                 "inertia": {"xx": 1, "yy": 1, "zz": 1, "xy": 0, "xz": 0, "yz": 0}}
+      }],
+      "drives": {"sled": {"viscous": 0, "coulomb": 1}}
+    }"#;
+
+    const COULOMB: f64 = 1.0;
+    const HZ: f64 = 0.5;
+
+    /// A sled that an exact torque moves in waves of a period of 2 s.
+    fn waves() -> MeasuredLog {
+        let at = |k: i32| TAU * HZ * 0.002 * f64::from(k);
+        let q: Vec<f64> = (0..8000).map(|k| 0.2 * at(k).sin()).collect();
+        let torque = |k: i32| {
+            let acceleration = -0.2 * (TAU * HZ).powi(2) * at(k).sin();
+            2.0 * acceleration + COULOMB * at(k).cos().signum()
+        };
+        let tau = Some((0..8000).map(torque).collect());
+        let joints = vec![JointSignals { q, tau, ..JointSignals::default() }];
+        MeasuredLog { file: "waves".into(), step_s: 0.002, joints, ..MeasuredLog::default() }
+    }
+
+    #[test]
+    fn rows_at_reversals_count_less_and_late_ones_lack_an_impulse() {
+        let robot = denavit_codegen::model::read("sled", SLED.as_bytes()).expect("a model");
+        let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
+        let signals = Signals::new(waves(), Filters::of_torques(10.0)).expect("long enough");
+        let logs = [signals];
+        let nominal = Nominal::new(&model, Uncertainty::default()).moving_as(&logs);
+        let ([signals], phi) = (&logs, nominal.phi(&vec![0.0; nominal.len()]));
+
+        let [weights] = &weights(&nominal, signals, &phi)[..] else { panic!("one joint") };
+        for (t, weight) in signals.at_rows(&signals.t).iter().zip(weights) {
+            // The rate is that of a cosine, and 0 a quarter of a period after its extremes.
+            let from_reversal_s =
+                ((t * 2.0 * HZ - 0.5).round() - (t * 2.0 * HZ - 0.5)).abs() / (2.0 * HZ);
+            match from_reversal_s {
+                near if near < 0.02 => assert!(*weight < 0.1, "{t}: {weight}"),
+                far if far > 0.3 => assert!(*weight > 0.99, "{t}: {weight}"),
+                _ => {}
+            }
+        }
+
+        // Of a step of friction that is late by a time, that time its height is missing.
+        let [late] = &late_reversals(&nominal, signals, &phi)[..] else { panic!("one joint") };
+        let height = COULOMB + policy::STEP * nominal.usual[0][0];
+        let half = (1.0 / HZ / signals.step_s / 2.0) as usize;
+        for (k, samples) in late.chunks_exact(half).enumerate() {
+            let (first, last) = (k * half, (k + 1) * half - 1);
+            let [from, to] = [first, last].map(|k| signals.qd[0][k].signum());
+            let impulse = signals.step_s * samples.iter().sum::<f64>();
+            let wanted = -policy::LATE_S * height * (to - from);
+            assert!((impulse - wanted).abs() < 1e-3 * policy::LATE_S, "{k}: {impulse} {wanted}");
+        }
+    }
+}

@@ -47,6 +47,7 @@ mod structure;
 mod turning;
 mod verdict;
 mod weighing;
+mod worth;
 
 pub use alias::{ExactAliases, Named};
 pub use candidate::{Candidate, Start, starts};

@@ -50,8 +50,8 @@ pub const UNNAMED: f64 = 1e-3;
 /// of what the model has.
 pub const STEP: f64 = 0.05;
 
-/// By which time each reversal is late \[s\]: control loops and logs have periods of 1 to 5 ms, and
-/// a drive sticks as long unseen.
+/// By which time each reversal is late \[s\], and all of a joint together: control loops and logs
+/// have periods of 1 to 5 ms, and a drive sticks as long unseen.
 pub const LATE_S: f64 = 1.5e-3;
 
 /// The share of a sample of the log by which torque and motion may be of different times.
@@ -110,9 +110,9 @@ pub const LEAST_FELT: f64 = 1e-7;
 /// Above this share of the torque, what is left says that model and logs are not of one robot.
 pub const NOTHING_LIKE: f64 = 0.6;
 
-/// Periods of a law that repeats along a joint, of what the logs cover of it, at least: over less of
-/// one a sine is a parabola.
-pub const PERIODS: f64 = 0.4;
+/// Periods of a law that repeats along a joint, of what the logs cover of it, at least: less of one
+/// is like any smooth law of the position.
+pub const PERIODS: f64 = 1.5;
 
 /// Above this share of the torque, and this many times the noise that sensors have, what is left is
 /// no noise, however even its spectrum is.

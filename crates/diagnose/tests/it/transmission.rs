@@ -49,14 +49,7 @@ fn a_soft_transmission_is_found_by_the_motion_of_its_rotor() {
     let (found, candidates) = diagnosed(SLED, logs);
     let names = found.effects.iter().map(|one| candidates[one.candidate].name());
     let [one] = &found.effects[..] else {
-        panic!(
-            "{:?}: {:?} {:?} {:?} {:?}",
-            names.collect::<Vec<_>>(),
-            found.held_out.before.all,
-            found.held_out.after.all,
-            found.held_out.floor.all,
-            found.effects
-        )
+        panic!("{:?}, not one of it: {:?}", names.collect::<Vec<_>>(), found.reasons)
     };
     assert_eq!(candidates[one.candidate].effect, "joint_elasticity");
     let swing = (ROTOR / STIFFNESS).sqrt();

@@ -87,11 +87,17 @@ impl TransmissionLaw {
         Ok(Self(LawProgram::new(dag, &names(effect), Vec::new(), entries)?))
     }
 
+    /// The transmission with these values.
+    fn at(&self, values: &[f64]) -> GivesWay {
+        let entries = self.0.run(&[], values, 1);
+        let [swing_s, play, damping] = [0, 1, 2].map(|place| entries[place][0]);
+        GivesWay { swing_s, play, damping }
+    }
+
     /// The rotor with these values on its way along samples; none where the transmission hardly
     /// gives way.
     fn rotor(&self, drive: Drive, values: &[f64]) -> Option<Rotor> {
-        let entries = self.0.run(&[], values, 1);
-        let [swing_s, play, damping] = [0, 1, 2].map(|place| entries[place][0]);
+        let GivesWay { swing_s, play, damping } = self.at(values);
         let gives_way = swing_s > SHORTEST_S || play > 0.0;
         let rotor = Rotor { drive, swing_s: swing_s.max(SHORTEST_S), damping, half: 0.5 * play };
         (gives_way && drive.inertia > 0.0).then_some(rotor)
@@ -168,9 +174,7 @@ impl EffectLaw {
 
     /// The transmission with these values of the parameters; none of other laws.
     pub fn gives_way(&self, values: &[f64]) -> Option<GivesWay> {
-        let entries = self.transmission()?.0.run(&[], values, 1);
-        let [swing_s, play, damping] = [0, 1, 2].map(|place| entries[place][0]);
-        Some(GivesWay { swing_s, play, damping })
+        Some(self.transmission()?.at(values))
     }
 
     fn transmission(&self) -> Option<&TransmissionLaw> {

@@ -1,0 +1,68 @@
+//! How large an effect is: whether that is worth a name.
+
+use super::hypothesis::{Hypothesis, Part};
+use super::search::Search;
+use super::state::Taken;
+use denavit_evidence::policy;
+use nalgebra::{DMatrix, DVector};
+
+impl Search<'_> {
+    /// Whether an effect is large enough for a name beside the others, which are all that `without`
+    /// has: one that others nearly do is none.
+    pub(super) fn is_worth(&self, without: &Hypothesis, with: &Hypothesis, place: usize) -> bool {
+        let joint = |part: &Part| self.weighing.candidates[part.placed.candidate].joint;
+        let own = joint(&with.parts[place]);
+        let others = (0..without.parts.len()).filter(|&at| joint(&without.parts[at]) == own);
+        let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
+        let size = self.size(with, place);
+        let own = || size * self.beyond(with, place) / self.told(with, place);
+        size > policy::WORTH && (most == 0.0 || own() > policy::FURTHER * most)
+    }
+
+    /// What an effect does that others of its hypothesis cannot, as a share of the torque where
+    /// that is most.
+    fn beyond(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        let spectra = &self.weighing.spectra;
+        let torque = spectra.stacked(&hypothesis.torque(place));
+        let others = hypothesis.parts.iter().enumerate().filter(|(at, _)| *at != place);
+        let columns: Vec<DVector<f64>> = others
+            .flat_map(|(at, part)| {
+                part.terms.columns.iter().chain([&part.terms.known]).map(move |one| (at, one))
+            })
+            .map(|(_, spectrum)| spectra.stacked(spectrum))
+            .filter(|column| column.norm() > 0.0)
+            .map(|column| column.normalize())
+            .collect();
+        let left = match columns.is_empty() {
+            true => torque,
+            false => {
+                let svd = DMatrix::from_columns(&columns).svd(true, false);
+                let base = svd.u.expect("asked for");
+                let kept: Vec<usize> = (0..svd.singular_values.len())
+                    .filter(|&k| svd.singular_values[k] > RANK * svd.singular_values[0])
+                    .collect();
+                let base = base.select_columns(&kept);
+                &torque - &base * base.tr_mul(&torque)
+            }
+        };
+        spectra.largest_share(&spectra.unstacked(&left))
+    }
+
+    /// What an effect does at the joint where that is most, as a share of its torque, by what rows
+    /// count.
+    pub(super) fn told(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        self.weighing.spectra.largest_share(&hypothesis.torque(place))
+    }
+
+    /// What an effect does at the joint where that is most, as a share of its torque.
+    pub(super) fn size(&self, hypothesis: &Hypothesis, place: usize) -> f64 {
+        let candidate = hypothesis.parts[place].placed.candidate;
+        let parameters = self.weighing.candidates[candidate].law.parameters();
+        let values = hypothesis.values(place).into_iter().zip(parameters);
+        let values = values.map(|(value, one)| value.clamp(one.bounds[0], one.bounds[1]));
+        self.weighing.size(&Taken { candidate, values: values.collect() })
+    }
+}
+
+/// Columns that are independent have at least this share of the largest singular value.
+const RANK: f64 = 1e-6;

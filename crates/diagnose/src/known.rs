@@ -1,8 +1,9 @@
 //! What the rows of a joint tell of its torque, where its drive turns around or rests.
 //!
 //! A drive passes each reversal late by a time of its own: it sticks for milliseconds, and its
-//! readings are of another time than its torque. While it rests, its friction is anything. Noise is
-//! taken to be even in time, so that rows count by what is not known of them.
+//! readings are of another time than its torque. While it rests, its friction is anything up to
+//! that of sliding. Noise is taken to be even in time, so that rows count by what is not known of
+//! them.
 
 use super::law::derivative;
 use super::nominal::{Nominal, Phi};

@@ -12,9 +12,11 @@
 //! - [`Base`]: the data with the columns that every hypothesis has
 //! - [`Terms`]: what one effect adds to that
 //! - [`Base::weigh`]: the evidence of a set of terms; [`Glance`]: a first look at many
+//! - [`Told`]: the evidence of a linear model of rows that are condensed to their products
 //! - [`policy`]: the numbers that decide a verdict
 
 mod base;
+mod condensed;
 mod gaussian;
 mod glance;
 mod layout;
@@ -24,6 +26,7 @@ mod terms;
 mod weigh;
 
 pub use base::Base;
+pub use condensed::{Condensed, Told};
 pub use glance::{Glance, Seen};
 pub use layout::{Layout, Spectrum};
 pub use terms::Terms;

@@ -40,9 +40,11 @@ pub struct Weighed {
 }
 
 /// The products of one cell: of data, own columns and those of terms, in this order.
-struct Cell {
-    rows: f64,
-    products: DMatrix<f64>,
+pub(crate) struct Cell {
+    pub(crate) rows: f64,
+    pub(crate) products: DMatrix<f64>,
+    /// The least variance of a row.
+    pub(crate) least: f64,
 }
 
 /// What all terms of a hypothesis make of the data of one channel.
@@ -60,7 +62,7 @@ impl Base {
         let plain: Vec<Terms> = terms.iter().map(|one| one.linear()).collect();
         let mut weighed = self.weigh_linear(&plain.iter().collect::<Vec<_>>(), start, rounds);
         let cells = self.cells_with(terms, terms.iter().map(|one| one.len()).sum());
-        Posterior::new(&cells, &weighed.variances).curve(terms, self.parameters, &mut weighed);
+        Posterior::new(&cells, &weighed.variances, &[]).curve(terms, self.parameters, &mut weighed);
         weighed
     }
 
@@ -69,28 +71,9 @@ impl Base {
         let width = terms.iter().map(|one| one.len()).sum::<usize>();
         let cells = self.cells_with(terms, width);
         let expected = self.layout.expected();
-        let mut variances = match start {
-            Some(start) => start.to_vec(),
-            None => {
-                let mean = |(cell, expected): (&Cell, &f64)| {
-                    (cell.products[(0, 0)] / cell.rows).max(policy::LEAST_OF_LEVEL * expected)
-                };
-                cells.iter().zip(&expected).map(mean).collect()
-            }
-        };
-        let mut before = f64::NEG_INFINITY;
-        for _ in 0..rounds {
-            let posterior = Posterior::new(&cells, &variances);
-            let evidence = posterior.log_evidence(&cells, &variances, &expected);
-            variances = posterior.variances(&cells, &expected);
-            if (evidence - before).abs() < policy::SETTLED {
-                break;
-            }
-            before = evidence;
-        }
-        let posterior = Posterior::new(&cells, &variances);
-        let evidence = posterior.log_evidence(&cells, &variances, &expected);
+        let (evidence, variances) = settled(&cells, &expected, (start, rounds), &[]);
         let evidence = evidence - self.unpredicted(terms, &variances);
+        let posterior = Posterior::new(&cells, &variances, &[]);
         posterior.told(terms, self.parameters, (evidence, variances))
     }
 
@@ -136,7 +119,7 @@ impl Base {
                     }
                 }
             }
-            Cell { rows: rows.len() as f64, products }
+            Cell { rows: rows.len() as f64, products, least: 0.0 }
         };
         self.layout.cells().zip(&self.products).map(of_cell).collect()
     }
@@ -173,17 +156,49 @@ impl Terms {
     }
 }
 
+/// The log evidence of cells with the variances that are most likely, and these. They begin at
+/// those given, or else at what the data have. Factors are believed to be 0, or near some values.
+pub(crate) fn settled(
+    cells: &[Cell],
+    expected: &[f64],
+    (start, rounds): (Option<&[f64]>, usize),
+    believed: &[f64],
+) -> (f64, Vec<f64>) {
+    let mut variances = match start {
+        Some(start) => start.to_vec(),
+        None => {
+            let mean = |(cell, expected): (&Cell, &f64)| {
+                let own = cell.products[(0, 0)] / cell.rows;
+                own.max(policy::LEAST_OF_LEVEL * expected).max(cell.least)
+            };
+            cells.iter().zip(expected).map(mean).collect()
+        }
+    };
+    let mut before = f64::NEG_INFINITY;
+    for _ in 0..rounds {
+        let posterior = Posterior::new(cells, &variances, believed);
+        let evidence = posterior.log_evidence(cells, &variances, expected);
+        variances = posterior.variances(cells, expected);
+        if (evidence - before).abs() < policy::SETTLED {
+            break;
+        }
+        before = evidence;
+    }
+    let posterior = Posterior::new(cells, &variances, believed);
+    (posterior.log_evidence(cells, &variances, expected), variances)
+}
+
 /// The factors of all columns, given variances.
-struct Posterior {
+pub(crate) struct Posterior {
     factor: Cholesky<f64, Dyn>,
-    mean: DVector<f64>,
-    covariance: DMatrix<f64>,
+    pub(crate) mean: DVector<f64>,
+    pub(crate) covariance: DMatrix<f64>,
     right: DVector<f64>,
     square: f64,
 }
 
 impl Posterior {
-    fn new(cells: &[Cell], variances: &[f64]) -> Self {
+    pub(crate) fn new(cells: &[Cell], variances: &[f64], believed: &[f64]) -> Self {
         let size = cells.first().map_or(1, |cell| cell.products.nrows());
         let mut sum = DMatrix::zeros(size, size);
         for (cell, variance) in cells.iter().zip(variances) {
@@ -192,12 +207,14 @@ impl Posterior {
             entries.for_each(|(sum, product)| *sum += weight * product);
         }
         let columns = size - 1;
-        let right = DVector::from_fn(columns, |k, _| sum[(1 + k, 0)]);
+        let mut right = DVector::from_fn(columns, |k, _| sum[(1 + k, 0)]);
+        right.iter_mut().zip(believed).for_each(|(right, own)| *right += own);
+        let square = sum[(0, 0)] + believed.iter().map(|own| own * own).sum::<f64>();
         let mut normal = sum.view((1, 1), (columns, columns)).into_owned();
         (0..columns).for_each(|k| normal[(k, k)] += 1.0);
         let factor = positive(normal);
         let mean = factor.solve(&right);
-        Self { covariance: factor.inverse(), mean, factor, right, square: sum[(0, 0)] }
+        Self { covariance: factor.inverse(), mean, factor, right, square }
     }
 
     fn log_evidence(&self, cells: &[Cell], variances: &[f64], expected: &[f64]) -> f64 {
@@ -219,7 +236,8 @@ impl Posterior {
         let shape = policy::NOISE_SHAPE;
         let of = |(cell, level): (&Cell, &f64)| {
             let squares = self.left(cell);
-            (squares + 2.0 * shape * level) / (cell.rows + 2.0 * shape + 2.0)
+            let own = (squares + 2.0 * shape * level) / (cell.rows + 2.0 * shape + 2.0);
+            own.max(cell.least)
         };
         cells.iter().zip(expected).map(of).collect()
     }

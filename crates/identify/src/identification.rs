@@ -1,11 +1,12 @@
 //! All that identification says: data alone, for tables, files and reports to show.
 
+use super::doubt::{GivenValues, MisreadColumns, misread_apart, misread_columns};
 use super::estimate::{
-    CLEAN, Consistent, ContradictingLog, Convergence, Estimate, EstimateError, Evidence,
-    IdentifiedParameter, Judgement, MisreadColumns, Options, SlowRows, Standing, Status,
-    Unexplained, Validation, biased_frictions, consistent, constants_off, contradicting_held_out,
-    contradicting_logs, convergence, estimate, exceeding_joints, filter_errors, long_enough,
-    misread_apart, misread_columns, noise_in_torques, parameters, unexplained_joints, validate,
+    Consistent, ContradictingLog, Convergence, Estimate, EstimateError, IdentifiedParameter,
+    Judgement, Options, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions,
+    consistent, contradicting_held_out, contradicting_logs, convergence, estimate,
+    exceeding_joints, filter_errors, long_enough, noise_in_torques, parameters, unexplained_joints,
+    validate,
 };
 use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
@@ -324,7 +325,7 @@ impl Estimated {
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
         let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
-        let misread = misread(request, (&found, &listed, &counted), &contradicting_logs);
+        let misread = misread(request, &found, &contradicting_logs);
         let (judges, judging) = match held_out.is_empty() {
             true => (train, shown.clone()),
             false => (held_out, (0..held_out.len()).collect()),
@@ -384,38 +385,33 @@ fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
 /// nothing of that.
 fn misread(
     request: Request<'_>,
-    (found, listed, counted): (&Estimate, &[IdentifiedParameter], &[f64]),
+    found: &Estimate,
     contradicting: &[ContradictingLog],
 ) -> Vec<MisreadColumns> {
     let Request { model, train, validate: held_out, .. } = request;
     if found.noise_share > MOST {
         return Vec::new();
     }
-    let phi = found.solution.phi.as_slice();
     let shown = shown_logs(train.len(), found);
     let logs: Vec<&Conditioned> = shown.iter().map(|&log| &train[log]).collect();
-    let mut misread = misread_columns(model, &logs, Evidence { values: None, listed });
-    let measured = counted.iter().filter(|share| **share > 0.0).count().max(1) as f64;
-    let squares: f64 = counted.iter().map(|share| share * share).sum();
-    if (squares / measured).sqrt() < CLEAN {
-        misread.retain(|one| !one.is_guess());
-    }
-    misread.retain(|one| !one.is_of_reversals(counted));
+    let mut misread = misread_columns(model, &logs, None);
     // values that a log gives which contradicts the others would accuse a good one
     let is_told = |&log: &usize| contradicting.iter().any(|one| one.file == train[log].file);
     let told: Vec<usize> = shown.iter().copied().filter(is_told).collect();
     let asked = if told.is_empty() { &shown } else { &told };
-    if let (true, Some((log, phi))) = (misread.is_empty(), odd_log(model, (asked, &shown), found)) {
-        misread = held_out_misread(model, &train[log..=log], &phi);
+    let odd = odd_log(model, (asked, &shown), found);
+    if let (true, Some((log, others))) = (misread.is_empty(), odd) {
+        let errors: Vec<f64> = others.factor.row_iter().map(|row| row.norm()).collect();
+        let values = GivenValues { phi: others.phi.as_slice(), errors: &errors };
+        misread = misread_apart(model, &[&train[log]], Some(values));
         if contradicting.iter().any(|one| one.standing == Standing::Undecided) {
             misread.iter_mut().for_each(|one| one.is_sure = false);
         }
     }
-    // noise of the positions makes constants, too
-    if misread.is_empty() && !listed.iter().any(IdentifiedParameter::is_biased) {
-        misread = constants_off(model, train, found);
-    }
-    let others = held_out_misread(model, held_out, phi);
+    let errors: Vec<f64> =
+        found.covariance.diagonal().iter().map(|variance| variance.max(0.0).sqrt()).collect();
+    let values = GivenValues { phi: found.solution.phi.as_slice(), errors: &errors };
+    let others = misread_apart(model, &held_out.iter().collect::<Vec<_>>(), Some(values));
     let is_told = |one: &MisreadColumns| {
         let is_same = |told: &MisreadColumns| told.misreading.is_like(one.misreading);
         misread.iter().any(|told| told.file.is_none() && is_same(told))
@@ -423,23 +419,6 @@ fn misread(
     let others: Vec<MisreadColumns> = others.into_iter().filter(|one| !is_told(one)).collect();
     misread.extend(others);
     misread
-}
-
-/// Columns that seem to be other ones in each of the logs for validation: by what was found in the
-/// others, and by estimates of their own.
-fn held_out_misread(
-    model: &RegressionModel,
-    logs: &[Conditioned],
-    phi: &[f64],
-) -> Vec<MisreadColumns> {
-    let of_log = |log: &Conditioned| {
-        let mut misread = misread_apart(model, &[log], Evidence { values: Some(phi), listed: &[] });
-        if validate(model, phi, std::slice::from_ref(log)).relative < CLEAN {
-            misread.retain(|one| !one.is_guess());
-        }
-        misread
-    };
-    logs.iter().flat_map(of_log).collect()
 }
 
 /// The joint of whose torque the filter makes most by itself, if that is a part of what is left.

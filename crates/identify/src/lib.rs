@@ -5,6 +5,7 @@
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
+//! - [`doubt`]: what logs may be other than they are taken for
 //! - [`two_stage`]: springs and motors of series elastic drives first, then the load
 //! - [`forward`]: the identified model in motion against a log
 //! - [`identify`]: all of it at once
@@ -13,6 +14,7 @@
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
 
 mod contact_forces;
+pub mod doubt;
 pub mod estimate;
 pub mod excite;
 pub mod forward;
@@ -26,6 +28,7 @@ mod model_values;
 mod no_bodies;
 mod noisy_logs;
 mod odd_log;
+mod policy;
 pub mod statics;
 mod statics_file;
 pub mod two_stage;

@@ -1,15 +1,15 @@
 //! The log of several that is unlike the others.
 
-use super::estimate::{Estimate, Triangle, solve};
+use super::estimate::{Estimate, Solution, Triangle, solve};
 use denavit_plants::regression::RegressionModel;
 
-/// Of several logs the one, of those that are asked, without which the others agree best, and phi
-/// of the others.
+/// Of several logs the one, of those that are asked, without which the others agree best, and what
+/// the others say.
 pub(super) fn odd_log(
     model: &RegressionModel,
     (asked, logs): (&[usize], &[usize]),
     found: &Estimate,
-) -> Option<(usize, Vec<f64>)> {
+) -> Option<(usize, Solution)> {
     let condensed = &found.condensed;
     if logs.len() < 2 || condensed.rank != model.rank() {
         return None;
@@ -26,8 +26,8 @@ pub(super) fn odd_log(
         // of rows that are weighted, the last of R is what is left
         let rows: usize = triangles.iter().flatten().map(Triangle::rows).sum();
         let left = r[(condensed.rank, condensed.rank)].powi(2);
-        (left / rows.max(1) as f64, log, solution.phi.as_slice().to_vec())
+        (left / rows.max(1) as f64, log, solution)
     };
     let least = asked.iter().copied().map(without).min_by(|a, b| a.0.total_cmp(&b.0));
-    least.map(|(_, log, phi)| (log, phi))
+    least.map(|(_, log, solution)| (log, solution))
 }

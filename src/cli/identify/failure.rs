@@ -1,7 +1,8 @@
 //! Why nothing is identified.
 
 use denavit::identify::UpdateError;
-use denavit::identify::estimate::{EstimateError, MisreadColumns};
+use denavit::identify::doubt::MisreadColumns;
+use denavit::identify::estimate::EstimateError;
 use denavit::identify::forward::ForwardError;
 use denavit::identify::statics::StaticFault;
 use denavit::identify::two_stage::TwoStageError;

@@ -18,7 +18,10 @@ const WALLS: [(&str, &[&str]); 15] = [
     ("crates/simulate", &["codegen", "numerics", "plants", "runtime"]),
     ("crates/walk", &["codegen", "numerics", "plants", "runtime", "simulate"]),
     ("crates/measure", &["codegen", "numerics", "plants", "simulate"]),
-    ("crates/identify", &["codegen", "measure", "numerics", "plants", "runtime", "simulate"]),
+    (
+        "crates/identify",
+        &["codegen", "evidence", "measure", "numerics", "plants", "runtime", "simulate"],
+    ),
     (
         "crates/diagnose",
         &["codegen", "evidence", "identify", "measure", "numerics", "plants", "simulate"],

@@ -2,7 +2,7 @@
 //! sign of its rate says, and the filter smears that over its own time.
 
 use super::least_squares::{Method, Options};
-use denavit_measure::condition::{Butterworth, Conditioned, Piece};
+use denavit_measure::condition::{Butterworth, Conditioned};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -200,17 +200,6 @@ impl LeftOut {
             }
         }
         sure
-    }
-
-    /// The same of pieces of logs, each with the number of its log.
-    pub(super) fn of_pieces(&self, logs: &[Conditioned], pieces: &[(usize, Piece)]) -> Self {
-        let of = |&(number, piece): &(usize, Piece)| {
-            let first = piece.first * logs[number].decimation;
-            let part = |all: &Vec<bool>| all[first..].to_vec();
-            self.rows[number].iter().map(|one| one.as_ref().map(part)).collect()
-        };
-        // rests do not count: a piece has other means of them
-        Self::of(pieces.iter().map(of).collect())
     }
 
     /// The same of pieces whose edges and filters smear over twice the time: each with its log,

@@ -70,7 +70,7 @@ impl Variance {
 
 /// How much of each joint's torque noise of the positions makes up by itself after the filter,
 /// root of mean square over root of mean square, looked at in some blocks of each log.
-pub(super) fn noise_of_positions(
+pub(crate) fn noise_of_positions(
     model: &RegressionModel,
     logs: &[&Conditioned],
     phi: &[f64],

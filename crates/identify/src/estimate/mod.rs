@@ -5,7 +5,6 @@
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
-//! - [`misread_columns`]: columns of another unit, sign or zero, of other joints, or late
 //! - [`ContradictingLog`]: logs that no parameters explain together with the others
 //! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
@@ -24,8 +23,8 @@ mod least_squares;
 mod left_out;
 mod left_over;
 mod likelihood;
-mod misread;
 mod noise_bias;
+mod nominal;
 mod own_estimate;
 mod report;
 mod rests;
@@ -51,14 +50,15 @@ pub use least_squares::{Estimate, EstimateError, Method, Options, estimate, long
 pub use left_out::SlowRows;
 pub(crate) use left_out::{biased_frictions, is_biased};
 pub(crate) use left_over::no_noise;
-pub(crate) use misread::{CLEAN, constants_off, misread_apart, nominal_values};
-pub use misread::{Evidence, ExchangedColumns, MisreadColumns, Misreading, misread_columns};
+pub(crate) use likelihood::noise_of_positions;
 pub use noise_bias::NoiseOfLog;
 pub(crate) use noise_bias::noise_in_torques;
+pub(crate) use nominal::{is_of_joints, nominal_values};
 pub(crate) use report::BIASING;
 pub use report::{Convergence, HalfCutoff, IdentifiedParameter, Status, convergence, parameters};
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
+pub(crate) use rows::{Coulomb, coulomb};
 pub(crate) use solve::DEAD;
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;

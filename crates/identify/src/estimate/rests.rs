@@ -8,7 +8,7 @@
 
 use super::left_out::LeftOut;
 use super::left_over::Left;
-use super::misread::nominal_values;
+use super::nominal::nominal_values;
 use super::rows::BlockMaker;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{CoulombLaw, RegressionModel};

@@ -65,15 +65,15 @@ struct Rest {
 }
 
 /// A column of Coulomb friction.
-pub(super) struct Coulomb {
-    pub(super) joint: usize,
-    pub(super) place: usize,
+pub(crate) struct Coulomb {
+    pub(crate) joint: usize,
+    pub(crate) place: usize,
     /// Times the law of the rate.
-    pub(super) factor: f64,
+    pub(crate) factor: f64,
 }
 
 /// The columns of Coulomb friction, as they are at rates of 1.
-pub(super) fn coulomb(
+pub(crate) fn coulomb(
     model: &RegressionModel,
     evaluator: &mut RegressionEvaluator,
 ) -> Vec<Coulomb> {

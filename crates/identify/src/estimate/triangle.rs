@@ -68,16 +68,6 @@ impl Triangle {
         self.rows += other.rows;
     }
 
-    /// The same rows with some of the columns of W, and y.
-    pub(super) fn with_columns(&self, places: &[usize]) -> Self {
-        let all: Vec<usize> = places.iter().copied().chain([self.width()]).collect();
-        let mut stacked = DMatrix::zeros(self.r.nrows(), all.len());
-        for (to, &from) in all.iter().enumerate() {
-            stacked.set_column(to, &self.r.column(from));
-        }
-        Self { r: upper(stacked), sums: self.sums.select_rows(&all), rows: self.rows }
-    }
-
     /// Turns y round.
     pub fn negate_target(&mut self) {
         let last = self.width();

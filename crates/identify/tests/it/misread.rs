@@ -3,7 +3,7 @@
 
 use super::estimate::{Experiment, bare};
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::estimate::{Evidence, ExchangedColumns, Misreading, misread_columns};
+use denavit_identify::doubt::{ExchangedColumns, Misreading, misread_columns};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::f64::consts::FRAC_PI_2;
@@ -20,7 +20,7 @@ fn made(name: &str, seed: u64, friction: bool) -> (RegressionModel, Conditioned)
 }
 
 fn told(model: &RegressionModel, log: &Conditioned) -> Vec<(Misreading, bool)> {
-    let found = misread_columns(model, &[log], Evidence::default());
+    let found = misread_columns(model, &[log], None);
     found.into_iter().map(|one| (one.misreading, one.is_sure)).collect()
 }
 
@@ -112,7 +112,7 @@ fn slides_and_single_logs_are_told() {
     let (model, log) = made("planar_2r", 4, true);
     let mut turned = misread(&made("planar_2r", 5, true).1, Misreading::Torque(1, -1.0));
     turned.file = "turned".to_owned();
-    let found = misread_columns(&model, &[&log, &turned], Evidence::default());
+    let found = misread_columns(&model, &[&log, &turned], None);
     let told: Vec<_> = found.iter().map(|one| (one.misreading, one.file.as_deref())).collect();
     assert_eq!(told, [(Misreading::Torque(1, -1.0), Some("turned"))]);
 }
@@ -168,13 +168,14 @@ fn misread_columns_are_told() {
                 };
                 is_same && (*is_sure || is_by_degrees(how) || matches!(how, Late(_)))
             });
-            // the last body turns with the zero of its joint, and all with that of a vertical axis
+            // the last body turns with the zero of its joint, which values may tell all the same, and all
+            // bodies with that of a vertical axis
             let is_hidden = match how {
                 Zero(0, _) => name != "planar_2r",
                 Zero(1, _) => name == "planar_2r",
                 _ => false,
             };
-            assert!(!is_hidden || found.is_empty(), "{name}: {how:?} {found:?}");
+            assert!(!is_hidden || found.is_empty() || is_told, "{name}: {how:?} {found:?}");
             if !(is_told || is_hidden) {
                 missed.push((name, how, found));
             }

@@ -52,12 +52,6 @@ pub enum Misreading {
 }
 
 impl Misreading {
-    /// Whether it is of all joints alike: what is off by one mistake.
-    pub(super) fn is_of_all(self) -> bool {
-        use Misreading::{Angles, Lengths, Time, Torques, TorquesOfMotors};
-        matches!(self, Time(_) | Torques(_) | TorquesOfMotors(_) | Angles(_) | Lengths(_))
-    }
-
     /// Whether something is late.
     pub(super) fn is_late(self) -> bool {
         matches!(self, Self::Late(_) | Self::LateTorque(..) | Self::LatePosition(..))
@@ -82,13 +76,11 @@ impl Misreading {
         }
     }
 
-    /// The joints whose own torque must be explained then.
-    pub(super) fn torques_of(self) -> Vec<usize> {
+    /// The joints whose positions alone it is of.
+    pub(super) fn positions_of(self) -> Vec<usize> {
         match self {
-            Self::Torque(joint, _) => vec![joint],
-            Self::Exchanged(both, columns) if columns != ExchangedColumns::Positions => {
-                both.to_vec()
-            }
+            Self::Position(joint, _) => vec![joint],
+            Self::Exchanged(both, ExchangedColumns::Positions) => both.to_vec(),
             _ => Vec::new(),
         }
     }

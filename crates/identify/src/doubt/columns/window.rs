@@ -1,6 +1,7 @@
 //! Samples of a log under a reading of its columns.
 
 use super::reading::Source;
+use crate::policy::SIGNED as LEAST;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::CoulombLaw;
 use std::ops::Range;
@@ -16,6 +17,20 @@ pub(super) struct Window<'a> {
     span: Range<usize>,
     /// Coulomb friction of size 1 of some joints.
     laws: Vec<Law>,
+    /// For each joint whether samples count; none where all do.
+    counts: Vec<Option<Vec<bool>>>,
+}
+
+/// Whether samples of a joint in [`Conditioned::range`] count: those in which the sign of its rate
+/// is known, and its friction with it. None where all do, or too few would.
+pub(super) fn with_sign(log: &Conditioned, joint: usize) -> Option<Vec<bool>> {
+    let both = [log.near_reversals(joint, 1.0), log.unsure_signs(joint)];
+    let mut counts = vec![true; log.range.len()];
+    for unsure in both.iter().flatten() {
+        counts.iter_mut().zip(unsure).for_each(|(counts, unsure)| *counts &= !unsure);
+    }
+    let kept = counts.iter().filter(|counts| **counts).count() as f64;
+    (kept < counts.len() as f64 && kept > LEAST * counts.len() as f64).then_some(counts)
 }
 
 /// Coulomb friction of size 1, at the places that are read.
@@ -28,11 +43,22 @@ struct Law {
 }
 
 impl<'a> Window<'a> {
-    /// So many samples of a log, from one on, that are read up to `latest` samples late.
-    pub(super) fn new(log: &'a Conditioned, [first, count]: [usize; 2], latest: isize) -> Self {
+    /// So many samples of a log, from one on, that are read up to `latest` samples late; for each
+    /// joint those of the log that count.
+    pub(super) fn new(
+        (log, all): (&'a Conditioned, &[Option<Vec<bool>>]),
+        [first, count]: [usize; 2],
+        latest: isize,
+    ) -> Self {
         let mut motion = Vec::new();
         log.motion_at(first, count, &mut motion);
-        let mut window = Self { log, first, count, motion, span: 0..0, laws: Vec::new() };
+        let (laws, counts) = (Vec::new(), Vec::new());
+        let mut window = Self { log, first, count, motion, span: 0..0, laws, counts };
+        let counts = |all: &Option<Vec<bool>>| -> Option<Vec<bool>> {
+            let all = all.as_ref()?;
+            Some(window.places(0).map(|place| all[place - log.range.start]).collect())
+        };
+        window.counts = all.iter().map(counts).collect();
         let last = window.places(latest).last().unwrap_or(log.range.start);
         let first = window.places(-latest).next().unwrap_or(last);
         window.span = first..last + 1;
@@ -41,6 +67,11 @@ impl<'a> Window<'a> {
 
     pub(super) fn log(&self) -> &'a Conditioned {
         self.log
+    }
+
+    /// Whether samples of a joint count; none where all do.
+    pub(super) fn counts(&self, joint: usize) -> Option<&[bool]> {
+        self.counts[joint].as_deref()
     }
 
     /// Samples that are independent of each other.

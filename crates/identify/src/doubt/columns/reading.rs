@@ -108,6 +108,18 @@ impl Reading {
         new
     }
 
+    /// The same with torques as their columns are.
+    pub(super) fn with_plain_torques(&self) -> Self {
+        let mut new = self.clone();
+        new.torques.iter_mut().for_each(|one| (one.factor, one.offset) = (1.0, 0.0));
+        new
+    }
+
+    /// For each joint what is known of the column that is its torque.
+    pub(super) fn by_joint<T: Copy>(&self, by_column: &[T]) -> Vec<T> {
+        self.torques.iter().map(|torque| by_column[torque.column]).collect()
+    }
+
     /// Whether something was mended by a number of samples.
     pub(super) fn is_shifted(&self) -> bool {
         self.positions.iter().chain(&self.torques).any(|source| source.late != 0)
@@ -120,13 +132,10 @@ fn is_geared(joint: &RegressionJoint) -> bool {
     !joint.is_elastic && !joint.is_base && ratio.is_finite() && ratio != 0.0 && ratio != 1.0
 }
 
-/// All that is tried but what differs by degrees; single columns only if they are asked for, and
-/// torques of joints of which some were measured. In noisy logs nothing is tried that merely makes
-/// less of the noise.
+/// All that is tried but what differs by degrees, of joints whose torques are measured or not.
 pub(super) fn hypotheses(
     model: &RegressionModel,
     is_measured: &dyn Fn(usize) -> bool,
-    [single, is_noisy]: [bool; 2],
 ) -> Vec<Misreading> {
     use Misreading::{
         Angles, Exchanged, Lengths, Position, Time, Torque, Torques, TorquesOfMotors,
@@ -146,7 +155,7 @@ pub(super) fn hypotheses(
     if count(true) > 0 {
         tried.extend(OF_LENGTHS.map(Lengths));
     }
-    for (place, &joint) in real.iter().enumerate().filter(|_| single && real.len() > 1) {
+    for (place, &joint) in real.iter().enumerate().filter(|_| real.len() > 1) {
         if is_measured(joint) {
             tried.extend(POWERS.into_iter().chain([-1.0]).map(|factor| Torque(joint, factor)));
         }
@@ -166,6 +175,5 @@ pub(super) fn hypotheses(
             }
         }
     }
-    tried.retain(|one| !(is_noisy && one.hides_noise()));
     tried
 }

@@ -1,0 +1,152 @@
+//! Emitted C and C++: compiled without a warning, run, and compared bit by bit with the
+//! interpreters, which have the bits of emitted Rust.
+
+use super::compiled::{Build, Compiled, Language, Reference, compilers};
+use super::recount::models;
+use crate::robots::repository;
+use denavit_codegen::derive::Flavour;
+use denavit_codegen::effect;
+use denavit_codegen::function::FunctionName;
+use denavit_codegen::model::{self, Robot};
+
+/// States that each function is called on.
+const SAMPLES: usize = 5;
+
+fn all_functions() -> Vec<FunctionName> {
+    [&FunctionName::ALL[..], &FunctionName::WALKING, &FunctionName::REGRESSORS].concat()
+}
+
+fn read(path: &std::path::Path) -> Robot {
+    let file = path.to_string_lossy();
+    model::read(&file, &std::fs::read(path).unwrap()).unwrap()
+}
+
+fn shipped(name: &str) -> Robot {
+    read(&repository().join(format!("models/{name}.json")))
+}
+
+fn built(reference: &Reference, build: &Build) -> Compiled {
+    Compiled::new(reference, build)
+}
+
+#[test]
+fn c_has_the_bits_of_rust_on_every_shipped_model() {
+    for path in models() {
+        let robot = read(&path);
+        let reference = Reference::new(&robot, Flavour::Tunable, &all_functions(), false);
+        let samples = reference.samples(SAMPLES);
+        for compiler in compilers(Language::C) {
+            let build = Build { compiler, ..Build::default() };
+            let found = built(&reference, &build).run::<f64>(&samples);
+            reference.assert_bits(&found, &samples, &build);
+        }
+    }
+}
+
+#[test]
+fn c_has_the_bits_of_rust_in_every_flavour() {
+    for (name, flavour, is_fused) in [
+        ("puma560", Flavour::Baked, false),
+        ("puma560", Flavour::Sparse, false),
+        ("planar_biped", Flavour::Baked, false),
+        ("tulip_leg6", Flavour::Tunable, true),
+    ] {
+        let reference = Reference::new(&shipped(name), flavour, &all_functions(), is_fused);
+        let samples = reference.samples(SAMPLES);
+        for language in [Language::C, Language::Cpp] {
+            for compiler in compilers(language) {
+                let build = Build { language, compiler, optimisation: "-O2", ..Build::default() };
+                let found = built(&reference, &build).run::<f64>(&samples);
+                reference.assert_bits(&found, &samples, &build);
+            }
+        }
+    }
+}
+
+#[test]
+fn floats_have_the_bits_of_rust_and_are_near_those_of_doubles() {
+    for name in ["puma560", "planar_2r"] {
+        let robot = shipped(name);
+        let reference = Reference::new(&robot, Flavour::Tunable, &FunctionName::ALL, false);
+        let samples = reference.samples(SAMPLES);
+        for language in [Language::C, Language::Cpp] {
+            let compiler = compilers(language)[0];
+            let build = Build { language, compiler, real: "float", ..Build::default() };
+            let found = built(&reference, &build).run::<f32>(&samples);
+            reference.assert_bits(&found, &samples, &build);
+            let found: Vec<f64> = found.iter().map(|&value| f64::from(value)).collect();
+            reference.assert_near(&found, &samples, 1e-3);
+        }
+    }
+}
+
+#[test]
+fn names_that_are_words_of_the_language_are_no_matter() {
+    let path = repository().join("tests/fixtures/models/awkward.json");
+    let text = std::fs::read_to_string(path).unwrap();
+    let text = text.replace("\"live\"", "\"double\"").replace("\"live +", "\"double +");
+    let text = text.replace("+ live\"", "+ double\"").replace("\"t1\"", "\"sqrt\"");
+    let text = text.replace("t1 + ", "sqrt + ").replace("\"awkward\"", "\"namespace\"");
+    let text = text.replace("\"k1\"", "\"S\"").replace("turns. */", "turns. */ ??/ \\\\");
+    let robot = model::read("awkward.json", text.as_bytes()).unwrap();
+    let reference = Reference::new(&robot, Flavour::Tunable, &all_functions(), false);
+    let samples = reference.samples(SAMPLES);
+    for language in [Language::C, Language::Cpp] {
+        for compiler in compilers(language) {
+            let build = Build { language, compiler, ..Build::default() };
+            let found = built(&reference, &build).run::<f64>(&samples);
+            reference.assert_bits(&found, &samples, &build);
+        }
+    }
+}
+
+/// A spring that ages: of a state and the time.
+const BUNGEE: &str = r#"{"format": "denavit-effect/1", "name": "bungee", "title": "bungee cord",
+    "description": "d", "source": "s", "kind": "state", "at": "joint",
+    "parameters": {"k": {"unit": "torque/position", "description": "stiffness",
+        "nominal": 0, "bounds": [0, null]}},
+    "states": {"x": {"unit": "position", "rate": "(q - x)*exp(-t^2)", "initial": "q"}},
+    "torque": "k*tanh(q - x)*(1 + abs(t))"}"#;
+
+/// Effects have states, the time, and functions whose last bits are the platform's.
+#[test]
+fn effects_are_functions_of_time_and_states_as_in_rust() {
+    let text = std::fs::read_to_string(repository().join("models/puma560.json")).unwrap();
+    let mut file: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let at = |row: usize| file["links"][row]["name"].clone();
+    file["effects"] = serde_json::json!([
+        {"effect": "stribeck_exponential", "at": {"link": at(1)},
+            "parameters": {"fs": 0.3, "vs": 0.05}},
+        {"effect": "bungee", "at": {"link": at(2)}, "parameters": {"k": 4}},
+    ]);
+    let bungee = effect::read("bungee.json", BUNGEE.as_bytes()).unwrap();
+    let text = file.to_string();
+    let robot = effect::read_model("puma560.json", text.as_bytes(), &[bungee]).unwrap();
+    let reference = Reference::new(&robot, Flavour::Tunable, &FunctionName::ALL, false);
+    let samples = reference.samples(SAMPLES);
+    for language in [Language::C, Language::Cpp] {
+        for compiler in compilers(language) {
+            let build = Build { language, compiler, ..Build::default() };
+            let found = built(&reference, &build).run::<f64>(&samples);
+            reference.assert_near(&found, &samples, 1e-11);
+        }
+    }
+}
+
+#[test]
+fn the_platforms_sines_are_a_choice() {
+    let reference =
+        Reference::new(&shipped("puma560"), Flavour::Tunable, &FunctionName::ALL, false);
+    let samples = reference.samples(SAMPLES);
+    for language in [Language::C, Language::Cpp] {
+        let compiler = compilers(language)[0];
+        let build = Build {
+            language,
+            compiler,
+            defines: &["-DPUMA560_PLATFORM_SINCOS"],
+            ..Build::default()
+        };
+        let found = built(&reference, &build).run::<f64>(&samples);
+        reference.assert_near(&found, &samples, 1e-11);
+    }
+}

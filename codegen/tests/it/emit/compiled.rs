@@ -311,7 +311,8 @@ impl Compiled {
 }
 
 fn assert_narrow(text: &str) {
-    for line in text.lines() {
+    // The table of operations is as wide as its columns.
+    for line in text.lines().filter(|line| !line.starts_with("//     ")) {
         assert!(line.chars().count() <= 100, "{line}");
     }
 }
@@ -330,20 +331,23 @@ fn compile(folder: &Path, build: &Build, prefix: &str) {
         Language::C => &["-std=c99", "model.c", "main.c"],
         Language::Cpp => &["-std=c++17", "main.cpp"],
     };
-    let strict = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-ffp-contract=off"];
-    let output = Command::new(build.compiler)
-        .args(strict)
-        .args([build.optimisation, "-o", "program"])
+    let mut compile = Command::new(build.compiler);
+    compile
+        .args(["-ffp-contract=off", build.optimisation, "-o", "program"])
         .args(build.defines)
         .args(real_flag)
         .args(files)
         .arg("-lm")
-        .current_dir(folder)
-        .output()
-        .unwrap();
+        .current_dir(folder);
+    warning_free(&mut compile);
+}
+
+/// Compiles without a warning.
+pub(super) fn warning_free(compile: &mut Command) {
+    let output = compile.args(["-Wall", "-Wextra", "-pedantic", "-Werror"]).output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
     let shown: String = errors.lines().take(20).fold(String::new(), |all, line| all + line + "\n");
-    assert!(output.status.success(), "{build:?} in {}: {shown}", folder.display());
+    assert!(output.status.success(), "{compile:?}: {shown}");
 }
 
 /// A program that reads samples and writes the results of all functions.

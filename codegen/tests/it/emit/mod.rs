@@ -3,5 +3,6 @@
 mod c;
 mod compiled;
 mod golden;
+mod programs;
 mod recount;
 mod text;

@@ -32,8 +32,10 @@ pub struct Files {
 const HEADING: Heading = Heading {
     text: comment,
     tunable: "tunable at run time, by their names",
-    fused: "// products: fused with sums where the target has the instruction (-mfma, -march=native)\n",
-    transcendental: "// needs: the platform's mathematics library (-lm), whose last bits may differ\n",
+    fused: "// products: fused with sums where the target has the instruction (-mfma,\n\
+            // -march=native)\n",
+    transcendental: "// needs: the platform's mathematics library (-lm), whose bits are its own\n\
+                     // but for square roots\n",
 };
 
 /// The text of C99 with the functions of `program`, which belong to `robot`. `header` is the file

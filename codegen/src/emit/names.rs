@@ -34,7 +34,8 @@ pub(super) const C: Words = Words {
                thread_local throw true try typedef typeid typename typeof typeof_unqual union \
                unsigned using virtual void volatile wchar_t while xor xor_eq _Alignas _Alignof \
                _Atomic _BitInt _Bool _Complex _Generic _Imaginary _Noreturn _Static_assert \
-               _Thread_local S Scalar Parameters ModelParameters near far huge linux unix i386 errno assert NULL EOF NAN INFINITY \
+               _Thread_local S Scalar Parameters ModelParameters near far huge linux unix \
+               i386 errno assert NULL EOF NAN INFINITY \
                HUGE_VAL EDOM ERANGE FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL M_E M_PI \
                TRUE FALSE DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS",
     called: "Turns DOF real std sincos_of sincos_pack fused sign_of lesser greater product_plus \
@@ -78,8 +79,15 @@ impl Names {
 
     /// For values and functions: the names of arguments are taken too.
     pub(super) fn locals(words: Words) -> Self {
+        let mut names = Self::globals(words);
+        names.taken.extend(LOCALS.map(str::to_owned));
+        names
+    }
+
+    /// For names beside all that common headers declare: what functions call is taken, too.
+    pub(super) fn globals(words: Words) -> Self {
         let mut names = Self::fields(words);
-        names.taken.extend(LOCALS.into_iter().chain(split(words.called)).map(str::to_owned));
+        names.taken.extend(split(words.called).map(str::to_owned));
         names
     }
 

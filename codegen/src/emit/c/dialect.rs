@@ -21,9 +21,11 @@ impl Dialect {
     }
 
     fn new(model: &str, is_cpp: bool) -> Self {
-        let mut names = Names::fields(C);
-        // A namespace that is taken already.
-        names.claim("std");
+        let mut names = Names::globals(C);
+        // What the global namespace has besides.
+        for taken in ["main", "posix", "link", "time", "index", "abs", "div", "remove", "rename"] {
+            names.claim(taken);
+        }
         let prefix = names.field(&model.to_ascii_lowercase());
         let upper = prefix.to_ascii_uppercase();
         Self { is_cpp, prefix, upper }

@@ -217,6 +217,19 @@ fn results(routine: &Routine) -> Vec<String> {
 
 fn doc(context: &Context<'_>, routine: &Routine) -> String {
     let mut lines = summary_and_arguments(routine);
+    let selector = Selector::of(routine.name).argument();
+    if routine.link.is_some() {
+        lines.insert(
+            2,
+            format!("- `{selector}`: which {selector}; another value leaves the results alone"),
+        );
+    }
+    // What is said of one link holds for each of them.
+    let one = routine.link.as_ref().map(|link| format!("link {}", comment(link)));
+    let of_each = |text: String| match &one {
+        Some(one) => text.replace(one, &format!("the {selector}")),
+        None => text,
+    };
     for (output, name) in routine.outputs.iter().zip(results(routine)) {
         let shape: Vec<String> = output.shape.iter().map(ToString::to_string).collect();
         let shape = match &shape[..] {
@@ -224,8 +237,10 @@ fn doc(context: &Context<'_>, routine: &Routine) -> String {
             [length] => format!("{length} entries"),
             _ => shape.join(" x "),
         };
-        lines.push(format!("- `{name}`: result, {shape}. {}", output_doc(output, comment) + "."));
-        lines.extend(output.details.iter().map(|detail| format!("    - {}", comment(detail))));
+        let doc = of_each(output_doc(output, comment));
+        lines.push(format!("- `{name}`: result, {shape}. {doc}."));
+        let details = output.details.iter();
+        lines.extend(details.map(|detail| format!("    - {}", of_each(comment(detail)))));
     }
     if routine.link.is_none() {
         let counts = operations(&counts(context.program, routine));

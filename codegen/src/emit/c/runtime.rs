@@ -75,7 +75,9 @@ pub(super) fn of_cpp(dialect: &Dialect, program: &Program) -> Runtime {
 /// Sine and cosine: the platform's, or those of denavit-runtime.
 fn sincos(dialect: &Dialect, is_fused: bool, is_packed: bool) -> String {
     let inline = if dialect.is_cpp { "inline " } else { "static inline " };
-    let apart = if dialect.is_cpp { "inline " } else { "static " };
+    // A function that is declared inline may not be kept apart; a template may stand in a header.
+    let apart = if dialect.is_cpp { "template <int = 0> " } else { "static " };
+    let apart = format!("{apart}{}_APART ", dialect.upper);
     let (exact, standard) = (dialect.exact(), if dialect.is_cpp { "std::" } else { "" });
     let mut platform = template(
         include_str!("../../../templates/c/platform_sincos.c.in"),
@@ -94,16 +96,15 @@ fn sincos(dialect: &Dialect, is_fused: bool, is_packed: bool) -> String {
     own += "\n";
     own += &template(
         include_str!("../../../templates/c/sincos.c.in"),
-        &[("inline", inline), ("exact", &exact)],
+        &[("inline", inline), ("exact", &exact), ("apart", &apart)],
     );
     if is_packed {
-        for (text, to) in [
-            (include_str!("../../../templates/c/platform_sincos_pack.c.in"), &mut platform),
-            (include_str!("../../../templates/c/sincos_pack.c.in"), &mut own),
-        ] {
-            *to += "\n";
-            *to += &template(text, &[("apart", apart)]);
-        }
+        let text = include_str!("../../../templates/c/platform_sincos_pack.c.in");
+        platform += "\n";
+        platform += &template(text, &[("inline", inline)]);
+        let text = include_str!("../../../templates/c/sincos_pack.c.in");
+        own += "\n";
+        own += &template(text, &[("apart", &apart)]);
     }
     template(
         include_str!("../../../templates/c/turns.c.in"),

@@ -54,7 +54,7 @@ fn c_has_the_bits_of_rust_in_every_flavour() {
         let samples = reference.samples(SAMPLES);
         for language in [Language::C, Language::Cpp] {
             for compiler in compilers(language) {
-                let build = Build { language, compiler, optimisation: "-O2", ..Build::default() };
+                let build = Build { language, compiler, optimisation: "-O1", ..Build::default() };
                 let found = built(&reference, &build).run::<f64>(&samples);
                 reference.assert_bits(&found, &samples, &build);
             }
@@ -131,6 +131,40 @@ fn effects_are_functions_of_time_and_states_as_in_rust() {
             let build = Build { language, compiler, ..Build::default() };
             let found = built(&reference, &build).run::<f64>(&samples);
             reference.assert_near(&found, &samples, 1e-11);
+        }
+    }
+}
+
+/// Angles in every range of the reduction, and beside multiples of a quarter turn.
+fn angles() -> Vec<f64> {
+    let mut angles = vec![0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e5, -1e5];
+    for exponent in -1074..1024 {
+        let power = 2.0_f64.powi(exponent);
+        angles.extend([power, -1.1 * power, 1.7 * power]);
+    }
+    for turns in 0..400 {
+        let near = f64::from(turns * turns) * std::f64::consts::FRAC_PI_2;
+        angles.extend([near, -near, near.next_up(), near.next_down()]);
+    }
+    // Of all doubles the one that is nearest to a multiple of a quarter turn.
+    angles.push(6_381_956_970_095_103.0 * 2.0_f64.powi(797));
+    angles
+}
+
+#[test]
+fn every_angle_has_the_sine_of_rust() {
+    let transforms = [FunctionName::LinkTransforms];
+    let robot = shipped("planar_2r");
+    let angles = angles();
+    let samples: Vec<Vec<f64>> = angles.windows(2).map(<[f64]>::to_vec).collect();
+    for is_fused in [false, true] {
+        let reference = Reference::new(&robot, Flavour::Tunable, &transforms, is_fused);
+        for language in [Language::C, Language::Cpp] {
+            for compiler in compilers(language) {
+                let build = Build { language, compiler, optimisation: "-O3", ..Build::default() };
+                let found = built(&reference, &build).run::<f64>(&samples);
+                reference.assert_bits(&found, &samples, &build);
+            }
         }
     }
 }

@@ -76,7 +76,7 @@ pub(super) fn of_cpp(dialect: &Dialect, program: &Program) -> Runtime {
 fn sincos(dialect: &Dialect, is_fused: bool, is_packed: bool) -> String {
     let inline = if dialect.is_cpp { "inline " } else { "static inline " };
     // A function that is declared inline may not be kept apart; a template may stand in a header.
-    let apart = if dialect.is_cpp { "template <int = 0> " } else { "static " };
+    let apart = if dialect.is_cpp { "template <int = 0>\n" } else { "static " };
     let apart = format!("{apart}{}_APART ", dialect.upper);
     let (exact, standard) = (dialect.exact(), if dialect.is_cpp { "std::" } else { "" });
     let mut platform = template(

@@ -16,7 +16,8 @@
 
 use crate::derive::{Flavour, derive};
 use crate::effect::{self, Effect};
-use crate::emit::rust::{EmitError, module};
+use crate::emit::EmitError;
+use crate::emit::rust::module;
 use crate::function::FunctionName;
 use crate::model::{BakeError, ModelError, Robot};
 use crate::program::{LowerError, fuse, lower};

@@ -11,7 +11,7 @@ mod states;
 
 use super::Answer;
 use super::base::{Found, latex};
-use super::emit::Emitted;
+use super::emit::Lowered;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
@@ -179,13 +179,13 @@ fn one_robot(
     let name = compiled.name;
     let robot = read_model_with_effects(Path::new(name), None)?;
     progress.show(&format!("{name}: deriving and emitting"));
-    let emitted = Emitted::new(&robot, Flavour::Tunable, false, &FunctionName::ALL)?;
+    let lowered = Lowered::new(&robot, Flavour::Tunable, false, &FunctionName::ALL)?;
     let mut files = Vec::new();
-    let functions = emitted.program.routines.len();
+    let functions = lowered.program.routines.len();
     let what = format!("{functions} functions as Rust, tunable parameters");
-    files.push(write(directory, &format!("{name}_dynamics.rs"), &emitted.text, what)?);
+    files.push(write(directory, &format!("{name}_dynamics.rs"), &lowered.rust()?, what)?);
     progress.show(&format!("{name}: setting the equations"));
-    let document = equations(&robot, &emitted.derivation);
+    let document = equations(&robot, &lowered.derivation);
     let what = "D, C, G and W^T as LaTeX".to_owned();
     files.push(write(directory, &format!("{name}_equations.tex"), &document, what)?);
     progress.show(&format!("{name}: finding base parameters"));
@@ -196,15 +196,15 @@ fn one_robot(
     let what = "the robot with the frames of its links".to_owned();
     files.push(write(directory, &format!("{name}.svg"), &drawn, what)?);
     progress.show(&format!("{name}: counting"));
-    let operations = counts::compare(&robot, &emitted.program)?;
+    let operations = counts::compare(&robot, &lowered.program)?;
     progress.show(&format!("{name}: checking"));
     let checks = checks::run(&robot, compiled, seed)?;
     // a robot without contacts has no stage for their functions
     let made = |stage: &&StageReport| {
         let name = FunctionName::parse(&stage.stage);
-        name.is_none_or(|name| emitted.derivation.functions.iter().any(|f| f.name == name))
+        name.is_none_or(|name| lowered.derivation.functions.iter().any(|f| f.name == name))
     };
-    let stages = emitted.derivation.report.iter().filter(made).map(stage_json).collect();
+    let stages = lowered.derivation.report.iter().filter(made).map(stage_json).collect();
     Ok(Outcome {
         model: name.to_owned(),
         hash: format!("{:016x}", robot.hash),

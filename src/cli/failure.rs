@@ -3,7 +3,7 @@
 use super::identify::IdentifyFailure;
 use super::output_failure::OutputFailure;
 use denavit::diagnose::DiagnosisError;
-use denavit::emit::rust::EmitError;
+use denavit::emit::EmitError;
 use denavit::function::FunctionName;
 use denavit::identify::excite::ExciteError;
 use denavit::import::{ExportError, ImportError};

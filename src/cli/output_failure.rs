@@ -17,6 +17,10 @@ pub(crate) enum OutputFailure {
     TwoDocuments,
     /// Two outputs would be one file.
     SameOutput(String),
+    /// C is written to two files, and the output is the name of neither.
+    TwoFilesOfC(String),
+    /// No source can include a header of this name.
+    NotIncluded(String),
 }
 
 impl OutputFailure {
@@ -37,6 +41,11 @@ impl OutputFailure {
             Self::Overwrites(_) => "choose another file for the output",
             Self::TwoDocuments => "give all but one of them a file",
             Self::SameOutput(_) => "give each a file of its own",
+            Self::TwoFilesOfC(_) => {
+                "give one of them, as `-o robot.c`, and robot.h is written beside it; \
+                 `--language cpp` is one file"
+            }
+            Self::NotIncluded(_) => "give a name without quotation marks, backslashes and `?`",
         })
     }
 }
@@ -55,6 +64,12 @@ impl fmt::Display for OutputFailure {
             }
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
+            Self::TwoFilesOfC(file) => {
+                write!(f, "{file}: C is a source and a header, whose names end in .c and .h")?;
+            }
+            Self::NotIncluded(file) => {
+                write!(f, "{file}: a source cannot include a header of this name")?;
+            }
         }
         match self.hint() {
             Some(hint) => write!(f, "\n  hint: {hint}"),

@@ -1,65 +1,23 @@
 //! The statements of a function: straight-line code as text.
 //!
 //! A value that is used once is written where it is used while the line stays short; every other
-//! one gets a `let`. The operations and their order of evaluation are those of the code.
+//! one gets a name. The operations and their order of evaluation are those of the code, whatever
+//! the language is.
 
 mod sines;
 
 use self::sines::name_sines;
-use super::arrays::{Place, list};
 use super::names::Names;
+use super::syntax::{Binding, Call, Syntax, Term};
 use crate::arena::Handle;
-use crate::expr::Relation;
-use crate::program::{
-    BinaryOperation, Code, FusedOperation, Instruction, Leaf, Operation, Slot, UnaryOperation,
-};
+use crate::program::{BinaryOperation, Code, Instruction, Leaf, Operation, Slot, UnaryOperation};
 use std::ops::Range;
 
-/// Longest right side of a `let`; the line stays within 100 columns.
+/// Longest right side of a declaration; the line stays within 100 columns.
 const LONGEST: usize = 72;
 
 /// Longest statement, without its indentation.
 const LONGEST_LINE: usize = 92;
-
-/// Most instructions in one block.
-const BLOCK: usize = 2_000;
-
-/// How tightly the outermost operation of a text binds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
-    Sum,
-    Product,
-    Sign,
-    Atom,
-}
-
-/// A value as text.
-#[derive(Clone, Debug)]
-struct Term {
-    text: String,
-    binding: Binding,
-}
-
-impl Term {
-    fn atom(text: String) -> Self {
-        Self { text, binding: Binding::Atom }
-    }
-
-    /// Appends the text, in brackets if it binds less tightly than `least`.
-    fn write(&self, least: Binding, to: &mut String) {
-        match self.binding < least {
-            true => to.extend(["(", &self.text, ")"]),
-            false => to.push_str(&self.text),
-        }
-    }
-
-    /// The text, in brackets if it binds less tightly than `least`.
-    fn within(&self, least: Binding) -> String {
-        let mut text = String::with_capacity(self.text.len() + 2);
-        self.write(least, &mut text);
-        text
-    }
-}
 
 /// How the leaves of code are written, and which values have a name of their own.
 pub(super) struct Vocabulary {
@@ -77,6 +35,7 @@ pub(super) struct Vocabulary {
 /// Writes the statements of one code.
 pub(super) struct Body<'a> {
     code: &'a Code,
+    syntax: &'a dyn Syntax,
     terms: Vec<Option<Term>>,
     /// Values that wait to be written where they are used.
     waiting: Vec<Option<Term>>,
@@ -94,14 +53,14 @@ pub(super) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(code: &'a Code, vocabulary: Vocabulary) -> Self {
+    pub(super) fn new(code: &'a Code, syntax: &'a dyn Syntax, vocabulary: Vocabulary) -> Self {
         let Vocabulary { mut names, leaves, mut named, entries } = vocabulary;
         let mut terms = vec![None; code.slots];
         let mut constants = vec![None; code.slots];
         for (slot, leaf) in code.leaves.iter() {
             let text = match leaf {
                 Leaf::Constant(value) => {
-                    let (name, declaration) = constant(*value, &mut names);
+                    let (name, declaration) = constant(*value, syntax, &mut names);
                     constants[slot.index()] = Some(declaration);
                     name
                 }
@@ -119,6 +78,7 @@ impl<'a> Body<'a> {
         }
         Self {
             code,
+            syntax,
             terms,
             waiting: vec![None; code.slots],
             named,
@@ -133,39 +93,29 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Writes all instructions: as they are, or in blocks of [`BLOCK`] that hand on what is used
-    /// after them. Each `let` opens a scope within that of the one before, and rustc runs out of
-    /// stack where some 2500 are nested (1.95, with debug information).
+    /// Writes all instructions: as they are, or in blocks, where the language has a longest one,
+    /// that hand on what is used after them.
     pub(super) fn write_all(&mut self) {
-        let length = self.code.instructions.len();
-        if length <= BLOCK {
+        let (length, longest) = (self.code.instructions.len(), self.syntax.longest_block());
+        if length <= longest {
             self.write(0..length);
             return;
         }
         let mut statements = Vec::new();
-        for start in (0..length).step_by(BLOCK) {
-            let block = start..length.min(start + BLOCK);
+        for start in (0..length).step_by(longest) {
+            let block = start..length.min(start + longest);
             self.write(block.clone());
             let lines = self.take_lines();
             let slots = self.used_after(block).into_iter();
-            let names: Vec<_> = slots.map(|slot| vec![self.text(slot).to_owned()]).collect();
-            if names.is_empty() {
-                statements.push("{".to_owned());
-                statements.extend(lines.iter().map(|line| format!("    {line}")));
-                statements.push("}".to_owned());
-                continue;
-            }
-            let names = list(names, Place { indent: 8, followed: true });
-            statements.push(format!("let {} = {{", names.join("\n")));
-            statements.extend(lines.iter().chain(&names).map(|line| format!("    {line}")));
-            statements.push("};".to_owned());
+            let names: Vec<String> = slots.map(|slot| self.text(slot).to_owned()).collect();
+            statements.extend(self.syntax.block(lines, &names));
         }
         self.lines = statements;
     }
 
     /// Whether the code is written in blocks.
     pub(super) fn is_in_blocks(&self) -> bool {
-        self.code.instructions.len() > BLOCK
+        self.code.instructions.len() > self.syntax.longest_block()
     }
 
     /// The slots assigned in a range and used after it.
@@ -218,18 +168,25 @@ impl<'a> Body<'a> {
     fn entry_line(&self, slot: Slot, term: &Term) -> Option<String> {
         match &self.entries[slot.index()][..] {
             [entry] if self.uses[slot.index()] == 1 => {
-                let line = format!("{entry} = {};", term.text);
+                let line = self.syntax.store(entry, term);
                 (line.len() <= LONGEST_LINE).then_some(line)
             }
             _ => None,
         }
     }
 
+    /// Stores the numbers and arguments among the outputs: they are there from the start.
+    pub(super) fn store_leaves(&mut self) {
+        let code = self.code;
+        let leaves = code.outputs.iter().filter(|slot| slot.index() < code.leaves.len());
+        leaves.for_each(|&slot| self.store(slot));
+    }
+
     /// Assigns a value that has a text to its entries.
-    pub(super) fn store(&mut self, slot: Slot) {
+    fn store(&mut self, slot: Slot) {
         for entry in std::mem::take(&mut self.entries[slot.index()]) {
             self.declare(slot);
-            let line = format!("{entry} = {};", self.text(slot));
+            let line = self.syntax.store(&entry, self.known(slot));
             self.lines.push(line);
         }
     }
@@ -251,7 +208,11 @@ impl<'a> Body<'a> {
 
     /// The text of a value that is there.
     pub(super) fn text(&self, slot: Slot) -> &str {
-        &self.terms[slot.index()].as_ref().expect("values are assigned before their use").text
+        &self.known(slot).text
+    }
+
+    fn known(&self, slot: Slot) -> &Term {
+        self.terms[slot.index()].as_ref().expect("values are assigned before their use")
     }
 
     fn term(&mut self, operation: &Operation) -> Term {
@@ -259,46 +220,30 @@ impl<'a> Body<'a> {
             Operation::Unary(function, a) => self.unary(function, a),
             Operation::Binary(function, a, b) => self.binary(function, a, b),
             Operation::Fused(function, operands) => {
-                let name = match function {
-                    FusedOperation::ProductPlus => "product_plus",
-                    FusedOperation::ProductMinus => "product_minus",
-                    FusedOperation::MinusProduct => "minus_product",
-                };
-                let [a, b, c] = self.operands(operands, 20, Binding::Atom);
-                let a = a.within(Binding::Atom);
-                Term::atom(format!("{a}.{name}({}, {})", b.text, c.text))
+                let operands = self.operands(operands, 20, Binding::Atom);
+                self.call(Call::Fused(function), &operands)
             }
             Operation::Select { relation, sides, then, otherwise } => {
                 let operands = [sides[0], sides[1], then, otherwise];
-                let all = self.operands(operands, 30, Binding::Sum).map(|term| term.text);
-                let name = match relation {
-                    Relation::Less => "select_less",
-                    Relation::LessEqual => "select_less_equal",
-                    Relation::Equal => "select_equal",
-                };
-                Term::atom(format!("S::{name}({})", all.join(", ")))
+                let operands = self.operands(operands, 30, Binding::Sum);
+                self.call(Call::Select(relation), &operands)
             }
         }
     }
 
+    fn call(&self, call: Call, operands: &[Term]) -> Term {
+        Term::atom(self.syntax.call(call, operands))
+    }
+
     fn unary(&mut self, function: UnaryOperation, a: Slot) -> Term {
-        let method = match function {
-            UnaryOperation::Neg => {
-                let [a] = self.operands([a], 3, Binding::Sign);
-                // Two signs in a row read badly; the laws leave none.
-                let text = format!("-{}", a.within(Binding::Atom));
-                return Term { text, binding: Binding::Sign };
-            }
-            UnaryOperation::Tan => "tangent",
-            UnaryOperation::Sqrt => "sqrt",
-            UnaryOperation::Exp => "exponential",
-            UnaryOperation::Log => "logarithm",
-            UnaryOperation::Tanh => "hyperbolic_tangent",
-            UnaryOperation::Abs => "abs",
-            UnaryOperation::Sign => "sign",
-        };
-        let [a] = self.operands([a], 22, Binding::Atom);
-        Term::atom(format!("{}.{method}()", a.within(Binding::Atom)))
+        if function == UnaryOperation::Neg {
+            let [a] = self.operands([a], 3, Binding::Sign);
+            // Two signs in a row read badly; the laws leave none.
+            let text = format!("-{}", a.within(Binding::Atom));
+            return Term { text, binding: Binding::Sign };
+        }
+        let operands = self.operands([a], 22, Binding::Atom);
+        self.call(Call::Unary(function), &operands)
     }
 
     fn binary(&mut self, function: BinaryOperation, a: Slot, b: Slot) -> Term {
@@ -307,9 +252,10 @@ impl<'a> Body<'a> {
             BinaryOperation::Sub => ("-", Binding::Sum),
             BinaryOperation::Mul => ("*", Binding::Product),
             BinaryOperation::Div => ("/", Binding::Product),
-            BinaryOperation::Atan2 => return self.method("arctangent2", a, b),
-            BinaryOperation::Min => return self.method("lesser", a, b),
-            BinaryOperation::Max => return self.method("greater", a, b),
+            BinaryOperation::Atan2 | BinaryOperation::Min | BinaryOperation::Max => {
+                let operands = self.operands([a, b], 20, Binding::Atom);
+                return self.call(Call::Binary(function), &operands);
+            }
         };
         let [mut a, mut b] = self.operands([a, b], 7, binding);
         // Operators of one kind group to the left: brackets on the right side only. Products and
@@ -324,11 +270,6 @@ impl<'a> Body<'a> {
         text.extend([" ", symbol, " "]);
         b.write(tighter, &mut text);
         Term { text, binding }
-    }
-
-    fn method(&mut self, name: &str, a: Slot, b: Slot) -> Term {
-        let [a, b] = self.operands([a, b], 20, Binding::Atom);
-        Term::atom(format!("{}.{name}({})", a.within(Binding::Atom), b.text))
     }
 
     /// The operands' texts; those that wait are taken, or assigned first if the line would become
@@ -367,7 +308,7 @@ impl<'a> Body<'a> {
 
     fn assign(&mut self, slot: Slot, term: &Term) {
         let name = self.name(slot);
-        self.lines.push(["let ", &name, " = ", &term.text, ";"].concat());
+        self.lines.push(self.syntax.declare(&name, &term.text));
     }
 
     /// The name of a slot; makes it readable by that name.
@@ -389,16 +330,16 @@ impl<'a> Body<'a> {
 }
 
 /// The name of a constant, and the statement that declares it.
-fn constant(value: f64, names: &mut Names) -> (String, String) {
+fn constant(value: f64, syntax: &dyn Syntax, names: &mut Names) -> (String, String) {
     // The sign of a zero is part of its value.
-    let (known, value) = match value.to_bits() {
-        0 => (Some("zero"), "S::ZERO".to_owned()),
-        0x3ff0_0000_0000_0000 => (Some("one"), "S::ONE".to_owned()),
-        _ => (None, format!("S::from_f64({value:?})")),
+    let known = match value.to_bits() {
+        0 => Some("zero"),
+        0x3ff0_0000_0000_0000 => Some("one"),
+        _ => None,
     };
     let numbered = (1..).map(|number| format!("k{number}"));
     let mut candidates = known.map(str::to_owned).into_iter().chain(numbered);
     let name = candidates.find(|name| names.claim(name)).expect("numbers do not end");
-    let declaration = format!("let {name} = {value};");
+    let declaration = syntax.declare(&name, &syntax.constant(value));
     (name, declaration)
 }

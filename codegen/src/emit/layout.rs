@@ -29,6 +29,11 @@ impl fmt::Display for TemplateError {
 
 impl std::error::Error for TemplateError {}
 
+/// A template of ours, filled by the caller that it was written for.
+pub(super) fn template(text: &str, values: &[(&str, &str)]) -> String {
+    fill(text, values).expect("a template and its caller fit")
+}
+
 /// The template with its places filled.
 pub fn fill(template: &str, values: &[(&str, &str)]) -> Result<String, TemplateError> {
     let mut used = vec![false; values.len()];

@@ -2,14 +2,46 @@
 
 use std::collections::BTreeSet;
 
-/// Words that are no identifiers, in any edition of Rust.
-const KEYWORDS: [&str; 54] = [
-    "as", "async", "await", "break", "const", "continue", "crate", "dyn", "else", "enum", "extern",
-    "false", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut",
-    "pub", "ref", "return", "self", "static", "struct", "super", "trait", "true", "type", "unsafe",
-    "use", "where", "while", "abstract", "become", "box", "do", "final", "macro", "override",
-    "priv", "try", "typeof", "unsized", "virtual", "yield", "union", "_", "Self",
-];
+/// The words of a language that no name of ours may be, separated by blanks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Words {
+    /// Words that are no identifiers.
+    keywords: &'static str,
+    /// Names that emitted functions call, which no value may hide.
+    called: &'static str,
+}
+
+/// Words of Rust, in any edition. Functions are called as methods, so that no value hides them.
+pub(super) const RUST: Words = Words {
+    keywords: "as async await break const continue crate dyn else enum extern false fn for gen if \
+               impl in let loop match mod move mut pub ref return self static struct super trait \
+               true type unsafe use where while abstract become box do final macro override priv \
+               try typeof unsized virtual yield union _ Self",
+    called: "",
+};
+
+/// Words of C and C++, in any edition, so that a header serves both; and names that are macros
+/// where common headers are included.
+pub(super) const C: Words = Words {
+    keywords: "_ alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto \
+               bitand bitor bool break case catch char char16_t char32_t char8_t class co_await \
+               co_return co_yield compl concept const const_cast consteval constexpr constinit \
+               continue contract_assert decltype default delete do double dynamic_cast else enum \
+               explicit export extern false float for friend goto if inline int long mutable \
+               namespace new noexcept not not_eq nullptr operator or or_eq private protected \
+               public reflexpr register reinterpret_cast requires restrict return short signed \
+               sizeof static static_assert static_cast struct switch synchronized template this \
+               thread_local throw true try typedef typeid typename typeof typeof_unqual union \
+               unsigned using virtual void volatile wchar_t while xor xor_eq _Alignas _Alignof \
+               _Atomic _BitInt _Bool _Complex _Generic _Imaginary _Noreturn _Static_assert \
+               _Thread_local S Scalar Parameters ModelParameters near far huge linux unix \
+               i386 errno assert NULL EOF NAN INFINITY \
+               HUGE_VAL EDOM ERANGE FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL M_E M_PI \
+               TRUE FALSE DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS",
+    called: "Turns DOF real std sincos_of sincos_pack fused sign_of lesser greater product_plus \
+             product_minus minus_product prepare convert fabs sqrt sin cos tan exp log tanh \
+             atan2 fma fmaf memcpy size_t uint64_t uint32_t int32_t Link Foot detail",
+};
 
 /// Names that emitted functions give to arguments, to the parameters and to packs of values.
 const LOCALS: [&str; 17] = [
@@ -35,26 +67,34 @@ const LOCALS: [&str; 17] = [
 /// A set of names of which each is given once.
 #[derive(Clone, Debug)]
 pub(super) struct Names {
+    words: Words,
     taken: BTreeSet<String>,
 }
 
 impl Names {
     /// For fields and variants: the words of the language are taken.
-    pub(super) fn fields() -> Self {
-        Self { taken: KEYWORDS.map(str::to_owned).into() }
+    pub(super) fn fields(words: Words) -> Self {
+        Self { words, taken: split(words.keywords).map(str::to_owned).collect() }
     }
 
     /// For values and functions: the names of arguments are taken too.
-    pub(super) fn locals() -> Self {
-        let mut names = Self::fields();
+    pub(super) fn locals(words: Words) -> Self {
+        let mut names = Self::globals(words);
         names.taken.extend(LOCALS.map(str::to_owned));
+        names
+    }
+
+    /// For names beside all that common headers declare: what functions call is taken, too.
+    pub(super) fn globals(words: Words) -> Self {
+        let mut names = Self::fields(words);
+        names.taken.extend(split(words.called).map(str::to_owned));
         names
     }
 
     /// Takes the name of a model's thing as a variant: `right_foot` becomes `RightFoot`.
     pub(super) fn variant(&mut self, name: &str) -> String {
         let name = camel_case(name);
-        match KEYWORDS.contains(&name.as_str()) {
+        match self.is_keyword(&name) {
             true => self.numbered(&format!("{name}_"), ""),
             false => self.numbered(&name, ""),
         }
@@ -63,7 +103,7 @@ impl Names {
     /// Takes the name of a model's thing as an identifier: `type` becomes `type_`.
     pub(super) fn field(&mut self, name: &str) -> String {
         let name = identifier(name);
-        match KEYWORDS.contains(&name.as_str()) {
+        match self.is_keyword(&name) {
             true => self.unique(&format!("{name}_")),
             false => self.unique(&name),
         }
@@ -93,6 +133,10 @@ impl Names {
         self.numbered(name, "_")
     }
 
+    fn is_keyword(&self, name: &str) -> bool {
+        split(self.words.keywords).any(|word| word == name)
+    }
+
     fn numbered(&mut self, name: &str, separator: &str) -> String {
         if self.claim(name) {
             return name.to_owned();
@@ -103,6 +147,10 @@ impl Names {
         self.taken.insert(name.clone());
         name
     }
+}
+
+fn split(words: &'static str) -> impl Iterator<Item = &'static str> {
+    words.split_whitespace()
 }
 
 /// A name as an identifier: what is no ASCII letter, digit or underscore becomes an underscore.
@@ -149,13 +197,22 @@ mod tests {
 
     #[test]
     fn names_are_given_once() {
-        let mut names = Names::fields();
+        let mut names = Names::fields(RUST);
         let given = ["m1", "m1", "m1", "type"].map(|name| names.field(name));
         assert_eq!(given, ["m1", "m1_2", "m1_3", "type_"]);
         let given = ["foot", "foot_", "Self"].map(|name| names.variant(name));
         assert_eq!(given, ["Foot", "Foot2", "Self_"]);
         assert!(!names.claim_all(&["s1".to_owned(), "m1".to_owned()]));
         assert!(names.claim("s1"), "a failed claim takes nothing");
+    }
+
+    #[test]
+    fn words_are_those_of_the_language() {
+        let given = ["double", "type", "NULL"].map(|name| Names::fields(C).field(name));
+        assert_eq!(given, ["double_", "type", "NULL_"]);
+        let given = ["double", "type", "NULL"].map(|name| Names::fields(RUST).field(name));
+        assert_eq!(given, ["double", "type_", "NULL"]);
+        assert!(!Names::locals(C).claim("sqrt") && Names::locals(RUST).claim("sqrt"));
     }
 
     #[test]

@@ -87,10 +87,27 @@ pub(super) fn argument(argument: &ArgumentShape) -> &'static str {
     }
 }
 
+/// The documentation of a field that holds a parameter: its meaning, unit and default.
+pub(super) fn parameter_field(
+    robot: &Robot,
+    parameter: &Parameter,
+    value: Option<f64>,
+    text: fn(&str) -> String,
+) -> String {
+    let mut doc = meaning(robot, parameter, text);
+    if let Some(unit) = &parameter.unit {
+        doc += &format!("; unit `{}`", unit.text());
+    }
+    if let Some(value) = value {
+        doc += &format!("; {value:?} in the model");
+    }
+    wrapped("/// ", &(doc + "."))
+}
+
 /// What a parameter is: in the words of the model's file, or by what it belongs to.
-pub(super) fn parameter(robot: &Robot, parameter: &Parameter) -> String {
+fn meaning(robot: &Robot, parameter: &Parameter, text: fn(&str) -> String) -> String {
     if !parameter.doc.trim().is_empty() {
-        return documentation(&parameter.doc).trim_end_matches('.').to_owned();
+        return text(&parameter.doc).trim_end_matches('.').to_owned();
     }
     match parameter.role {
         Role::Constant => format!("Constant `{}`", parameter.name),

@@ -7,7 +7,7 @@ use std::io::{Read, Write};
 use std::process::Stdio;
 
 /// The message of a run that must fail as bad input does.
-fn refused(directory: &Directory, arguments: &[&str]) -> String {
+pub(super) fn refused(directory: &Directory, arguments: &[&str]) -> String {
     let before = directory.files();
     let Run { code, stdout, stderr } = run_in(&directory.path, arguments);
     assert_eq!(code, Some(2), "{arguments:?}: {stderr}");

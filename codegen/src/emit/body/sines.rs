@@ -2,8 +2,8 @@
 
 use super::{Binding, Body, Term};
 use crate::arena::Handle;
-use crate::emit::arrays::{Place, list};
 use crate::emit::names::{Names, joint_numbers};
+use crate::emit::syntax::Pack;
 use crate::program::{BinaryOperation, Code, Instruction, Leaf, Operation, Slot};
 use std::ops::Range;
 
@@ -34,25 +34,13 @@ impl Body<'_> {
             self.declare(angle);
             angles.push(self.angle(angle, turns.len()));
             for (slot, names) in [(sine, &mut sines), (cosine, &mut cosines)] {
-                names.push(match self.uses[slot.index()] {
-                    0 => "_".to_owned(),
-                    _ => self.name(slot),
-                });
+                let is_used = self.uses[slot.index()] > 0;
+                names.push(is_used.then(|| self.name(slot)));
             }
         }
-        if let ([angle], [sine], [cosine]) = (&angles[..], &sines[..], &cosines[..]) {
-            self.lines.push(format!("let ({sine}, {cosine}) = {angle}.sincos();"));
-            self.store_all(turns);
-            return;
-        }
-        let angles = angles.join(", ");
-        self.lines.push(format!("let (sines, cosines) = S::sincos_all([{angles}]);"));
-        for (names, values) in [(sines, "sines"), (cosines, "cosines")] {
-            let place = Place { indent: 4, followed: true };
-            let names = list(names.into_iter().map(|name| vec![name]).collect(), place);
-            let text = format!("let {} = {values};", names.join("\n"));
-            self.lines.extend(text.lines().map(str::to_owned));
-        }
+        let name = self.syntax.pack_name().map(|name| self.names.unique(name));
+        let pack = Pack { name: name.unwrap_or_default(), angles, sines, cosines };
+        self.lines.extend(self.syntax.sincos(&pack));
         self.store_all(turns);
     }
 
@@ -61,14 +49,14 @@ impl Body<'_> {
     }
 
     /// The text of an angle, alone or among others.
-    fn angle(&mut self, angle: Slot, turns: usize) -> String {
+    fn angle(&mut self, angle: Slot, turns: usize) -> Term {
         let is_long = |term: &Term| term.text.len() > SHORT_ANGLE;
         if turns > 1 && self.waiting[angle.index()].as_ref().is_some_and(is_long) {
             let term = self.waiting[angle.index()].take().expect("it was found waiting");
             self.assign(angle, &term);
         }
         let [term] = self.operands([angle], 0, Binding::Sum);
-        if turns > 1 { term.text } else { term.within(Binding::Atom) }
+        term
     }
 }
 

@@ -4,9 +4,9 @@
 //! processor has registers for hundreds of them: each would be stored, read and stored again. So
 //! the arrays of large results start as zeros, and each entry is assigned as soon as it is there.
 
-use super::Context;
 use super::functions::array_of;
 use crate::arena::Handle;
+use crate::emit::context::Context;
 use crate::emit::names::camel_case;
 use crate::program::{Leaf, OutputShape, Routine, Slot};
 

@@ -1,19 +1,25 @@
 //! The functions: documentation, signature, statements, result.
 
+use super::enumerations::variants;
 use super::filling::{array_name, empty_arrays, entry_places, filled_result, fills_arrays};
-use super::selectors::{Selector, links, variants};
-use super::{Context, bound, template};
-use crate::arena::Handle;
+use super::syntax::Rust;
+use super::{bound, template};
 use crate::emit::arrays::{Place, array};
 use crate::emit::body::{Body, Vocabulary};
-use crate::emit::names::{Names, camel_case, identifier};
-use crate::emit::wording::{argument, documentation, of_joints, operations, summary, wrapped};
+use crate::emit::context::Context;
+use crate::emit::names::camel_case;
+use crate::emit::routine::{
+    commented, dimensions, output_doc, parts, reads_parameters, summary_and_arguments,
+    unread_arguments, vocabulary as shared_vocabulary,
+};
+use crate::emit::selectors::{Selector, links};
+use crate::emit::wording::{documentation, operations, summary, wrapped};
 use crate::function::FunctionName;
-use crate::program::{Leaf, OutputShape, Routine, counts};
+use crate::program::{OutputShape, Routine, counts};
 
 /// All functions, with the structs of their results.
 pub(super) fn items(context: &Context<'_>) -> Vec<String> {
-    let names = unique_names(context);
+    let names = context.function_names();
     let mut items = Vec::new();
     let mut dispatched: Vec<FunctionName> = Vec::new();
     for (routine, name) in context.program.routines.iter().zip(&names) {
@@ -29,30 +35,14 @@ pub(super) fn items(context: &Context<'_>) -> Vec<String> {
     items
 }
 
-/// The names of the functions: unique, also where links are called alike.
-fn unique_names(context: &Context<'_>) -> Vec<String> {
-    let mut names = Names::locals();
-    let routines = &context.program.routines;
-    routines.iter().for_each(|routine| {
-        names.claim(routine.name.as_str());
-    });
-    let name = |routine: &Routine| match routine.link {
-        None => routine.name.as_str().to_owned(),
-        Some(_) => names.unique(&identifier(&routine.full_name()).to_ascii_lowercase()),
-    };
-    routines.iter().map(name).collect()
-}
-
 /// A function.
 fn function(context: &Context<'_>, routine: &Routine, name: &str) -> String {
     let code = &routine.code;
-    let mut body = Body::new(code, vocabulary(context, routine));
+    let mut body = Body::new(code, &Rust, vocabulary(context, routine));
     let mut lines = prologue(routine);
     if fills_arrays(routine) {
         lines.extend(empty_arrays(context, routine));
-        // Numbers and arguments are there from the start.
-        let leaves = code.outputs.iter().filter(|slot| slot.index() < code.leaves.len());
-        leaves.for_each(|&slot| body.store(slot));
+        body.store_leaves();
         body.write_all();
         lines.extend(body.take_lines());
         lines.extend(filled_result(routine));
@@ -111,48 +101,23 @@ fn frame(doc: &str, is_public: bool, signature: &str, lines: &[String]) -> Strin
     )
 }
 
-/// How the leaves of a routine are written.
+/// How the values of a routine are written.
 fn vocabulary(context: &Context<'_>, routine: &Routine) -> Vocabulary {
-    let text = |leaf: &Leaf| match *leaf {
-        Leaf::Prelude(row) => Some(format!("p.{}", context.prelude_fields[row])),
-        Leaf::Argument { argument, entry } => Some(match routine.arguments[argument].name {
-            "t" => "t".to_owned(),
-            name => format!("{name}[{entry}]"),
-        }),
-        Leaf::Constant(_) | Leaf::Parameter(_) => None,
-    };
-    let mut names = Names::locals();
-    let mut entries = vec![Vec::new(); routine.code.slots];
-    if fills_arrays(routine) {
-        for output in &routine.outputs {
-            names.claim(array_name(routine, output));
-        }
-        for (slot, place) in routine.code.outputs.iter().zip(entry_places(routine)) {
-            entries[slot.index()].extend(place);
-        }
+    if !fills_arrays(routine) {
+        return shared_vocabulary(context, routine, "p.", &[], Vec::new());
     }
-    Vocabulary {
-        names,
-        leaves: routine.code.leaves.values().map(text).collect(),
-        named: vec![None; routine.code.slots],
-        entries,
-    }
+    let arrays = routine.outputs.iter().map(|output| array_name(routine, output));
+    let arrays: Vec<&str> = arrays.collect();
+    shared_vocabulary(context, routine, "p.", &arrays, entry_places(routine))
 }
 
 /// Statements before all others: a short name for the parameters; arguments that nothing reads are
 /// read, so that the compiler does not warn.
 fn prologue(routine: &Routine) -> Vec<String> {
-    let leaves = &routine.code.leaves;
-    let reads_parameters = leaves.values().any(|leaf| matches!(leaf, Leaf::Prelude(_)));
-    let parameters = if reads_parameters { "let p = parameters;" } else { "let _ = parameters;" };
+    let parameters =
+        if reads_parameters(routine) { "let p = parameters;" } else { "let _ = parameters;" };
     let mut lines = vec![parameters.to_owned()];
-    for (row, shape) in routine.arguments.iter().enumerate() {
-        let is_read =
-            |leaf: &Leaf| matches!(leaf, Leaf::Argument { argument, .. } if *argument == row);
-        if !leaves.values().any(is_read) {
-            lines.push(format!("let _ = {};", shape.name));
-        }
-    }
+    lines.extend(unread_arguments(routine).iter().map(|name| format!("let _ = {name};")));
     lines
 }
 
@@ -180,19 +145,17 @@ fn signature(routine: &Routine, start: &str, arguments: &[String], result: &str)
 }
 
 fn doc(context: &Context<'_>, routine: &Routine) -> String {
-    let mut lines = vec![summary(routine.name).to_owned(), String::new()];
     let counts = operations(&counts(context.program, routine));
     if let Some(link) = &routine.link {
         let of = format!("Of the link `{}`: {counts}.", documentation(link));
         return wrapped("/// ", &format!("{} {of}", summary(routine.name)));
     }
-    let shapes = routine.arguments.iter();
-    lines.extend(shapes.map(|shape| format!("- `{}`: {}", shape.name, argument(shape))));
+    let mut lines = summary_and_arguments(routine);
     if !routine.arguments.is_empty() {
         lines.push(String::new());
     }
     if let [output] = &routine.outputs[..] {
-        lines.push(format!("Result: {}.", output_doc(output)));
+        lines.push(format!("Result: {}.", output_doc(output, documentation)));
         lines.push(String::new());
         if !output.details.is_empty() {
             let details = output.details.iter();
@@ -204,25 +167,13 @@ fn doc(context: &Context<'_>, routine: &Routine) -> String {
     commented(&lines)
 }
 
-fn output_doc(output: &OutputShape) -> String {
-    documentation(&output.doc).trim_end_matches('.').to_owned()
-}
-
-fn commented(lines: &[String]) -> String {
-    let line = |line: &String| match line.is_empty() {
-        true => "///\n".to_owned(),
-        false => wrapped("/// ", line),
-    };
-    lines.iter().map(line).collect()
-}
-
 /// The struct of several outputs.
 fn results(context: &Context<'_>, routine: &Routine) -> Option<String> {
     if routine.outputs.len() == 1 {
         return None;
     }
     let field = |output: &OutputShape| {
-        let doc = wrapped("/// ", &format!("{}.", output_doc(output)));
+        let doc = wrapped("/// ", &format!("{}.", output_doc(output, documentation)));
         format!("{doc}pub {}: {},\n", output.name, array_type(context, routine, output))
     };
     Some(template(
@@ -254,13 +205,7 @@ pub(super) fn array_of(
     routine: &Routine,
     output: &OutputShape,
 ) -> String {
-    let (rows, columns) = of_joints(routine.name);
-    let last = output.shape.len().saturating_sub(1);
-    let dimension = |(place, &len): (usize, &usize)| {
-        let of_joints = if place == last { columns } else { rows };
-        if of_joints && len == context.dof { "DOF".to_owned() } else { len.to_string() }
-    };
-    let dimensions: Vec<String> = output.shape.iter().enumerate().map(dimension).collect();
+    let dimensions = dimensions(context, routine, output, "DOF");
     dimensions
         .iter()
         .rev()
@@ -316,25 +261,14 @@ fn result_lines(routine: &Routine, entries: &[&str]) -> Vec<String> {
 /// The public function that chooses by link.
 fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String {
     let selector = Selector::of(first.name);
-    let known = links(context, selector);
-    let variants = variants(&known);
-    let of_name = context.program.routines.iter().zip(names);
-    let arms: Vec<String> = of_name
-        .filter(|(routine, _)| routine.name == first.name)
-        .map(|(routine, name)| {
-            let link = routine.link.as_deref();
-            let row = known.iter().position(|known| Some(*known) == link);
-            let variant = &variants[row.expect("the link is one of the links")];
-            let vectors = routine.arguments.iter().map(|shape| format!(", {}", shape.name));
-            let chosen = format!("{}::{variant}", selector.type_name());
-            format!("    {chosen} => {name}(parameters{}),", vectors.collect::<String>())
-        })
-        .collect();
-    assert!(
-        arms.len() == known.len(),
-        "{} is derived for each of its links or for none",
-        first.name
-    );
+    let variants = variants(&links(context, selector));
+    let vectors = first.arguments.iter().map(|shape| format!(", {}", shape.name));
+    let vectors: String = vectors.collect();
+    let arm = |&(row, name): &(usize, &str)| {
+        let chosen = format!("{}::{}", selector.type_name(), variants[row]);
+        format!("    {chosen} => {name}(parameters{vectors}),")
+    };
+    let arms: Vec<String> = parts(context, first, names).iter().map(arm).collect();
     let mut lines = vec![format!("match {} {{", selector.argument())];
     lines.extend(arms);
     lines.push("}".to_owned());
@@ -347,11 +281,9 @@ fn dispatch(context: &Context<'_>, first: &Routine, names: &[String]) -> String 
     let result = result_type(context, first);
     let start = format!("pub fn {}", first.name);
     let signature = signature(bounding, &start, &arguments, &result);
-    let mut doc = vec![summary(first.name).to_owned(), String::new()];
-    let shapes = first.arguments.iter();
-    doc.extend(shapes.map(|shape| format!("- `{}`: {}", shape.name, argument(shape))));
+    let mut doc = summary_and_arguments(first);
     if let [output] = &first.outputs[..] {
-        doc.extend([String::new(), format!("Result: {}.", output_doc(output))]);
+        doc.extend([String::new(), format!("Result: {}.", output_doc(output, documentation))]);
     }
     frame(&commented(&doc), true, &signature, &lines)
 }

@@ -1,20 +1,21 @@
 //! `ModelParameters`, what a user may set, and `Parameters`, what functions read.
 
-use super::{Context, EmitError, bound, template};
+use super::syntax::Rust;
+use super::{bound, template};
 use crate::arena::Handle;
 use crate::emit::body::{Body, Vocabulary};
-use crate::emit::names::Names;
-use crate::emit::wording::{self, wrapped};
-use crate::model::Parameter;
-use crate::program::{Leaf, code_counts, constant_values};
+use crate::emit::context::{Context, EmitError};
+use crate::emit::names::{Names, RUST};
+use crate::emit::wording::{documentation, parameter_field};
+use crate::program::{Leaf, code_counts};
 
 /// The structs of parameters with their conversions.
 pub(super) fn items(context: &Context<'_>) -> Result<Vec<String>, EmitError> {
-    if context.program.parameters.is_empty() {
+    if !context.has_parameters() {
         let text = include_str!("../../../templates/rust/no_parameters.rs.in");
         return Ok(vec![template(text, &[])]);
     }
-    let values = default_values(context)?;
+    let values = context.default_values()?;
     let (prelude, results) = prelude(context);
     let fields = &context.prelude_fields;
     let each = |line: &dyn Fn(&String) -> String| -> String { fields.iter().map(line).collect() };
@@ -22,7 +23,10 @@ pub(super) fn items(context: &Context<'_>) -> Result<Vec<String>, EmitError> {
     let model_fields: String = parameters
         .zip(&context.model_fields)
         .zip(&values)
-        .map(|((parameter, field), &value)| model_field(context, parameter, field, value))
+        .map(|((parameter, field), &value)| {
+            let doc = parameter_field(context.robot, parameter, value, documentation);
+            format!("{doc}pub {field}: S,\n")
+        })
         .collect();
     let operations = code_counts(&context.program.prelude).total();
     let text = template(
@@ -41,32 +45,6 @@ pub(super) fn items(context: &Context<'_>) -> Result<Vec<String>, EmitError> {
     Ok(vec![text])
 }
 
-/// The names of the prelude's outputs: a parameter keeps its own, the others are numbered.
-pub(super) fn prelude_fields(context: &Context<'_>) -> Vec<String> {
-    let code = &context.program.prelude;
-    // A number never makes the name of another parameter of the model.
-    let mut names = Names::fields();
-    let mut taken = names.clone();
-    context.model_fields.iter().for_each(|field| {
-        taken.claim(field);
-    });
-    let mut fields = vec![None; code.outputs.len()];
-    for (field, output) in fields.iter_mut().zip(&code.outputs) {
-        if let Some(Leaf::Parameter(row)) = code.leaves.get(*output) {
-            let name = context.model_field(&context.program.parameters[*row]);
-            *field = names.claim(name).then(|| name.to_owned());
-        }
-    }
-    let mut numbers = 1..;
-    let mut numbered = || loop {
-        let name = format!("r{}", numbers.next().expect("numbers do not end"));
-        if taken.claim(&name) {
-            return name;
-        }
-    };
-    fields.into_iter().map(|field| field.unwrap_or_else(&mut numbered)).collect()
-}
-
 /// The statements of the prelude, and the fields of its result.
 fn prelude(context: &Context<'_>) -> (String, String) {
     let code = &context.program.prelude;
@@ -77,7 +55,7 @@ fn prelude(context: &Context<'_>) -> (String, String) {
             leaves[slot.index()] = Some(format!("model.{field}"));
         }
     }
-    let mut names = Names::locals();
+    let mut names = Names::locals(RUST);
     let mut named = vec![None; code.slots];
     for (output, field) in code.outputs.iter().zip(&context.prelude_fields) {
         if output.index() >= code.leaves.len() && names.claim(field) {
@@ -85,7 +63,7 @@ fn prelude(context: &Context<'_>) -> (String, String) {
         }
     }
     let entries = vec![Vec::new(); code.slots];
-    let mut body = Body::new(code, Vocabulary { names, leaves, named, entries });
+    let mut body = Body::new(code, &Rust, Vocabulary { names, leaves, named, entries });
     body.write_all();
     code.outputs.iter().for_each(|&output| body.declare(output));
     let statements = body.take_lines().join("\n");
@@ -94,20 +72,6 @@ fn prelude(context: &Context<'_>) -> (String, String) {
         text => format!("{field}: {text},\n"),
     };
     (statements, code.outputs.iter().zip(&context.prelude_fields).map(result).collect())
-}
-
-/// The default of each parameter of the model; none if the file gives none.
-fn default_values(context: &Context<'_>) -> Result<Vec<Option<f64>>, EmitError> {
-    let parameters = || context.robot.parameters.values();
-    let given: Vec<_> = parameters().filter_map(|parameter| parameter.default).collect();
-    let mut values = constant_values(&context.robot.dag, &given).into_iter();
-    let value = |parameter: &Parameter| match parameter.default.and_then(|_| values.next()) {
-        Some(value) if !value.is_finite() => {
-            Err(EmitError::NotFinite { parameter: parameter.name.clone() })
-        }
-        value => Ok(value),
-    };
-    parameters().map(value).collect()
 }
 
 /// `impl Default`, if the file gives every value; else nothing, for no value is made up.
@@ -123,21 +87,4 @@ fn defaults(context: &Context<'_>, values: &[Option<f64>]) -> String {
             template(text, &[("values", &lines)]) + "\n"
         }
     }
-}
-
-/// A field of `ModelParameters` with its meaning, unit and default.
-fn model_field(
-    context: &Context<'_>,
-    parameter: &Parameter,
-    field: &str,
-    value: Option<f64>,
-) -> String {
-    let mut doc = wording::parameter(context.robot, parameter);
-    if let Some(unit) = &parameter.unit {
-        doc += &format!("; unit `{}`", unit.text());
-    }
-    if let Some(value) = value {
-        doc += &format!("; {value:?} in the model");
-    }
-    format!("{}pub {field}: S,\n", wrapped("/// ", &(doc + ".")))
 }

@@ -17,6 +17,8 @@ pub(crate) enum OutputFailure {
     TwoDocuments,
     /// Two outputs would be one file.
     SameOutput(String),
+    /// What is to be written has no place in the format of the file; why.
+    NotOfFormat { file: String, cause: String },
 }
 
 impl OutputFailure {
@@ -37,6 +39,7 @@ impl OutputFailure {
             Self::Overwrites(_) => "choose another file for the output",
             Self::TwoDocuments => "give all but one of them a file",
             Self::SameOutput(_) => "give each a file of its own",
+            Self::NotOfFormat { .. } => "a name that does not end in .mcap is written as CSV",
         })
     }
 }
@@ -55,6 +58,7 @@ impl fmt::Display for OutputFailure {
             }
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
+            Self::NotOfFormat { file, cause } => write!(f, "{file}: {cause}")?,
         }
         match self.hint() {
             Some(hint) => write!(f, "\n  hint: {hint}"),

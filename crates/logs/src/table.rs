@@ -35,7 +35,7 @@ pub struct Table {
 }
 
 /// The places of rows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum Places {
     /// The line of the first row of each run of rows without other lines between, with its row.
     Lines(Vec<(usize, usize)>),
@@ -43,13 +43,8 @@ pub(crate) enum Places {
     #[cfg_attr(not(feature = "mcap"), allow(dead_code))]
     Messages(Vec<usize>),
     /// Rows are counted.
+    #[default]
     Rows,
-}
-
-impl Default for Places {
-    fn default() -> Self {
-        Self::Rows
-    }
 }
 
 impl Table {

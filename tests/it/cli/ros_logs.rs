@@ -93,6 +93,7 @@ fn what_a_bag_does_not_have_is_named() {
     assert_eq!(of_leg.code, Some(2));
     assert!(of_leg.stderr.contains("is a log of `arm`"), "{}", of_leg.stderr);
     assert!(of_leg.stderr.contains("there is no column `q_knee`"), "{}", of_leg.stderr);
+    assert!(of_leg.stderr.contains("does not have: shoulder, elbow_1"), "{}", of_leg.stderr);
     fs::write(directory.path.join("map.json"), r#"{"q_{joint}": "/joints/{joint}/position"}"#)
         .expect("written");
     let line = "identify arm.urdf --train train.mcap --columns map.json";

@@ -109,6 +109,31 @@ fn missing_columns_are_all_named_at_once() {
     assert!(made.read_as(&made.text(), &map).is_ok());
 }
 
+/// A name with `{joint}` in it is meant for each joint; one that is given itself counts before.
+#[test]
+fn a_name_for_all_joints_maps_each_of_them() {
+    let sound = Made::new().read().expect("nothing is wrong");
+    let mut made = Made::new();
+    for cell in &mut made.header {
+        if let Some(joint) = cell.strip_prefix("q_") {
+            *cell = format!("at/{joint}/deg");
+        }
+    }
+    let read = |map: &str| made.read_as(&made.text(), map);
+    let log = read(r#"{"q_{joint}": "at/{joint}/deg"}"#).expect("all joints are mapped");
+    assert_eq!(log.joints, sound.joints);
+    let name = &made.names[0];
+    let map =
+        format!(r#"{{"q_{{joint}}": "at/{{joint}}/deg", "q_{name}": "at/{}/deg"}}"#, made.names[1]);
+    let faults = read(&map).unwrap_err();
+    assert!(matches!(&faults[..], [LogFault::SharedColumn { .. }]), "{faults:?}");
+    let unknown = read(r#"{"q_{joint}": "at/{joint}/deg", "speed_{joint}": "x"}"#).unwrap_err();
+    assert!(matches!(&unknown[..], [LogFault::UnknownName { .. }]), "{unknown:?}");
+    let nowhere = read(r#"{"q_{joint}": "at/{joint}/deg", "ref_{joint}": "r/{joint}"}"#);
+    let nowhere = nowhere.unwrap_err();
+    assert!(matches!(&nowhere[..], [LogFault::MissingColumn { .. }]), "{nowhere:?}");
+}
+
 #[test]
 fn another_robot_is_noticed() {
     let made = Made::new();

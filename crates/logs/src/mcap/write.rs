@@ -12,7 +12,9 @@
 //! Times are whole nanoseconds. What the log says of itself is the record of metadata `denavit`.
 
 use super::METADATA;
-use crate::message::{CONTACTS, CONTROLLER_STATE, JOINT_STATE, LINKS, MOTORS, NUMBER, WRENCH};
+use crate::message::{
+    CONTACTS, CONTROLLER_STATE, JOINT_STATE, LINKS, MOTORS, NUMBER, Usual, WRENCH,
+};
 use byteorder::LittleEndian;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{McapError, WriteOptions, Writer};
@@ -172,11 +174,14 @@ fn wrenches(columns: &[String]) -> Vec<Wrench> {
     found
 }
 
+/// The bytes of a row's message at a time \[ns\].
+type Message<'a> = Box<dyn Fn(&[f64], i64) -> Result<Vec<u8>, String> + 'a>;
+
 /// A topic, and what its messages are in a row.
 struct Topic<'a> {
     channel: u16,
     sequence: u32,
-    message: Box<dyn Fn(&[f64], i64) -> Result<Vec<u8>, String> + 'a>,
+    message: Message<'a>,
 }
 
 fn bytes(message: &impl Serialize) -> Result<Vec<u8>, String> {
@@ -217,7 +222,7 @@ pub fn write_mcap(rows: &Rows<'_>) -> Result<Vec<u8>, String> {
     used.extend(motors.places().chain(states.places()).chain(controlled.places()));
     used.extend(wrenches.iter().flat_map(|one| one.places.iter().flatten()));
     let mut topics: Vec<Topic<'_>> = Vec::new();
-    let mut add = |writer: &mut Writer<_>, topic: &str, usual: &crate::message::Usual, message| {
+    let mut add = |writer: &mut Writer<_>, topic: &str, usual: &Usual, message| {
         let text = usual.definitions[0].as_bytes();
         let schema = writer.add_schema(usual.kind, "ros2msg", text).map_err(failed)?;
         let channel = writer.add_channel(schema, topic, "cdr", &BTreeMap::new()).map_err(failed)?;

@@ -207,7 +207,7 @@ impl Wanted {
         faults.extend(shared(log, &columns));
         faults.extend(missing_torques((log, robot), &columns, mapping));
         faults.extend(missing_forces(robot, (&all, &columns), mapping));
-        faults.extend(other_robot(log, robot));
+        faults.extend(other_robot(log, robot, &columns));
         let torque_side = torque_side(log).unwrap_or_else(|fault| {
             faults.push(fault);
             None
@@ -382,28 +382,30 @@ fn torque_side(log: &Log<'_>) -> Result<Option<TorqueSide>, LogFault> {
 
 /// Whether the log says that it is of another robot, or has joints that this one lacks. Messages
 /// are of whatever moves: other joints mean something only where those of the robot are missing.
-fn other_robot(log: &Log<'_>, robot: LogOf<'_>) -> Vec<LogFault> {
+fn other_robot(log: &Log<'_>, robot: LogOf<'_>, columns: &[WantedColumn]) -> Vec<LogFault> {
     let mut faults = Vec::new();
     if let Some(log) = model_of_header(&log.header).filter(|log| *log != robot.model) {
         let (log, model) = (log.to_owned(), robot.model.to_owned());
         faults.push(LogFault::OtherModel { log, model });
     }
     let is_ours = |name: &str| robot.joints.iter().any(|joint| joint.name == name);
-    let has_own =
-        robot.joints.iter().all(|joint| log.find(&format!("q_{}", joint.name)) != Found::Nowhere);
+    let has_position = |joint: usize| {
+        columns.iter().any(|one| matches!(one.goes_to, Target::Joint(of, 0) if of == joint))
+    };
+    let has_all = (0..robot.joints.len()).all(has_position);
     let mut others: Vec<String> = Vec::new();
-    for column in &log.columns {
-        let name = match &column.known {
-            Some(_) if has_own => continue,
-            Some(known) => &known.name,
-            None => &column.name,
-        };
-        let joint = name.strip_prefix("q_").filter(|joint| !is_ours(joint));
+    let mut are_messages = false;
+    for (place, column) in log.columns.iter().enumerate() {
+        let name = column.known.as_ref().map_or(&column.name, |known| &known.name);
+        let is_used = columns.iter().any(|one| one.place == place);
+        let is_passed_over = is_used || column.known.is_some() && has_all;
+        let joint = name.strip_prefix("q_").filter(|joint| !is_passed_over && !is_ours(joint));
         if let Some(joint) = joint.filter(|joint| others.iter().all(|known| known != joint)) {
             others.push(joint.to_owned());
+            are_messages |= column.known.is_some();
         }
     }
-    if !others.is_empty() && others.len() * 2 > robot.joints.len() {
+    if !others.is_empty() && (are_messages || others.len() * 2 > robot.joints.len()) {
         faults.push(LogFault::OtherJoints { joints: others });
     }
     faults

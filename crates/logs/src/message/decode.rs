@@ -185,7 +185,10 @@ impl Visitor<'_> for Name<'_> {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<(), E> {
-        self.0.extend(text.chars().map(|c| if c == END { '\u{fffd}' } else { c }));
+        match text.contains(END) {
+            false => self.0.push_str(text),
+            true => self.0.push_str(&text.replace(END, "\u{fffd}")),
+        }
         self.0.push(END);
         Ok(())
     }

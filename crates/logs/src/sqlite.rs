@@ -27,7 +27,9 @@ fn told(error: &rusqlite::Error) -> String {
 
 /// Reads the messages of a file of a bag.
 pub(crate) fn read(path: &Path, intake: &mut Intake<'_>) -> Result<(), FileFault> {
-    let log = path.with_extension("db3-wal");
+    let mut log = path.as_os_str().to_owned();
+    log.push("-wal");
+    let log = Path::new(&log);
     if log.metadata().is_ok_and(|found| found.len() > 0) {
         return Err(FileFault::Bag {
             cause: format!("{} holds messages that are not in the file yet", log.display()),

@@ -71,6 +71,15 @@ fn a_bag_has_the_numbers_of_mcap() {
     }
 }
 
+/// Messages that stand in a file beside it are not passed over.
+#[test]
+fn a_log_of_writing_beside_the_file_is_told() {
+    let folder = bag(true);
+    fs::write(folder.path().join("a b_0.db3-wal"), b"something").expect("written");
+    let faults = opened(folder.path(), false).unwrap_err();
+    assert!(faults[0].to_string().contains("wal_checkpoint"), "{faults:?}");
+}
+
 #[test]
 fn damage_is_told_and_what_is_whole_is_offered() {
     let folder = bag(true);

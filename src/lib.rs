@@ -10,6 +10,7 @@
 //! - [`plants`]: robots as numbers, generated or interpreted
 //! - [`identify`]: parameters from measured motion, and motion that shows them
 //! - [`import`]: URDF and MJCF as model files, and back
+//! - [`logs`]: files of logs of any format as tables
 //! - [`measure`]: logs: read, checked, filtered; noise of their positions
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
@@ -22,6 +23,7 @@ pub use denavit_codegen::{
 pub use denavit_diagnose as diagnose;
 pub use denavit_identify as identify;
 pub use denavit_import as import;
+pub use denavit_logs as logs;
 pub use denavit_measure as measure;
 pub use denavit_numerics as numerics;
 pub use denavit_plants as plants;

@@ -7,8 +7,9 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{effects_folder, open_log, read_file};
+use super::files::{effects_folder, read_file};
 use super::identify::IdentifyFailure;
+use super::logs::measured_log;
 use super::model_effects::{EffectUse, ModelApart};
 use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
@@ -21,7 +22,7 @@ use denavit::diagnose::{
 use denavit::effect::{Channel, Effect};
 use denavit::identify::Ground;
 use denavit::measure::condition::{Conditioned, Conditioning};
-use denavit::measure::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
+use denavit::measure::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog};
 use denavit::model::Robot;
 use denavit::plants::effect::ApartEffects;
 use denavit::plants::regression::RegressionModel;
@@ -57,7 +58,8 @@ pub(crate) struct Arguments {
     /// Logs to judge with: another motion
     #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
     validate: Vec<PathBuf>,
-    /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0}}
+    /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0},
+    /// "q_{joint}": "/joint_states/{joint}/position"}
     #[arg(long, value_name = "MAP.json")]
     columns: Option<PathBuf>,
     /// A folder of effects beside those of the catalogue; without it the folder `effects` beside
@@ -84,6 +86,9 @@ pub(crate) struct Arguments {
     /// Take logs as they are, however wrong they look
     #[arg(long)]
     accept_suspicious: bool,
+    /// Of a log that is cut or corrupt, take what is before the damage
+    #[arg(long)]
+    accept_cut: bool,
     /// Write all of it into a folder: diagnosis.json, the model with its effects as model.json,
     /// and a page, report.html
     #[arg(long, value_name = "DIR")]
@@ -252,6 +257,7 @@ pub(super) fn of_motions(
         filter: None,
         time_limit: None,
         accept_suspicious: false,
+        accept_cut: false,
         out: Some(folder.to_owned()),
         json: false,
     };
@@ -374,8 +380,8 @@ fn logs(
     model: &RegressionModel,
     remarks: &mut Vec<(String, LogRemark)>,
 ) -> Result<[Vec<MeasuredLog>; 2], Failure> {
-    let mut ground = Ground::under(robot, model)
-        .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
+    let failed = |error| IdentifyFailure::Plant(model.model.clone(), error);
+    let mut ground = Ground::under(robot, model).map_err(failed)?;
     let paths = arguments.train.iter().chain(&arguments.validate);
     let mut train =
         Failure::of_any_log(paths.map(|path| log(arguments, robot, model, path, remarks)))?;
@@ -390,8 +396,15 @@ fn logs(
         return Err(IdentifyFailure::SameLogs(same).into());
     }
     remarks.extend(searched_again(model, &sets));
+    if ground.is_none() && sets.iter().flatten().any(|log| !log.wrenches.is_empty()) {
+        ground = Some(Ground::around(robot, model).map_err(failed)?);
+    }
     if let Some(ground) = &mut ground {
-        sets.iter_mut().flatten().for_each(|log| ground.load(log));
+        for log in sets.iter_mut().flatten() {
+            ground.load(log);
+            let found = std::mem::take(&mut log.remarks);
+            remarks.extend(found.into_iter().map(|remark| (log.file.clone(), remark)));
+        }
     }
     Ok(sets)
 }
@@ -438,8 +451,7 @@ fn log(
         contacts: &contacts,
         accepts_suspicious: arguments.accept_suspicious,
     };
-    let read = read_log(&file, open_log(path)?, of, &mapping);
-    let mut log = read.map_err(IdentifyFailure::from)?;
+    let mut log = measured_log(path, of, (&mapping, arguments.accept_cut))?;
     let found = std::mem::take(&mut log.remarks);
     for remark in found.into_iter().map(|remark| (file.clone(), remark)) {
         // A log may be given twice.

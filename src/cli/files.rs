@@ -11,7 +11,7 @@ use denavit::model::equations::{self, Equations};
 use denavit::shipped::{self, ShippedModel};
 use denavit::simulate::LogFile;
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 
@@ -77,13 +77,6 @@ fn own_effects(folder: &Path) -> Result<Vec<Effect>, Failure> {
 /// Name and content of a model: of a path, of a shipped model's name, or of standard input.
 pub(crate) fn read_model_bytes(place: &Path) -> Result<(String, Vec<u8>), Failure> {
     read_named(place, &[shipped::MODELS])
-}
-
-/// A log, to be read row by row.
-pub(crate) fn open_log(path: &Path) -> Result<BufReader<File>, Failure> {
-    let failure = |error| Failure::Read { file: path.display().to_string(), error };
-    let file = open(path).map_err(failure)?;
-    Ok(BufReader::with_capacity(1 << 16, file))
 }
 
 /// A log of the project's own columns.
@@ -228,7 +221,8 @@ pub(crate) fn read_or_shipped(
     })
 }
 
-fn open(path: &Path) -> io::Result<File> {
+/// A file to be read: no output may take its place.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     if let (Ok(path), Ok(mut read)) = (path.canonicalize(), READ.lock()) {
         read.push(path);

@@ -36,7 +36,8 @@ use std::path::PathBuf;
 /// Identify parameters: base parameters with standard errors, from logs of motion and torque
 ///
 /// A log is CSV with the columns t, q_JOINT, tau_JOINT (qd_, qdd_, ref_, f_CONTACT_x|y|z if there
-/// are any); --columns maps those of other logs. Positions and torques pass one zero-phase filter,
+/// are any), or MCAP or the folder of a ROS 2 bag with sensor_msgs/JointState (docs/logs.md);
+/// --columns maps those of other logs. Positions and torques pass one zero-phase filter,
 /// torques and regressor one decimator. Base parameters are exact; what the motion does not show
 /// keeps the model's value and is said to. Exits with 1 if what is found leaves as much of the
 /// torques as nothing would, or, of the torque of a joint that moves, nearly all, or a third that
@@ -116,7 +117,8 @@ pub(crate) struct Arguments {
     /// Parameters to keep before others, as for `denavit base`
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     keep: Vec<String>,
-    /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0}}
+    /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0},
+    /// "q_{joint}": "/joint_states/{joint}/position"}
     #[arg(long, value_name = "MAP.json")]
     columns: Option<PathBuf>,
     #[command(flatten)]
@@ -130,6 +132,9 @@ pub(crate) struct Arguments {
     /// Take logs as they are, however wrong they look
     #[arg(long)]
     accept_suspicious: bool,
+    /// Of a log that is cut or corrupt, take what is before the damage
+    #[arg(long)]
+    accept_cut: bool,
     /// Write the model with the identified values; - is standard output
     #[arg(short, long, value_name = "MODEL")]
     output: Option<PathBuf>,

@@ -21,6 +21,7 @@ mod identify;
 mod import;
 mod inspect;
 mod json;
+mod logs;
 mod model_effects;
 mod options;
 mod output_failure;

@@ -21,6 +21,8 @@ pub(crate) enum OutputFailure {
     TwoFilesOfC(String),
     /// No source can include a header of this name.
     NotIncluded(String),
+    /// What is to be written has no place in the format of the file; why.
+    NotOfFormat { file: String, cause: String },
 }
 
 impl OutputFailure {
@@ -46,6 +48,7 @@ impl OutputFailure {
                  `--language cpp` is one file"
             }
             Self::NotIncluded(_) => "give a name without quotation marks, backslashes and `?`",
+            Self::NotOfFormat { .. } => "a name that does not end in .mcap is written as CSV",
         })
     }
 }
@@ -70,6 +73,7 @@ impl fmt::Display for OutputFailure {
             Self::NotIncluded(file) => {
                 write!(f, "{file}: a source cannot include a header of this name")?;
             }
+            Self::NotOfFormat { file, cause } => write!(f, "{file}: {cause}")?,
         }
         match self.hint() {
             Some(hint) => write!(f, "\n  hint: {hint}"),

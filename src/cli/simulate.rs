@@ -6,6 +6,7 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::{load_beside, read_or_shipped};
 use super::json::write_json;
+use super::logs::run_file;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::{Args, ValueEnum};
 use denavit::model::json::{self, Value};
@@ -28,12 +29,14 @@ use std::time::{Duration, Instant};
 #[command(after_help = "\
 Examples:
   denavit simulate bouncing_ball -o ball.csv
+  denavit simulate tulip_leg_tracking -o tracking.mcap
   denavit simulate planar_biped_zmp_gait --scheme time-stepping --step 0.0005 -o gait.csv")]
 pub(crate) struct Arguments {
     /// The path of a scenario file, or the name of a shipped scenario
     #[arg(value_name = "SCENARIO")]
     scenario: PathBuf,
-    /// Where the log goes, as CSV; - is standard output (and no summary)
+    /// Where the log goes, as CSV, or as MCAP if it ends in .mcap; - is standard output (and no
+    /// summary)
     #[arg(short, long, value_name = "LOG")]
     output: Option<PathBuf>,
     /// How the run is made, in place of what the scenario says
@@ -102,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let took = started.elapsed();
     let broken = scenario.broken(&run);
     if let Some(path) = &arguments.output {
-        write_whole(path, run.log.to_csv().as_bytes())?;
+        write_whole(path, &run_file(path, &run.log)?)?;
     }
     if let Some(path) = &arguments.svg {
         // a run that ends before the window is drawn as it is

@@ -29,6 +29,8 @@ mod outputs;
 mod printed;
 mod readme;
 mod real_data;
+#[cfg(feature = "mcap")]
+mod ros_logs;
 mod simulate;
 mod simulate_summary;
 mod simulated_again;

@@ -1,7 +1,7 @@
 //! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
 //! - [`excite`]: trajectories that excite what is to be identified
-//! - [`add_contact_forces`]: what the ground does to each equation
+//! - [`add_contact_forces`], [`add_wrenches`]: what the ground, and pushes, do to each equation
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
 //! - [`estimate`]: base parameters with their errors, and what they leave unexplained
@@ -34,7 +34,7 @@ mod statics_file;
 pub mod two_stage;
 mod updated_model;
 
-pub use contact_forces::{Ground, add_contact_forces};
+pub use contact_forces::{Ground, add_contact_forces, add_wrenches};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};

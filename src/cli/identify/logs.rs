@@ -2,14 +2,15 @@
 
 use super::{Arguments, IdentifyFailure, MethodName};
 use crate::cli::failure::Failure;
-use crate::cli::files::{open_log, read_file};
+use crate::cli::files::read_file;
+use crate::cli::logs::measured_log;
 use clap::{Args, ValueEnum};
 use denavit::identify::forward::{LONGEST_S, MotionLog};
 use denavit::identify::{
     Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
 };
 use denavit::measure::condition::{Averaging, Conditioned, Conditioning, Derivatives, Filter};
-use denavit::measure::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog, read_log};
+use denavit::measure::log::{ColumnMapping, LogOf, LogRemark, MeasuredLog};
 use denavit::model::Robot;
 use denavit::plants::effect::AddedLaw;
 use denavit::plants::regression::{CoulombLaw, RegressionModel};
@@ -274,7 +275,6 @@ pub(super) fn measured(
     model: &RegressionModel,
     path: &Path,
 ) -> Result<MeasuredLog, Failure> {
-    let file = path.display().to_string();
     let contacts: Vec<String> =
         robot.contacts.values().map(|contact| contact.name.clone()).collect();
     let of = LogOf {
@@ -284,7 +284,7 @@ pub(super) fn measured(
         accepts_suspicious: arguments.accept_suspicious,
     };
     let mapping = mapping(arguments)?;
-    Ok(read_log(&file, open_log(path)?, of, &mapping).map_err(IdentifyFailure::from)?)
+    measured_log(path, of, (&mapping, arguments.accept_cut))
 }
 
 /// How columns are mapped.
@@ -297,6 +297,7 @@ pub(super) fn mapping(arguments: &Arguments) -> Result<ColumnMapping, Failure> {
 
 struct Reader<'a> {
     arguments: &'a Arguments,
+    robot: &'a Robot,
     model: &'a RegressionModel,
     laws: &'a [AddedLaw],
     mapping: ColumnMapping,
@@ -316,6 +317,7 @@ impl<'a> Reader<'a> {
             .map_err(|error| IdentifyFailure::Plant(model.model.clone(), error))?;
         Ok(Self {
             arguments,
+            robot,
             model,
             laws,
             mapping: mapping(arguments)?,
@@ -352,15 +354,19 @@ impl<'a> Reader<'a> {
             contacts: &self.contacts,
             accepts_suspicious: self.arguments.accept_suspicious,
         };
-        let mut log: MeasuredLog =
-            read_log(&file, open_log(path)?, of, &self.mapping).map_err(IdentifyFailure::from)?;
+        let mut log = measured_log(path, of, (&self.mapping, self.arguments.accept_cut))?;
         log.require_joint_torques(of).map_err(IdentifyFailure::from)?;
-        let remarks = std::mem::take(&mut log.remarks);
-        self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
         undo_readings(&mut log, self.laws);
+        if self.ground.is_none() && !log.wrenches.is_empty() {
+            let around = Ground::around(self.robot, self.model);
+            let failed = |error| IdentifyFailure::Plant(self.model.model.clone(), error);
+            self.ground = Some(around.map_err(failed)?);
+        }
         if let Some(ground) = &mut self.ground {
             ground.load(&mut log);
         }
+        let remarks = std::mem::take(&mut log.remarks);
+        self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
         let conditions = &self.arguments.conditions;
         let how = Conditioning {
             resolution: self.arguments.resolution,

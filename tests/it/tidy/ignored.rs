@@ -31,7 +31,7 @@ const fn ignored(test: &'static str, reason: &'static str, runs: Runs) -> Ignore
 
 const NO_MEASUREMENTS: &str = "needs the measurements, which are not part of the repository";
 
-const IGNORED: [Ignored; 12] = [
+const IGNORED: [Ignored; 13] = [
     ignored("what_is_left_out_of_a_real_axis_is_named", NO_MEASUREMENTS, Runs::Measurements),
     ignored("the_published_parameters_and_errors_are_reached", NO_MEASUREMENTS, Runs::Measurements),
     ignored(
@@ -65,6 +65,11 @@ const IGNORED: [Ignored; 12] = [
     ignored(
         "shipped_gaits_cost_less_than_the_hand_made_one_and_repeat_to_the_byte",
         "takes minutes: designs with costs of transport",
+        Runs::Long,
+    ),
+    ignored(
+        "many_mutations_of_mcap_are_read_or_refused",
+        "5000 mutations take longer than the suite may",
         Runs::Long,
     ),
     ignored("six_hundred_drops_do_not_depend_on_the_log", "takes a minute", Runs::Long),

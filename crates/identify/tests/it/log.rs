@@ -5,6 +5,7 @@ use denavit_codegen::regressor::functions::modelled;
 use denavit_measure::log::{
     ColumnMapping, LogFault, LogOf, LogRemark, MeasuredLog, Suspicion, read_log,
 };
+use denavit_measure::log::{FileFault, Place};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::f64::consts::TAU;
 
@@ -108,6 +109,31 @@ fn missing_columns_are_all_named_at_once() {
     assert!(made.read_as(&made.text(), &map).is_ok());
 }
 
+/// A name with `{joint}` in it is meant for each joint; one that is given itself counts before.
+#[test]
+fn a_name_for_all_joints_maps_each_of_them() {
+    let sound = Made::new().read().expect("nothing is wrong");
+    let mut made = Made::new();
+    for cell in &mut made.header {
+        if let Some(joint) = cell.strip_prefix("q_") {
+            *cell = format!("at/{joint}/deg");
+        }
+    }
+    let read = |map: &str| made.read_as(&made.text(), map);
+    let log = read(r#"{"q_{joint}": "at/{joint}/deg"}"#).expect("all joints are mapped");
+    assert_eq!(log.joints, sound.joints);
+    let name = &made.names[0];
+    let map =
+        format!(r#"{{"q_{{joint}}": "at/{{joint}}/deg", "q_{name}": "at/{}/deg"}}"#, made.names[1]);
+    let faults = read(&map).unwrap_err();
+    assert!(matches!(&faults[..], [LogFault::SharedColumn { .. }]), "{faults:?}");
+    let unknown = read(r#"{"q_{joint}": "at/{joint}/deg", "speed_{joint}": "x"}"#).unwrap_err();
+    assert!(matches!(&unknown[..], [LogFault::UnknownName { .. }]), "{unknown:?}");
+    let nowhere = read(r#"{"q_{joint}": "at/{joint}/deg", "ref_{joint}": "r/{joint}"}"#);
+    let nowhere = nowhere.unwrap_err();
+    assert!(matches!(&nowhere[..], [LogFault::MissingColumn { .. }]), "{nowhere:?}");
+}
+
 #[test]
 fn another_robot_is_noticed() {
     let made = Made::new();
@@ -123,7 +149,7 @@ fn cells_that_are_no_numbers_have_their_line_and_column() {
     let faults = made.read_as(&text, "{}").unwrap_err();
     let expected = ("t".to_owned(), "0.004x".to_owned());
     assert!(
-        matches!(&faults[..], [LogFault::NotANumber { line: 4, column, cell }]
+        matches!(&faults[..], [LogFault::File(FileFault::NotANumber { line: 4, column, cell })]
             if (column, cell) == (&expected.0, &expected.1)),
         "{faults:?}"
     );
@@ -132,7 +158,10 @@ fn cells_that_are_no_numbers_have_their_line_and_column() {
 #[test]
 fn time_that_goes_back_or_repeats_is_noticed() {
     let back = Made::new().each(|k, row| row[0] -= if k == 40 { 0.01 } else { 0.0 });
-    assert!(matches!(back.read().unwrap_err()[..], [LogFault::TimeNotIncreasing { line: 42 }]));
+    assert!(matches!(
+        back.read().unwrap_err()[..],
+        [LogFault::TimeNotIncreasing { at: Place::Line(42) }]
+    ));
     let mut twice = Made::new();
     let row = twice.rows[10].clone();
     twice.rows.insert(11, row);
@@ -358,8 +387,11 @@ fn numbers_that_nothing_of_a_robot_can_be_have_their_line() {
             }
         });
         let faults = made.read().unwrap_err();
-        let expected =
-            LogFault::Impossible { column: made.header[column].clone(), value, line: 502 };
+        let expected = LogFault::Impossible {
+            column: made.header[column].clone(),
+            value,
+            at: Place::Line(502),
+        };
         assert_eq!(faults, [expected]);
     }
 }
@@ -386,9 +418,9 @@ fn one_torque_far_beyond_its_limit_is_a_suspicion() {
 fn positions_that_jump_have_their_line() {
     let slipped = Made::new().each(|k, row| row[2] += if k >= 700 { 0.05 } else { 0.0 });
     match suspicion(slipped.read().unwrap_err()) {
-        Suspicion::Jump { column, line, from, to, others } => {
+        Suspicion::Jump { column, at, from, to, others } => {
             // one line of names, and rows from 0
-            assert_eq!((column.as_str(), line, others), ("q_link2", 702, 0));
+            assert_eq!((column.as_str(), at, others), ("q_link2", Place::Line(702), 0));
             assert!((to - from - 0.05).abs() < 0.02, "{from} {to}");
         }
         other => panic!("{other:?}"),
@@ -398,7 +430,7 @@ fn positions_that_jump_have_their_line() {
     twice.rows.extend(again);
     let joined = twice.each(|k, row| row[0] = STEP_S * k as f64);
     match suspicion(joined.read().unwrap_err()) {
-        Suspicion::Jump { line, .. } => assert_eq!(line, 1502),
+        Suspicion::Jump { at, .. } => assert_eq!(at, Place::Line(1502)),
         other => panic!("{other:?}"),
     }
     let mut random = denavit_numerics::Random::new(4);
@@ -417,5 +449,5 @@ fn a_line_without_end_is_refused_before_it_fills_the_memory() {
     let made = Made::new();
     let text = made.text() + &"1".repeat(3 << 20);
     let faults = made.read_as(&text, "{}").unwrap_err();
-    assert_eq!(faults, [LogFault::LongLine { line: 1502 }]);
+    assert_eq!(faults, [LogFault::File(FileFault::LongLine { line: 1502 })]);
 }

@@ -12,6 +12,7 @@ mod noise;
 mod regression;
 mod statics;
 mod two_stage;
+mod wrenches;
 
 use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::RegressorOptions;

@@ -1,7 +1,7 @@
 //! What is wrong with a log, or looks wrong.
 
-use super::reader::LONGEST_LINE;
 use super::repair::FEWEST_ROWS;
+use denavit_logs::{FileFault, FileRemark, Place};
 use denavit_numerics::short;
 use std::fmt;
 
@@ -18,16 +18,8 @@ pub struct LogFaults {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // the fields are what the messages name
 pub enum LogFault {
-    /// The file cannot be read.
-    Unreadable(String),
-    /// A line is not UTF-8 text.
-    NotUtf8 { line: usize },
-    /// A line is longer than any log's.
-    LongLine { line: usize },
-    /// There is no line with the names of the columns.
-    NoColumns,
-    /// Two columns have one name.
-    RepeatedColumn { column: String },
+    /// The file itself is wrong.
+    File(FileFault),
     /// A column that is needed is not there.
     MissingColumn { column: String, nearest: Option<String> },
     /// A joint has no torque, and others have; holds its column and the one that is meant, perhaps.
@@ -36,8 +28,10 @@ pub enum LogFault {
     MissingForces { columns: Vec<String> },
     /// Several of our columns are taken from one of the log.
     SharedColumn { column: String, ours: Vec<String> },
+    /// One of our columns may be one of several of the log.
+    Ambiguous { column: String, several: Vec<String> },
     /// A number that nothing of a robot can be.
-    Impossible { column: String, value: f64, line: usize },
+    Impossible { column: String, value: f64, at: Place },
     /// A name that is mapped is none of the model's columns.
     UnknownName { name: String, nearest: Option<String> },
     /// The log says that it is of another model.
@@ -48,20 +42,16 @@ pub enum LogFault {
     OtherJoints { joints: Vec<String> },
     /// Fewer rows than anything can be made of.
     TooShort { rows: usize },
-    /// A row with another number of cells than there are columns.
-    RowLength { line: usize, expected: usize, found: usize },
-    /// A cell that is no number.
-    NotANumber { line: usize, column: String, cell: String },
     /// Cells without a number, more than are filled in.
-    Undefined { column: String, count: usize, line: usize },
+    Undefined { column: String, count: usize, at: Place },
     /// A time that is before the one of the row above.
-    TimeNotIncreasing { line: usize },
+    TimeNotIncreasing { at: Place },
     /// A time twice, with other numbers beside it.
-    TimeRepeated { line: usize },
+    TimeRepeated { at: Place },
     /// The distances of samples scatter too much for derivatives.
     Jitter { relative: f64 },
     /// Samples are missing, more than are filled in.
-    Gaps { missing: usize, samples: usize, longest: usize, line: usize },
+    Gaps { missing: usize, samples: usize, longest: usize, at: Place },
     /// The log says something else than it seems to.
     Suspicion(Suspicion),
     /// No joint moves.
@@ -90,7 +80,7 @@ pub enum Suspicion {
     CommandOfSpring { joint: String },
     /// A position jumps from one row to the next; holds the line and how many other jumps there
     /// are.
-    Jump { column: String, line: usize, from: f64, to: f64, others: usize },
+    Jump { column: String, at: Place, from: f64, to: f64, others: usize },
     /// A position is beyond its limits.
     BeyondLimits { column: String, value: f64, limits: [f64; 2] },
 }
@@ -99,8 +89,8 @@ pub enum Suspicion {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // the fields are what the messages name
 pub enum LogRemark {
-    /// The last line has no end, so that it may be cut: it was left out.
-    CutLine { line: usize },
+    /// Of the file itself.
+    File(FileRemark),
     /// Rows that said the same twice were dropped.
     DroppedRepeats { count: usize },
     /// Missing samples were filled in by cubic interpolation.
@@ -123,6 +113,8 @@ pub enum LogRemark {
     MotorTorques { joints: Vec<String> },
     /// The default filter has a lower cutoff, since noise of positions biased parameters.
     LoweredFilter { cutoff_hz: f64 },
+    /// There are wrenches of a link that the model does not have: they count for nothing.
+    NoSuchLink { link: String },
     /// Laps were replaced by their mean.
     Averaged { laps: usize, period_s: f64 },
     /// The log says the same as another one, which the estimate is from.
@@ -137,8 +129,9 @@ impl fmt::Display for LogFaults {
             if index > 0 {
                 writeln!(f)?;
             }
-            match fault.line() {
-                Some(line) => write!(f, "{}:{line}: {fault}", self.file)?,
+            match fault.place() {
+                Some(Place::Line(line)) => write!(f, "{}:{line}: {fault}", self.file)?,
+                Some(place) => write!(f, "{}: {place}: {fault}", self.file)?,
                 None => write!(f, "{}: {fault}", self.file)?,
             }
         }
@@ -149,31 +142,17 @@ impl fmt::Display for LogFaults {
 impl std::error::Error for LogFaults {}
 
 impl LogFault {
-    /// The line that it is about.
-    pub fn line(&self) -> Option<usize> {
+    /// The place that it is about.
+    pub fn place(&self) -> Option<Place> {
         match *self {
-            Self::NotUtf8 { line }
-            | Self::LongLine { line }
-            | Self::RowLength { line, .. }
-            | Self::NotANumber { line, .. }
-            | Self::Undefined { line, .. }
-            | Self::TimeNotIncreasing { line }
-            | Self::TimeRepeated { line }
-            | Self::Impossible { line, .. }
-            | Self::Gaps { line, .. } => Some(line),
+            Self::File(ref fault) => fault.place(),
+            Self::Undefined { at, .. }
+            | Self::TimeNotIncreasing { at }
+            | Self::TimeRepeated { at }
+            | Self::Impossible { at, .. }
+            | Self::Gaps { at, .. } => Some(at),
             _ => None,
         }
-    }
-}
-
-const NO_COLUMNS: &str = "no line with the names of columns\n  hint: a log begins with one, as \
-                          `t,q_knee,tau_knee`";
-
-fn not_a_number(f: &mut fmt::Formatter<'_>, column: &str, cell: &str) -> fmt::Result {
-    write!(f, "`{cell}` in column `{column}` is not a number")?;
-    match cell.replace(',', ".").parse::<f64>() {
-        Ok(_) => write!(f, "\n  hint: numbers have a decimal point, and no comma"),
-        Err(_) => Ok(()),
     }
 }
 
@@ -220,11 +199,7 @@ fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> f
 impl fmt::Display for LogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unreadable(reason) => write!(f, "cannot be read: {reason}"),
-            Self::NotUtf8 { .. } => write!(f, "not UTF-8 text"),
-            Self::LongLine { .. } => write!(f, "more than {LONGEST_LINE} bytes: is it CSV?"),
-            Self::NoColumns => write!(f, "{NO_COLUMNS}"),
-            Self::RepeatedColumn { column } => write!(f, "two columns `{column}`"),
+            Self::File(fault) => write!(f, "{fault}"),
             Self::MissingColumn { column, nearest } => {
                 write!(f, "there is no column `{column}`")?;
                 meant(f, nearest, "--columns MAP.json says which column of the log it is")
@@ -232,6 +207,14 @@ impl fmt::Display for LogFault {
             Self::MissingTorque { column, nearest } => missing_torque(f, column, nearest),
             Self::MissingForces { columns } => missing_forces(f, columns),
             Self::SharedColumn { column, ours } => shared_column(f, column, ours),
+            Self::Ambiguous { column, several } => {
+                let several: Vec<String> = several.iter().map(|one| format!("`{one}`")).collect();
+                write!(
+                    f,
+                    "`{column}` may be {}\n  hint: --columns MAP.json says which it is",
+                    several.join(" or ")
+                )
+            }
             Self::Impossible { column, value, .. } => {
                 write!(f, "{value:e} in column `{column}`: nothing of a robot is so large")
             }
@@ -259,10 +242,6 @@ impl fmt::Display for LogFault {
                 let rows = if *rows == 0 { "no rows".to_owned() } else { format!("{rows} rows") };
                 write!(f, "{rows}: at least {FEWEST_ROWS} are needed")
             }
-            Self::RowLength { expected, found, .. } => {
-                write!(f, "{found} cells, where there are {expected} columns")
-            }
-            Self::NotANumber { column, cell, .. } => not_a_number(f, column, cell),
             Self::Undefined { column, count, .. } => write!(
                 f,
                 "{count} cells of column `{column}` have no number, more than can be filled in"
@@ -343,8 +322,8 @@ impl fmt::Display for Suspicion {
                 "`{column}` goes to {value:.4} in {samples} samples, and the model's limit is \
                  {limit:.4}"
             )?,
-            Self::Jump { column, line, from, to, others } => {
-                write!(f, "`{column}` jumps from {from:.6} to {to:.6} in line {line}")?;
+            Self::Jump { column, at, from, to, others } => {
+                write!(f, "`{column}` jumps from {from:.6} to {to:.6} in {at}")?;
                 if *others > 0 {
                     write!(f, ", and in {others} other places")?;
                 }
@@ -385,9 +364,7 @@ fn write_steps(f: &mut fmt::Formatter<'_>, columns: &[(String, f64)]) -> fmt::Re
 impl fmt::Display for LogRemark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::CutLine { line } => {
-                write!(f, "line {line}, the last one, has no end and may be cut: left out")
-            }
+            Self::File(remark) => write!(f, "{remark}"),
             Self::DroppedRepeats { count } => write!(f, "{count} repeated rows dropped"),
             Self::FilledGaps { missing, samples, longest } => write!(
                 f,
@@ -432,6 +409,9 @@ impl fmt::Display for LogRemark {
                  (--filter says otherwise)",
                 short(*cutoff_hz)
             ),
+            Self::NoSuchLink { link } => {
+                write!(f, "wrenches on `{link}`, which is no link of the model: left out")
+            }
             Self::Averaged { laps, period_s } => {
                 write!(f, "{laps} laps of {period_s:.6} s are replaced by their mean")
             }

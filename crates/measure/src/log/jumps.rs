@@ -1,7 +1,7 @@
 //! Positions that jump: slips of an encoder, laps that were joined end to end.
 
 use super::fault::Suspicion;
-use super::reader::Table;
+use denavit_logs::Table;
 
 /// The least jump, over the range of the position, over its smallest step, and over the steps of
 /// the samples about it.
@@ -44,6 +44,6 @@ pub(super) fn jump(table: &Table, place: usize, column: &str) -> Option<Suspicio
     let first = jumps.next()?;
     let (from, to) = (values[rows[first]], values[rows[first + 1]]);
     let others = jumps.count();
-    let (column, line) = (column.to_owned(), table.line(rows[first + 1]));
-    Some(Suspicion::Jump { column, line, from, to, others })
+    let (column, at) = (column.to_owned(), table.place(rows[first + 1]));
+    Some(Suspicion::Jump { column, at, from, to, others })
 }

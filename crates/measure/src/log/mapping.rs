@@ -16,12 +16,37 @@ pub struct ColumnSource {
     pub offset: f64,
 }
 
+impl ColumnSource {
+    /// A column of this name, in our unit.
+    pub fn of(column: &str) -> Self {
+        Self { column: column.to_owned(), scale: 1.0, offset: 0.0 }
+    }
+}
+
 /// A mapping of columns: our name to its source, or to nothing if it is left out on purpose. A
-/// column that is not mapped has our name.
+/// column that is not mapped has our name. A name with `{joint}`, `{contact}` or `{link}` in it is
+/// meant for each of them, and so is the same in its source; a name that is given itself counts
+/// before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnMapping {
     sources: BTreeMap<String, Option<ColumnSource>>,
 }
+
+/// What a mapping says of one of our columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Mapped {
+    /// Nothing.
+    Not,
+    /// It is left out on purpose.
+    LeftOut,
+    /// Where it stands, by its own name.
+    ByName(ColumnSource),
+    /// Where it stands, by a name with `{joint}`, `{contact}` or `{link}` in it.
+    ByPattern(ColumnSource),
+}
+
+/// What stands for a joint, a contact or a link in names and sources.
+const SUBJECTS: [&str; 3] = ["{joint}", "{contact}", "{link}"];
 
 /// A mapping that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,7 +66,7 @@ impl fmt::Display for MappingError {
             f,
             "{file}:{line}:{column}: {cause}\n  hint: as {{\"q_knee\": {{\"column\": \"deg\", \
              \"scale\": 0.0174533, \"offset\": 0}}, \"t\": \"time\", \"tau_hip\": \
-             null}}"
+             null, \"q_{{joint}}\": \"/joint_states/{{joint}}/position\"}}"
         )
     }
 }
@@ -86,7 +111,7 @@ impl ColumnMapping {
                 continue;
             };
             let source = match entry {
-                Entry::Name(column) => ColumnSource { column, scale: 1.0, offset: 0.0 },
+                Entry::Name(column) => ColumnSource::of(&column),
                 Entry::Full(Full { column, scale, offset }) => ColumnSource {
                     column: column.unwrap_or_else(|| name.clone()),
                     scale: scale.unwrap_or(1.0),
@@ -107,10 +132,35 @@ impl ColumnMapping {
         self.sources.insert(name.to_owned(), Some(source));
     }
 
+    /// What is said of one of our columns, whose name for whatever joint, contact or link is
+    /// `pattern`.
+    pub(super) fn source_of(&self, name: &str, pattern: &str, subject: &str) -> Mapped {
+        if let Some(source) = self.sources.get(name) {
+            return source.clone().map_or(Mapped::LeftOut, Mapped::ByName);
+        }
+        let with_subject = |source: &ColumnSource| {
+            let put = |text: String, stand_in: &&str| text.replace(*stand_in, subject);
+            let column = SUBJECTS.iter().fold(source.column.clone(), put);
+            Mapped::ByPattern(ColumnSource { column, ..source.clone() })
+        };
+        match self.sources.get(pattern) {
+            None => Mapped::Not,
+            Some(source) => source.as_ref().map_or(Mapped::LeftOut, with_subject),
+        }
+    }
+
+    /// The beginnings, up to `{joint}`, `{contact}` or `{link}`, of the names of sources.
+    pub fn beginnings(&self) -> Vec<String> {
+        let beginning = |source: &ColumnSource| {
+            let end = source.column.find('{').unwrap_or(source.column.len());
+            source.column[..end].to_owned()
+        };
+        self.sources.values().flatten().map(beginning).collect()
+    }
+
     /// The source of one of our columns; none if it is left out on purpose.
     pub fn source(&self, name: &str) -> Option<ColumnSource> {
-        let own = || ColumnSource { column: name.to_owned(), scale: 1.0, offset: 0.0 };
-        self.sources.get(name).cloned().unwrap_or_else(|| Some(own()))
+        self.sources.get(name).cloned().unwrap_or_else(|| Some(ColumnSource::of(name)))
     }
 
     /// The names that are mapped.

@@ -1,7 +1,7 @@
 //! Samples at equal distances: repeated rows dropped, single missing samples filled in.
 
 use super::fault::{LogFault, LogRemark};
-use super::reader::Table;
+use denavit_logs::Table;
 
 /// Fewer rows make no log.
 pub(super) const FEWEST_ROWS: usize = 4;
@@ -36,8 +36,8 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
     let undefined = table.columns[0].iter().position(|time| time.is_nan());
     if let Some(row) = undefined {
         let count = table.columns[0].iter().filter(|time| time.is_nan()).count();
-        let (column, line) = (names[0].clone(), table.line(row));
-        return Err(vec![LogFault::Undefined { column, count, line }]);
+        let (column, at) = (names[0].clone(), table.place(row));
+        return Err(vec![LogFault::Undefined { column, count, at }]);
     }
     drop_repeats(&mut table, &mut faults, &mut remarks);
     if table.rows() < FEWEST_ROWS {
@@ -61,7 +61,7 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
     let samples = time.len() + gaps.missing;
     if gaps.missing as f64 > MAX_MISSING * samples as f64 || gaps.longest > MAX_GAP {
         let Gaps { missing, longest, row } = gaps;
-        faults.push(LogFault::Gaps { missing, samples, longest, line: table.line(row + 1) });
+        faults.push(LogFault::Gaps { missing, samples, longest, at: table.place(row + 1) });
     } else if jitter > MAX_JITTER {
         faults.push(LogFault::Jitter { relative: jitter });
     }
@@ -126,9 +126,9 @@ fn drop_repeats(table: &mut Table, faults: &mut Vec<LogFault>, remarks: &mut Vec
         if table.columns.iter().all(same) {
             keep[row] = false;
         } else if time[row] == time[row - 1] {
-            faults.push(LogFault::TimeRepeated { line: table.line(row) });
+            faults.push(LogFault::TimeRepeated { at: table.place(row) });
         } else {
-            faults.push(LogFault::TimeNotIncreasing { line: table.line(row) });
+            faults.push(LogFault::TimeNotIncreasing { at: table.place(row) });
         }
     }
     let count = keep.iter().filter(|&&keep| !keep).count();
@@ -160,8 +160,8 @@ fn fill_cells(
         let longest = holes.windows(MAX_GAP + 1).any(is_gap);
         let column = names[index].clone();
         if holes.len() as f64 > MAX_MISSING * time.len() as f64 || longest {
-            let line = table.line(first);
-            faults.push(LogFault::Undefined { column, count: holes.len(), line });
+            let at = table.place(first);
+            faults.push(LogFault::Undefined { column, count: holes.len(), at });
             continue;
         }
         remarks.push(LogRemark::FilledCells { column, count: holes.len() });

@@ -1,88 +1,90 @@
-//! Logs as they stand in their files: streamed, only the columns that are wanted.
+//! Logs as text: streamed, only the columns that are wanted.
 
-use super::fault::LogFault;
-use std::io::{BufRead, ErrorKind, Read};
+use super::fault::{FileFault, of_io};
+use super::remark::FileRemark;
+use super::source::{Column, Log, Rows};
+use super::table::{Places, Table};
+use std::io::{BufRead, Read};
 
 /// Faults of one kind that are listed; more would say nothing new.
 const MAX_LISTED: usize = 5;
 
 /// Bytes of a line; a source without ends of lines must not fill the memory.
-pub(super) const LONGEST_LINE: u64 = 1 << 20;
+pub(crate) const LONGEST_LINE: u64 = 1 << 20;
 
 /// The first lines of a log: what it says of itself, and the names of its columns.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Head {
+struct Head {
     /// Name and value of lines `# name: value`.
-    pub(super) header: Vec<(String, String)>,
-    pub(super) columns: Vec<String>,
-    pub(super) separator: char,
+    header: Vec<(String, String)>,
+    columns: Vec<String>,
+    separator: char,
     /// Lines that have been read.
-    pub(super) lines: usize,
+    lines: usize,
 }
 
-/// Columns of a log; undefined cells are NaN.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Table {
-    pub(super) columns: Vec<Vec<f64>>,
-    /// The line of the first row of each run of rows without other lines between, with its row.
-    lines: Vec<(usize, usize)>,
-    /// The last line, if it has no end: it may be cut, and is none of the rows.
-    pub(super) cut: Option<usize>,
+/// A log of text, after the names of its columns.
+struct Text<R> {
+    lines: Lines<R>,
+    head: Head,
 }
 
-impl Table {
-    pub(super) fn rows(&self) -> usize {
-        self.columns.first().map_or(0, Vec::len)
+impl<R: BufRead> Rows for Text<R> {
+    fn read(mut self: Box<Self>, places: &[usize], _: &[usize]) -> Result<Table, Vec<FileFault>> {
+        read_rows(&mut self.lines, &self.head, places)
     }
+}
 
-    /// The line on which a row stands, from 1.
-    pub(super) fn line(&self, row: usize) -> usize {
-        let last = self.lines.partition_point(|&(first, _)| first <= row);
-        let (first, line) = self.lines[last.saturating_sub(1)];
-        line + row - first
-    }
+/// Opens a log of text: lines `# name: value`, the names of the columns, rows of numbers between
+/// commas, semicolons or tabs.
+///
+/// # Errors
+/// There are no names of columns, or the source cannot be read.
+pub fn open_csv<'a>(source: impl BufRead + 'a) -> Result<Log<'a>, Vec<FileFault>> {
+    let mut lines = Lines::new(source);
+    let head = read_head(&mut lines)?;
+    let column = |name: &String| Column { name: name.clone(), known: None };
+    Ok(Log {
+        header: head.header.clone(),
+        columns: head.columns.iter().map(column).collect(),
+        rows: Box::new(Text { lines, head }),
+    })
 }
 
 /// Lines of a source, without their ends.
-pub(super) struct Lines<R> {
+struct Lines<R> {
     source: R,
     buffer: Vec<u8>,
     number: usize,
 }
 
 impl<R: BufRead> Lines<R> {
-    pub(super) fn new(source: R) -> Self {
+    fn new(source: R) -> Self {
         Self { source, buffer: Vec::new(), number: 0 }
     }
 
     /// The next line with its number, and whether it has an end; none at the end.
-    fn next(&mut self) -> Result<Option<(usize, &str, bool)>, LogFault> {
+    fn next(&mut self) -> Result<Option<(usize, &str, bool)>, FileFault> {
         self.buffer.clear();
         let mut source = (&mut self.source).take(LONGEST_LINE);
-        let read = source.read_until(b'\n', &mut self.buffer).map_err(|error| {
-            let text = match error.kind() {
-                ErrorKind::IsADirectory => "it is a directory".to_owned(),
-                _ => error.to_string(),
-            };
-            LogFault::Unreadable(text)
-        })?;
+        let read = source.read_until(b'\n', &mut self.buffer).map_err(|error| of_io(&error))?;
         if read == 0 {
             return Ok(None);
         }
         self.number += 1;
         let is_whole = self.buffer.last() == Some(&b'\n');
         if read as u64 == LONGEST_LINE && !is_whole {
-            return Err(LogFault::LongLine { line: self.number });
+            return Err(FileFault::LongLine { line: self.number });
         }
         let line = std::str::from_utf8(&self.buffer)
-            .map_err(|_| LogFault::NotUtf8 { line: self.number })?;
+            .map_err(|_| FileFault::NotUtf8 { line: self.number })?;
         let line = if self.number == 1 { line.trim_start_matches('\u{feff}') } else { line };
         Ok(Some((self.number, line.trim(), is_whole)))
     }
 }
 
 /// Reads up to the names of the columns.
-pub(super) fn read_head<R: BufRead>(lines: &mut Lines<R>) -> Result<Head, Vec<LogFault>> {
+fn read_head<R: BufRead>(lines: &mut Lines<R>) -> Result<Head, Vec<FileFault>> {
     let mut head = Head { separator: ',', ..Head::default() };
     while let Some((number, line, _)) = lines.next().map_err(|fault| vec![fault])? {
         head.lines = number;
@@ -101,26 +103,27 @@ pub(super) fn read_head<R: BufRead>(lines: &mut Lines<R>) -> Result<Head, Vec<Lo
         let mut faults = Vec::new();
         for (place, column) in head.columns.iter().enumerate() {
             if head.columns[..place].contains(column) {
-                faults.push(LogFault::RepeatedColumn { column: column.clone() });
+                faults.push(FileFault::RepeatedColumn { column: column.clone() });
             }
         }
         return if faults.is_empty() { Ok(head) } else { Err(faults) };
     }
-    Err(vec![LogFault::NoColumns])
+    Err(vec![FileFault::NoColumns])
 }
 
 /// Reads the columns of `places` of all rows.
-pub(super) fn read_rows<R: BufRead>(
+fn read_rows<R: BufRead>(
     lines: &mut Lines<R>,
     head: &Head,
     places: &[usize],
-) -> Result<Table, Vec<LogFault>> {
+) -> Result<Table, Vec<FileFault>> {
     // Where the cell of each column of the file goes.
     let mut targets = vec![Vec::new(); head.columns.len()];
     for (target, &place) in places.iter().enumerate() {
         targets[place].push(target);
     }
-    let mut table = Table { columns: vec![Vec::new(); places.len()], lines: Vec::new(), cut: None };
+    let mut table = Table { columns: vec![Vec::new(); places.len()], ..Table::default() };
+    let mut runs = Vec::new();
     let mut faults = Vec::new();
     let mut before = 0;
     while let Some((number, line, is_whole)) = lines.next().map_err(|fault| vec![fault])? {
@@ -129,11 +132,11 @@ pub(super) fn read_rows<R: BufRead>(
         }
         let row = table.rows();
         if !is_whole && row > 0 {
-            table.cut = Some(number);
+            table.remarks.push(FileRemark::CutLine { line: number });
             break;
         }
         if before + 1 != number || row == 0 {
-            table.lines.push((row, number));
+            runs.push((row, number));
         }
         before = number;
         let mut found = 0;
@@ -143,7 +146,7 @@ pub(super) fn read_rows<R: BufRead>(
                 let value = parse(text.trim()).unwrap_or_else(|| {
                     if faults.len() < MAX_LISTED {
                         let (column, cell) = (head.columns[cell].clone(), text.trim().to_owned());
-                        faults.push(LogFault::NotANumber { line: number, column, cell });
+                        faults.push(FileFault::NotANumber { line: number, column, cell });
                     }
                     f64::NAN
                 });
@@ -153,11 +156,12 @@ pub(super) fn read_rows<R: BufRead>(
         if found != head.columns.len() {
             if faults.len() < MAX_LISTED {
                 let expected = head.columns.len();
-                faults.push(LogFault::RowLength { line: number, expected, found });
+                faults.push(FileFault::RowLength { line: number, expected, found });
             }
             table.columns.iter_mut().for_each(|column| column.resize(row + 1, f64::NAN));
         }
     }
+    table.places = Places::Lines(runs);
     if faults.is_empty() { Ok(table) } else { Err(faults) }
 }
 

@@ -2,9 +2,8 @@
 //! torques is correlated from sample to sample.
 
 use super::data::Data;
+use crate::policy::blocks::BLOCK_S;
 
-/// Length of a block \[s\], and the least number of blocks of a log.
-const BLOCK_S: f64 = 0.5;
 const LEAST_BLOCKS: usize = 16;
 
 /// The block of time of each row, and the number of blocks: all joints of a block together.

@@ -1,6 +1,7 @@
 //! What may be missing: an effect of the catalogue in one place of the robot.
 
 use super::law::Law;
+use crate::policy::candidate::{LIMITS, PLACES};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::policy;
 use denavit_plants::effect::LawParameter;
@@ -36,15 +37,6 @@ const PER_POSITION: [&str; 2] = ["1/rad", "1/m"];
 
 /// Most points from which one law's parameters are searched.
 const MOST_STARTS: usize = 48;
-
-/// Where a position that may be anywhere is looked for first, as shares of a joint's range.
-const PLACES: [f64; 13] = [0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98];
-
-/// Where a limit of torques is looked for first, as shares of the largest.
-const LIMITS: [f64; 20] = [
-    0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.74, 0.68, 0.61, 0.54, 0.46, 0.38, 0.31, 0.25, 0.2, 0.16,
-    0.13, 0.1, 0.07, 0.05,
-];
 
 /// Where the search of a law's parameters begins, and what is believed of them there.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,6 +6,7 @@ use super::nominal::{Nominal, Phi};
 use super::rows::{LogRows, PerJoint, behind_springs, torques};
 use super::signals::Signals;
 use super::turning::{PER_JOINT, settle, unnamed};
+pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
 use denavit_plants::effect::Drive;
 
@@ -45,10 +46,6 @@ pub struct Data<'a> {
     /// What every row counts, from 0 to 1.
     pub weights: Vec<f64>,
 }
-
-/// How far the zero of a spring's deflection may be off: where none is stated the logs say it
-/// [rad, m].
-pub(super) const SPRING_ZERO: f64 = 1.0;
 
 /// Torques of the model at the samples of one log.
 #[derive(Clone, Debug)]

@@ -2,16 +2,8 @@
 
 use super::floor::rms;
 use super::law::{Law, Motion, Response};
+use crate::policy::drive_law::{LEAST_LOAD, LEAST_PASSED};
 use denavit_plants::effect::{EffectLaw, JointSamples, LawParameter};
-
-/// The share that must be passed on of what a transmission that hardly gives way would: one that
-/// passes nothing on leaves nothing to compare, which explains nothing. How long drive and joint
-/// touch says less, since a drive that bounces is pressed for short times, and the harder.
-const LEAST_PASSED: f64 = 0.7;
-
-/// The share of a drive's torque that must be load: what a drive takes for itself a rotor that
-/// moves otherwise would explain, and noise that it does not pass on.
-const LEAST_LOAD: f64 = 0.2;
 
 /// A transmission that gives way.
 ///

@@ -13,15 +13,12 @@
 
 use super::law::{Law, Motion, Response};
 use super::signals::Signals;
+use crate::policy::elastic_law::DIFFERENCE;
 use denavit_measure::condition::Butterworth;
 use denavit_plants::effect::{Drive, EffectLaw, GivesWay, LawParameter};
 
 /// Order of one pass of the filter of loads.
 const ORDER: usize = 4;
-
-/// By which share of its size a parameter is moved for a difference: the side of friction changes
-/// in steps.
-const DIFFERENCE: f64 = 0.02;
 
 /// A transmission that is a spring and a damper.
 pub(super) struct ElasticLaw {

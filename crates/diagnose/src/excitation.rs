@@ -3,6 +3,7 @@
 use super::hypothesis::Hypothesis;
 use super::search::Search;
 use super::state::Setting;
+use crate::policy::excitation::{LARGE, LEAST_RANGE, NEVER};
 use denavit_evidence::policy;
 
 /// An effect of one parameter, and how large it must be to be seen in a joint.
@@ -47,12 +48,6 @@ pub(super) enum Unseen {
     },
 }
 
-/// An effect that is more of the torque than this should be seen.
-const LARGE: f64 = 0.5;
-
-/// A joint that covers less of its limits is at rest: what grows with position or speed is small.
-const LEAST_RANGE: f64 = 0.05;
-
 /// How small effects of one parameter would have been seen.
 pub(super) fn visible(
     setting: &Setting<'_>,
@@ -70,9 +65,6 @@ pub(super) fn visible(
     };
     search.precisions(after).into_iter().filter_map(of).collect()
 }
-
-/// Errors of this share of a torque say that nothing is seen.
-const NEVER: f64 = 1e3;
 
 /// Joints of which the logs say too little for the answer that nothing is missing.
 pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> {

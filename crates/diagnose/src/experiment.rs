@@ -16,6 +16,7 @@ use super::problem::{Fitted, Problem};
 use super::signals::{Filters, Signals};
 use super::state::{Taken, within};
 use super::turning::turning;
+use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_identify::excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
@@ -24,12 +25,6 @@ use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
 use std::fmt;
-
-/// Standard errors from which on one name is worse than another.
-const DISTINCT: f64 = 2.5;
-
-/// Rows that count as one: what is left is correlated over the time of the filter.
-const ROWS_PER_SAMPLE: f64 = 4.0;
 
 /// How an experiment is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 use super::nominal::Nominal;
 use super::rows::torques;
 use super::signals::Signals;
+use crate::policy::floor::{LEAST, UNREPEATABLE};
 use denavit_measure::condition::{Butterworth, Laps};
 
 /// The floor of one log, after the filter of the rows.
@@ -20,12 +21,6 @@ pub struct NoiseFloor {
     /// The period of the laps \[s\].
     pub period_s: Option<f64>,
 }
-
-/// Laps that differ by so many times their noise do not repeat.
-const UNREPEATABLE: f64 = 3.0;
-
-/// The least share of a torque that its floor is taken to be: logs without noise have digits.
-const LEAST: f64 = 1e-6;
 
 impl NoiseFloor {
     /// The floors of logs, with the torques of the nominal model.

@@ -7,6 +7,7 @@ use super::nominal::Nominal;
 use super::problem::Fitted;
 use super::rows::PerJoint;
 use super::signals::Signals;
+use crate::policy::followed::SETTLED;
 use denavit_plants::trajectory::Reference;
 
 /// A robot that follows motions: the nominal model with z, and effects that it has.
@@ -18,10 +19,8 @@ pub(super) struct Follower<'a> {
     pub(super) log: &'a Signals,
 }
 
-/// Laws beside a spring depend on the deflection that they make: so often it is found anew, and
-/// what of the largest deflection it may then still change.
+/// Laws beside a spring depend on the deflection that they make: so often it is found anew.
 const MOST_ROUNDS: usize = 10;
-const SETTLED: f64 = 1e-6;
 
 impl Follower<'_> {
     /// Readings of the motors before springs at so many samples of a log whose joints follow

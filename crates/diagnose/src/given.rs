@@ -6,11 +6,9 @@ use super::catalogue::law_of;
 use super::law::{Law, Motion, Response};
 use super::nominal::Uncertainty;
 use super::state::Taken;
+use crate::policy::given::MOST;
 use denavit_codegen::effect::{Channel, Occurrence};
 use denavit_plants::effect::{AddedLaw, LawParameter};
-
-/// Deviations beyond which a parameter is not moved.
-const MOST: f64 = 3.0;
 
 /// What a model says of a parameter of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,6 +4,7 @@ use super::floor::rms;
 use super::law::{Law, Motion, Response};
 use super::rows::PerJoint;
 use super::signals::Signals;
+use crate::policy::joint_law::{ALL_GIVEN, DIFFERENCE, OF_NOISE};
 use denavit_codegen::effect::{Channel, SpringSide};
 use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 
@@ -114,13 +115,6 @@ impl Law for SpringLaw {
         }
     }
 }
-
-/// A drive that lacks more than this share of what was demanded does not give what was demanded.
-const ALL_GIVEN: f64 = 0.02;
-
-/// What a drive lacks is more than so many times the noise of the torque: a clip of noise would
-/// make a log look better, whatever is demanded.
-const OF_NOISE: f64 = 4.0;
 
 /// An effect that makes a drive give another torque than is logged: what was demanded of it.
 ///
@@ -248,9 +242,6 @@ pub(super) struct ReadingLaw {
     /// Its joint.
     pub(super) joint: usize,
 }
-
-/// By which share of a parameter's size it is moved for a difference.
-const DIFFERENCE: f64 = 1e-4;
 
 impl ReadingLaw {
     /// What the torques of the true motion have more than those of the logged one.

@@ -9,6 +9,7 @@ use super::law::derivative;
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
+use crate::policy::known::{CREEP, RINGING};
 use denavit_evidence::policy;
 
 /// For each joint what each row of a log counts, from 0 to 1.
@@ -86,12 +87,6 @@ fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     };
     (0..signals.joints()).map(of_joint).collect()
 }
-
-/// A rate that is none but for its sign [rad/s, m/s].
-const CREEP: f64 = 1e-9;
-
-/// The share of an event that the filter rings with beside it.
-const RINGING: f64 = 0.3;
 
 #[cfg(test)]
 mod tests {

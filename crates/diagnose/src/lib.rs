@@ -34,6 +34,7 @@ mod known;
 mod law;
 mod leftover;
 mod nominal;
+mod policy;
 mod problem;
 mod regime;
 mod rows;

@@ -8,6 +8,7 @@ use super::data::{Data, ModelTorques, RowResponse};
 use super::held::Held;
 use super::law::Law;
 use super::signals::Signals;
+use crate::policy::problem::{INDEPENDENT, SETTLED, STUCK};
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 
@@ -57,9 +58,6 @@ pub struct Found {
     /// torques of a planar robot.
     pub rank: usize,
 }
-
-/// The least eigenvalue of scaled normal equations of a direction that is one.
-const INDEPENDENT: f64 = 1e-7;
 
 /// Most iterations of a search.
 const ITERATIONS: usize = 12;
@@ -189,13 +187,13 @@ impl<'a> Problem<'a> {
             let seen = self.look(&next).believing(&tried);
             let gain = view.cost - seen.cost;
             if gain > 0.0 {
-                let is_done = gain < 1e-5 * view.cost;
+                let is_done = gain < SETTLED * view.cost;
                 (laws, responses, view) = (tried, next, seen);
                 damping = (damping * 0.1_f64).max(1e-12);
                 if is_done {
                     break;
                 }
-            } else if damping > 1e4 {
+            } else if damping > STUCK {
                 break;
             } else {
                 damping *= 10.0;

@@ -2,6 +2,7 @@
 
 use super::data::{Data, ModelTorques, Stretch};
 use super::floor::NoiseFloor;
+use crate::policy::regime::{AT_EXTREME, AT_REST, MUCH, SLOW, TOLD};
 use std::fmt;
 
 /// A state of motion of a joint.
@@ -89,7 +90,7 @@ impl Where {
     /// One sentence: joint, regime, share.
     pub fn sentence(&self) -> String {
         let share = 100.0 * self.share;
-        match self.parts.first().filter(|part| part.excess() > 0.15) {
+        match self.parts.first().filter(|part| part.excess() > TOLD) {
             Some(Part { regime, share: own, time }) => format!(
                 "{}: {share:.0} % of the unexplained torque; {regime}, in {:.0} % of the time, \
                  {:.0} % of that",
@@ -196,18 +197,18 @@ fn regimes(
     let extreme = most(torque);
     let rests = |k: usize| {
         let beside = [k.saturating_sub(1), (k + 1).min(count - 1)];
-        torque[k].abs() > 0.97 * extreme
-            && beside.iter().all(|&at| (torque[at] - torque[k]).abs() < 0.01 * extreme)
+        torque[k].abs() > AT_EXTREME * extreme
+            && beside.iter().all(|&at| (torque[at] - torque[k]).abs() < AT_REST * extreme)
     };
     let of = |is_in: &dyn Fn(usize) -> bool| (0..count).map(is_in).collect::<Vec<bool>>();
     vec![
         (Regime::Forward, of(&|k| qd[k] > 0.0)),
         (Regime::Backward, of(&|k| qd[k] < 0.0)),
         (Regime::NearReversal(within_s), of(&near)),
-        (Regime::Slow, of(&|k| qd[k].abs() < 0.1 * fastest)),
-        (Regime::Fast, of(&|k| qd[k].abs() > 0.6 * fastest)),
-        (Regime::Accelerating, of(&|k| qdd[k].abs() > 0.6 * hardest)),
-        (Regime::Loaded, of(&|k| load[k].abs() > 0.6 * heaviest)),
+        (Regime::Slow, of(&|k| qd[k].abs() < SLOW * fastest)),
+        (Regime::Fast, of(&|k| qd[k].abs() > MUCH * fastest)),
+        (Regime::Accelerating, of(&|k| qdd[k].abs() > MUCH * hardest)),
+        (Regime::Loaded, of(&|k| load[k].abs() > MUCH * heaviest)),
         (Regime::UpperEnd, of(&|k| q[k] > high - sixth)),
         (Regime::LowerEnd, of(&|k| q[k] < low + sixth)),
         (Regime::Early, of(&|k| 3 * k < count)),

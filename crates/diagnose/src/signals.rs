@@ -10,6 +10,7 @@ use super::floor::white_noise;
 use super::law::derivative;
 use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
+use crate::policy::signals::{LEAST_RATE_HZ, ROWS_PER_PERIOD};
 use denavit_evidence::policy;
 use denavit_measure::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
@@ -38,9 +39,6 @@ impl Filters {
         Self { motion_hz: 3.0 * torque_hz, torque_hz }
     }
 }
-
-/// Rows in a period of the cutoff: what the filter passes is below half their rate.
-const ROWS_PER_PERIOD: f64 = 2.5;
 
 /// Order of one pass of both filters.
 const ORDER: usize = 4;
@@ -93,10 +91,6 @@ struct Rows {
     /// Samples of the motion in each cell.
     within: usize,
 }
-
-/// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a cell
-/// knows where it is.
-const LEAST_RATE_HZ: f64 = 1000.0;
 
 /// Samples of the motion to a sample of the log: odd, so that one of them is at its time.
 fn samples_within(step_s: f64) -> usize {

@@ -6,6 +6,7 @@
 use super::candidate::Candidate;
 use super::nominal::Nominal;
 use super::state::Taken;
+use crate::policy::simulated::LONGEST_S;
 use denavit_codegen::effect::{Effect, EffectSite, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, ModelError, Robot};
 use denavit_codegen::number::parse_decimal;
@@ -98,9 +99,6 @@ pub struct Moved<'a> {
     /// The logs that are searched, and those that judge.
     pub logs: [Vec<MeasuredLog>; 2],
 }
-
-/// The longest motion of a log that is moved along \[s\].
-const LONGEST_S: f64 = 60.0;
 
 /// Windows of all logs of a set: of so many the least costs are known well enough to be paired.
 const MOST_WINDOWS: usize = 40;

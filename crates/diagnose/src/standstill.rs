@@ -10,33 +10,11 @@
 //! Åström, Lischinsky 1995).
 
 use super::signals::Signals;
+use crate::policy::standstill::{EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE};
 use std::ops::Range;
 
 /// Samples of the shortest rest.
 const LEAST: usize = 6;
-
-/// Steps that a drive moves in the time of its rest, before and after it: a parabola moves by 8.
-const LEAVES: f64 = 30.0;
-
-/// What two readings of one place may differ by, in steps.
-const SAME: f64 = 1.01;
-
-/// The deviation of what friction is at rest from what balances the torques by the model, over
-/// that of sliding: another effect that is missing changes the balance.
-const UNSURE: f64 = 0.4;
-
-/// The share of friction while it slides from which on a drive at rest may slide.
-const SLIDES: f64 = 0.9;
-
-/// Samples of the log by which the ends of a rest are not known.
-const EDGE: f64 = 2.0;
-
-/// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if what
-/// opposes its rate is, or if friction falls when it leaves.
-const POWER: f64 = 2.5;
-
-/// Steps that a drive moves before a reading of it changes, in the mean.
-const UNSEEN: f64 = 0.25;
 
 /// A rest of a drive.
 #[derive(Clone, Debug, PartialEq)]

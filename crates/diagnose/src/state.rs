@@ -9,6 +9,7 @@ use super::problem::{Fitted, Found, Problem};
 use super::search::{Search, SearchOptions};
 use super::simulated::{MotionGap, Moved, NotMoved};
 use super::weighing::{Placed, Weighing};
+pub(super) use crate::policy::state::MOST_Z;
 use denavit_evidence::policy;
 
 /// An effect that was taken into the model.
@@ -58,10 +59,6 @@ pub(super) struct State {
     /// The log of the evidence of these logs.
     pub(super) log_evidence: f64,
 }
-
-/// Entries of z that are further from 0 say that the model's own numbers are off by more than it
-/// states; experiments do not move them beyond.
-pub(super) const MOST_Z: f64 = 3.0;
 
 /// Rounds in which entries of z are held.
 const MOST_HELD: usize = 8;

@@ -4,6 +4,7 @@
 use super::data::{Data, ModelTorques};
 use super::signals::Signals;
 use super::state::{Setting, State};
+use crate::policy::structure::LEAST_SHARE;
 use nalgebra::{DMatrix, DVector};
 
 /// What one joint leaves, described.
@@ -27,9 +28,6 @@ impl Structure {
 
 /// Most terms of a formula.
 const MOST_TERMS: usize = 4;
-
-/// The least share of squares of held-out logs that a term must explain.
-const LEAST_SHARE: f64 = 0.05;
 
 /// Describes what is left of a joint or spring; none if no term explains a twentieth of it.
 pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) -> Option<Structure> {

@@ -12,14 +12,9 @@ use super::nominal::{Nominal, Phi};
 use super::problem::Fitted;
 use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
+use crate::policy::turning::{BETWEEN, CORNER};
 use denavit_evidence::policy;
 use std::ops::Range;
-
-/// The time by which the filter of positions moves a corner of a rate, times the cutoff of torques.
-const CORNER: f64 = 0.05;
-
-/// The deviation of what is anywhere between two values, over their distance.
-const BETWEEN: f64 = 0.288_675_134_594_812_9;
 
 /// How far a torque is not known [N m, N].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

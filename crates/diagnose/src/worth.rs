@@ -3,6 +3,7 @@
 use super::hypothesis::{Hypothesis, Part};
 use super::search::Search;
 use super::state::Taken;
+use crate::policy::worth::RANK;
 use denavit_evidence::policy;
 use nalgebra::{DMatrix, DVector};
 
@@ -63,6 +64,3 @@ impl Search<'_> {
         self.weighing.size(&Taken { candidate, values: values.collect() })
     }
 }
-
-/// Columns that are independent have at least this share of the largest singular value.
-const RANK: f64 = 1e-6;

@@ -4,6 +4,7 @@
 //! D qdd + C qd + G = tau + W lambda: the right side is what is regressed. The virtual joints of a
 //! floating base have no torque of their own, so their rows are the wrench that contacts put on it.
 
+use crate::policy::contact_forces::DIFFERENCE;
 use denavit_codegen::model::Robot;
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_plants::regression::RegressionModel;
@@ -91,10 +92,6 @@ pub fn add_contact_forces(log: &mut MeasuredLog, plant: &mut dyn Plant, is_base:
         }
     }
 }
-
-/// Half the distance of differences [rad, m]: of order 4, so that rounding and what is left of the
-/// Taylor series are both about 1e-13.
-const DIFFERENCE: f64 = 1e-3;
 
 /// Adds what wrenches on links do to the torques of a log: of a joint f . dp/dq + m . w, with p the
 /// origin of the link's frame and w the angular velocity of a unit velocity of the joint.

@@ -12,6 +12,7 @@ use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
+use crate::policy::identification::{NOISY, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -86,19 +87,8 @@ pub struct LeftOutRows {
     pub left: f64,
 }
 
-/// Periods of the filter's cutoff below which logs are short.
-const SHORT: f64 = 80.0;
-
 /// Parameters that are named, at most.
 const LISTED: usize = 6;
-
-/// The share of a joint's torque in a log for validation that noise of its positions makes, from
-/// which on it needs a lower filter: more would hide a contradiction, or pass for one.
-const NOISY: f64 = 0.01;
-
-/// The share of a torque from which on it is said what the filter makes of a motion that is too
-/// fast for it, if it is also this share of what is left.
-const SMEARED: [f64; 2] = [0.01, 0.3];
 
 impl Identification {
     /// Whether noise makes most of what the motion shows of some parameters: what is found says

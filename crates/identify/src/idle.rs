@@ -1,17 +1,9 @@
 //! Motors that do not carry their joints: a brake holds them, or stiction.
 
 use super::estimate::{BlockMaker, nominal_values};
+use crate::policy::idle::{ALIKE, FOLLOWS, ROUNDING};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
-
-/// The deviation of a torque over that of the load, below which it does not follow it, if it is
-/// less like it than this: a torque in another unit follows all the same.
-const FOLLOWS: f64 = 0.1;
-const ALIKE: f64 = 0.7;
-
-/// The share of the squares of a torque below which its variance is rounding: a constant is like
-/// nothing.
-const ROUNDING: f64 = 1e-9;
 
 /// Takes the torques of motors that do not carry their joints out of a log, and says which: the
 /// joint rests, and its torque does not change as the load does that the model's own values make of

@@ -10,6 +10,7 @@
 //! Rows rarely determine every parameter. Which combinations of parameters follow is read off the
 //! row space; a parameter follows by itself if its unit vector is in it.
 
+use crate::policy::knowledge::{RANK_TOLERANCE, ROUNDING};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
@@ -57,9 +58,6 @@ impl Consequences {
         self.chi_squared > degrees * (1.0 - spread + 5.0 * spread.sqrt()).powi(3)
     }
 }
-
-/// Parts of a row space below this, of the largest, are rounding.
-const RANK_TOLERANCE: f64 = 1e-10;
 
 impl Knowledge {
     /// Nothing, of so many parameters.
@@ -219,7 +217,7 @@ impl Space<'_> {
         let shares: Vec<(usize, f64)> = self.kept.iter().map(|&at| (at, along(at))).collect();
         let length: f64 = members.iter().map(|&(p, f)| (f * self.scales[p]).powi(2)).sum();
         let inside: f64 = shares.iter().map(|(_, share)| share * share).sum();
-        if length <= 0.0 || length - inside > 1e-9 * length {
+        if length <= 0.0 || length - inside > ROUNDING * length {
             return None;
         }
         let value =
@@ -247,7 +245,7 @@ impl Space<'_> {
             let (pivot, largest) = (done..rows.len())
                 .map(|row| (row, size(&rows[row])))
                 .fold((done, 0.0), |best, next| if next.1 > best.1 { next } else { best });
-            if largest < 1e-9 {
+            if largest < ROUNDING {
                 continue;
             }
             rows.swap(done, pivot);
@@ -265,7 +263,7 @@ impl Space<'_> {
             let sizes = row.iter().zip(self.scales).map(|(entry, scale)| (entry * scale).abs());
             let largest = sizes.fold(0.0, f64::max);
             let is_there =
-                |(p, entry): &(usize, &f64)| (**entry * self.scales[*p]).abs() > 1e-9 * largest;
+                |(p, entry): &(usize, &f64)| (**entry * self.scales[*p]).abs() > ROUNDING * largest;
             row.iter().enumerate().filter(is_there).map(|(p, entry)| (p, *entry)).collect()
         };
         rows.iter().map(members).collect()

@@ -1,11 +1,9 @@
 //! That what is left of torques is no noise: something is not as the model has it.
 
 use super::estimate::{Estimate, no_noise};
+use crate::policy::lacking::{OTHER, SAID};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
-
-/// The share of a joint's torque from which on it is said.
-const SAID: f64 = 0.005;
 
 /// The joints of whose torques, roots of mean squares [N m, N], something is left that is no noise,
 /// with its share.
@@ -19,9 +17,6 @@ pub(super) fn lacking(
         .map(|(joint, left)| (model.joints[joint].name.clone(), left / torques[joint]))
         .collect()
 }
-
-/// What is left with the model's own values, over the torques, from which on the robot is another.
-const OTHER: f64 = 10.0;
 
 /// What is to be said if the model's own values leave far more than there is.
 pub(super) fn other_robot(before: Option<f64>) -> Option<String> {

@@ -1,8 +1,6 @@
 //! Estimates that belong to no bodies that exist.
 
-/// Standard errors between an estimate and the nearest bodies from which on what it is from is
-/// doubted: good logs have next to none, misread ones any number.
-const FAR: f64 = 20.0;
+use crate::policy::no_bodies::FAR;
 
 /// What it may mean that the nearest bodies are so many standard errors away; none if near.
 pub(super) fn no_bodies(distance: f64) -> Option<String> {

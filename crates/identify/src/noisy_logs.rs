@@ -1,16 +1,11 @@
 //! Logs of which noise of the positions makes most, and those that bias parameters by it.
 
 use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog, Solution, solve};
+pub(super) use crate::policy::noisy_logs::MOST;
+use crate::policy::noisy_logs::SHARE;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::fmt;
-
-/// The share of noise in what the motion shows of a direction of the parameters, from which on
-/// nothing is believed.
-pub(super) const MOST: f64 = 0.5;
-
-/// What a log makes of a bias, of its part if all made the same, to be asked for a lower filter.
-const SHARE: f64 = 0.99;
 
 /// A log of which noise makes most, beside others.
 #[derive(Clone, Debug, PartialEq)]

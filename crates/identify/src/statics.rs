@@ -7,6 +7,7 @@
 //! link by link; least squares in all rows does the subtraction.
 
 use super::knowledge::Knowledge;
+use crate::policy::statics::{BETTER, FAR, NEAR, OF_ANGLES, OF_TORQUES, OTHER_UNIT};
 use denavit_codegen::expr::text::nearest;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, RegressionRows};
 use std::fmt;
@@ -142,19 +143,6 @@ impl fmt::Display for MisreadPostures {
         )
     }
 }
-
-/// Factors of torques and of angles that are tried.
-const OF_TORQUES: [f64; 7] = [-1.0, 1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3];
-const OF_ANGLES: [f64; 3] = [-1.0, std::f64::consts::PI / 180.0, 180.0 / std::f64::consts::PI];
-
-/// What the model's own values leave of the torques must be more than this share, and fall to this
-/// share of it and to less than this.
-const FAR: f64 = 0.2;
-const BETTER: f64 = 0.5;
-const NEAR: f64 = 0.32;
-
-/// Times the model's mass that no mistake of a model is.
-const OTHER_UNIT: f64 = 100.0;
 
 /// Weighings that seem to be in another unit, by the masses of the model.
 pub fn suspicious_units(

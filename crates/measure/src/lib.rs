@@ -6,3 +6,4 @@
 
 pub mod condition;
 pub mod log;
+mod policy;

@@ -4,10 +4,8 @@
 //! what is allowed; of a moment that is a sum of unknowns, each may have either sign. What such an
 //! entry falls short of is a residual, whose weight grows until nothing does.
 
+use crate::policy::bounds::LEAST;
 use denavit_plants::regression::RegressionModel;
-
-/// The least share of its size that an entry keeps.
-const LEAST: f64 = 1e-3;
 
 /// The entries with their bounds.
 pub(super) struct Bounds<'a> {

@@ -8,13 +8,10 @@ use super::left_out::LeftOut;
 use super::noise_bias::{NoiseOfLog, bias_of_some};
 use super::own_estimate::Tested;
 use super::solve::Solution;
+use crate::policy::comparison::APART;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
-
-/// An estimate is that of some logs if no parameter is further from what they say, in their
-/// standard errors.
-const APART: f64 = 3.0;
 
 /// Logs, and how their rows are weighted.
 pub(super) struct Comparison<'a> {

@@ -7,29 +7,13 @@
 
 use super::bounds::Bounds;
 use super::least_squares::Estimate;
+use crate::policy::consistent::{BOUND_WEIGHTS, FAR, LEAST_OF, LEAST_SHARE, STAY};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector, Matrix4};
 
 /// Steps of the search.
 const MAX_STEPS: usize = 200;
 
-/// What a unit of change of a body's coordinates costs, in squared standard errors of the estimate:
-/// little, so that it decides only what the data leave open.
-const STAY: f64 = 1e-8;
-
-/// Weights of what entries of bodies fall short of, one after the other until nothing does.
-const BOUND_WEIGHTS: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
-
-/// The smallest eigenvalue of a pseudo-inertia to start from, over its trace.
-const LEAST_SHARE: f64 = 1e-4;
-
-/// The least share of its value in the file that a positive number of it keeps.
-const LEAST_OF: f64 = 1e-6;
-
-/// From so many standard errors on the search goes along the way from the model's values to the
-/// estimate, in so many stages: where columns are products, what fits lies in valleys that are
-/// narrow and bent, and each stage begins at the bottom of one.
-const FAR: f64 = 2.0;
 const STAGES: usize = 20;
 
 /// Bodies and joints near an estimate.

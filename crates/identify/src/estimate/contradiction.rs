@@ -12,32 +12,15 @@ use super::noise_bias::noise_squares;
 use super::own_estimate::{Own, Tested, of_joint, spread};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
+use crate::policy::contradiction::{ALIKE, OF_BEATS, OF_CHANCE, OF_OWN, OF_OWN_ALONE, OF_TORQUE};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 use std::fmt;
 
-/// What own parameters explain must be this share of a joint's torque, as root of mean square, and
-/// so many times what they leave, which noise may have made them follow; where parts of the log do
-/// not say for how long that is alike, so many times,
-const OF_TORQUE: f64 = 0.03;
-const OF_OWN: f64 = 0.5;
-const OF_OWN_ALONE: f64 = 1.5;
-
-/// and this many times what chance explains with as many parameters, in variance.
-const OF_CHANCE: f64 = 25.0;
-
-/// and what noise of the positions makes of it, in variance: to follow that, parameters of a log's
-/// own are biased. That noise is known to a few times, since steps of an encoder may beat with the
-/// samples.
-const OF_BEATS: f64 = 10.0;
-
 /// Samples of a log that are looked at behind half the cutoff, before decimation.
 const SAMPLES: usize = 200_000;
-
-/// What a constant or a factor leaves of the squares of what it is told for, at most.
-const ALIKE: f64 = 0.25;
 
 /// A log that contradicts the others.
 #[derive(Clone, Debug, PartialEq)]

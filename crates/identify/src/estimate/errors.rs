@@ -2,6 +2,7 @@
 
 use super::condensed::Condensed;
 use super::solve::{PriorRow, Solution, solve};
+use crate::policy::errors::{MOST_ALIKE, MOST_LEVERAGE, NEIGHBOURS, ONE_OF_TWENTY};
 use denavit_numerics::Random;
 use nalgebra::{DMatrix, DVector};
 
@@ -33,19 +34,6 @@ pub(super) struct Problem<'a> {
 
 /// Fewer parts say nothing of how residuals are correlated.
 pub(super) const FEWEST_PARTS: usize = 8;
-
-/// Sums of scores with neighbours counted half say as much as so many times fewer that are
-/// independent: 1 + 2 (1/2)^2.
-const NEIGHBOURS: f64 = 1.5;
-
-/// A larger share of what is known of a direction is taken for this one.
-const MOST_LEVERAGE: f64 = 0.95;
-
-/// The normal deviate below which one of twenty lies.
-const ONE_OF_TWENTY: f64 = -1.644_853_626_951;
-
-/// Neighbouring parts are taken to be no more alike than this.
-const MOST_ALIKE: f64 = 0.8;
 
 impl Problem<'_> {
     /// The covariance of phi.

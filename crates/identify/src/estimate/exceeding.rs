@@ -13,22 +13,10 @@ use super::noise_bias::noise_squares;
 use super::own_estimate::{Tested, of_joint, spread};
 use super::triangle::Triangle;
 use super::unexplained::{Unexplained, moves};
+use crate::policy::exceeding::{MANY, OF_BAND, OF_NOISE, OF_TORQUE};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
-
-/// What is left must be this share of a joint's torque, as root of mean square,
-const OF_TORQUE: f64 = 0.05;
-
-/// so many times what all that is known explains, of which noise of the positions is known to a few
-/// times, in variance,
-const MANY: f64 = 5.0;
-const OF_NOISE: f64 = 4.0;
-
-/// and behind half the cutoff still so many times what that takes away of it, in variance: half of
-/// white noise is left there, and of noise whose band ends at a tenth of the cutoff twelve times
-/// what is taken.
-const OF_BAND: f64 = 25.0;
 
 /// Samples of a log that are looked at behind half the cutoff, before decimation.
 const SAMPLES: usize = 200_000;

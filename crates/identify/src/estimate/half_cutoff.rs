@@ -10,16 +10,13 @@
 use super::condensed::{Condensed, Rows};
 use super::errors::{FEWEST_PARTS, Problem, long_run};
 use super::least_squares::{Estimate, Fit};
+use crate::policy::half_cutoff::OF_CHANGE;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
 /// Samples of all logs that are looked at, before decimation.
 const SAMPLES: usize = 200_000;
-
-/// What a bias is, at most, of its change with half the cutoff: it grows with the 1.5th power of
-/// the cutoff or faster, 1 / (1 - 2^-1.5).
-const OF_CHANGE: f64 = 1.5;
 
 /// A change of listed parameters with half the cutoff.
 #[derive(Clone, Debug, PartialEq)]

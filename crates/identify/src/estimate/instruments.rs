@@ -9,6 +9,7 @@ use super::condensed::{Condensed, Rows};
 use super::least_squares::{Estimate, EstimateError};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
+use crate::policy::instruments::{MOVES, OTHER};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
@@ -42,11 +43,6 @@ pub(super) fn instrumental(
     found.covariance = system.covariance(&condensed, found).ok_or(EstimateError::Instruments)?;
     Ok(())
 }
-
-/// The share of a joint's variance by which the positions of instruments differ, of those of
-/// another motion; and the least variance that says something, of the largest one.
-const OTHER: f64 = 0.25;
-const MOVES: f64 = 1e-4;
 
 /// The largest share of a joint's variance by which positions differ from sample to sample.
 fn other_motion(log: &Conditioned, instrument: &Conditioned) -> f64 {

@@ -13,6 +13,7 @@ use super::solve::{PriorRow, Solution, solve};
 use super::total;
 use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
+use crate::policy::least_squares::{FEWEST_DEGREES, MOVES_LITTLE};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
@@ -22,18 +23,12 @@ use std::fmt;
 /// residuals are far smaller than errors and standard errors say nothing.
 const ROWS_OF_ONE: usize = 3;
 
-/// Rounds in which robust scales are found anew, and the change of phi, in standard errors, that
-/// weights which creep for long may make at last: next to what errors say, it is little.
+/// Rounds in which robust scales are found anew.
 const ROUNDS_OF_SCALES: usize = 10;
-const MOVES_LITTLE: f64 = 0.1;
 
 /// Parts of logs that say by themselves how large errors are: with fewer, errors are also at least
 /// those that the filter's correlation makes, less what chance may show less of them.
 const ENOUGH_PARTS: usize = 48;
-
-/// Degrees of freedom of an error that is found from parts of logs, below which it says little: it
-/// is at least what the filter's correlation makes.
-const FEWEST_DEGREES: f64 = 3.0;
 
 /// How base parameters are estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,6 +2,7 @@
 //! sign of its rate says, and the filter smears that over its own time.
 
 use super::least_squares::{Method, Options};
+use crate::policy::left_out::{BIAS, LEAST, NOISE};
 use denavit_measure::condition::{Butterworth, Conditioned};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
@@ -21,16 +22,6 @@ pub enum SlowRows {
     /// The same with three times what noise of the position makes of a rate.
     Noise,
 }
-
-/// Deviations of a rate's noise that are slow.
-const NOISE: f64 = 3.0;
-
-/// The bias of friction, in its standard errors, from which on rows are left out: an interval of
-/// 95 % that is off by so much holds in 92 %.
-const BIAS: f64 = 0.5;
-
-/// The least share of its rows that a joint keeps.
-const LEAST: f64 = 0.1;
 
 /// Whether a share of samples near reversals biases Coulomb friction of a value and variance.
 pub(crate) fn is_biased(share: f64, friction: f64, variance: f64) -> bool {

@@ -4,13 +4,10 @@ use super::least_squares::Estimate;
 use super::left_out::LeftOut;
 use super::rows::BlockMaker;
 use super::unexplained::samples_of;
+use crate::policy::left_over::NO_NOISE;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::collections::VecDeque;
-
-/// Noise is another one after half a period of the filter's cutoff: what is left is still
-/// correlated with itself by so much if it is none.
-const NO_NOISE: f64 = 0.5;
 
 /// What is left of the torque of a joint in a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,6 +7,7 @@
 
 use super::rows::Block;
 use super::weights::ByLog;
+use crate::policy::likelihood::LEAST_TORQUE_SHARE;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionModel, RegressionRows};
 
@@ -15,9 +16,6 @@ const BLOCK: usize = 512;
 
 /// Blocks of a log in which noise is looked at.
 const LOOKED_AT: usize = 4;
-
-/// The least share of the residual's variance that is taken for noise of the torque itself.
-const LEAST_TORQUE_SHARE: f64 = 0.05;
 
 /// Variances of rows from noise of the positions.
 pub(super) struct Variance {

@@ -3,21 +3,10 @@
 use super::errors::interval_factor;
 use super::least_squares::Estimate;
 use super::solve::solve;
+pub(crate) use crate::policy::report::BIASING;
+use crate::policy::report::{DEAD_SHARE, LIKELY, SURE};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
-
-/// How much of a parameter may lie in directions that are not excited.
-const DEAD_SHARE: f64 = 1e-6;
-
-/// The bias from noise of the positions, in standard errors, from which on it is said: an interval
-/// of 95 % that is off by so much holds in 92 %.
-pub(crate) const BIASING: f64 = 0.5;
-
-/// Deviations of a change that are hardly chance: a lower filter is tried.
-const LIKELY: f64 = 2.5;
-
-/// Those of one that is none, of any of dozens of parameters: it is said.
-const SURE: f64 = 3.5;
 
 /// Points of time at which convergence is shown.
 const CONVERGENCE_POINTS: usize = 24;

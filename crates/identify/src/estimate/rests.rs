@@ -10,25 +10,10 @@ use super::left_out::LeftOut;
 use super::left_over::Left;
 use super::nominal::nominal_values;
 use super::rows::BlockMaker;
+use crate::policy::rests::{ALIKE, HELD, OF_FRICTION, WORST};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use std::ops::Range;
-
-/// How much the torque of a joint at rest must be like the load that the model's own values make of
-/// the motion of the others, as a correlation.
-const ALIKE: f64 = 0.7;
-
-/// The variance of what is left at rest over that of what an estimate from motion alone leaves of
-/// motion, above which something else than the motor holds the joint.
-const HELD: f64 = 4.0;
-
-/// What stiction holds is a share of Coulomb friction; of less an estimate that is not the last
-/// one, with more noise of positions, may be wrong.
-const OF_FRICTION: f64 = 0.1;
-
-/// Of rests in which something holds the joint those are left out first of which at least this
-/// share of the most is left.
-const WORST: f64 = 0.25;
 
 impl LeftOut {
     /// Counts rests in which the torque of a joint follows the load that the model's values make.

@@ -6,6 +6,7 @@ use super::errors::{Errors, FEWEST_PARTS, Problem};
 use super::rows::BlockMaker;
 use super::solve::solve;
 use super::weights::ByLog;
+use crate::policy::robust::{BISQUARE, HUBER, LEAST_SLOPE};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
@@ -27,9 +28,9 @@ impl Loss {
     pub(super) fn factor(self, deviations: f64) -> f64 {
         let size = deviations.abs();
         match self {
-            Self::Huber if size <= 1.345 => 1.0,
-            Self::Huber => (1.345 / size).sqrt(),
-            Self::Bisquare if size < 4.685 => 1.0 - (size / 4.685).powi(2),
+            Self::Huber if size <= HUBER => 1.0,
+            Self::Huber => (HUBER / size).sqrt(),
+            Self::Bisquare if size < BISQUARE => 1.0 - (size / BISQUARE).powi(2),
             Self::Bisquare => 0.0,
         }
     }
@@ -38,9 +39,9 @@ impl Loss {
     fn slope(self, deviations: f64) -> f64 {
         let size = deviations.abs();
         match self {
-            Self::Huber => f64::from(u8::from(size <= 1.345)),
-            Self::Bisquare if size < 4.685 => {
-                let squared = (size / 4.685).powi(2);
+            Self::Huber => f64::from(u8::from(size <= HUBER)),
+            Self::Bisquare if size < BISQUARE => {
+                let squared = (size / BISQUARE).powi(2);
                 (1.0 - squared) * (1.0 - 5.0 * squared)
             }
             Self::Bisquare => 0.0,
@@ -57,9 +58,6 @@ pub(super) struct Influence {
     /// Mean of psi^2 over that of the weights.
     spread: f64,
 }
-
-/// The least mean of psi' over that of the weights: most residuals count at all.
-const LEAST_SLOPE: f64 = 0.1;
 
 /// The influences of all joints' residuals, whose deviations are `scales`.
 pub(super) fn influences(

@@ -1,15 +1,9 @@
 //! Least squares of condensed rows, and which directions of phi they say nothing about.
 
 use super::triangle::{Triangle, upper};
+pub(crate) use crate::policy::solve::DEAD;
+use crate::policy::solve::MOST_WEIGHT;
 use nalgebra::{DMatrix, DVector, SVD};
-
-/// A direction is not excited if its singular value, of columns scaled to length 1, is below this
-/// share of the largest.
-pub(crate) const DEAD: f64 = 1e-9;
-
-/// Rows count no more than this, so that squares of what is weighted are numbers: torques of 1e-160
-/// have other squares than they can have.
-const MOST_WEIGHT: f64 = 1e100;
 
 /// What is known of phi from elsewhere: a sum of entries, what it is, and how surely.
 #[derive(Clone, Debug, PartialEq)]

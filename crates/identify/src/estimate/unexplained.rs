@@ -5,27 +5,12 @@ use super::least_squares::Estimate;
 use super::likelihood::noise_of_positions;
 use super::rows::BlockMaker;
 use super::validate::{Validation, validate};
+use crate::policy::unexplained::{
+    ALIKE, AT_REST, LEFT, LEFT_ALIKE, LEFT_AT_REST, OF_NOISE, STICTION,
+};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::fmt;
-
-/// The share of a joint's torque, as root of mean square, that must be left.
-const LEFT: f64 = 0.9;
-
-/// The share that must be left where it is no noise: noise is another one after half a period of
-/// the filter's cutoff, and what is left is still correlated with itself by so much.
-const LEFT_ALIKE: f64 = 0.3;
-const ALIKE: f64 = 0.5;
-
-/// A joint that moves less than this share of the one of its kind that moves most is at rest:
-/// nothing but noise may be in its torque, and what stiction holds: at most so many times its
-/// Coulomb friction. Of what is no noise after a whole period this share must be left.
-const AT_REST: f64 = 0.01;
-const STICTION: f64 = 2.0;
-const LEFT_AT_REST: f64 = 0.03;
-
-/// What is left is that of noise of the positions if that makes one part in so many of it.
-const OF_NOISE: f64 = 2.0;
 
 /// Samples of each log that are looked at, and in blocks of so many.
 const BLOCKS: usize = 16;

@@ -9,23 +9,15 @@ use super::condensed::Condensed;
 use super::least_squares::Fit;
 use super::solve::Solution;
 use super::triangle::Triangle;
+pub(super) use crate::policy::weights::SETTLED;
+use crate::policy::weights::{LEAST_FREE, SHARED};
 
 /// Times that weights are found anew.
 pub(super) const MAX_REWEIGHTING: usize = 30;
 
-/// Change of phi, in standard errors, below which weights have settled.
-pub(super) const SETTLED: f64 = 1e-3;
-
 /// Logs whose own estimates weights begin with, beside that of all alike: the longest. Where a log
 /// of little but noise pulls the first estimate, weights may settle with it.
 const STARTS: usize = 8;
-
-/// So many independent residuals of a joint are taken from the other logs: few of its own may be
-/// small by chance.
-const SHARED: f64 = 4.0;
-
-/// The least share of its independent residuals that a log keeps.
-const LEAST_FREE: f64 = 1e-3;
 
 /// One number for each joint of each log.
 pub(super) type ByLog = Vec<Vec<f64>>;

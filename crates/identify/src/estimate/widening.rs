@@ -8,18 +8,13 @@
 use super::errors::Errors;
 use super::least_squares::{Estimate, EstimateError, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
+use crate::policy::widening::{LEAST, SURE};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 
 /// Doublings of the rate below which rows are left out.
 const MOST_DOUBLINGS: u32 = 5;
-
-/// Standard errors of a change that are no chance.
-const SURE: f64 = 2.0;
-
-/// The least share of its variance that a friction's change is taken to have.
-const LEAST: f64 = 1.0 / 16.0;
 
 /// An estimate with the covariance that is compared.
 struct Fitted {

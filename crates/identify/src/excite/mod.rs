@@ -23,6 +23,7 @@ mod solve;
 mod space;
 mod stack;
 
+use crate::policy::excite::{FIRST_SHARE, RESERVE, SAFE, SHARPNESS};
 pub use check::{Check, Extremes, JointUse};
 pub use fault::{ExciteError, ExciteFault, LimitKind};
 pub use feasible::Feasible;
@@ -130,15 +131,6 @@ pub struct Progress {
     /// Where it is.
     pub iterate: Iterate,
 }
-
-/// Sharpness of the limits of the two solutions, and the share of the evaluations of the first.
-const SHARPNESS: [f64; 2] = [40.0, 200.0];
-const FIRST_SHARE: f64 = 0.4;
-/// Share of each limit that stays unused on the solver's grid.
-const RESERVE: f64 = 0.004;
-/// The use of limits that a motion is made smaller to: what remains is for what happens between
-/// the samples of a check.
-const SAFE: f64 = 1.0 - 1e-4;
 
 /// A robot with its limits, the space of its trajectories and the columns that these excite.
 fn prepared(

@@ -7,6 +7,7 @@
 //!
 //! W^T W is never formed: it would square the condition number of what begins at 1e8.
 
+use crate::policy::objective::LARGEST_LOG;
 use nalgebra::{DMatrix, DVector};
 
 /// What is made small: a weighted sum of ln(condition number) and -ln det(W^T W / rows) / p.
@@ -166,9 +167,6 @@ impl Stacked {
         gradient
     }
 }
-
-/// ln of what counts as infinite: 1e26.
-const LARGEST_LOG: f64 = 60.0;
 
 /// The derivative of ln(s_1 / s_p).
 fn of_condition(w: &DMatrix<f64>, spectrum: &Spectrum) -> DMatrix<f64> {

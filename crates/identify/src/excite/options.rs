@@ -4,14 +4,11 @@ use super::fault::{ExciteError, ExciteFault, LimitKind};
 use super::model::{Columns, ExcitedModel, JointLimits};
 use super::objective::Objective;
 use super::space::{Ends, Family, Space};
+pub(super) use crate::policy::options::DURATIONS_S;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
-use std::ops::RangeInclusive;
-
-/// Laps that are looked for: longer than a robot's shaking, and shorter than a day \[s\].
-pub(super) const DURATIONS_S: RangeInclusive<f64> = 0.01..=1e4;
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]

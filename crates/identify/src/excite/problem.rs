@@ -14,6 +14,7 @@ use super::model::{Evaluators, ExcitedModel};
 use super::objective::{Excitation, Objective, Stacked};
 use super::space::{Slopes, Space};
 use super::stack::{Signs, Stack, share};
+use crate::policy::problem::HEIGHT_M;
 use nalgebra::DVector;
 
 /// What is optimised.
@@ -60,9 +61,6 @@ pub(super) struct Derivatives {
 
 /// For position, rate and acceleration of each joint that moves, one number a sample.
 type Pulls = Vec<Vec<f64>>;
-
-/// Length by which a missing height is divided \[m\].
-const HEIGHT_M: f64 = 0.1;
 
 impl Problem<'_> {
     /// Number of coordinates.

@@ -7,6 +7,7 @@
 //! the null space of the conditions, or an orthonormal basis N of it. Series of free frequencies
 //! have their frequencies as coordinates too, and P depends on them.
 
+use crate::policy::space::ROUNDING;
 use denavit_plants::trajectory::{
     Bezier, CubicSpline, EndCondition, Fourier, Reference, Setpoint, TrajectoryError,
 };
@@ -383,7 +384,7 @@ impl Space {
         }
         // what is far below the terms it is made of is rounding
         let sizes = at_ends.each_ref().map(|values| values.amax());
-        rows.retain(|row| row.amax() > 1e-9 * sizes[0].min(sizes[1]));
+        rows.retain(|row| row.amax() > ROUNDING * sizes[0].min(sizes[1]));
         let mut projection = DMatrix::identity(count, count);
         for direction in orthonormal(rows.into_iter().map(|row| row.normalize().transpose())) {
             projection -= &direction * direction.transpose();
@@ -414,7 +415,7 @@ fn orthonormal(vectors: impl Iterator<Item = DVector<f64>>) -> Vec<DVector<f64>>
                 rest.axpy(-along, direction, 1.0);
             }
         }
-        if rest.norm() > 1e-9 {
+        if rest.norm() > ROUNDING {
             basis.push(rest.normalize());
         }
     }

@@ -2,6 +2,7 @@
 //! derivatives by the motion.
 
 use super::model::{Columns, Evaluators, ExcitedModel};
+use crate::policy::stack::SIGN_WIDTH;
 use denavit_numerics::Random;
 use denavit_runtime::Transcendental;
 use nalgebra::DMatrix;
@@ -12,9 +13,6 @@ pub(super) enum Signs {
     Exact,
     Smooth,
 }
-
-/// Width of a smooth sign, of the largest speed of the joint.
-const SIGN_WIDTH: f64 = 0.02;
 
 /// The columns of W, in the columns that are computed.
 #[derive(Clone, Debug)]

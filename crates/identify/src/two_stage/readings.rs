@@ -2,19 +2,8 @@
 //! that of the joint times the gear ratio, its torque against the spring of the model.
 
 use super::{Estimate, TwoStageError};
+use crate::policy::readings::{OTHER, SURE, TURNS, WRONG_SPRING};
 use std::f64::consts::TAU;
-
-/// How far a motor may turn, of how far gear and joint say: springs are stiff.
-const TURNS: [f64; 2] = [0.5, 2.0];
-
-/// Angles that do not follow each other.
-const OTHER: f64 = 0.5;
-
-/// How far a spring of a model may be wrong.
-const WRONG_SPRING: f64 = 2.5;
-
-/// Standard errors that a stiffness is above 0.
-const SURE: f64 = 5.0;
 
 /// How near a mistake explains a ratio.
 fn explains(ratio: f64, slack: f64) -> bool {

@@ -5,15 +5,7 @@
 //! its own has no influence.
 
 use super::{ConditionError, Conditioned, STENCIL, acceleration, rate};
-
-/// By how much a factor may differ from 1,
-const FACTOR: f64 = 0.1;
-
-/// and by which share of its size what a delay makes of a column.
-const DELAY: f64 = 0.1;
-
-/// Noise of positions that is a larger share of a derivative's variance leaves nothing to compare.
-const NOISE: f64 = 0.1;
+use crate::policy::derivatives::{DELAY, FACTOR, NOISE};
 
 impl Conditioned {
     /// Refuses logged rates and accelerations that are not derivatives of the positions.

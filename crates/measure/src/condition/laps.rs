@@ -1,24 +1,13 @@
 //! Motion that repeats: its period, the mean of its laps, and the noise that laps show.
 
 use super::ConditionError;
+use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
 
 /// Samples that a search for the period looks at, at most.
 const SEARCHED: usize = 4000;
 
-/// The share of a signal's variance by which laps may differ.
-const REPEATS: f64 = 0.02;
-
-/// The fewest samples of a lap.
-const FEWEST: f64 = 8.0;
-
 /// Times that a period is put right.
 const ROUNDS: usize = 20;
-
-/// Change of a period, in samples, that is none.
-const SETTLED: f64 = 1e-9;
-
-/// Samples that a period may lack in digits.
-const DIGITS: f64 = 0.99;
 
 /// Laps of a log. A period is hardly ever a whole number of samples: were it rounded, laps would
 /// drift apart by up to half a sample each, and the seam of the mean lap would be a jump. A mean
@@ -34,9 +23,6 @@ pub struct Laps {
     /// Number of laps.
     pub count: usize,
 }
-
-/// Joints whose variance is a smaller share of the largest one do not say whether laps repeat.
-const MOVES: f64 = 1e-4;
 
 /// Samples on either side that a value between two samples is found from.
 const REACH: usize = 3;
@@ -196,7 +182,7 @@ impl Laps {
         let mut best: Option<(usize, f64)> = None;
         for lag in lags {
             let here = compared.misfit(lag as f64);
-            left |= here > 0.2;
+            left |= here > LEFT_BY_LAP;
             if left && here < REPEATS && best.is_none_or(|(_, least)| here < least) {
                 best = Some((lag, here));
             } else if best.is_some_and(|(found, _)| lag > found + found / 10) {
@@ -249,7 +235,7 @@ fn refined(compared: &Compared<'_>, period: f64, count: usize) -> f64 {
     let mut laps = 1;
     while laps < count.max(2) {
         let lag = period * laps as f64;
-        if lag + (4 * REACH) as f64 > 0.9 * (compared.end - compared.start) as f64 {
+        if lag + (4 * REACH) as f64 > COMPARED * (compared.end - compared.start) as f64 {
             break;
         }
         period = compared.refined(lag) / laps as f64;

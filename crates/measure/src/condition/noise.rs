@@ -2,31 +2,16 @@
 
 use super::{Conditioned, Piece, rate};
 use crate::log::JointSignals;
+use crate::policy::noise::{GAINS, POSITION, RATE, ROUNDING, WHITE};
 use denavit_numerics::Random;
 
 /// The order of the differences that noise is read from: of smooth signals they are next to
 /// nothing.
 const ORDER: usize = 6;
 
-/// Variances of differences of white noise of variance 1: of this order, and of the one below.
-const GAINS: [f64; 2] = [924.0, 252.0];
-
-/// What white noise has of the ratio of these, at least: differences of a smooth signal become
-/// smaller with each order.
-const WHITE: f64 = 0.9;
-
 /// Samples that are looked at, in so many blocks.
 const BLOCK: usize = 256;
 const BLOCKS: usize = 64;
-
-/// A joint moves if its rate is more than so many times what noise makes of one,
-const RATE: f64 = 2.0;
-
-/// or its position goes further from its mean than so many times its noise.
-const POSITION: f64 = 3.0;
-
-/// What rounding makes of a position.
-const ROUNDING: f64 = 1e-10;
 
 /// The deviation of white noise of a signal, from its differences of sixth order; none if these are
 /// not those of white noise. What is rare, as jumps are, does not count.

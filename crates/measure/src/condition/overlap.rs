@@ -1,16 +1,7 @@
 //! Logs that say the same, wholly or in part: one measurement, read twice.
 
 use super::Conditioned;
-
-/// What two readings of one measurement differ by, of the spread of positions and the size of
-/// torques: digits. Torques that were measured twice differ by their noise.
-const SAME: f64 = 1e-3;
-
-/// The least overlap, of the samples of the shorter log.
-const OVERLAP: f64 = 0.3;
-
-/// The spread of a position in the overlap, of that in the log, that at least one joint has.
-const MOVES: f64 = 0.1;
+use crate::policy::overlap::{MOVES, OVERLAP, SAME};
 
 /// Samples that are looked at before all are.
 const FIRST: usize = 64;

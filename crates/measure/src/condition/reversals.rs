@@ -2,23 +2,13 @@
 //! functions of a rate that pass the filter as the torque does.
 
 use super::{Butterworth, Conditioned, Decimator, STENCIL, acceleration, rate};
+use crate::policy::reversals::{NOISE, STEPS, STILL, WEIGHED};
 use std::ops::Range;
-
-/// Samples that are left within which a decimated one has nearly all of its weight.
-const WEIGHED: f64 = 2.5;
-
-/// Deviations of a rate's noise below which its sign is not known, and steps of its encoder in a
-/// period of the filter's cutoff.
-const NOISE: f64 = 3.0;
-const STEPS: f64 = 2.0;
 
 /// Periods of the filter's cutoff that a rest takes, at least; and that are left of one whose rows
 /// count, so that something is left beside a constant.
 const RESTS: usize = 6;
 const COUNTED: usize = 2;
-
-/// The share of its usual rate, root of mean square, below which a joint stands still.
-const STILL: f64 = 1e-4;
 
 impl Conditioned {
     fn rate_at(&self, joint: usize, k: usize) -> f64 {

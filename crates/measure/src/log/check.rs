@@ -2,32 +2,11 @@
 
 use super::fault::{LogFault, LogRemark, Suspicion};
 use super::{JointSignals, MeasuredLog};
+use crate::policy::check::{
+    ABOVE_ROUNDING, FAR_BEYOND, FASTEST_STEP_S, HOUR_S, IN_STEPS, LARGEST_ANGLE_RAD, MOST_STEPS,
+    OTHER, ROUNDING, SAME, SATURATED, SLOWEST_STEP_S, WHOLE,
+};
 use denavit_plants::regression::RegressionJoint;
-
-/// A step of the time from which on it hardly counts seconds.
-const SLOWEST_STEP_S: f64 = 0.1;
-
-/// A step of the time below which it hardly counts seconds: a millisecond in days is 1e-8, and no
-/// loop of a drive has a rate of a megahertz.
-const FASTEST_STEP_S: f64 = 1e-6;
-
-/// Seconds in an hour.
-const HOUR_S: f64 = 3600.0;
-
-/// A turning joint without limits hardly goes further \[rad\].
-const LARGEST_ANGLE_RAD: f64 = 20.0;
-
-/// Changes of a torque below this are rounding [N m, N].
-const ROUNDING: f64 = 1e-12;
-
-/// Times its limit that a torque goes to if the limits of a trajectory are the model's.
-const FAR_BEYOND: f64 = 3.0;
-
-/// Two signals that are one.
-const SAME: f64 = 0.98;
-
-/// Two signals that are not one.
-const OTHER: f64 = 0.7;
 
 /// What looks wrong, and what is worth a remark.
 #[derive(Default)]
@@ -182,7 +161,7 @@ fn torque(
             count += usize::from(one == value);
         }
         let share = count as f64 / torque.len() as f64;
-        if at_once >= 5 && share > 0.002 {
+        if at_once >= 5 && share > SATURATED {
             let column = column.clone();
             found.remarks.push(LogRemark::Saturated { column, share, value });
         }
@@ -300,11 +279,12 @@ fn of_multiples(moved: &[f64], guess: f64, size: f64) -> Option<f64> {
     let rounding = 1e-9 * size;
     let is_multiple = |d: &&f64| {
         let times = **d / step;
-        (times - times.round()).abs() < 0.02 + 2.0 * rounding / step && times < 1e5
+        (times - times.round()).abs() < WHOLE + 2.0 * rounding / step && times < MOST_STEPS
     };
     // Of a smooth signal hardly any difference is a multiple of its smallest one.
     let multiples = moved.iter().filter(is_multiple).count();
-    (step >= 20.0 * rounding && multiples as f64 > 0.995 * moved.len() as f64).then_some(step)
+    (step >= ABOVE_ROUNDING * rounding && multiples as f64 > IN_STEPS * moved.len() as f64)
+        .then_some(step)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What is wrong with a log, or looks wrong.
 
 use super::repair::FEWEST_ROWS;
+use crate::policy::fault::LONGER_PARTS;
 use denavit_logs::{FileFault, FileRemark, Place};
 use denavit_numerics::short;
 use std::fmt;
@@ -265,9 +266,6 @@ impl fmt::Display for LogFault {
         }
     }
 }
-
-/// The step of a time below which it may count longer parts of a second than milliseconds.
-const LONGER_PARTS: f64 = 1.0;
 
 impl fmt::Display for Suspicion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,13 +1,8 @@
 //! Positions that jump: slips of an encoder, laps that were joined end to end.
 
 use super::fault::Suspicion;
+use crate::policy::jumps::{OF_NEIGHBOURS, OF_RANGE, OF_STEP};
 use denavit_logs::Table;
-
-/// The least jump, over the range of the position, over its smallest step, and over the steps of
-/// the samples about it.
-const OF_RANGE: f64 = 2e-3;
-const OF_STEP: f64 = 10.0;
-const OF_NEIGHBOURS: f64 = 5.0;
 
 /// Samples on either side that a jump is compared with, and those of them that are part of it.
 const ABOUT: usize = 50;

@@ -13,6 +13,7 @@ mod mapping;
 mod repair;
 mod wanted;
 
+use crate::policy::log::{LARGEST, LARGEST_TIME};
 pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
 pub use mapping::{ColumnMapping, ColumnSource, MappingError};
 
@@ -226,12 +227,6 @@ pub fn read_opened(
     }
     if faults.is_empty() { Ok(log) } else { Err(failed(faults)) }
 }
-
-/// What no position, rate, torque or force of a robot reaches, in its SI unit.
-const LARGEST: f64 = 1e12;
-
-/// The same of times \[s\], which may count from any beginning, in any unit.
-const LARGEST_TIME: f64 = 1e20;
 
 /// The first number of each column that nothing of a robot can be.
 fn impossible(table: &Table, wanted: &Wanted) -> Vec<LogFault> {

@@ -1,22 +1,14 @@
 //! Samples at equal distances: repeated rows dropped, single missing samples filled in.
 
 use super::fault::{LogFault, LogRemark};
+use crate::policy::repair::{MAX_JITTER, MAX_MISSING, RESAMPLED_JITTER};
 use denavit_logs::Table;
 
 /// Fewer rows make no log.
 pub(super) const FEWEST_ROWS: usize = 4;
 
-/// The share of samples that may be missing.
-const MAX_MISSING: f64 = 0.02;
-
 /// Samples that may be missing at once.
 const MAX_GAP: usize = 5;
-
-/// Scatter of sample distances, over their median, from which on samples are interpolated.
-const RESAMPLED_JITTER: f64 = 0.01;
-
-/// Scatter from which on derivatives mean nothing.
-const MAX_JITTER: f64 = 0.3;
 
 /// Samples at equal distances.
 pub(super) struct Even {

@@ -1,0 +1,213 @@
+//! The numbers that decide what is said of what was found, each with its unit and where it is from: those of each module.
+
+/// `blocks.rs`: Whether one model is better than another: paired by blocks of time, since what is left of torques is correlated from sample to sample.
+pub(crate) mod blocks {
+    /// Length of a block \[s\], and the least number of blocks of a log.
+    pub(crate) const BLOCK_S: f64 = 0.5;
+}
+
+/// `candidate.rs`: What may be missing: an effect of the catalogue in one place of the robot.
+pub(crate) mod candidate {
+    /// Where a position that may be anywhere is looked for first, as shares of a joint's range.
+    pub(crate) const PLACES: [f64; 13] =
+        [0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98];
+
+    /// Where a limit of torques is looked for first, as shares of the largest.
+    pub(crate) const LIMITS: [f64; 20] = [
+        0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.74, 0.68, 0.61, 0.54, 0.46, 0.38, 0.31, 0.25, 0.2,
+        0.16, 0.13, 0.1, 0.07, 0.05,
+    ];
+}
+
+/// `data.rs`: Logs with the nominal model's rows: all that is asked of them, weighted and stacked.
+pub(crate) mod data {
+    /// How far the zero of a spring's deflection may be off: where none is stated the logs say it
+    /// [rad, m].
+    pub(crate) const SPRING_ZERO: f64 = 1.0;
+}
+
+/// `drive_law.rs`: What is between a drive, whose torque is logged, and its joint, whose position is.
+pub(crate) mod drive_law {
+    /// The share that must be passed on of what a transmission that hardly gives way would: one that
+    /// passes nothing on leaves nothing to compare, which explains nothing. How long drive and joint
+    /// touch says less, since a drive that bounces is pressed for short times, and the harder.
+    pub(crate) const LEAST_PASSED: f64 = 0.7;
+
+    /// The share of a drive's torque that must be load: what a drive takes for itself a rotor that
+    /// moves otherwise would explain, and noise that it does not pass on.
+    pub(crate) const LEAST_LOAD: f64 = 0.2;
+}
+
+/// `elastic_law.rs`: A drive before a spring, whose torque is logged, where the log has the position of the joint.
+pub(crate) mod elastic_law {
+    /// By which share of its size a parameter is moved for a difference: the side of friction changes
+    /// in steps.
+    pub(crate) const DIFFERENCE: f64 = 0.02;
+}
+
+/// `excitation.rs`: What logs would have shown: an answer that nothing is missing says no more than that.
+pub(crate) mod excitation {
+    /// An effect that is more of the torque than this should be seen.
+    pub(crate) const LARGE: f64 = 0.5;
+
+    /// A joint that covers less of its limits is at rest: what grows with position or speed is small.
+    pub(crate) const LEAST_RANGE: f64 = 0.05;
+
+    /// Errors of this share of a torque say that nothing is seen.
+    pub(crate) const NEVER: f64 = 1e3;
+}
+
+/// `experiment.rs`: The separating experiment: a motion within the limits of the robot that tells names apart which the logs do not.
+pub(crate) mod experiment {
+    /// Standard errors from which on one name is worse than another.
+    pub(crate) const DISTINCT: f64 = 2.5;
+
+    /// Rows that count as one: what is left is correlated over the time of the filter.
+    pub(crate) const ROWS_PER_SAMPLE: f64 = 4.0;
+}
+
+/// `floor.rs`: The noise floor: what no model can explain, because it does not repeat.
+pub(crate) mod floor {
+    /// Laps that differ by so many times their noise do not repeat.
+    pub(crate) const UNREPEATABLE: f64 = 3.0;
+
+    /// The least share of a torque that its floor is taken to be: logs without noise have digits.
+    pub(crate) const LEAST: f64 = 1e-6;
+}
+
+/// `followed.rs`: What motors before springs do where joints follow a motion: they are ahead by what springs must pass on.
+pub(crate) mod followed {
+    /// What of the largest deflection may still change where laws beside a spring are settled.
+    pub(crate) const SETTLED: f64 = 1e-6;
+}
+
+/// `given.rs`: Effects that the model has: they are not searched, but estimated again within what the model says of their parameters.
+pub(crate) mod given {
+    /// Deviations beyond which a parameter is not moved.
+    pub(crate) const MOST: f64 = 3.0;
+}
+
+/// `joint_law.rs`: Effects of the catalogue as laws on the torques of a robot's joints.
+pub(crate) mod joint_law {
+    /// A drive that lacks more than this share of what was demanded does not give what was demanded.
+    pub(crate) const ALL_GIVEN: f64 = 0.02;
+
+    /// What a drive lacks is more than so many times the noise of the torque: a clip of noise would
+    /// make a log look better, whatever is demanded.
+    pub(crate) const OF_NOISE: f64 = 4.0;
+
+    /// By which share of a parameter's size it is moved for a difference.
+    pub(crate) const DIFFERENCE: f64 = 1e-4;
+}
+
+/// `known.rs`: What the rows of a joint tell of its torque, where its drive turns around or rests.
+pub(crate) mod known {
+    /// A rate that is none but for its sign [rad/s, m/s].
+    pub(crate) const CREEP: f64 = 1e-9;
+
+    /// The share of an event that the filter rings with beside it.
+    pub(crate) const RINGING: f64 = 0.3;
+}
+
+/// `problem.rs`: Weighted least squares with everything that the nominal model is not sure of eliminated.
+pub(crate) mod problem {
+    /// The least eigenvalue of scaled normal equations of a direction that is one.
+    pub(crate) const INDEPENDENT: f64 = 1e-7;
+
+    /// The share of the cost that a step must gain for another to be taken, and the damping beyond which
+    /// no step gains anything.
+    pub(crate) const SETTLED: f64 = 1e-5;
+
+    /// See [`SETTLED`].
+    pub(crate) const STUCK: f64 = 1e4;
+}
+
+/// `signals.rs`: Logs as the diagnosis looks at them: motion at the full rate, torques through one filter.
+pub(crate) mod signals {
+    /// Rows in a period of the cutoff: what the filter passes is below half their rate.
+    pub(crate) const ROWS_PER_PERIOD: f64 = 2.5;
+
+    /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a cell
+    /// knows where it is.
+    pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;
+}
+
+/// `simulated.rs`: The second gap: models in motion.
+pub(crate) mod simulated {
+    /// The longest motion of a log that is moved along \[s\].
+    pub(crate) const LONGEST_S: f64 = 60.0;
+}
+
+/// `standstill.rs`: Where a drive rests between two motions.
+pub(crate) mod standstill {
+    /// Steps that a drive moves in the time of its rest, before and after it: a parabola moves by 8.
+    pub(crate) const LEAVES: f64 = 30.0;
+
+    /// What two readings of one place may differ by, in steps.
+    pub(crate) const SAME: f64 = 1.01;
+
+    /// The deviation of what friction is at rest from what balances the torques by the model, over
+    /// that of sliding: another effect that is missing changes the balance.
+    pub(crate) const UNSURE: f64 = 0.4;
+
+    /// The share of friction while it slides from which on a drive at rest may slide.
+    pub(crate) const SLIDES: f64 = 0.9;
+
+    /// Samples of the log by which the ends of a rest are not known.
+    pub(crate) const EDGE: f64 = 2.0;
+
+    /// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if what
+    /// opposes its rate is, or if friction falls when it leaves.
+    pub(crate) const POWER: f64 = 2.5;
+
+    /// Steps that a drive moves before a reading of it changes, in the mean.
+    pub(crate) const UNSEEN: f64 = 0.25;
+}
+
+/// `state.rs`: A model with the effects that it has so far, fitted to the logs for training and judged with others.
+pub(crate) mod state {
+    /// Entries of z that are further from 0 say that the model's own numbers are off by more than it
+    /// states; experiments do not move them beyond.
+    pub(crate) const MOST_Z: f64 = 3.0;
+}
+
+/// `structure.rs`: What no effect explains, as a formula without a name: a few terms of a general library that explain most of what a joint leaves, judged by held-out logs.
+pub(crate) mod structure {
+    /// The least share of squares of held-out logs that a term must explain.
+    pub(crate) const LEAST_SHARE: f64 = 0.05;
+}
+
+/// `turning.rs`: What nobody can know of friction while a joint turns around, and what every model has.
+pub(crate) mod turning {
+    /// The time by which the filter of positions moves a corner of a rate, times the cutoff of torques.
+    pub(crate) const CORNER: f64 = 0.05;
+
+    /// The deviation of what is anywhere between two values, over their distance.
+    pub(crate) const BETWEEN: f64 = 0.288_675_134_594_812_9;
+}
+
+/// `worth.rs`: How large an effect is: whether that is worth a name.
+pub(crate) mod worth {
+    /// Columns that are independent have at least this share of the largest singular value.
+    pub(crate) const RANK: f64 = 1e-6;
+}
+
+/// `regime.rs`: Where in the motion torques disagree.
+pub(crate) mod regime {
+    /// By how much the share of what is left in a regime must exceed that of the time to be told.
+    pub(crate) const TOLD: f64 = 0.15;
+
+    /// From this share of the largest torque on, a torque is at its limit if it does not change: by less
+    /// than the other one.
+    pub(crate) const AT_EXTREME: f64 = 0.97;
+
+    /// See [`AT_EXTREME`].
+    pub(crate) const AT_REST: f64 = 0.01;
+
+    /// Shares of the largest velocity, acceleration or load below which a motion is slow in words, and
+    /// above which it is fast, hard or heavy.
+    pub(crate) const SLOW: f64 = 0.1;
+
+    /// See [`SLOW`].
+    pub(crate) const MUCH: f64 = 0.6;
+}

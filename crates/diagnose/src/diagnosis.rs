@@ -2,6 +2,7 @@
 
 use super::alias::ExactAliases;
 use super::candidate::Candidate;
+use super::columns::misread;
 use super::curve::{Curve, curves};
 use super::data::Data;
 use super::effects_found::{
@@ -153,11 +154,13 @@ pub fn diagnose(
         train_floor,
         held_out_floor,
     };
+    let misread = misread(&train, &setting.as_given(0));
+    let options = if misread.is_empty() { request.options } else { SearchOptions::none() };
     let sets = vec![setting.train, setting.held_out];
     let own = (setting.candidates, setting.given.as_slice());
     let mut searched = |z: &[f64], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
-        let options = (setting.given.len(), request.options);
+        let options = (setting.given.len(), options);
         let search =
             Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
         let found = search.run(may_move, &mut |taken| watch(&Progress::Found(taken.to_vec())));
@@ -191,7 +194,7 @@ pub fn diagnose(
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
     let told = Told { setting: &setting, filters, found, before, after };
     let mut diagnosis = told.diagnosis(effects, visible, leftovers);
-    judge(&mut diagnosis, &setting, &told.found);
+    judge(&mut diagnosis, &setting, (&told.found, &misread));
     Ok(diagnosis)
 }
 

@@ -13,6 +13,7 @@ mod between;
 mod blocks;
 mod candidate;
 mod catalogue;
+mod columns;
 mod curve;
 mod data;
 mod diagnosis;

@@ -1,6 +1,14 @@
-//! The numbers that decide what is said of what was found, each with its unit and where it is from: those of each module.
+//! The numbers that decide what is said of what was found, each with its unit and where it is
+//! from: those of each module.
 
-/// `blocks.rs`: Whether one model is better than another: paired by blocks of time, since what is left of torques is correlated from sample to sample.
+/// `columns.rs`: Columns that are other ones than they are taken for.
+pub(crate) mod columns {
+    /// The range of a position below which its joint rests [rad, m]: steps of the finest encoders.
+    pub(crate) const AT_REST: f64 = 1e-6;
+}
+
+/// `blocks.rs`: Whether one model is better than another: paired by blocks of time, since what is
+/// left of torques is correlated from sample to sample.
 pub(crate) mod blocks {
     /// Length of a block \[s\], and the least number of blocks of a log.
     pub(crate) const BLOCK_S: f64 = 0.5;
@@ -26,11 +34,13 @@ pub(crate) mod data {
     pub(crate) const SPRING_ZERO: f64 = 1.0;
 }
 
-/// `drive_law.rs`: What is between a drive, whose torque is logged, and its joint, whose position is.
+/// `drive_law.rs`: What is between a drive, whose torque is logged, and its joint, whose position
+/// is.
 pub(crate) mod drive_law {
-    /// The share that must be passed on of what a transmission that hardly gives way would: one that
-    /// passes nothing on leaves nothing to compare, which explains nothing. How long drive and joint
-    /// touch says less, since a drive that bounces is pressed for short times, and the harder.
+    /// The share that must be passed on of what a transmission that hardly gives way would: one
+    /// that passes nothing on leaves nothing to compare, which explains nothing. How long drive
+    /// and joint touch says less, since a drive that bounces is pressed for short times, and the
+    /// harder.
     pub(crate) const LEAST_PASSED: f64 = 0.7;
 
     /// The share of a drive's torque that must be load: what a drive takes for itself a rotor that
@@ -38,26 +48,30 @@ pub(crate) mod drive_law {
     pub(crate) const LEAST_LOAD: f64 = 0.2;
 }
 
-/// `elastic_law.rs`: A drive before a spring, whose torque is logged, where the log has the position of the joint.
+/// `elastic_law.rs`: A drive before a spring, whose torque is logged, where the log has the
+/// position of the joint.
 pub(crate) mod elastic_law {
-    /// By which share of its size a parameter is moved for a difference: the side of friction changes
-    /// in steps.
+    /// By which share of its size a parameter is moved for a difference: the side of friction
+    /// changes in steps.
     pub(crate) const DIFFERENCE: f64 = 0.02;
 }
 
-/// `excitation.rs`: What logs would have shown: an answer that nothing is missing says no more than that.
+/// `excitation.rs`: What logs would have shown: an answer that nothing is missing says no more
+/// than that.
 pub(crate) mod excitation {
     /// An effect that is more of the torque than this should be seen.
     pub(crate) const LARGE: f64 = 0.5;
 
-    /// A joint that covers less of its limits is at rest: what grows with position or speed is small.
+    /// A joint that covers less of its limits is at rest: what grows with position or speed is
+    /// small.
     pub(crate) const LEAST_RANGE: f64 = 0.05;
 
     /// Errors of this share of a torque say that nothing is seen.
     pub(crate) const NEVER: f64 = 1e3;
 }
 
-/// `experiment.rs`: The separating experiment: a motion within the limits of the robot that tells names apart which the logs do not.
+/// `experiment.rs`: The separating experiment: a motion within the limits of the robot that tells
+/// names apart which the logs do not.
 pub(crate) mod experiment {
     /// Standard errors from which on one name is worse than another.
     pub(crate) const DISTINCT: f64 = 2.5;
@@ -75,13 +89,15 @@ pub(crate) mod floor {
     pub(crate) const LEAST: f64 = 1e-6;
 }
 
-/// `followed.rs`: What motors before springs do where joints follow a motion: they are ahead by what springs must pass on.
+/// `followed.rs`: What motors before springs do where joints follow a motion: they are ahead by
+/// what springs must pass on.
 pub(crate) mod followed {
     /// What of the largest deflection may still change where laws beside a spring are settled.
     pub(crate) const SETTLED: f64 = 1e-6;
 }
 
-/// `given.rs`: Effects that the model has: they are not searched, but estimated again within what the model says of their parameters.
+/// `given.rs`: Effects that the model has: they are not searched, but estimated again within what
+/// the model says of their parameters.
 pub(crate) mod given {
     /// Deviations beyond which a parameter is not moved.
     pub(crate) const MOST: f64 = 3.0;
@@ -89,11 +105,12 @@ pub(crate) mod given {
 
 /// `joint_law.rs`: Effects of the catalogue as laws on the torques of a robot's joints.
 pub(crate) mod joint_law {
-    /// A drive that lacks more than this share of what was demanded does not give what was demanded.
+    /// A drive that lacks more than this share of what was demanded does not give what was
+    /// demanded.
     pub(crate) const ALL_GIVEN: f64 = 0.02;
 
-    /// What a drive lacks is more than so many times the noise of the torque: a clip of noise would
-    /// make a log look better, whatever is demanded.
+    /// What a drive lacks is more than so many times the noise of the torque: a clip of noise
+    /// would make a log look better, whatever is demanded.
     pub(crate) const OF_NOISE: f64 = 4.0;
 
     /// By which share of a parameter's size it is moved for a difference.
@@ -109,26 +126,28 @@ pub(crate) mod known {
     pub(crate) const RINGING: f64 = 0.3;
 }
 
-/// `problem.rs`: Weighted least squares with everything that the nominal model is not sure of eliminated.
+/// `problem.rs`: Weighted least squares with everything that the nominal model is not sure of
+/// eliminated.
 pub(crate) mod problem {
     /// The least eigenvalue of scaled normal equations of a direction that is one.
     pub(crate) const INDEPENDENT: f64 = 1e-7;
 
-    /// The share of the cost that a step must gain for another to be taken, and the damping beyond which
-    /// no step gains anything.
+    /// The share of the cost that a step must gain for another to be taken, and the damping beyond
+    /// which no step gains anything.
     pub(crate) const SETTLED: f64 = 1e-5;
 
     /// See [`SETTLED`].
     pub(crate) const STUCK: f64 = 1e4;
 }
 
-/// `signals.rs`: Logs as the diagnosis looks at them: motion at the full rate, torques through one filter.
+/// `signals.rs`: Logs as the diagnosis looks at them: motion at the full rate, torques through one
+/// filter.
 pub(crate) mod signals {
     /// Rows in a period of the cutoff: what the filter passes is below half their rate.
     pub(crate) const ROWS_PER_PERIOD: f64 = 2.5;
 
-    /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a cell
-    /// knows where it is.
+    /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a
+    /// cell knows where it is.
     pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;
 }
 
@@ -140,7 +159,8 @@ pub(crate) mod simulated {
 
 /// `standstill.rs`: Where a drive rests between two motions.
 pub(crate) mod standstill {
-    /// Steps that a drive moves in the time of its rest, before and after it: a parabola moves by 8.
+    /// Steps that a drive moves in the time of its rest, before and after it: a parabola moves by
+    /// 8.
     pub(crate) const LEAVES: f64 = 30.0;
 
     /// What two readings of one place may differ by, in steps.
@@ -156,30 +176,34 @@ pub(crate) mod standstill {
     /// Samples of the log by which the ends of a rest are not known.
     pub(crate) const EDGE: f64 = 2.0;
 
-    /// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if what
-    /// opposes its rate is, or if friction falls when it leaves.
+    /// The power of time with which a drive leaves: 3 if its inertia is all that matters, 2 if
+    /// what opposes its rate is, or if friction falls when it leaves.
     pub(crate) const POWER: f64 = 2.5;
 
     /// Steps that a drive moves before a reading of it changes, in the mean.
     pub(crate) const UNSEEN: f64 = 0.25;
 }
 
-/// `state.rs`: A model with the effects that it has so far, fitted to the logs for training and judged with others.
+/// `state.rs`: A model with the effects that it has so far, fitted to the logs for training and
+/// judged with others.
 pub(crate) mod state {
-    /// Entries of z that are further from 0 say that the model's own numbers are off by more than it
-    /// states; experiments do not move them beyond.
+    /// Entries of z that are further from 0 say that the model's own numbers are off by more than
+    /// it states; experiments do not move them beyond.
     pub(crate) const MOST_Z: f64 = 3.0;
 }
 
-/// `structure.rs`: What no effect explains, as a formula without a name: a few terms of a general library that explain most of what a joint leaves, judged by held-out logs.
+/// `structure.rs`: What no effect explains, as a formula without a name: a few terms of a general
+/// library that explain most of what a joint leaves, judged by held-out logs.
 pub(crate) mod structure {
     /// The least share of squares of held-out logs that a term must explain.
     pub(crate) const LEAST_SHARE: f64 = 0.05;
 }
 
-/// `turning.rs`: What nobody can know of friction while a joint turns around, and what every model has.
+/// `turning.rs`: What nobody can know of friction while a joint turns around, and what every model
+/// has.
 pub(crate) mod turning {
-    /// The time by which the filter of positions moves a corner of a rate, times the cutoff of torques.
+    /// The time by which the filter of positions moves a corner of a rate, times the cutoff of
+    /// torques.
     pub(crate) const CORNER: f64 = 0.05;
 
     /// The deviation of what is anywhere between two values, over their distance.
@@ -197,15 +221,15 @@ pub(crate) mod regime {
     /// By how much the share of what is left in a regime must exceed that of the time to be told.
     pub(crate) const TOLD: f64 = 0.15;
 
-    /// From this share of the largest torque on, a torque is at its limit if it does not change: by less
-    /// than the other one.
+    /// From this share of the largest torque on, a torque is at its limit if it does not change:
+    /// by less than the other one.
     pub(crate) const AT_EXTREME: f64 = 0.97;
 
     /// See [`AT_EXTREME`].
     pub(crate) const AT_REST: f64 = 0.01;
 
-    /// Shares of the largest velocity, acceleration or load below which a motion is slow in words, and
-    /// above which it is fast, hard or heavy.
+    /// Shares of the largest velocity, acceleration or load below which a motion is slow in words,
+    /// and above which it is fast, hard or heavy.
     pub(crate) const SLOW: f64 = 0.1;
 
     /// See [`SLOW`].

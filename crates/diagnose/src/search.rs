@@ -21,6 +21,13 @@ impl Default for SearchOptions {
     }
 }
 
+impl SearchOptions {
+    /// No effect is looked for.
+    pub(super) fn none() -> Self {
+        Self { most_effects: 0 }
+    }
+}
+
 /// One step of a search, for a report.
 #[derive(Clone, Debug)]
 pub struct Step {

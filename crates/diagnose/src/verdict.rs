@@ -9,6 +9,7 @@ use super::search::Found;
 use super::signals::Signals;
 use super::state::Setting;
 use denavit_evidence::policy;
+use denavit_identify::doubt::MisreadColumns;
 
 /// The answer in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +39,12 @@ impl Verdict {
     }
 }
 
-/// Judges what was found.
-pub(super) fn judge(diagnosis: &mut Diagnosis, setting: &Setting<'_>, found: &Found) {
+/// Judges what was found, of logs some of whose columns may be surely misread.
+pub(super) fn judge(
+    diagnosis: &mut Diagnosis,
+    setting: &Setting<'_>,
+    (found, misread): (&Found, &[MisreadColumns]),
+) {
     for one in &mut diagnosis.effects {
         let left = left_beside(setting, &diagnosis.leftovers, one);
         one.is_named = left.is_none_or(|left| !is_unexplained(left, one.size));
@@ -49,6 +54,10 @@ pub(super) fn judge(diagnosis: &mut Diagnosis, setting: &Setting<'_>, found: &Fo
     (diagnosis.verdict, diagnosis.reasons) = (verdict, reasons);
     if found.is_stopped {
         diagnosis.verdict = Verdict::CannotTell;
+    }
+    if !misread.is_empty() {
+        diagnosis.verdict = Verdict::CannotTell;
+        diagnosis.reasons = misread.iter().map(ToString::to_string).collect();
     }
 }
 

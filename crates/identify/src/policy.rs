@@ -42,8 +42,8 @@ pub(crate) const NOISE_OF_LEFT: f64 = 0.5;
 /// Readings of columns that are weighed whole: those that values like best.
 pub(crate) const ESTIMATED: usize = 80;
 
-/// Mistakes of some size that are followed from where a first look leaves them, each way that values
-/// may be believed, steps along each, and the standard errors below which a step is none.
+/// Mistakes of some size that are followed from where a first look leaves them, each way that
+/// values may be believed, steps along each, and the standard errors below which a step is none.
 pub(crate) const FOLLOWED: usize = 4;
 /// See [`FOLLOWED`].
 pub(crate) const LINEARISED: usize = 12;
@@ -65,18 +65,20 @@ pub(crate) const HALVINGS: usize = 2;
 /// See [`HALVINGS`].
 pub(crate) const HALVED_SAMPLES: usize = 200_000;
 
-/// The least share of its samples in which the sign of a joint's rate must be known for the others to
-/// be left out.
+/// The least share of its samples in which the sign of a joint's rate must be known for the others
+/// to be left out.
 pub(crate) const SIGNED: f64 = 0.1;
 
-/// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on links, do to each equation (thesis 3.3, 5.2.1).
+/// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
+/// links, do to each equation (thesis 3.3, 5.2.1).
 pub(crate) mod contact_forces {
-    /// Half the distance of differences [rad, m]: of order 4, so that rounding and what is left of the
-    /// Taylor series are both about 1e-13.
+    /// Half the distance of differences [rad, m]: of order 4, so that rounding and what is left of
+    /// the Taylor series are both about 1e-13.
     pub(crate) const DIFFERENCE: f64 = 1e-3;
 }
 
-/// `estimate/bounds.rs`: Masses and moments of inertia that a model's file writes as expressions: none may be negative.
+/// `estimate/bounds.rs`: Masses and moments of inertia that a model's file writes as expressions:
+/// none may be negative.
 pub(crate) mod bounds {
     /// The least share of its size that an entry keeps.
     pub(crate) const LEAST: f64 = 1e-3;
@@ -89,10 +91,11 @@ pub(crate) mod comparison {
     pub(crate) const APART: f64 = 3.0;
 }
 
-/// `estimate/consistent.rs`: Bodies that exist: the parameters nearest to an estimate with positive definite pseudo-inertias, and friction and rotor inertia that are not negative.
+/// `estimate/consistent.rs`: Bodies that exist: the parameters nearest to an estimate with
+/// positive definite pseudo-inertias, and friction and rotor inertia that are not negative.
 pub(crate) mod consistent {
-    /// What a unit of change of a body's coordinates costs, in squared standard errors of the estimate:
-    /// little, so that it decides only what the data leave open.
+    /// What a unit of change of a body's coordinates costs, in squared standard errors of the
+    /// estimate: little, so that it decides only what the data leave open.
     pub(crate) const STAY: f64 = 1e-8;
 
     /// Weights of what entries of bodies fall short of, one after the other until nothing does.
@@ -104,17 +107,18 @@ pub(crate) mod consistent {
     /// The least share of its value in the file that a positive number of it keeps.
     pub(crate) const LEAST_OF: f64 = 1e-6;
 
-    /// From so many standard errors on the search goes along the way from the model's values to the
-    /// estimate, in so many stages: where columns are products, what fits lies in valleys that are
-    /// narrow and bent, and each stage begins at the bottom of one.
+    /// From so many standard errors on the search goes along the way from the model's values to
+    /// the estimate, in so many stages: where columns are products, what fits lies in valleys that
+    /// are narrow and bent, and each stage begins at the bottom of one.
     pub(crate) const FAR: f64 = 2.0;
 }
 
-/// `estimate/contradiction.rs`: Logs that contradict the others: parameters of their own would explain what those of all do not.
+/// `estimate/contradiction.rs`: Logs that contradict the others: parameters of their own would
+/// explain what those of all do not.
 pub(crate) mod contradiction {
-    /// What own parameters explain must be this share of a joint's torque, as root of mean square, and
-    /// so many times what they leave, which noise may have made them follow; where parts of the log do
-    /// not say for how long that is alike, so many times,
+    /// What own parameters explain must be this share of a joint's torque, as root of mean square,
+    /// and so many times what they leave, which noise may have made them follow; where parts of
+    /// the log do not say for how long that is alike, so many times,
     pub(crate) const OF_TORQUE: f64 = 0.03;
 
     /// See [`OF_TORQUE`].
@@ -126,16 +130,17 @@ pub(crate) mod contradiction {
     /// and this many times what chance explains with as many parameters, in variance.
     pub(crate) const OF_CHANCE: f64 = 25.0;
 
-    /// and what noise of the positions makes of it, in variance: to follow that, parameters of a log's
-    /// own are biased. That noise is known to a few times, since steps of an encoder may beat with the
-    /// samples.
+    /// and what noise of the positions makes of it, in variance: to follow that, parameters of a
+    /// log's own are biased. That noise is known to a few times, since steps of an encoder may
+    /// beat with the samples.
     pub(crate) const OF_BEATS: f64 = 10.0;
 
     /// What a constant or a factor leaves of the squares of what it is told for, at most.
     pub(crate) const ALIKE: f64 = 0.25;
 }
 
-/// `estimate/errors.rs`: Standard errors that hold where residuals are alike from one sample to the next.
+/// `estimate/errors.rs`: Standard errors that hold where residuals are alike from one sample to
+/// the next.
 pub(crate) mod errors {
     /// Sums of scores with neighbours counted half say as much as so many times fewer that are
     /// independent: 1 + 2 (1/2)^2.
@@ -151,32 +156,35 @@ pub(crate) mod errors {
     pub(crate) const MOST_ALIKE: f64 = 0.8;
 }
 
-/// `estimate/exceeding.rs`: Joints of whose torque far more is left in a log for validation than anything explains.
+/// `estimate/exceeding.rs`: Joints of whose torque far more is left in a log for validation than
+/// anything explains.
 pub(crate) mod exceeding {
     /// What is left must be this share of a joint's torque, as root of mean square,
     pub(crate) const OF_TORQUE: f64 = 0.05;
 
-    /// so many times what all that is known explains, of which noise of the positions is known to a few
-    /// times, in variance,
+    /// so many times what all that is known explains, of which noise of the positions is known to
+    /// a few times, in variance,
     pub(crate) const MANY: f64 = 5.0;
 
     /// See [`MANY`].
     pub(crate) const OF_NOISE: f64 = 4.0;
 
-    /// and behind half the cutoff still so many times what that takes away of it, in variance: half of
-    /// white noise is left there, and of noise whose band ends at a tenth of the cutoff twelve times
-    /// what is taken.
+    /// and behind half the cutoff still so many times what that takes away of it, in variance:
+    /// half of white noise is left there, and of noise whose band ends at a tenth of the cutoff
+    /// twelve times what is taken.
     pub(crate) const OF_BAND: f64 = 25.0;
 }
 
-/// `estimate/half_cutoff.rs`: What changes with half the cutoff of the filter: more than chance where noise of the positions biases parameters in a way that it does not by itself.
+/// `estimate/half_cutoff.rs`: What changes with half the cutoff of the filter: more than chance
+/// where noise of the positions biases parameters in a way that it does not by itself.
 pub(crate) mod half_cutoff {
-    /// What a bias is, at most, of its change with half the cutoff: it grows with the 1.5th power of
-    /// the cutoff or faster, 1 / (1 - 2^-1.5).
+    /// What a bias is, at most, of its change with half the cutoff: it grows with the 1.5th power
+    /// of the cutoff or faster, 1 / (1 - 2^-1.5).
     pub(crate) const OF_CHANGE: f64 = 1.5;
 }
 
-/// `estimate/instruments.rs`: Instrumental variables: estimates that noise of the motion does not bias.
+/// `estimate/instruments.rs`: Instrumental variables: estimates that noise of the motion does not
+/// bias.
 pub(crate) mod instruments {
     /// The share of a joint's variance by which the positions of instruments differ, of those of
     /// another motion; and the least variance that says something, of the largest one.
@@ -191,18 +199,19 @@ pub(crate) mod least_squares {
     /// The change of phi, in standard errors, that robust weights which creep may make at last.
     pub(crate) const MOVES_LITTLE: f64 = 0.1;
 
-    /// Degrees of freedom of an error that is found from parts of logs, below which it says little: it
-    /// is at least what the filter's correlation makes.
+    /// Degrees of freedom of an error that is found from parts of logs, below which it says
+    /// little: it is at least what the filter's correlation makes.
     pub(crate) const FEWEST_DEGREES: f64 = 3.0;
 }
 
-/// `estimate/left_out.rs`: Rows that are left out: where a joint turns round or hardly moves, its friction is not what the sign of its rate says, and the filter smears that over its own time.
+/// `estimate/left_out.rs`: Rows that are left out: where a joint turns round or hardly moves, its
+/// friction is not what the sign of its rate says, and the filter smears that over its own time.
 pub(crate) mod left_out {
     /// Deviations of a rate's noise that are slow.
     pub(crate) const NOISE: f64 = 3.0;
 
-    /// The bias of friction, in its standard errors, from which on rows are left out: an interval of
-    /// 95 % that is off by so much holds in 92 %.
+    /// The bias of friction, in its standard errors, from which on rows are left out: an interval
+    /// of 95 % that is off by so much holds in 92 %.
     pub(crate) const BIAS: f64 = 0.5;
 
     /// The least share of its rows that a joint keeps.
@@ -216,19 +225,21 @@ pub(crate) mod left_over {
     pub(crate) const NO_NOISE: f64 = 0.5;
 }
 
-/// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual of each row.
+/// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual
+/// of each row.
 pub(crate) mod likelihood {
     /// The least share of the residual's variance that is taken for noise of the torque itself.
     pub(crate) const LEAST_TORQUE_SHARE: f64 = 0.05;
 }
 
-/// `estimate/report.rs`: What was found, in the parameters that are reported: values, errors, and which mean something.
+/// `estimate/report.rs`: What was found, in the parameters that are reported: values, errors, and
+/// which mean something.
 pub(crate) mod report {
     /// How much of a parameter may lie in directions that are not excited.
     pub(crate) const DEAD_SHARE: f64 = 1e-6;
 
-    /// The bias from noise of the positions, in standard errors, from which on it is said: an interval
-    /// of 95 % that is off by so much holds in 92 %.
+    /// The bias from noise of the positions, in standard errors, from which on it is said: an
+    /// interval of 95 % that is off by so much holds in 92 %.
     pub(crate) const BIASING: f64 = 0.5;
 
     /// Deviations of a change that are hardly chance: a lower filter is tried.
@@ -240,16 +251,16 @@ pub(crate) mod report {
 
 /// `estimate/rests.rs`: Rests of joints that move in between: their rows count beside a constant.
 pub(crate) mod rests {
-    /// How much the torque of a joint at rest must be like the load that the model's own values make of
-    /// the motion of the others, as a correlation.
+    /// How much the torque of a joint at rest must be like the load that the model's own values
+    /// make of the motion of the others, as a correlation.
     pub(crate) const ALIKE: f64 = 0.7;
 
-    /// The variance of what is left at rest over that of what an estimate from motion alone leaves of
-    /// motion, above which something else than the motor holds the joint.
+    /// The variance of what is left at rest over that of what an estimate from motion alone leaves
+    /// of motion, above which something else than the motor holds the joint.
     pub(crate) const HELD: f64 = 4.0;
 
-    /// What stiction holds is a share of Coulomb friction; of less an estimate that is not the last
-    /// one, with more noise of positions, may be wrong.
+    /// What stiction holds is a share of Coulomb friction; of less an estimate that is not the
+    /// last one, with more noise of positions, may be wrong.
     pub(crate) const OF_FRICTION: f64 = 0.1;
 
     /// Of rests in which something holds the joint those are left out first of which at least this
@@ -257,37 +268,40 @@ pub(crate) mod rests {
     pub(crate) const WORST: f64 = 0.25;
 }
 
-/// `estimate/robust.rs`: Weights that outliers lose (iteratively reweighted least squares; Huber 1964, Beaton and Tukey 1974).
+/// `estimate/robust.rs`: Weights that outliers lose (iteratively reweighted least squares; Huber
+/// 1964, Beaton and Tukey 1974).
 pub(crate) mod robust {
     /// The least mean of psi' over that of the weights: most residuals count at all.
     pub(crate) const LEAST_SLOPE: f64 = 0.1;
 
-    /// Deviations beyond which a row counts less (Huber), or not at all (bisquare): 95 % of the efficiency
-    /// of least squares with normal noise (Holland and Welsch 1977).
+    /// Deviations beyond which a row counts less (Huber), or not at all (bisquare): 95 % of the
+    /// efficiency of least squares with normal noise (Holland and Welsch 1977).
     pub(crate) const HUBER: f64 = 1.345;
 
     /// See [`HUBER`].
     pub(crate) const BISQUARE: f64 = 4.685;
 }
 
-/// `estimate/solve.rs`: Least squares of condensed rows, and which directions of phi they say nothing about.
+/// `estimate/solve.rs`: Least squares of condensed rows, and which directions of phi they say
+/// nothing about.
 pub(crate) mod solve {
-    /// A direction is not excited if its singular value, of columns scaled to length 1, is below this
-    /// share of the largest.
+    /// A direction is not excited if its singular value, of columns scaled to length 1, is below
+    /// this share of the largest.
     pub(crate) const DEAD: f64 = 1e-9;
 
-    /// Rows count no more than this, so that squares of what is weighted are numbers: torques of 1e-160
-    /// have other squares than they can have.
+    /// Rows count no more than this, so that squares of what is weighted are numbers: torques of
+    /// 1e-160 have other squares than they can have.
     pub(crate) const MOST_WEIGHT: f64 = 1e100;
 }
 
-/// `estimate/unexplained.rs`: Joints whose torque an estimate does not explain, in all logs, in one of them, or while a joint rests.
+/// `estimate/unexplained.rs`: Joints whose torque an estimate does not explain, in all logs, in
+/// one of them, or while a joint rests.
 pub(crate) mod unexplained {
     /// The share of a joint's torque, as root of mean square, that must be left.
     pub(crate) const LEFT: f64 = 0.9;
 
-    /// The share that must be left where it is no noise: noise is another one after half a period of
-    /// the filter's cutoff, and what is left is still correlated with itself by so much.
+    /// The share that must be left where it is no noise: noise is another one after half a period
+    /// of the filter's cutoff, and what is left is still correlated with itself by so much.
     pub(crate) const LEFT_ALIKE: f64 = 0.3;
 
     /// See [`LEFT_ALIKE`].
@@ -308,20 +322,22 @@ pub(crate) mod unexplained {
     pub(crate) const OF_NOISE: f64 = 2.0;
 }
 
-/// `estimate/weights.rs`: Weights of rows by the noise of each joint in each log, which is that of its residuals.
+/// `estimate/weights.rs`: Weights of rows by the noise of each joint in each log, which is that of
+/// its residuals.
 pub(crate) mod weights {
     /// Change of phi, in standard errors, below which weights have settled.
     pub(crate) const SETTLED: f64 = 1e-3;
 
-    /// So many independent residuals of a joint are taken from the other logs: few of its own may be
-    /// small by chance.
+    /// So many independent residuals of a joint are taken from the other logs: few of its own may
+    /// be small by chance.
     pub(crate) const SHARED: f64 = 4.0;
 
     /// The least share of its independent residuals that a log keeps.
     pub(crate) const LEAST_FREE: f64 = 1e-3;
 }
 
-/// `estimate/widening.rs`: How many rows near reversals are left out: more and more, until friction does not change.
+/// `estimate/widening.rs`: How many rows near reversals are left out: more and more, until
+/// friction does not change.
 pub(crate) mod widening {
     /// Standard errors of a change that are no chance.
     pub(crate) const SURE: f64 = 2.0;
@@ -332,7 +348,8 @@ pub(crate) mod widening {
 
 /// `excite/mod.rs`: Trajectories that excite what is to be identified (thesis 3.2.3).
 pub(crate) mod excite {
-    /// Sharpness of the limits of the two solutions, and the share of the evaluations of the first.
+    /// Sharpness of the limits of the two solutions, and the share of the evaluations of the
+    /// first.
     pub(crate) const SHARPNESS: [f64; 2] = [40.0, 200.0];
 
     /// See [`SHARPNESS`].
@@ -341,12 +358,13 @@ pub(crate) mod excite {
     /// Share of each limit that stays unused on the solver's grid.
     pub(crate) const RESERVE: f64 = 0.004;
 
-    /// The use of limits that a motion is made smaller to: what remains is for what happens between
-    /// the samples of a check.
+    /// The use of limits that a motion is made smaller to: what remains is for what happens
+    /// between the samples of a check.
     pub(crate) const SAFE: f64 = 1.0 - 1e-4;
 }
 
-/// `excite/objective.rs`: How well a motion excites: condition number and determinant of the stacked regressor, and their derivatives by its entries.
+/// `excite/objective.rs`: How well a motion excites: condition number and determinant of the
+/// stacked regressor, and their derivatives by its entries.
 pub(crate) mod objective {
     /// ln of what counts as infinite: 1e26.
     pub(crate) const LARGEST_LOG: f64 = 60.0;
@@ -358,47 +376,52 @@ pub(crate) mod options {
     pub(crate) const DURATIONS_S: std::ops::RangeInclusive<f64> = 0.01..=1e4;
 }
 
-/// `excite/problem.rs`: The optimisation problem: objective and limits as functions of the coordinates of all joints that move, with their derivatives.
+/// `excite/problem.rs`: The optimisation problem: objective and limits as functions of the
+/// coordinates of all joints that move, with their derivatives.
 pub(crate) mod problem {
     /// Length by which a missing height is divided \[m\].
     pub(crate) const HEIGHT_M: f64 = 0.1;
 }
 
-/// `excite/stack.rs`: From motion to the stacked regressor W, and back: from derivatives by the entries of W to derivatives by the motion.
+/// `excite/stack.rs`: From motion to the stacked regressor W, and back: from derivatives by the
+/// entries of W to derivatives by the motion.
 pub(crate) mod stack {
     /// Width of a smooth sign, of the largest speed of the joint.
     pub(crate) const SIGN_WIDTH: f64 = 0.02;
 }
 
-/// `identification.rs`: All that identification says: data alone, for tables, files and reports to show.
+/// `identification.rs`: All that identification says: data alone, for tables, files and reports to
+/// show.
 pub(crate) mod identification {
     /// Periods of the filter's cutoff below which logs are short.
     pub(crate) const SHORT: f64 = 80.0;
 
-    /// The share of a joint's torque in a log for validation that noise of its positions makes, from
-    /// which on it needs a lower filter: more would hide a contradiction, or pass for one.
+    /// The share of a joint's torque in a log for validation that noise of its positions makes,
+    /// from which on it needs a lower filter: more would hide a contradiction, or pass for one.
     pub(crate) const NOISY: f64 = 0.01;
 
-    /// The share of a torque from which on it is said what the filter makes of a motion that is too
-    /// fast for it, if it is also this share of what is left.
+    /// The share of a torque from which on it is said what the filter makes of a motion that is
+    /// too fast for it, if it is also this share of what is left.
     pub(crate) const SMEARED: [f64; 2] = [0.01, 0.3];
 }
 
 /// `idle.rs`: Motors that do not carry their joints: a brake holds them, or stiction.
 pub(crate) mod idle {
-    /// The deviation of a torque over that of the load, below which it does not follow it, if it is
-    /// less like it than this: a torque in another unit follows all the same.
+    /// The deviation of a torque over that of the load, below which it does not follow it, if it
+    /// is less like it than this: a torque in another unit follows all the same.
     pub(crate) const FOLLOWS: f64 = 0.1;
 
     /// See [`FOLLOWS`].
     pub(crate) const ALIKE: f64 = 0.7;
 
-    /// The share of the squares of a torque below which its variance is rounding: a constant is like
-    /// nothing.
+    /// The share of the squares of a torque below which its variance is rounding: a constant is
+    /// like nothing.
     pub(crate) const ROUNDING: f64 = 1e-9;
 }
 
-/// `knowledge.rs`: What is known of the standard parameters theta0, from any source, as linear equations with errors: A theta0 = b + e, each row divided by the standard deviation of its error.
+/// `knowledge.rs`: What is known of the standard parameters theta0, from any source, as linear
+/// equations with errors: A theta0 = b + e, each row divided by the standard deviation of its
+/// error.
 pub(crate) mod knowledge {
     /// Parts of a row space below this, of the largest, are rounding.
     pub(crate) const RANK_TOLERANCE: f64 = 1e-10;
@@ -412,7 +435,8 @@ pub(crate) mod lacking {
     /// The share of a joint's torque from which on it is said.
     pub(crate) const SAID: f64 = 0.005;
 
-    /// What is left with the model's own values, over the torques, from which on the robot is another.
+    /// What is left with the model's own values, over the torques, from which on the robot is
+    /// another.
     pub(crate) const OTHER: f64 = 10.0;
 }
 
@@ -423,17 +447,20 @@ pub(crate) mod no_bodies {
     pub(crate) const FAR: f64 = 20.0;
 }
 
-/// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias parameters by it.
+/// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias
+/// parameters by it.
 pub(crate) mod noisy_logs {
     /// The share of noise in what the motion shows of a direction of the parameters, from which on
     /// nothing is believed.
     pub(crate) const MOST: f64 = 0.5;
 
-    /// What a log makes of a bias, of its part if all made the same, to be asked for a lower filter.
+    /// What a log makes of a bias, of its part if all made the same, to be asked for a lower
+    /// filter.
     pub(crate) const SHARE: f64 = 0.99;
 }
 
-/// `statics.rs`: Static identification (thesis 3.2.1): what follows from weighings and from gravity torques of held postures, without any motion.
+/// `statics.rs`: Static identification (thesis 3.2.1): what follows from weighings and from
+/// gravity torques of held postures, without any motion.
 pub(crate) mod statics {
     /// Factors of torques and of angles that are tried.
     pub(crate) const OF_TORQUES: [f64; 7] = [-1.0, 1e-3, 1e-2, 0.1, 10.0, 100.0, 1e3];
@@ -442,8 +469,8 @@ pub(crate) mod statics {
     pub(crate) const OF_ANGLES: [f64; 3] =
         [-1.0, std::f64::consts::PI / 180.0, 180.0 / std::f64::consts::PI];
 
-    /// What the model's own values leave of the torques must be more than this share, and fall to this
-    /// share of it and to less than this.
+    /// What the model's own values leave of the torques must be more than this share, and fall to
+    /// this share of it and to less than this.
     pub(crate) const FAR: f64 = 0.2;
 
     /// See [`FAR`].
@@ -456,7 +483,9 @@ pub(crate) mod statics {
     pub(crate) const OTHER_UNIT: f64 = 100.0;
 }
 
-/// `two_stage/readings.rs`: Whether the columns of a motor behind a spring are what they are taken for: its angle against that of the joint times the gear ratio, its torque against the spring of the model.
+/// `two_stage/readings.rs`: Whether the columns of a motor behind a spring are what they are taken
+/// for: its angle against that of the joint times the gear ratio, its torque against the spring of
+/// the model.
 pub(crate) mod readings {
     /// How far a motor may turn, of how far gear and joint say: springs are stiff.
     pub(crate) const TURNS: [f64; 2] = [0.5, 2.0];

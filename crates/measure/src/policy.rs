@@ -1,6 +1,8 @@
-//! The numbers that decide what is said of logs, each with its unit and where it is from: those of each module.
+//! The numbers that decide what is said of logs, each with its unit and where it is from: those of
+//! each module.
 
-/// `condition/derivatives.rs`: Whether logged rates and accelerations are the derivatives of the positions.
+/// `condition/derivatives.rs`: Whether logged rates and accelerations are the derivatives of the
+/// positions.
 pub(crate) mod derivatives {
     /// By how much a factor may differ from 1,
     pub(crate) const FACTOR: f64 = 0.1;
@@ -8,11 +10,13 @@ pub(crate) mod derivatives {
     /// and by which share of its size what a delay makes of a column.
     pub(crate) const DELAY: f64 = 0.1;
 
-    /// Noise of positions that is a larger share of a derivative's variance leaves nothing to compare.
+    /// Noise of positions that is a larger share of a derivative's variance leaves nothing to
+    /// compare.
     pub(crate) const NOISE: f64 = 0.1;
 }
 
-/// `condition/laps.rs`: Motion that repeats: its period, the mean of its laps, and the noise that laps show.
+/// `condition/laps.rs`: Motion that repeats: its period, the mean of its laps, and the noise that
+/// laps show.
 pub(crate) mod laps {
     /// The share of a signal's variance by which laps may differ.
     pub(crate) const REPEATS: f64 = 0.02;
@@ -29,7 +33,8 @@ pub(crate) mod laps {
     /// Joints whose variance is a smaller share of the largest one do not say whether laps repeat.
     pub(crate) const MOVES: f64 = 1e-4;
 
-    /// The misfit of laps, over that of unrelated ones, above which a motion has left where it was.
+    /// The misfit of laps, over that of unrelated ones, above which a motion has left where it
+    /// was.
     pub(crate) const LEFT_BY_LAP: f64 = 0.2;
 
     /// The share of a log that is compared with itself, at most.
@@ -68,13 +73,14 @@ pub(crate) mod overlap {
     pub(crate) const MOVES: f64 = 0.1;
 }
 
-/// `condition/reversals.rs`: Where the sign of a joint's rate says little: near its reversals, and while it hardly moves; and functions of a rate that pass the filter as the torque does.
+/// `condition/reversals.rs`: Where the sign of a joint's rate says little: near its reversals, and
+/// while it hardly moves; and functions of a rate that pass the filter as the torque does.
 pub(crate) mod reversals {
     /// Samples that are left within which a decimated one has nearly all of its weight.
     pub(crate) const WEIGHED: f64 = 2.5;
 
-    /// Deviations of a rate's noise below which its sign is not known, and steps of its encoder in a
-    /// period of the filter's cutoff.
+    /// Deviations of a rate's noise below which its sign is not known, and steps of its encoder in
+    /// a period of the filter's cutoff.
     pub(crate) const NOISE: f64 = 3.0;
 
     /// See [`NOISE`].
@@ -84,13 +90,14 @@ pub(crate) mod reversals {
     pub(crate) const STILL: f64 = 1e-4;
 }
 
-/// `log/check.rs`: Whether a log says what it seems to say: units, swapped joints, signals that do not move.
+/// `log/check.rs`: Whether a log says what it seems to say: units, swapped joints, signals that do
+/// not move.
 pub(crate) mod check {
     /// A step of the time from which on it hardly counts seconds.
     pub(crate) const SLOWEST_STEP_S: f64 = 0.1;
 
-    /// A step of the time below which it hardly counts seconds: a millisecond in days is 1e-8, and no
-    /// loop of a drive has a rate of a megahertz.
+    /// A step of the time below which it hardly counts seconds: a millisecond in days is 1e-8, and
+    /// no loop of a drive has a rate of a megahertz.
     pub(crate) const FASTEST_STEP_S: f64 = 1e-6;
 
     /// Seconds in an hour.
@@ -111,18 +118,19 @@ pub(crate) mod check {
     /// Two signals that are not one.
     pub(crate) const OTHER: f64 = 0.7;
 
-    /// The share of its samples in which a torque has its extreme value to be told as one that saturates.
+    /// The share of its samples in which a torque has its extreme value to be told as one that
+    /// saturates.
     pub(crate) const SATURATED: f64 = 2e-3;
 
-    /// By how much a difference of positions may be off whole steps of an encoder, in steps, and of so
-    /// many steps at most: digits of the log make more of more.
+    /// By how much a difference of positions may be off whole steps of an encoder, in steps, and
+    /// of so many steps at most: digits of the log make more of more.
     pub(crate) const WHOLE: f64 = 0.02;
 
     /// See [`WHOLE`].
     pub(crate) const MOST_STEPS: f64 = 1e5;
 
-    /// Steps of an encoder are larger than rounding of the log by this much, and so many differences are
-    /// multiples of them.
+    /// Steps of an encoder are larger than rounding of the log by this much, and so many
+    /// differences are multiples of them.
     pub(crate) const ABOVE_ROUNDING: f64 = 20.0;
 
     /// See [`ABOVE_ROUNDING`].
@@ -137,8 +145,8 @@ pub(crate) mod fault {
 
 /// `log/jumps.rs`: Positions that jump: slips of an encoder, laps that were joined end to end.
 pub(crate) mod jumps {
-    /// The least jump, over the range of the position, over its smallest step, and over the steps of
-    /// the samples about it.
+    /// The least jump, over the range of the position, over its smallest step, and over the steps
+    /// of the samples about it.
     pub(crate) const OF_RANGE: f64 = 2e-3;
 
     /// See [`OF_RANGE`].
@@ -148,7 +156,8 @@ pub(crate) mod jumps {
     pub(crate) const OF_NEIGHBOURS: f64 = 5.0;
 }
 
-/// `log/mod.rs`: Logs of measurements: read, mapped to our columns, checked, brought to equal distances.
+/// `log/mod.rs`: Logs of measurements: read, mapped to our columns, checked, brought to equal
+/// distances.
 pub(crate) mod log {
     /// What no position, rate, torque or force of a robot reaches, in its SI unit.
     pub(crate) const LARGEST: f64 = 1e12;
@@ -157,7 +166,8 @@ pub(crate) mod log {
     pub(crate) const LARGEST_TIME: f64 = 1e20;
 }
 
-/// `log/repair.rs`: Samples at equal distances: repeated rows dropped, single missing samples filled in.
+/// `log/repair.rs`: Samples at equal distances: repeated rows dropped, single missing samples
+/// filled in.
 pub(crate) mod repair {
     /// The share of samples that may be missing.
     pub(crate) const MAX_MISSING: f64 = 0.02;

@@ -1,6 +1,7 @@
 //! What a model lacks.
 
 mod alias;
+mod columns;
 mod elastic;
 mod held;
 mod laws;

@@ -1,0 +1,48 @@
+//! Columns that are other ones than they are taken for, asked for where the model as it is given is
+//! nothing like the torques of some joint: an effect that stood for that would be named wrongly.
+
+use super::data::Data;
+use super::gap::Gap;
+use super::signals::Signals;
+use crate::policy::columns::AT_REST;
+use denavit_evidence::policy::NOTHING_LIKE;
+use denavit_identify::doubt::{MisreadColumns, misread_columns};
+use denavit_measure::condition::Conditioned;
+
+/// What columns of the logs are surely misread, of those of whose torque a residual is most.
+pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> {
+    let gap = Gap::new(data, residual);
+    if gap.per_joint.iter().flatten().all(|share| *share < NOTHING_LIKE) {
+        return Vec::new();
+    }
+    let logs: Vec<Conditioned> = data.signals.iter().map(conditioned).collect();
+    let logs: Vec<&Conditioned> = logs.iter().collect();
+    let mut found = misread_columns(data.nominal.model, &logs, None);
+    found.retain(|one| one.is_sure);
+    found
+}
+
+/// The rows of a log, without what it has beside motion and torques.
+fn conditioned(signals: &Signals) -> Conditioned {
+    let rows = |all: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        all.iter().map(|one| signals.rows_of(one)).collect()
+    };
+    let q = rows(&signals.q);
+    let rests = |q: &Vec<f64>| {
+        let [low, high] = [f64::min, f64::max].map(|of| q.iter().copied().fold(q[0], of));
+        high - low < AT_REST
+    };
+    Conditioned {
+        file: signals.file.clone(),
+        start_s: signals.t[0],
+        step_s: signals.row_step_s(),
+        rates: Some([rows(&signals.qd), rows(&signals.qdd)]),
+        torque: signals.torque.clone(),
+        range: 0..q[0].len(),
+        decimation: 1,
+        position_noise: vec![0.0; q.len()],
+        resting: q.iter().map(rests).collect(),
+        q,
+        ..Conditioned::default()
+    }
+}

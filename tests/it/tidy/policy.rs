@@ -19,7 +19,7 @@ fn entries(source: &str) -> Vec<Entry> {
             text.push(doc.to_owned());
             continue;
         }
-        let declared = ["pub const ", "pub(crate) const "];
+        let declared = ["pub const ", "pub(crate) const ", "pub(super) const "];
         if let Some(rest) = declared.iter().find_map(|start| line.strip_prefix(start)) {
             open = format!("{rest} ");
         } else if !open.is_empty() {
@@ -60,8 +60,11 @@ fn page() -> String {
          --test it policy` writes it anew).\n",
     );
     for (package, what) in TABLES {
-        let path = root().join(format!("crates/{package}/src/policy.rs"));
-        let entries = entries(&fs::read_to_string(path).unwrap());
+        let mut files = rust_files(&format!("crates/{package}/src"));
+        files.retain(|path| path.ends_with("policy.rs"));
+        files.sort();
+        let read = |path: &std::path::PathBuf| entries(&fs::read_to_string(path).unwrap());
+        let entries: Vec<Entry> = files.iter().flat_map(read).collect();
         assert!(entries.len() > 20, "the table of {package} has {} entries", entries.len());
         page += &format!("\n## {what} (`crates/{package}`)\n");
         for Entry { name, value, text } in entries {

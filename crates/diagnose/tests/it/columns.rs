@@ -1,4 +1,5 @@
-//! Columns of a log that are other ones than they are taken for: said, and no effect in their place.
+//! Columns of a log that are other ones than they are taken for: said, and no effect in their
+//! place.
 
 use super::search::{puma, puma_log};
 use denavit_diagnose::{Diagnosis, Request, SearchOptions, Uncertainty, Verdict, diagnose};

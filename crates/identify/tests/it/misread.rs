@@ -168,8 +168,8 @@ fn misread_columns_are_told() {
                 };
                 is_same && (*is_sure || is_by_degrees(how) || matches!(how, Late(_)))
             });
-            // the last body turns with the zero of its joint, which values may tell all the same, and all
-            // bodies with that of a vertical axis
+            // the last body turns with the zero of its joint, which values may tell all the same,
+            // and all bodies with that of a vertical axis
             let is_hidden = match how {
                 Zero(0, _) => name != "planar_2r",
                 Zero(1, _) => name == "planar_2r",

@@ -1,8 +1,8 @@
-//! Mistakes of columns that differ by a number: how late a signal is, how far off a zero, a constant
-//! or a gain.
+//! Mistakes of columns that differ by a number: how late a signal is, how far off a zero, a
+//! constant or a gain.
 
+use super::super::policy;
 use super::misreading::Misreading;
-use crate::policy;
 
 /// A mistake whose size is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

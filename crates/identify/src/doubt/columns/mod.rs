@@ -20,8 +20,8 @@ mod window;
 pub use misreading::{ExchangedColumns, Misreading};
 pub use weigh::GivenValues;
 
+use super::super::policy;
 use crate::estimate::noise_of_positions;
-use crate::policy;
 use denavit_evidence::policy::NOTHING_LIKE;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;

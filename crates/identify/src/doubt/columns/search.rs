@@ -1,12 +1,12 @@
 //! The search for the reading of columns that explains logs best.
 
+use super::super::policy;
 use super::line::Line;
 use super::misreading::Misreading;
 use super::reading::{Reading, hypotheses};
 use super::sample::Sample;
 use super::weigh::{Beliefs, Believed, Noise, Shares, Trust, together};
 use crate::estimate::noise_of_positions;
-use crate::policy;
 use denavit_evidence::policy::NAMED;
 use denavit_measure::condition::Conditioned;
 
@@ -147,8 +147,8 @@ impl Search<'_> {
         both.any(|(left, noise)| left.is_some_and(|left| *noise > policy::NOISE_OF_LEFT * left))
     }
 
-    /// Lines that begin at a reading: delays, unless something is late already, constants and gains.
-    /// Noise of the positions makes parameters smaller, which gains and delays resemble.
+    /// Lines that begin at a reading: delays, unless something is late already, constants and
+    /// gains. Noise of the positions makes parameters smaller, which gains and delays resemble.
     fn lines(&self, reading: &Reading, is_noisy: bool) -> Vec<Line> {
         let joints = &self.sample.model.joints;
         let real = (0..joints.len()).filter(|&joint| !joints[joint].is_base);

@@ -1,8 +1,8 @@
 //! What the rows of a reading say: the evidence of a model whose values are known more or less.
 
+use super::super::policy;
 use super::sample::JointRows;
 use crate::estimate::{is_of_joints, nominal_values};
-use crate::policy;
 use denavit_codegen::model::JointEntry;
 use denavit_evidence::policy::{NOISE_LEVEL, SIZE};
 use denavit_evidence::{Condensed, Told};

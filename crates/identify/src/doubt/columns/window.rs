@@ -1,7 +1,7 @@
 //! Samples of a log under a reading of its columns.
 
+use super::super::policy::SIGNED as LEAST;
 use super::reading::Source;
-use crate::policy::SIGNED as LEAST;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::CoulombLaw;
 use std::ops::Range;

@@ -20,7 +20,7 @@ mod window;
 pub use misreading::{ExchangedColumns, Misreading};
 pub use weigh::GivenValues;
 
-use super::super::policy;
+use super::policy;
 use crate::estimate::noise_of_positions;
 use denavit_evidence::policy::NOTHING_LIKE;
 use denavit_measure::condition::Conditioned;

@@ -9,7 +9,7 @@ use denavit_evidence::policy::NOTHING_LIKE;
 use denavit_identify::doubt::{MisreadColumns, misread_columns};
 use denavit_measure::condition::Conditioned;
 
-/// What columns of the logs are surely misread, of those of whose torque a residual is most.
+/// The columns that are surely misread; none where the residual is small at every joint.
 pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> {
     let gap = Gap::new(data, residual);
     if gap.per_joint.iter().flatten().all(|share| *share < NOTHING_LIKE) {
@@ -22,7 +22,7 @@ pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> 
     found
 }
 
-/// The rows of a log, without what it has beside motion and torques.
+/// The motion and torques of a log's rows, as the search for misread columns takes them.
 fn conditioned(signals: &Signals) -> Conditioned {
     let rows = |all: &[Vec<f64>]| -> Vec<Vec<f64>> {
         all.iter().map(|one| signals.rows_of(one)).collect()

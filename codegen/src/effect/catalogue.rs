@@ -41,6 +41,7 @@ pub const SHIPPED: &[(&str, &str)] = &shipped![
     "joint_elasticity",
     "joint_zero",
     "link_parameters",
+    "load_dependent_friction",
     "load_friction",
     "load_viscous",
     "lugre",

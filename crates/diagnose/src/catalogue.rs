@@ -4,8 +4,9 @@ use super::candidate::Candidate;
 use super::drive_law::DriveLaw;
 use super::elastic::SeriesSpring;
 use super::elastic_law::ElasticLaw;
-use super::joint_law::{DelayLaw, DemandLaw, JointLaw, ReadingLaw, RobotLaw, SpringLaw};
+use super::joint_law::{DelayLaw, DemandLaw, JointLaw, RobotLaw, SpringLaw};
 use super::law::Law;
+use super::reading_law::ReadingLaw;
 use denavit_codegen::effect::{
     Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, with_term,
 };
@@ -104,7 +105,7 @@ pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<
             Box::new(DelayLaw { law: JointLaw { law, joint, other } })
         }
         None | Some(Channel::Torque) => Box::new(JointLaw { law, joint, other }),
-        Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw { law, joint }),
+        Some(Channel::Position | Channel::Rate) => Box::new(ReadingLaw::new(law, joint)),
     }
 }
 

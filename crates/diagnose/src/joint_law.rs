@@ -2,10 +2,8 @@
 
 use super::floor::rms;
 use super::law::{Law, Motion, Response};
-use super::rows::PerJoint;
-use super::signals::Signals;
-use crate::policy::joint_law::{ALL_GIVEN, DIFFERENCE, OF_NOISE};
-use denavit_codegen::effect::{Channel, SpringSide};
+use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
+use denavit_codegen::effect::SpringSide;
 use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 
 /// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
@@ -19,7 +17,11 @@ pub(super) struct JointLaw {
 }
 
 /// The samples of a joint in a motion: of its drive, which may be before a spring.
-fn samples<'m>(motion: &Motion<'m>, joint: usize, other: Option<usize>) -> JointSamples<'m> {
+pub(super) fn samples<'m>(
+    motion: &Motion<'m>,
+    joint: usize,
+    other: Option<usize>,
+) -> JointSamples<'m> {
     let signals = motion.signals;
     let [qd, qdd] = signals.of_drive(joint);
     let mut samples = JointSamples {
@@ -231,67 +233,5 @@ impl Law for RobotLaw {
             }
         }
         Response { equations: (0..torque.len()).collect(), torque, gradient }
-    }
-}
-
-/// An effect that stands between a position or rate and its log: the model was given what is
-/// logged, and gives other torques for what is true.
-pub(super) struct ReadingLaw {
-    /// The law.
-    pub(super) law: EffectLaw,
-    /// Its joint.
-    pub(super) joint: usize,
-}
-
-impl ReadingLaw {
-    /// What the torques of the true motion have more than those of the logged one.
-    fn torques(&self, motion: &Motion<'_>, values: &[f64]) -> PerJoint {
-        let (joint, logged) = (self.joint, motion.signals);
-        let samples = samples(motion, joint, None);
-        let truth = self.law.corrected(&samples, values);
-        let mut signals: Signals = logged.clone();
-        if self.law.is_read_at_drive() && logged.motor[joint].is_none() {
-            let [q, qd, qdd] = [&logged.q, &logged.qd, &logged.qdd].map(|all| all[joint].clone());
-            signals.motor[joint] = Some([q, qd, qdd]);
-        }
-        match self.law.channel() {
-            Some(Channel::Position) => signals.move_joint(joint, &truth),
-            _ => signals.qd[joint] = truth,
-        }
-        let mut torques = motion.torques_of(&signals);
-        for (torque, own) in torques.iter_mut().flatten().zip(motion.total.iter().flatten()) {
-            *torque -= own;
-        }
-        torques
-    }
-}
-
-impl Law for ReadingLaw {
-    fn parameters(&self) -> &[LawParameter] {
-        &self.law.parameters
-    }
-
-    fn follows_accelerations(&self) -> bool {
-        true
-    }
-
-    fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
-        let torque = self.torques(&motion, values);
-        let by = |place: usize| -> PerJoint {
-            let sizes = self.law.parameters[place].start.iter().map(|start| start.abs());
-            let size = sizes.fold(values[place].abs(), f64::max);
-            let step = DIFFERENCE * if size > 0.0 { size } else { 1.0 };
-            let mut moved = values.to_vec();
-            moved[place] += step;
-            let slope = |(a, b): (&f64, &f64)| (a - b) / step;
-            let of_joint =
-                |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(slope).collect::<Vec<f64>>();
-            self.torques(&motion, &moved).iter().zip(&torque).map(of_joint).collect()
-        };
-        Response {
-            equations: (0..torque.len()).collect(),
-            gradient: (0..values.len()).map(by).collect(),
-            torque,
-        }
     }
 }

@@ -37,6 +37,7 @@ mod leftover;
 mod nominal;
 mod policy;
 mod problem;
+mod reading_law;
 mod regime;
 mod rows;
 mod search;

@@ -267,13 +267,9 @@ impl<'a> Search<'a> {
                 let last = one.parts.len() - 1;
                 one.parts[place..=last].rotate_right(1);
             }
-            let better = all.iter().find(|one| self.is_worth(&rest, one, place));
-            let is_better = better.is_some_and(|one| {
-                one.posterior > now.posterior && !self.is_plainer(&now, one, place)
-            });
-            if let Some(better) = better.filter(|_| is_better && exchanges < MOST_EXCHANGES) {
-                let next = self.plainest(better, place, &all).clone();
-                now = self.weighed(next.parts.clone(), Some(&next), policy::ROUNDS[1]);
+            let better = self.better(&now, (&rest, place), &all);
+            if let Some(better) = better.filter(|_| exchanges < MOST_EXCHANGES) {
+                now = self.weighed(better.parts.clone(), Some(better), policy::ROUNDS[1]);
                 exchanges += 1;
                 (rivals, place) = (Vec::new(), 0);
                 continue;
@@ -297,6 +293,22 @@ impl<'a> Search<'a> {
             }
         }
         (now, rivals)
+    }
+
+    /// What is better in a place than what is there: of all hypotheses, and the present one, the
+    /// plainest that does nearly as well as the best. Held against the best alone, a plain name
+    /// stayed although another plain one was better.
+    fn better<'h>(
+        &self,
+        now: &'h Hypothesis,
+        (rest, place): (&Hypothesis, usize),
+        all: &'h [Hypothesis],
+    ) -> Option<&'h Hypothesis> {
+        let best = all.iter().find(|one| self.is_worth(rest, one, place))?;
+        let best = if best.posterior > now.posterior { best } else { now };
+        let plain = all.iter().chain([now]).filter(|one| self.is_plainer(one, best, place));
+        let plainest = plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best);
+        (plainest.candidates() != now.candidates()).then_some(plainest)
     }
 
     /// One effect in place of two that act at one place, if that is more likely.

@@ -1,10 +1,10 @@
 //! Arrays of numpy as arguments, without copies of those that hold doubles.
 
 use crate::failure::{Failure, Wrong};
-use denavit_plants::Samples;
+use denavit::plants::Samples;
+use numpy::PyUntypedArrayMethods;
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
-use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,9 +61,8 @@ impl<'py> Given<'py> {
         }
         let (name, shape) = (self.name, self.array.shape());
         let cause = format!("`{name}` has the shape {}", shown(shape));
-        let hint = format!(
-            "{of} takes ({entries},) for one sample, or (samples, {entries}) for many",
-        );
+        let hint =
+            format!("{of} takes ({entries},) for one sample, or (samples, {entries}) for many",);
         Err(Failure::argument(Wrong::new(cause).hint(hint)).into())
     }
 
@@ -92,13 +91,9 @@ impl<'py> Given<'py> {
         let view = many.into_dimensionality::<numpy::ndarray::Ix2>().ok().filter(|_| fits);
         let is_repeated = self.samples() != samples;
         match view {
-            Some(view) => Ok(Rows {
-                view,
-                samples,
-                entries,
-                is_repeated,
-                has_others: AtomicBool::new(false),
-            }),
+            Some(view) => {
+                Ok(Rows { view, samples, entries, is_repeated, has_others: AtomicBool::new(false) })
+            }
             None => {
                 let cause = format!("`{}` has {} samples", self.name, self.samples());
                 let hint = format!("others have {samples}; one vector stands for all samples");
@@ -169,7 +164,7 @@ impl Samples for Rows<'_> {
             match rows.as_slice() {
                 Some(rows) => column.copy_from_slice(&rows[first..first + column.len()]),
                 None => {
-                    let rows = rows.slice_move(numpy::ndarray::s![first..first + column.len()]);
+                    let rows = rows.split_at(Axis(0), first).1;
                     for (own, value) in column.iter_mut().zip(rows) {
                         *own = *value;
                     }

@@ -1,7 +1,6 @@
 //! What is wrong, as exceptions of the package: classes of `denavit.errors` with the fields
 //! `file`, `line`, `column`, `cause` and `hint`.
 
-use denavit_codegen::model::{Explained, FileError};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -12,8 +11,8 @@ use pyo3::types::PyModule;
 pub(crate) struct Wrong {
     /// The file, where one is to blame.
     pub(crate) file: Option<String>,
-    /// Line and column, from 1.
-    pub(crate) place: Option<(usize, usize)>,
+    /// Line and perhaps column, from 1.
+    pub(crate) place: Option<(usize, Option<usize>)>,
     /// What is wrong.
     pub(crate) cause: String,
     /// What to do about it.
@@ -52,17 +51,9 @@ impl Failure {
         Self::one("ArgumentError", wrong)
     }
 
-    /// All that is wrong with a file.
-    pub(crate) fn of_file<C: Explained>(class: &'static str, error: &FileError<C>) -> Self {
-        let wrong = |fault: &denavit_codegen::model::Fault<C>| {
-            let cause = match fault.pointer.is_empty() {
-                true => fault.cause.to_string(),
-                false => format!("{}: {}", fault.pointer, fault.cause),
-            };
-            let place = Some((fault.line, fault.column));
-            Wrong { file: Some(error.file.clone()), place, cause, hint: fault.hint() }
-        };
-        Self { class, all: error.faults.iter().map(wrong).collect() }
+    /// Several things that are wrong.
+    pub(crate) fn all(class: &'static str, all: Vec<Wrong>) -> Self {
+        Self { class, all }
     }
 }
 
@@ -84,6 +75,7 @@ fn raised(py: Python<'_>, failure: &Failure) -> PyResult<PyErr> {
         .iter()
         .map(|one| {
             let (line, column) = one.place.unzip();
+            let column = column.flatten();
             (one.file.as_deref(), line, column, one.cause.as_str(), one.hint.as_deref())
         })
         .collect();

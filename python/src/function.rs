@@ -1,11 +1,14 @@
 //! Calls of a robot's functions on arrays of numpy.
 
 use crate::arrays::{Given, Rows, zeros};
-use crate::failure::internal;
-use denavit_plants::{RobotFunction, Samples};
+use crate::failure::{Failure, Wrong, internal};
+use denavit::function::FunctionName;
+use denavit::model::Robot;
+use denavit::plants::{RobotFunction, Samples};
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
+use std::sync::OnceLock;
 
 /// Calls a function on one sample, or on the rows of arrays. The result is an array, a number where
 /// it has no dimension, or a tuple where the function has several results.
@@ -111,4 +114,84 @@ fn call_rows<'py>(
         1 => Ok(arrays.remove(0).into_any()),
         _ => Ok(PyTuple::new(py, arrays)?.into_any()),
     }
+}
+
+/// The functions of one name, or why there are none.
+type Made = OnceLock<Result<Vec<RobotFunction>, String>>;
+
+/// The functions of a robot, each made when it is called first.
+pub(crate) struct RobotFunctions {
+    robot: Robot,
+    made: Vec<Made>,
+}
+
+const FUNCTIONS: usize = FunctionName::BaseParameters as usize + 1;
+
+impl RobotFunctions {
+    pub(crate) fn new(robot: &Robot) -> Self {
+        Self { robot: robot.clone(), made: (0..FUNCTIONS).map(|_| OnceLock::new()).collect() }
+    }
+
+    /// All functions of a name, at least one.
+    fn all(&self, name: FunctionName) -> PyResult<&[RobotFunction]> {
+        let made = &self.made[name as usize];
+        let make = || RobotFunction::of(&self.robot, name).map_err(|error| error.to_string());
+        // functions of large robots take a second: other threads of Python go on, and may wait here
+        let made = match made.get() {
+            Some(made) => made,
+            None => Python::attach(|py| py.detach(|| made.get_or_init(make))),
+        };
+        match made {
+            Ok(functions) if !functions.is_empty() => Ok(functions),
+            Ok(_) => Err(missing(&self.robot, name).into()),
+            Err(why) => {
+                let cause = format!("{}: {why}", self.robot.name);
+                Err(Failure::one("ModelError", Wrong::new(cause)).into())
+            }
+        }
+    }
+
+    /// The function of a name; the first where there is one for each link.
+    pub(crate) fn one(&self, name: FunctionName) -> PyResult<&RobotFunction> {
+        Ok(&self.all(name)?[0])
+    }
+
+    /// The function of a link.
+    pub(crate) fn of_link(&self, name: FunctionName, link: &str) -> PyResult<&RobotFunction> {
+        let all = self.all(name)?;
+        all.iter().find(|one| one.link() == Some(link)).ok_or_else(|| {
+            let known: Vec<&str> = all.iter().filter_map(RobotFunction::link).collect();
+            let cause = format!("{name} has no link `{link}`");
+            let hint = match known.is_empty() {
+                true => format!("{name} is a function of the whole robot"),
+                false => format!("links are {}", known.join(", ")),
+            };
+            Failure::argument(Wrong::new(cause).hint(hint)).into()
+        })
+    }
+}
+
+fn missing(robot: &Robot, name: FunctionName) -> Failure {
+    let why = match name.as_str() {
+        one if one.contains("contact") => "contact points are declared under \"contacts\"",
+        "zero_moment_point" | "cart_table_zmp" | "foot_rotation_indicator" | "capture_point" => {
+            "points of the ground are those of robots with a floating base and contact points"
+        }
+        "state_rates" => "it has no effects with states",
+        _ => "its mass matrix has no inverse, or an effect depends on what is asked for",
+    };
+    let cause = format!("{} has no {name}", robot.name);
+    Failure::one("FunctionMissing", Wrong::new(cause).hint(why))
+}
+
+/// The function of a name.
+pub(crate) fn function_name(name: &str) -> PyResult<FunctionName> {
+    FunctionName::parse(name).ok_or_else(|| {
+        let all = FunctionName::ALL.iter().chain(&FunctionName::WALKING);
+        let all: Vec<&str> =
+            all.chain(&FunctionName::REGRESSORS).map(|name| name.as_str()).collect();
+        let cause = format!("there is no function `{name}`");
+        let hint = format!("functions are {}", all.join(", "));
+        Failure::argument(Wrong::new(cause).hint(hint)).into()
+    })
 }

@@ -1,78 +1,36 @@
-//! Models of robots, and their functions.
+//! Models of robots, as Python sees them.
 
 use crate::arrays::Given;
 use crate::failure::{Failure, Wrong};
-use crate::function::call;
-use denavit_codegen::effect;
-use denavit_codegen::function::FunctionName;
-use denavit_codegen::model::Robot;
-use denavit_plants::RobotFunction;
+use crate::formula::latex;
+use crate::function::{RobotFunctions, call, function_name};
+use crate::run::open_model;
+use denavit::function::FunctionName;
+use denavit::model::Robot;
+use denavit::plants::RobotFunction;
 use pyo3::prelude::*;
-use std::sync::OnceLock;
-
-/// The functions of one name.
-type Made = OnceLock<Result<Vec<RobotFunction>, String>>;
+use std::path::{Path, PathBuf};
 
 /// A robot: its model and its functions as numbers. `denavit.Model` adds what Python does better.
 #[pyclass(subclass, frozen, module = "denavit._denavit")]
 pub(crate) struct Model {
-    /// The robot with its effects.
-    pub(crate) robot: Robot,
+    robot: Robot,
     /// The text of the model file.
-    pub(crate) source: String,
-    made: Vec<Made>,
+    source: String,
+    notes: Vec<String>,
+    effects: Option<PathBuf>,
+    functions: RobotFunctions,
 }
 
-const FUNCTIONS: usize = FunctionName::BaseParameters as usize + 1;
-
 impl Model {
-    fn functions(&self, name: FunctionName) -> PyResult<&[RobotFunction]> {
-        let make = || RobotFunction::of(&self.robot, name).map_err(|error| error.to_string());
-        let made = self.made[name as usize].get_or_init(make);
-        match made {
-            Ok(functions) if !functions.is_empty() => Ok(functions),
-            Ok(_) => Err(self.missing(name).into()),
-            Err(why) => {
-                let cause = format!("{}: {why}", self.robot.name);
-                Err(Failure::one("ModelError", Wrong::new(cause)).into())
-            }
-        }
-    }
-
-    fn missing(&self, name: FunctionName) -> Failure {
-        let why = match name.as_str() {
-            one if one.contains("contact") => "contact points are declared under \"contacts\"",
-            "zero_moment_point" | "cart_table_zmp" | "foot_rotation_indicator"
-            | "capture_point" => {
-                "points of the ground are those of robots with a floating base and contact points"
-            }
-            "state_rates" => "it has no effects with states",
-            _ => "its mass matrix has no inverse, or an effect depends on what is asked for",
-        };
-        let cause = format!("{} has no {name}", self.robot.name);
-        Failure::one("FunctionMissing", Wrong::new(cause).hint(why))
-    }
-
-    /// The function of a link.
-    fn of_link(&self, name: FunctionName, link: &str) -> PyResult<&RobotFunction> {
-        let all = self.functions(name)?;
-        all.iter().find(|one| one.link() == Some(link)).ok_or_else(|| {
-            let known: Vec<&str> = all.iter().filter_map(RobotFunction::link).collect();
-            let cause = format!("{name} has no link `{link}`");
-            let hint = format!("links are {}", known.join(", "));
-            Failure::argument(Wrong::new(cause).hint(hint)).into()
-        })
-    }
-
-    /// Calls the one function of a name with its arguments in order, then time and states of
-    /// effects where the function has such arguments.
+    /// Calls the one function of a name with its arguments.
     fn call<'py, const N: usize>(
         &self,
         py: Python<'py>,
         name: FunctionName,
         given: [(&'static str, &Bound<'py, PyAny>); N],
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.call_function(py, &self.functions(name)?[0], name, &given)
+        self.call_function(py, self.functions.one(name)?, name, &given)
     }
 
     fn call_function<'py>(
@@ -86,7 +44,7 @@ impl Model {
         for wanted in function.arguments() {
             let Some((_, value)) = given.iter().find(|(name, _)| *name == wanted.name) else {
                 let cause = format!("{name} of {} needs `{}`", self.robot.name, wanted.name);
-                let hint = "an effect of the model depends on it: `evaluate` takes it by name";
+                let hint = format!("evaluate(\"{name}\", ..) takes every argument by name");
                 return Err(Failure::argument(Wrong::new(cause).hint(hint)).into());
             };
             arguments.push(Given::new(wanted.name, value)?);
@@ -97,17 +55,37 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// Reads the text of a model file; `effects` are (name, text) of definitions of effects.
+    /// Reads a model: of a path or a shipped name, or of `text`, which is then that of the file
+    /// `place`. `effects` is a folder of definitions.
     #[new]
-    fn new(file: &str, text: &str, effects: Vec<(String, String)>) -> PyResult<Self> {
-        let failed = |error| Failure::of_file("ModelError", &error);
-        let own = effects
-            .iter()
-            .map(|(name, text)| effect::read(name, text.as_bytes()).map_err(failed))
-            .collect::<Result<Vec<_>, _>>()?;
-        let robot = effect::read_model(file, text.as_bytes(), &own).map_err(failed)?;
-        let made = (0..FUNCTIONS).map(|_| OnceLock::new()).collect();
-        Ok(Self { robot, source: text.to_owned(), made })
+    #[pyo3(signature = (place, text=None, effects=None))]
+    fn new(
+        py: Python<'_>,
+        place: &str,
+        text: Option<String>,
+        effects: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let (robot, source, notes) = open_model(py, place, text, effects.clone())?;
+        Ok(Self { source, notes, effects, functions: RobotFunctions::new(&robot), robot })
+    }
+
+    /// What was noted when the model was read.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// The folder of definitions of effects that was given.
+    #[getter]
+    fn _effects(&self) -> Option<&Path> {
+        self.effects.as_deref()
+    }
+
+    /// A function as LaTeX, with the parameters of the model as symbols.
+    #[pyo3(name = "_latex")]
+    fn latex(&self, py: Python<'_>, name: &str) -> PyResult<String> {
+        let name = function_name(name)?;
+        py.detach(|| latex(&self.robot, name))
     }
 
     /// The name of the model.
@@ -153,20 +131,15 @@ impl Model {
         self.robot.contacts.values().map(|one| one.name.as_str()).collect()
     }
 
-    /// Names of the functions that the model has.
-    fn functions_there(&self) -> Vec<&'static str> {
-        let all = FunctionName::ALL.iter().chain(&FunctionName::WALKING);
-        all.filter(|name| self.functions(**name).is_ok()).map(|name| name.as_str()).collect()
-    }
-
     /// Names of arguments and results of a function, each with its shape; results with a line on
     /// what their entries are.
-    #[allow(clippy::type_complexity)] // a table, made a class in Python
+    #[allow(clippy::type_complexity)] // a table
+    #[pyo3(name = "_signature")]
     fn signature(
         &self,
         name: &str,
     ) -> PyResult<(Vec<(&'static str, usize)>, Vec<(&'static str, Vec<usize>, String)>)> {
-        let function = &self.functions(function_name(name)?)?[0];
+        let function = self.functions.one(function_name(name)?)?;
         let arguments = function.arguments().iter().map(|one| (one.name, one.len)).collect();
         let outputs = function.outputs().iter();
         let outputs = outputs.map(|one| (one.name, one.shape.clone(), one.doc.clone())).collect();
@@ -174,7 +147,7 @@ impl Model {
     }
 
     /// Calls a function by name, with arguments by name.
-    #[pyo3(signature = (name, link, arguments))]
+    #[pyo3(name = "_evaluate", signature = (name, link, arguments))]
     fn evaluate<'py>(
         &self,
         py: Python<'py>,
@@ -184,8 +157,8 @@ impl Model {
     ) -> PyResult<Bound<'py, PyAny>> {
         let name = function_name(name)?;
         let function = match link {
-            Some(link) => self.of_link(name, link)?,
-            None => &self.functions(name)?[0],
+            Some(link) => self.functions.of_link(name, link)?,
+            None => self.functions.one(name)?,
         };
         let known = function.arguments();
         let mut given = Vec::with_capacity(arguments.len());
@@ -251,6 +224,7 @@ impl Model {
     }
 
     /// D (n, n), C (n, n) and G (n,) at once.
+    #[pyo3(name = "_dynamics_terms")]
     fn dynamics_terms<'py>(
         &self,
         py: Python<'py>,
@@ -282,6 +256,7 @@ impl Model {
     }
 
     /// dtau/dq and dtau/dqd: (n, n) each, row: torque.
+    #[pyo3(name = "_inverse_dynamics_derivatives")]
     fn inverse_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -289,10 +264,15 @@ impl Model {
         qd: &Bound<'py, PyAny>,
         qdd: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.call(py, FunctionName::InverseDynamicsDerivatives, [("q", q), ("qd", qd), ("qdd", qdd)])
+        self.call(
+            py,
+            FunctionName::InverseDynamicsDerivatives,
+            [("q", q), ("qd", qd), ("qdd", qdd)],
+        )
     }
 
     /// dqdd/dq, dqdd/dqd and dqdd/dtau: (n, n) each, row: acceleration.
+    #[pyo3(name = "_forward_dynamics_derivatives")]
     fn forward_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -300,7 +280,11 @@ impl Model {
         qd: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.call(py, FunctionName::ForwardDynamicsDerivatives, [("q", q), ("qd", qd), ("tau", tau)])
+        self.call(
+            py,
+            FunctionName::ForwardDynamicsDerivatives,
+            [("q", q), ("qd", qd), ("tau", tau)],
+        )
     }
 
     /// The upper three rows of the homogeneous transforms of all links: (links, 3, 4) [m].
@@ -360,6 +344,7 @@ impl Model {
 
     /// Linear momentum [kg m/s] and angular momentum about the centre of mass [kg m^2/s]: (3,)
     /// each.
+    #[pyo3(name = "_momentum")]
     fn momentum<'py>(
         &self,
         py: Python<'py>,
@@ -489,7 +474,7 @@ impl Model {
         q: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let name = FunctionName::LinkJacobian;
-        self.call_function(py, self.of_link(name, link)?, name, &[("q", q)])
+        self.call_function(py, self.functions.of_link(name, link)?, name, &[("q", q)])
     }
 
     /// The foot rotation indicator of a link that carries contact points: (3,) [m].
@@ -502,17 +487,11 @@ impl Model {
         qdd: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let name = FunctionName::FootRotationIndicator;
-        self.call_function(py, self.of_link(name, link)?, name, &[("q", q), ("qd", qd), ("qdd", qdd)])
+        self.call_function(
+            py,
+            self.functions.of_link(name, link)?,
+            name,
+            &[("q", q), ("qd", qd), ("qdd", qdd)],
+        )
     }
-}
-
-fn function_name(name: &str) -> PyResult<FunctionName> {
-    FunctionName::parse(name).ok_or_else(|| {
-        let all = FunctionName::ALL.iter().chain(&FunctionName::WALKING);
-        let all: Vec<&str> =
-            all.chain(&FunctionName::REGRESSORS).map(|name| name.as_str()).collect();
-        let cause = format!("there is no function `{name}`");
-        let hint = format!("functions are {}", all.join(", "));
-        Failure::argument(Wrong::new(cause).hint(hint)).into()
-    })
 }

@@ -14,8 +14,7 @@ def rigid(name):
     document = denavit.load(name).to_dict()
     document.pop("drives", None)
     for link in document["links"]:
-        for key in ("drive", "limits"):
-            link.pop(key, None)
+        link.pop("drive", None)
         link["joint"].pop("spring", None)
         link["joint"].pop("damping", None)
     model = denavit.load(document)

@@ -35,6 +35,7 @@ from .model import (
     Model,
     ModelWarning,
     Momentum,
+    Regressor,
     load,
 )
 from .simulate import Run, simulate
@@ -65,6 +66,7 @@ __all__ = [
     "ModelWarning",
     "Momentum",
     "Progress",
+    "Regressor",
     "Run",
     "SimulateError",
     "WalkError",

@@ -112,10 +112,12 @@ class Model:
         """The zero-moment point of the cart-table model: (3,) [m]."""
     def capture_point(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """The capture point of the linear inverted pendulum: (3,) [m]."""
-    def regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
-        """R0 of tau = R0 theta0: (n, unknown parameters)."""
-    def base_regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
-        """R of tau = R theta: (n, base parameters)."""
+    def _regressor(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike
+    ) -> Array | tuple[Array, Array]: ...
+    def _base_regressor(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike
+    ) -> Array | tuple[Array, Array]: ...
     def link_jacobian(self, link: str, q: ArrayLike) -> Array:
         """Geometric Jacobian of the frame of a link: (6, n), linear rows first."""
     def foot_rotation_indicator(

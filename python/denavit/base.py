@@ -60,10 +60,10 @@ class BaseParameters(Answer):
     def latex(self) -> Latex:
         """The base parameters as formulas, one a line."""
         names = (one.name.replace("_", r"\_") for one in self.parameters)
-        lines = (
+        lines = r" \\ ".join(
             rf"\mathrm{{{name}}} &= {one.latex}" for name, one in zip(names, self.parameters)
         )
-        return Latex(rf"\begin{{aligned}}{r' \\ '.join(lines)}\end{{aligned}}")
+        return Latex(rf"\begin{{aligned}}{lines}\end{{aligned}}")
 
     def _repr_latex_(self) -> str:
         return self.latex()._repr_latex_()

@@ -11,6 +11,7 @@ from . import _options
 from ._options import PathLike, Progress
 from ._results import Answer, Latex, answer, of
 from .base import JointParameters
+from .errors import IdentifyError
 from .model import Model, as_place
 from .simulate import Log, log_places
 
@@ -99,6 +100,8 @@ class Identification(Answer):
     """What speaks against the logs or the estimate."""
     updated: Model | None = field(default=None, repr=False)
     """The model with the values that were found."""
+    update_refused: str | None = None
+    """Why there is no such model, if there is none."""
     report: str | None = field(default=None, repr=False)
     """All of it as a page of HTML, if asked for."""
 
@@ -172,14 +175,31 @@ def identify(
             skip_slow=skip_slow, filter=filter_hz, decimate=decimate, average=average,
             rates=rates, prior=prior, resolution=resolution, window=window_s,
             accept_suspicious=accept_suspicious, accept_cut=accept_cut,
-            output=inside / "updated.json" if update else None,
             html=inside / "report.html" if report else None,
             **{"with": joint_parameters},
         )  # fmt: skip
-        found = _options.answered(arguments, progress)
-        updated = _model(inside / "updated.json", model) if update else None
+        out = inside / "updated.json" if update else None
+        found, refused = _answered(arguments, out, progress)
+        updated = None if out is None or refused else _model(out, model)
         page = (inside / "report.html").read_text() if report else None
-    return answer(Identification, found, updated=updated, report=page)
+    return answer(
+        Identification, found, updated=updated, update_refused=refused, report=page
+    )
+
+
+def _answered(
+    arguments: list[str], out: Path | None, progress: Progress | None
+) -> tuple[tuple[dict[str, Any], bool, list[str]], str | None]:
+    """The answer, and why what was found makes no model."""
+    if out is None:
+        return _options.answered(arguments, progress), None
+    try:
+        return _options.answered([*arguments, "--output", str(out)], progress), None
+    except IdentifyError as error:
+        if error.file != "the identified model":
+            raise
+        # parameters are an answer without a model, too
+        return _options.answered(arguments, progress), str(error)
 
 
 def _model(path: Path, model: object) -> Model:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, cast
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _denavit, _options
@@ -59,6 +60,22 @@ class Momentum(NamedTuple):
     """(3,) [kg m/s]."""
     angular: Array
     """(3,) about the centre of mass [kg m^2/s]."""
+
+
+class Regressor(NamedTuple):
+    """Torques as a linear function of parameters: tau = matrix @ theta + known."""
+
+    matrix: Array
+    """(n, parameters); the columns are those of :func:`denavit.base_parameters`: all unknown
+    parameters, or the base parameters on the joint axes (``basis="joints"``)."""
+    known: Array
+    """(n,): what matter and joint parameters that are known add [N m, N]."""
+
+    @classmethod
+    def _of(cls, found: Array | tuple[Array, Array]) -> Regressor:
+        if isinstance(found, tuple):
+            return cls(*found)
+        return cls(found, np.zeros(found.shape[:-1]))
 
 
 class Model(_denavit.Model):
@@ -153,6 +170,14 @@ class Model(_denavit.Model):
     ) -> ForwardDynamicsDerivatives:
         """Derivatives of the accelerations by q, by qd and by tau."""
         return ForwardDynamicsDerivatives(*self._forward_dynamics_derivatives(q, qd, tau))
+
+    def regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Regressor:
+        """The regressor of all unknown parameters."""
+        return Regressor._of(self._regressor(q, qd, qdd))
+
+    def base_regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Regressor:
+        """The regressor of the base parameters."""
+        return Regressor._of(self._base_regressor(q, qd, qdd))
 
     def momentum(self, q: ArrayLike, qd: ArrayLike) -> Momentum:
         """Linear momentum, and angular momentum about the centre of mass."""

@@ -13,17 +13,22 @@ base = denavit.base_parameters(robot, joint_parameters=["modelled"])
 print(base._title())
 
 # %% [markdown]
-# Two motions: one to estimate from, one to judge with. A Fourier series has exact derivatives.
-
+# Two motions within the limits of the joints: one to estimate from, one to judge with. A Fourier
+# series has exact derivatives.
 
 # %%
+limits = np.array([link["limits"]["position"] for link in robot.inspect()["links"]])
+middle, reach = limits.mean(axis=1), np.minimum(np.ptp(limits, axis=1) / 2, 1.5)
+
+
 def logged(seed: int) -> dict[str, np.ndarray]:
     random = np.random.default_rng(seed)
     t = np.arange(0.0, 20.0, 2e-3)
     q, qd, qdd = np.zeros((3, len(t), robot.dof))
+    q += middle
     for harmonic in range(1, 6):
         w = 2 * np.pi * harmonic / 10
-        a, b = random.uniform(-0.3, 0.3, (2, robot.dof))
+        a, b = random.uniform(-0.1, 0.1, (2, robot.dof)) * reach
         sine, cosine = np.sin(w * t)[:, None], np.cos(w * t)[:, None]
         q += a * sine + b * cosine
         qd += w * (a * cosine - b * sine)

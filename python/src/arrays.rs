@@ -153,12 +153,8 @@ impl Samples for Rows<'_> {
     }
 
     fn column(&self, entry: usize, first: usize, column: &mut [f64]) {
-        // zero times a number is no zero where the number is not finite
-        let mut zero = 0.0;
         if self.is_repeated {
-            let value = self.view[[0, entry]];
-            zero += 0.0 * value;
-            column.fill(value);
+            column.fill(self.view[[0, entry]]);
         } else {
             let rows = self.view.column(entry);
             match rows.as_slice() {
@@ -170,12 +166,25 @@ impl Samples for Rows<'_> {
                     }
                 }
             }
-            zero += column.iter().map(|value| 0.0 * value).sum::<f64>();
         }
-        if zero != 0.0 || zero.is_nan() {
+        if !are_finite(column) {
             self.has_others.store(true, Ordering::Relaxed);
         }
     }
+}
+
+/// Whether all numbers are finite: zero times another one is no zero. Eight sums side by side wait
+/// for no other.
+fn are_finite(numbers: &[f64]) -> bool {
+    let mut sums = [0.0; 8];
+    let eights = numbers.chunks_exact(8);
+    let rest = eights.remainder();
+    for eight in eights {
+        for (sum, number) in sums.iter_mut().zip(eight) {
+            *sum += 0.0 * number;
+        }
+    }
+    sums.iter().all(|sum| !sum.is_nan()) && rest.iter().all(|one| one.is_finite())
 }
 
 /// A new array of zeros.

@@ -444,7 +444,8 @@ impl Model {
         self.call(py, FunctionName::CapturePoint, [("q", q), ("qd", qd)])
     }
 
-    /// R0 of tau = R0 theta0: (n, unknown parameters).
+    /// R0 of tau = R0 theta0 + known: (n, unknown parameters), and what is known if there is any.
+    #[pyo3(name = "_regressor")]
     fn regressor<'py>(
         &self,
         py: Python<'py>,
@@ -455,7 +456,8 @@ impl Model {
         self.call(py, FunctionName::Regressor, [("q", q), ("qd", qd), ("qdd", qdd)])
     }
 
-    /// R of tau = R theta: (n, base parameters).
+    /// R of tau = R theta + known: (n, base parameters), and what is known if there is any.
+    #[pyo3(name = "_base_regressor")]
     fn base_regressor<'py>(
         &self,
         py: Python<'py>,

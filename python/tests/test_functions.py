@@ -117,7 +117,9 @@ def test_links_have_jacobians(puma, random):
 def test_regressors_are_linear_in_parameters(puma, random):
     q, qd, qdd = random.uniform(-1, 1, (3, 300, 6))
     found = denavit.base_parameters(puma, joint_parameters=["modelled"])
-    stacked = puma.base_regressor(q, qd, qdd).reshape(-1, found.rank)
+    matrix, known = puma.base_regressor(q, qd, qdd)
+    assert not known.any()
+    stacked = matrix.reshape(-1, found.rank)
     values = np.linalg.svd(stacked, compute_uv=False)
     assert values[-1] > 1e-6 * values[0]
     tau = puma.inverse_dynamics(q, qd, qdd).ravel()

@@ -24,7 +24,7 @@ def test_the_stub_and_the_module_have_the_same_names():
 def test_everything_public_is_documented():
     for name in denavit.__all__:
         one = getattr(denavit, name)
-        if isinstance(one, type) or callable(one):
+        if isinstance(one, type) or type(one).__name__ == "function":
             assert one.__doc__, name
     for name, one in vars(_denavit.Model).items():
         if not name.startswith("_"):

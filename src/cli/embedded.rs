@@ -245,23 +245,26 @@ fn wrongs(printed: &str) -> Vec<Wrong> {
 
 fn wrong(line: &str) -> Wrong {
     let bare = || Wrong { cause: line.to_owned(), ..Wrong::default() };
-    let Some((place, cause)) = line.split_once(": ") else { return bare() };
-    if place.is_empty() || place.contains(char::is_whitespace) || place.starts_with("--") {
-        return bare();
-    }
     let number = |text: &str| {
-        text.rsplit_once(':')
-            .and_then(|(rest, number)| Some((rest.to_owned(), number.parse::<usize>().ok()?)))
+        let (rest, number) = text.rsplit_once(':')?;
+        Some((rest.to_owned(), number.parse::<usize>().ok()?))
     };
+    let Some((place, cause)) = line.split_once(": ") else { return bare() };
     let cause = cause.to_owned();
-    let Some((rest, last)) = number(place) else {
-        return Wrong { file: Some(place.to_owned()), cause, ..Wrong::default() };
-    };
-    match number(&rest) {
-        Some((file, line)) => {
-            Wrong { file: Some(file), line: Some(line), column: Some(last), cause, hint: None }
-        }
-        None => Wrong { file: Some(rest), line: Some(last), cause, ..Wrong::default() },
+    if let Some((rest, last)) = number(place) {
+        return match number(&rest) {
+            Some((file, line)) => {
+                let (file, line, column) = (Some(file), Some(line), Some(last));
+                Wrong { file, line, column, cause, hint: None }
+            }
+            None => Wrong { file: Some(rest), line: Some(last), cause, ..Wrong::default() },
+        };
+    }
+    // a name, or a file with blanks in its name; else a sentence with a colon
+    let is_name = !place.is_empty() && !place.contains(char::is_whitespace);
+    match is_name && !place.starts_with("--") || Path::new(place).exists() {
+        true => Wrong { file: Some(place.to_owned()), cause, ..Wrong::default() },
+        false => bare(),
     }
 }
 
@@ -325,7 +328,7 @@ mod tests {
     #[test]
     fn places_are_read_as_they_are_printed() {
         let printed = "a/b.json:2:20: /x: nothing\n  hint: declare it:\n  more\nc.csv:7: a gap\n\
-                       --prior: no\ntulip: none: of it";
+                       --prior: no\ntulip: none: of it\nthe model:3:4: wrong\nit is: so";
         let found = wrongs(printed);
         let places: Vec<_> = found.iter().map(|one| (one.file.as_deref(), one.line)).collect();
         let expected = [
@@ -333,6 +336,8 @@ mod tests {
             (Some("c.csv"), Some(7)),
             (None, None),
             (Some("tulip"), None),
+            (Some("the model"), Some(3)),
+            (None, None),
         ];
         assert_eq!(places, expected);
         assert_eq!(found[0].column, Some(20));

@@ -2,7 +2,8 @@
 //! `outputs` and `printed`.
 //!
 //! Answers go to standard output, progress to standard error where that is a terminal, failures to
-//! standard error; [`embedded`] is for programs with a process of their own. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
+//! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
+//! [`embedded`] is the command inside another program.
 
 mod base;
 mod count;

@@ -14,8 +14,13 @@ use rayon::prelude::*;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// Numbers that a thread has in columns at a time: what stays in a processor's own cache.
-const NUMBERS_AT_A_TIME: usize = 16 << 10;
+/// Numbers that a thread has in columns at a time: they stay in a processor's nearest cache, beside
+/// the rows that they come from.
+const NUMBERS_AT_A_TIME: usize = 3 << 10;
+
+/// Numbers of a line of a cache. Columns begin an odd number of lines apart, so that they do not
+/// all share the same few lines.
+const LINE: usize = 8;
 
 /// Samples that a thread takes at a time: at least so many, or the columns cost more than the
 /// function, and at most so many, or small batches would be work for one thread.
@@ -125,7 +130,8 @@ impl RobotFunction {
         let inputs: usize = self.arguments().iter().map(|argument| argument.len).sum();
         let wide = inputs + widths.iter().sum::<usize>();
         let rows = NUMBERS_AT_A_TIME / wide.max(1);
-        let rows = rows.clamp(FEWEST_AT_A_TIME, MOST_AT_A_TIME);
+        // an even number of lines
+        let rows = rows.clamp(FEWEST_AT_A_TIME, MOST_AT_A_TIME).next_multiple_of(2 * LINE);
         let mut blocks: Vec<Vec<&mut [f64]>> = Vec::new();
         blocks.resize_with(samples.div_ceil(rows), || Vec::with_capacity(widths.len()));
         for (output, &width) in outputs.iter_mut().zip(&widths).filter(|(_, width)| **width > 0) {
@@ -134,7 +140,10 @@ impl RobotFunction {
             }
         }
         let batch = self.batch.get_or_init(|| NativeBatch::new(&self.routine, &[]));
-        let worker = || Worker { batch: batch.clone(), columns: vec![0.0; wide * rows], rows };
+        let worker = || {
+            let stride = rows + LINE;
+            Worker { batch: batch.clone(), columns: vec![0.0; wide * stride], stride }
+        };
         let run = |worker: &mut Worker, (block, outputs): (usize, Vec<&mut [f64]>)| {
             let first = block * rows;
             worker.run(first..samples.min(first + rows), arguments, outputs)
@@ -171,9 +180,9 @@ impl RobotFunction {
 /// What a thread needs of its own.
 struct Worker {
     batch: NativeBatch,
-    /// Columns of the arguments, then of the results, each for `rows` samples.
+    /// Columns of the arguments, then of the results, `stride` numbers apart.
     columns: Vec<f64>,
-    rows: usize,
+    stride: usize,
 }
 
 impl Worker {
@@ -185,17 +194,17 @@ impl Worker {
         outputs: Vec<&mut [f64]>,
     ) -> Result<(), ShapeMismatch> {
         let count = samples.len();
-        let (given, found) = self.columns.split_at_mut(self.batch.inputs() * self.rows);
-        let mut columns = given.chunks_exact_mut(self.rows);
+        let (given, found) = self.columns.split_at_mut(self.batch.inputs() * self.stride);
+        let mut columns = given.chunks_exact_mut(self.stride);
         for argument in arguments {
             for (entry, column) in (0..argument.entries()).zip(&mut columns) {
                 argument.column(entry, samples.start, &mut column[..count]);
             }
         }
         let inputs: Vec<&[f64]> =
-            given.chunks_exact(self.rows).map(|column| &column[..count]).collect();
+            given.chunks_exact(self.stride).map(|column| &column[..count]).collect();
         let mut results: Vec<&mut [f64]> =
-            found.chunks_exact_mut(self.rows).map(|column| &mut column[..count]).collect();
+            found.chunks_exact_mut(self.stride).map(|column| &mut column[..count]).collect();
         self.batch.evaluate(&inputs, &mut results)?;
         let mut columns = results.iter();
         for output in outputs {

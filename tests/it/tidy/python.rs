@@ -54,9 +54,6 @@ fn python_is_short() {
             if is_function && function_lines(&lines, index) > MAX_FUNCTION_LINES {
                 faults.push(format!("{place}: a function of more than 70 lines"));
             }
-            if ["TODO", "FIXME", "XXX"].iter().any(|mark| line.contains(mark)) {
-                faults.push(format!("{place}: a stub"));
-            }
         }
         let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
         if ["utils", "util", "helpers", "helper", "misc", "common"].contains(&stem.as_str()) {

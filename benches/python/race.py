@@ -5,10 +5,11 @@
     .venv/bin/python benches/python/race.py [--samples 100000] [--rounds 7]
 
 The robot is the shipped PUMA 560 without its drives: rigid bodies, as Pinocchio has them, by way of
-the URDF that `denavit export` writes. Results are compared before anything is timed. Pinocchio's loop
-in C++ is compiled by clang for the native processor and runs on one core, as a loop does; `pin` is
+the URDF that `denavit export` writes. Results are compared before anything is timed. Pinocchio's
+loop in C++ is compiled by clang for the native processor and runs on one core, as a loop does; `pin` is
 called from Python for each sample. denavit has all cores, in machine code made at run time. A round
 times each once, in turns; figures are medians over rounds, ratios medians of the rounds' ratios.
+Other work on the machine slows what has all cores most: the processor's time is told beside.
 """
 import argparse
 import ctypes
@@ -57,7 +58,7 @@ def called(library):
 
 
 def loop(function, robot, q, qd, qdd):
-    """The torques and the seconds of Pinocchio's loop in C++."""
+    """The torques of Pinocchio's loop in C++."""
     joints = range(1, robot.njoints)
     assert all(robot.joints[k].shortname() == "JointModelRZ" for k in joints)
     places = numpy.array([numpy.r_[robot.jointPlacements[k].rotation.ravel(),
@@ -68,15 +69,16 @@ def loop(function, robot, q, qd, qdd):
     tau = numpy.empty_like(q)
     arrays = (places, bodies, gravity, q, qd, qdd, tau)
     address = [ctypes.c_void_p(one.ctypes.data) for one in arrays]
-    seconds = function(*address[:3], ctypes.c_int(robot.nv), *address[3:],
+    function(*address[:3], ctypes.c_int(robot.nv), *address[3:],
                        ctypes.c_long(len(q)))
-    return tau, seconds
+    return tau
 
 
 def timed(call):
-    started = time.perf_counter()
+    """Seconds that a call took, and those of the processor."""
+    started, used = time.perf_counter(), time.process_time()
     call()
-    return time.perf_counter() - started
+    return time.perf_counter() - started, time.process_time() - used
 
 
 def one_call(model, q, qd, qdd, calls=20_000):
@@ -87,7 +89,7 @@ def one_call(model, q, qd, qdd, calls=20_000):
         for _ in range(part):
             model.inverse_dynamics(q, qd, qdd)
 
-    return min(timed(several) for _ in range(20)) / part
+    return min(timed(several)[0] for _ in range(20)) / part
 
 
 def main():
@@ -99,7 +101,7 @@ def main():
     random = numpy.random.default_rng(1)
     q, qd, qdd = random.uniform(-2, 2, (3, options.samples, model.dof))
     function = built()
-    expected, _ = loop(function, robot, q, qd, qdd)
+    expected = loop(function, robot, q, qd, qdd)
     found = model.inverse_dynamics(q, qd, qdd)
     error = numpy.abs(found - expected).max() / numpy.abs(expected).max()
     print(f"largest relative difference of the torques: {error:.1e}")
@@ -112,15 +114,18 @@ def main():
 
     rounds = []
     for _ in range(options.rounds):
-        ours = timed(lambda: model.inverse_dynamics(q, qd, qdd))
-        _, compiled = loop(function, robot, q, qd, qdd)
-        rounds.append((ours, compiled, timed(from_python)))
+        rounds.append((timed(lambda: model.inverse_dynamics(q, qd, qdd)),
+                       timed(lambda: loop(function, robot, q, qd, qdd)),
+                       timed(from_python)))
     names = ("denavit, one call", "Pinocchio, loop in C++", "pin, loop in Python")
     for at, name in enumerate(names):
-        seconds = statistics.median(row[at] for row in rounds)
-        ratio = statistics.median(row[at] / row[0] for row in rounds)
-        print(f"{name:<24} {1e9 * seconds / options.samples:8.1f} ns a sample, "
-              f"{ratio:6.1f} times denavit")
+        told = [name.ljust(24)]
+        for kind, what in enumerate(("ns a sample", "ns of the processor")):
+            seconds = statistics.median(row[at][kind] for row in rounds)
+            ratio = statistics.median(row[at][kind] / row[0][kind] for row in rounds)
+            nanoseconds = 1e9 * seconds / options.samples
+            told.append(f"{nanoseconds:8.1f} {what}, {ratio:5.1f} times denavit")
+        print("; ".join(told))
     single = one_call(model, q[0], qd[0], qdd[0])
     print(f"one sample by one call: {1e6 * single:.2f} us in all")
 

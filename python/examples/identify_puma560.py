@@ -41,12 +41,12 @@ def logged(seed: int) -> dict[str, np.ndarray]:
     return columns
 
 
-found = denavit.identify(robot, logged(1), logged(2))
+found = denavit.identify(robot, logged(1), logged(2), update=False)
 print(found._title())
 
 # %%
 table = found.to_pandas()
-print(table.head(10).to_string())
+print(table[["name", "value", "std", "unit"]].head(10).to_string())
 
 # %% [markdown]
 # The values are those that the torques were made with, within a few standard errors.

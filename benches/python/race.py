@@ -81,6 +81,16 @@ def timed(call):
     return time.perf_counter() - started, time.process_time() - used
 
 
+def repeated(call, times=20):
+    """The same of one of several calls in a row: as long as what others take for theirs."""
+
+    def several():
+        for _ in range(times):
+            call()
+
+    return tuple(seconds / times for seconds in timed(several))
+
+
 def one_call(model, q, qd, qdd, calls=20_000):
     """Seconds of one call of one sample, at best over parts of the calls."""
     part = calls // 20
@@ -114,7 +124,7 @@ def main():
 
     rounds = []
     for _ in range(options.rounds):
-        rounds.append((timed(lambda: model.inverse_dynamics(q, qd, qdd)),
+        rounds.append((repeated(lambda: model.inverse_dynamics(q, qd, qdd)),
                        timed(lambda: loop(function, robot, q, qd, qdd)),
                        timed(from_python)))
     names = ("denavit, one call", "Pinocchio, loop in C++", "pin, loop in Python")

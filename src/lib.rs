@@ -16,6 +16,13 @@
 //! - [`walk`]: postures and gaits
 //! - [`report`]: tables and pictures of robots
 
+// The command is part of the library, so that other programs have it in their own process; its
+// files name the library as its users do.
+extern crate self as denavit;
+
+#[doc(hidden)]
+pub mod cli;
+
 pub use denavit_codegen::{
     arena, build_script, derive, dynamics, effect, emit, expr, function, fundamental, kinematics,
     model, number, program, regressor, regroup, spatial,

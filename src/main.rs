@@ -1,9 +1,7 @@
 //! The `denavit` command.
 
-mod cli;
-
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    denavit::cli::run()
 }

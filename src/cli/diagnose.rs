@@ -313,10 +313,10 @@ fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Shown, Failure>
     };
     let started = Instant::now();
     let found = diagnose(request, &mut |at| {
-        progress.show(&match at {
-            Stage::Evaluated(share) => format!("effects evaluated: {:.0} %", 100.0 * share),
-            Stage::Found(taken) => format!("{} effects found", taken.len()),
-        });
+        match at {
+            Stage::Evaluated(share) => progress.show_share("effects evaluated", *share),
+            Stage::Found(taken) => progress.show(&format!("{} effects found", taken.len())),
+        }
         arguments.time_limit.is_none_or(|most_s| started.elapsed().as_secs_f64() < most_s)
     });
     let found = found.map_err(Failure::Diagnose)?;

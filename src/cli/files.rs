@@ -117,16 +117,25 @@ pub(crate) fn read_model_bytes_as_they_are(place: &Path) -> Result<(String, Vec<
 /// file of what URDF or MJCF describes.
 fn read_named(place: &Path, shipped: &[&[ShippedModel]]) -> Result<(String, Vec<u8>), Failure> {
     let (name, bytes) = read_any(place, shipped)?;
+    let bytes = described(&name, bytes, &mut |file| read_below(place, file))?;
+    Ok((name, bytes))
+}
+
+/// The model file of what URDF or MJCF describes, and any other file as it is.
+pub(crate) fn described(
+    name: &str,
+    bytes: Vec<u8>,
+    include: &mut import::Include<'_>,
+) -> Result<Vec<u8>, Failure> {
     if !import::is_description(&bytes) {
-        return Ok((name, bytes));
+        return Ok(bytes);
     }
     let options = import::Options::default();
-    let imported = import::import(&name, &bytes, &options, &mut |file| read_below(place, file));
-    let imported = imported.map_err(Failure::Import)?;
+    let imported = import::import(name, &bytes, &options, include).map_err(Failure::Import)?;
     for note in &imported.notes {
         say_error(&format_args!("note: {name}: {note}"));
     }
-    Ok((name, imported.model.into_bytes()))
+    Ok(imported.model.into_bytes())
 }
 
 /// A file that another one includes: from its folder and below, from nowhere else.
@@ -219,6 +228,14 @@ pub(crate) fn read_or_shipped(
         }
         failure => failure,
     })
+}
+
+/// A run begins: what others read in this process is no input of it.
+pub(crate) fn begin() {
+    if let (Ok(mut read), Ok(mut streams)) = (READ.lock(), STREAMS.lock()) {
+        read.clear();
+        streams.clear();
+    }
 }
 
 /// A file to be read: no output may take its place.

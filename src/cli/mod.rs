@@ -3,6 +3,7 @@
 //!
 //! Answers go to standard output, progress to standard error where that is a terminal, failures to
 //! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
+//! [`embedded`] is the command inside another program.
 
 mod base;
 mod count;
@@ -11,6 +12,7 @@ mod demo;
 mod derive;
 mod diagnose;
 mod elimination;
+pub mod embedded;
 mod emit;
 mod evaluate;
 mod excite;
@@ -21,6 +23,7 @@ mod identify;
 mod import;
 mod inspect;
 mod json;
+mod list;
 mod logs;
 mod model_effects;
 mod options;
@@ -65,6 +68,7 @@ enum Command {
     Demo(demo::Arguments),
     Import(import::Arguments),
     Export(export::Arguments),
+    List(list::Arguments),
     Inspect(inspect::Arguments),
     Derive(derive::Arguments),
     Decompose(decompose::Arguments),
@@ -91,7 +95,7 @@ enum Answer {
 }
 
 /// Runs the command line of the process.
-pub(crate) fn run() -> ExitCode {
+pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -114,6 +118,9 @@ pub(crate) fn run() -> ExitCode {
 
 /// Says on standard error what nobody may see.
 fn say_error(said: &impl Display) {
+    if let Some(observed) = embedded::observed() {
+        return observed.note(&said.to_string());
+    }
     let mut errors = standard_error();
     let _ = writeln!(errors, "{said}").and_then(|()| errors.flush());
 }
@@ -147,6 +154,30 @@ impl Command {
         )
     }
 
+    /// The name of the subcommand.
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Demo(_) => "demo",
+            Self::Import(_) => "import",
+            Self::Export(_) => "export",
+            Self::List(_) => "list",
+            Self::Inspect(_) => "inspect",
+            Self::Derive(_) => "derive",
+            Self::Decompose(_) => "decompose",
+            Self::Count(_) => "count",
+            Self::Evaluate(_) => "evaluate",
+            Self::Emit(_) => "emit",
+            Self::Base(_) => "base",
+            Self::Verify(_) => "verify",
+            Self::Schema(_) => "schema",
+            Self::Simulate(_) => "simulate",
+            Self::Walk(_) => "walk",
+            Self::Excite(_) => "excite",
+            Self::Identify(_) => "identify",
+            Self::Diagnose(_) => "diagnose",
+        }
+    }
+
     fn run(&self, out: &mut dyn Write) -> Result<Answer, Failure> {
         if let (true, Err(unsupported)) = (self.computes(), denavit::plants::native_code()) {
             let note = "note: models are interpreted, which takes three to five times as long";
@@ -156,6 +187,7 @@ impl Command {
             Self::Demo(arguments) => demo::run(arguments, out),
             Self::Import(arguments) => import::run(arguments, out),
             Self::Export(arguments) => export::run(arguments, out),
+            Self::List(arguments) => list::run(arguments, out),
             Self::Inspect(arguments) => inspect::run(arguments, out),
             Self::Derive(arguments) => derive::run(arguments, out),
             Self::Decompose(arguments) => decompose::run(arguments, out),

@@ -13,6 +13,11 @@ impl<W: Write> Printed<W> {
     pub(crate) fn new(writer: W) -> Self {
         Self(writer)
     }
+
+    /// The writer, with all that was passed on.
+    pub(crate) fn into_inner(self) -> W {
+        self.0
+    }
 }
 
 /// Standard error.

@@ -1,22 +1,37 @@
-//! What a command is doing, on one line of standard error, where somebody can see it.
+//! What a command is doing, on one line of standard error, where somebody can see it; or for the
+//! observer of a run in another program.
 
+use super::embedded::{Observed, observed};
 use super::printed::shown;
 use std::io::{self, IsTerminal, Write};
 
 /// The line; it is cleared in the end.
 pub(crate) struct Progress {
     is_visible: bool,
+    observed: Option<Observed>,
 }
 
 impl Progress {
     /// A line, if standard error is a terminal.
     pub(crate) fn new() -> Self {
-        Self { is_visible: io::stderr().is_terminal() }
+        let observed = observed();
+        Self { is_visible: observed.is_none() && io::stderr().is_terminal(), observed }
     }
 
     /// Says what is being done now.
     pub(crate) fn show(&self, what: &str) {
+        if let Some(observed) = &self.observed {
+            observed.progress(what, None);
+        }
         self.write(what);
+    }
+
+    /// Says what is being done now, and how much of it is done, from 0 to 1.
+    pub(crate) fn show_share(&self, what: &str, share: f64) {
+        if let Some(observed) = &self.observed {
+            observed.progress(what, Some(share));
+        }
+        self.write(&format!("{what}: {:.0} %", 100.0 * share));
     }
 
     /// Takes the line away, so that an answer can be written.

@@ -13,7 +13,7 @@ use denavit::model::json::{self, Value};
 use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
 use denavit::simulate::scenario::{RunScheme, Scenario};
-use denavit::simulate::{Run, Stop};
+use denavit::simulate::{Log, Run, Stop};
 use denavit::walk;
 use serde_json::json as value;
 use std::io::Write;
@@ -81,6 +81,14 @@ fn step(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
+    Ok(run_kept(arguments, out)?.0)
+}
+
+/// The same; keeps the log of the run.
+pub(super) fn run_kept(
+    arguments: &Arguments,
+    out: &mut dyn Write,
+) -> Result<(Answer, Log), Failure> {
     let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let mut scenario = open(&arguments.scenario)?;
@@ -122,7 +130,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         }
     }
     let good = run.stop == Stop::End && broken.is_empty();
-    Ok(if good { Answer::Done } else { Answer::Negative })
+    Ok((if good { Answer::Done } else { Answer::Negative }, run.log))
 }
 
 /// The picture of a run.

@@ -1,6 +1,7 @@
 //! What a run has begun and not finished: new files that have no name yet, and new directories. A
 //! signal that ends the process removes them first.
 
+use super::embedded::is_embedded;
 use std::fs::{self, Permissions};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -71,6 +72,10 @@ fn usual_permissions() -> Option<Permissions> {
 }
 
 fn watch_signals() {
+    if is_embedded() {
+        // they are the program's, and may not end it
+        return;
+    }
     static WATCHED: Once = Once::new();
     WATCHED.call_once(|| {
         #[cfg(unix)]

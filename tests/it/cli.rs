@@ -24,6 +24,7 @@ mod identify_rest;
 mod identify_told;
 mod import;
 mod landings;
+mod list;
 mod mutated_files;
 mod outputs;
 mod printed;

@@ -75,14 +75,14 @@ fn offset(entry: usize) -> i32 {
     i32::try_from(8 * entry).expect("arrays of functions are below 2^31 bytes")
 }
 
-impl Evaluate for Compiled {
-    fn outputs(&self) -> usize {
-        self.outputs
-    }
-
+impl Compiled {
+    /// [`Evaluate::evaluate`] for owners who share the code: it has no memory of its own.
+    ///
+    /// # Errors
+    /// If a slice has a wrong length; nothing is computed then.
     // Machine code can only be called unsafely.
     #[allow(unsafe_code)]
-    fn evaluate(&mut self, arguments: &[&[f64]], outputs: &mut [f64]) -> Result<(), ShapeMismatch> {
+    pub fn call(&self, arguments: &[&[f64]], outputs: &mut [f64]) -> Result<(), ShapeMismatch> {
         ShapeMismatch::check("arguments", self.arguments.len(), arguments.len())?;
         for (&(name, len), argument) in self.arguments.iter().zip(arguments) {
             ShapeMismatch::check(name, len, argument.len())?;
@@ -97,5 +97,15 @@ impl Evaluate for Compiled {
         // SAFETY: the code was compiled as a single one, and all lengths were compared.
         unsafe { self.machine.call_single(&addresses, &self.table, outputs) };
         Ok(())
+    }
+}
+
+impl Evaluate for Compiled {
+    fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    fn evaluate(&mut self, arguments: &[&[f64]], outputs: &mut [f64]) -> Result<(), ShapeMismatch> {
+        self.call(arguments, outputs)
     }
 }

@@ -7,6 +7,7 @@
 //! - [`Cradle`]: balls that collide with each other
 //! - [`SimplestWalker`], [`KneedWalker`]: passive walkers with jumps of their own
 //! - [`plant_of`]: the fastest plant of a robot: a generated module where there is one
+//! - [`RobotFunction`]: any function of a robot, on one sample or on many, from many threads
 //! - [`WalkingFunctions`]: momentum about the centre of mass, zero-moment point and the like
 //! - [`effect`]: laws of missing physics, with derivatives by their parameters
 //! - [`regression`]: torques as linear functions of the base parameters, for many samples at once
@@ -24,6 +25,7 @@ mod cradle;
 mod derivatives;
 pub mod effect;
 pub mod emitted;
+mod function;
 mod generated;
 mod laws;
 mod loaded;
@@ -42,6 +44,7 @@ mod walking;
 
 pub use cradle::Cradle;
 pub use derivatives::ContactDerivatives;
+pub use function::{FunctionError, RobotFunction, Samples};
 pub use generated::{planar_biped, plant_of, puma560, tulip};
 pub use laws::{DriveMoment, LawMoment, LawResponse};
 pub use loaded::LoadedPlant;

@@ -37,6 +37,19 @@ impl NativeRoutine {
         let interpret = |_| Self::Interpreted(Box::new(Evaluator::new(routine, prelude)));
         Compiled::new(routine, prelude).map_or_else(interpret, Self::Compiled)
     }
+
+    /// Calls a routine that several threads share. Where it is interpreted each call has memory of
+    /// its own.
+    pub(crate) fn call(
+        &self,
+        arguments: &[&[f64]],
+        outputs: &mut [f64],
+    ) -> Result<(), ShapeMismatch> {
+        match self {
+            Self::Compiled(routine) => routine.call(arguments, outputs),
+            Self::Interpreted(routine) => routine.clone().evaluate(arguments, outputs),
+        }
+    }
 }
 
 impl NativeBatch {

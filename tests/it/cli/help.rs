@@ -5,11 +5,12 @@ use super::{Directory, answer, run_in};
 /// In an order in which an example may read what one before it wrote: `verify` reads a
 /// certificate,
 /// `import` a URDF.
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "demo",
     "export",
     "import",
     "evaluate",
+    "list",
     "inspect",
     "derive",
     "decompose",

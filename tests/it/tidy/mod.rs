@@ -4,6 +4,7 @@ mod circles;
 mod errata;
 mod ignored;
 mod policy;
+mod python;
 mod reached;
 mod shipped;
 mod walls;
@@ -58,7 +59,7 @@ fn rust_files(folder: &str) -> Vec<PathBuf> {
 }
 
 fn all_files() -> Vec<PathBuf> {
-    ["src", "codegen", "crates", "tests", "benches", "examples"]
+    ["src", "codegen", "crates", "python", "tests", "benches", "examples"]
         .into_iter()
         .flat_map(rust_files)
         .collect()

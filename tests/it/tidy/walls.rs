@@ -5,7 +5,7 @@ use super::{assert_none, root};
 use std::fs;
 
 /// Our packages, each after what it may use: folder, and the packages that it uses.
-const WALLS: [(&str, &[&str]); 16] = [
+const WALLS: [(&str, &[&str]); 17] = [
     ("codegen/runtime", &[]),
     ("codegen", &["runtime"]),
     ("codegen/jit", &["codegen", "runtime"]),
@@ -32,6 +32,8 @@ const WALLS: [(&str, &[&str]); 16] = [
         "crates/report",
         &["codegen", "diagnose", "identify", "numerics", "plants", "runtime", "simulate"],
     ),
+    // a client of the facade
+    ("python", &[]),
     // shares nothing with what it tries out
     ("tests/blind", &[]),
     (

@@ -1,0 +1,223 @@
+//! Any function of a robot, with the values of its model, for callers that share it.
+//!
+//! A [`Plant`](super::Plant) is what a simulation needs of a robot, in memory of its own. Here is
+//! each function by itself, called from any thread: on one sample, or on many by all processors.
+
+use super::native::{NativeBatch, NativeRoutine};
+use denavit_codegen::derive::{Flavour, derive};
+use denavit_codegen::function::FunctionName;
+use denavit_codegen::model::{BakeError, Robot};
+use denavit_codegen::program::{
+    ArgumentShape, EvaluateBatch, LowerError, OutputShape, Routine, ShapeMismatch, lower,
+};
+use rayon::prelude::*;
+use std::fmt;
+use std::sync::OnceLock;
+
+/// Numbers that a thread has in columns at a time: they stay in a processor's nearest cache, beside
+/// the rows that they come from.
+const NUMBERS_AT_A_TIME: usize = 3 << 10;
+
+/// Numbers of a line of a cache. Columns begin an odd number of lines apart, so that they do not
+/// all share the same few lines.
+const LINE: usize = 8;
+
+/// Samples that a thread takes at a time: at least so many, or the columns cost more than the
+/// function, and at most so many, or small batches would be work for one thread.
+const FEWEST_AT_A_TIME: usize = 16;
+const MOST_AT_A_TIME: usize = 256;
+
+/// Below so many samples other threads are woken for longer than they work.
+const FEWEST_FOR_THREADS: usize = 2 * MOST_AT_A_TIME;
+
+/// Why a robot has no such function.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FunctionError {
+    /// Numbers are missing in the model.
+    Bake(BakeError),
+    /// The model has numbers that computer arithmetic does not hold.
+    Lower(LowerError),
+}
+
+impl fmt::Display for FunctionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bake(error) => write!(f, "{error}"),
+            Self::Lower(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for FunctionError {}
+
+/// An argument of many samples, in whatever order its numbers are in memory.
+pub trait Samples: Sync {
+    /// Number of entries of a sample.
+    fn entries(&self) -> usize;
+
+    /// Number of samples.
+    fn samples(&self) -> usize;
+
+    /// Copies one entry of the samples from `first` on, as many as `column` has.
+    fn column(&self, entry: usize, first: usize, column: &mut [f64]);
+}
+
+/// A function of a robot as machine code, or interpreted where there is no code generator.
+#[derive(Debug)]
+pub struct RobotFunction {
+    routine: Routine,
+    single: NativeRoutine,
+    /// Made when many samples come first.
+    batch: OnceLock<NativeBatch>,
+}
+
+impl RobotFunction {
+    /// The functions of a name: one, one for each link, or none where the robot does not have it.
+    ///
+    /// # Errors
+    /// If the model lacks numbers, or has numbers that computer arithmetic does not hold.
+    pub fn of(robot: &Robot, name: FunctionName) -> Result<Vec<Self>, FunctionError> {
+        let derivation = derive(robot, Flavour::Baked, &[name]).map_err(FunctionError::Bake)?;
+        let program =
+            lower(&derivation.dag, &derivation.functions).map_err(FunctionError::Lower)?;
+        let made = program.routines.into_iter().map(|routine| {
+            // baked: there is nothing left that depends on parameters alone
+            let single = NativeRoutine::new(&routine, &[]);
+            Self { routine, single, batch: OnceLock::new() }
+        });
+        Ok(made.collect())
+    }
+
+    /// The link, where there is one function for each.
+    pub fn link(&self) -> Option<&str> {
+        self.routine.link.as_deref()
+    }
+
+    /// The arguments, in the order of the call.
+    pub fn arguments(&self) -> &[ArgumentShape] {
+        &self.routine.arguments
+    }
+
+    /// The arrays of the result.
+    pub fn outputs(&self) -> &[OutputShape] {
+        &self.routine.outputs
+    }
+
+    /// Calls the function; the entries of all outputs, one after the other, go to `outputs`.
+    ///
+    /// # Errors
+    /// If a slice has a wrong length; nothing is computed then.
+    pub fn call(&self, arguments: &[&[f64]], outputs: &mut [f64]) -> Result<(), ShapeMismatch> {
+        self.single.call(arguments, outputs)
+    }
+
+    /// Calls the function on every sample, by all threads of rayon's pool. `outputs` has a slice
+    /// for each array of the result; sample after sample, entries as in [`OutputShape`].
+    ///
+    /// Samples do not touch each other, and each has the bits of a single call, so that results do
+    /// not depend on the number of threads.
+    ///
+    /// # Errors
+    /// If the arguments do not fit the function or each other, or an output does not fit them;
+    /// nothing is computed then.
+    pub fn call_on_samples(
+        &self,
+        arguments: &[&dyn Samples],
+        outputs: &mut [&mut [f64]],
+    ) -> Result<(), ShapeMismatch> {
+        let samples = self.samples(arguments, outputs)?;
+        let widths: Vec<usize> = self.outputs().iter().map(OutputShape::len).collect();
+        let inputs: usize = self.arguments().iter().map(|argument| argument.len).sum();
+        let wide = inputs + widths.iter().sum::<usize>();
+        let rows = NUMBERS_AT_A_TIME / wide.max(1);
+        // an even number of lines
+        let rows = rows.clamp(FEWEST_AT_A_TIME, MOST_AT_A_TIME).next_multiple_of(2 * LINE);
+        let mut blocks: Vec<Vec<&mut [f64]>> = Vec::new();
+        blocks.resize_with(samples.div_ceil(rows), || Vec::with_capacity(widths.len()));
+        for (output, &width) in outputs.iter_mut().zip(&widths).filter(|(_, width)| **width > 0) {
+            for (block, part) in blocks.iter_mut().zip(output.chunks_mut(rows * width)) {
+                block.push(part);
+            }
+        }
+        let batch = self.batch.get_or_init(|| NativeBatch::new(&self.routine, &[]));
+        let worker = || {
+            let stride = rows + LINE;
+            Worker { batch: batch.clone(), columns: vec![0.0; wide * stride], stride }
+        };
+        let run = |worker: &mut Worker, (block, outputs): (usize, Vec<&mut [f64]>)| {
+            let first = block * rows;
+            worker.run(first..samples.min(first + rows), arguments, outputs)
+        };
+        let blocks = blocks.into_iter().enumerate();
+        if samples < FEWEST_FOR_THREADS {
+            let mut worker = worker();
+            return { blocks }.try_for_each(|block| run(&mut worker, block));
+        }
+        let blocks: Vec<_> = blocks.collect();
+        blocks.into_par_iter().map_init(worker, run).collect()
+    }
+
+    /// The number of samples, if all sizes fit.
+    fn samples(
+        &self,
+        arguments: &[&dyn Samples],
+        outputs: &[&mut [f64]],
+    ) -> Result<usize, ShapeMismatch> {
+        ShapeMismatch::check("arguments", self.arguments().len(), arguments.len())?;
+        ShapeMismatch::check("outputs", self.outputs().len(), outputs.len())?;
+        let samples = arguments.first().map_or(0, |first| first.samples());
+        for (shape, argument) in self.arguments().iter().zip(arguments) {
+            ShapeMismatch::check(shape.name, shape.len, argument.entries())?;
+            ShapeMismatch::check(shape.name, samples, argument.samples())?;
+        }
+        for (shape, output) in self.outputs().iter().zip(outputs) {
+            ShapeMismatch::check(shape.name, samples * shape.len(), output.len())?;
+        }
+        Ok(samples)
+    }
+}
+
+/// What a thread needs of its own.
+struct Worker {
+    batch: NativeBatch,
+    /// Columns of the arguments, then of the results, `stride` numbers apart.
+    columns: Vec<f64>,
+    stride: usize,
+}
+
+impl Worker {
+    /// Calls the function on some samples; `outputs` are their parts of the result.
+    fn run(
+        &mut self,
+        samples: std::ops::Range<usize>,
+        arguments: &[&dyn Samples],
+        outputs: Vec<&mut [f64]>,
+    ) -> Result<(), ShapeMismatch> {
+        let count = samples.len();
+        let (given, found) = self.columns.split_at_mut(self.batch.inputs() * self.stride);
+        let mut columns = given.chunks_exact_mut(self.stride);
+        for argument in arguments {
+            for (entry, column) in (0..argument.entries()).zip(&mut columns) {
+                argument.column(entry, samples.start, &mut column[..count]);
+            }
+        }
+        let inputs: Vec<&[f64]> =
+            given.chunks_exact(self.stride).map(|column| &column[..count]).collect();
+        let mut results: Vec<&mut [f64]> =
+            found.chunks_exact_mut(self.stride).map(|column| &mut column[..count]).collect();
+        self.batch.evaluate(&inputs, &mut results)?;
+        let mut columns = results.iter();
+        for output in outputs {
+            let width = output.len() / count;
+            for (entry, column) in (0..width).zip(&mut columns) {
+                for (row, value) in output.chunks_exact_mut(width).zip(column.iter()) {
+                    row[entry] = *value;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

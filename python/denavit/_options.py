@@ -1,0 +1,112 @@
+"""Options of use cases as arguments of the command, whose answers they share."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Protocol
+
+from . import _denavit
+from .errors import _argument
+
+Progress = Callable[[str, "float | None"], "bool | None"]
+"""Hears the stage of a run, and the share of it that is done (0 to 1) where that is known. An
+answer of ``False`` stops the run."""
+
+PathLike = str | os.PathLike[str]
+
+
+class HasSource(Protocol):
+    """What can be written as a file: a model."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def source(self) -> str: ...
+
+
+def place(value: object, what: str) -> str:
+    """The path or the name that someone gave."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise _argument(f"{what} is a path or a name, and no {type(value).__name__}")
+    text = os.fspath(value)
+    if not isinstance(text, str) or text in ("", "-"):
+        raise _argument(f"{what} is no path: {text!r}")
+    return text
+
+
+def places(values: object, what: str) -> list[str]:
+    """Some paths; one alone stands for a list of it."""
+    if isinstance(values, (str, os.PathLike)):
+        return [place(values, what)]
+    if not isinstance(values, Iterable):
+        raise _argument(f"{what} are paths, and no {type(values).__name__}")
+    return [place(value, what) for value in values]
+
+
+def flags(**options: object) -> list[str]:
+    """Flags of the command: nothing of None and False, a bare flag of True, lists with commas."""
+    found: list[str] = []
+    for name, value in options.items():
+        flag = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            found.append(flag)
+        elif isinstance(value, Mapping):
+            found += [flag, ",".join(f"{key}={number}" for key, number in value.items())]
+        elif isinstance(value, (str, os.PathLike)):
+            found += [flag, os.fspath(value)]
+        elif isinstance(value, Iterable):
+            listed = ",".join(str(one) for one in value)
+            if listed:
+                found += [flag, listed]
+        else:
+            # beside its flag, a negative number would be read as one
+            found.append(f"{flag}={value}")
+    return found
+
+
+@contextmanager
+def folder() -> Iterator[Path]:
+    """A folder for files of one run."""
+    with tempfile.TemporaryDirectory(prefix="denavit-") as path:
+        yield Path(path)
+
+
+def file_of(value: object, what: str, inside: Path) -> str:
+    """A path of something: itself, or a new file in a folder of a model, or of a dict."""
+    if isinstance(value, Mapping):
+        path = inside / f"{what}.json"
+        path.write_text(json.dumps(_referring(dict(value), inside)))
+        return str(path)
+    source, name = getattr(value, "source", None), getattr(value, "name", None)
+    if isinstance(source, str) and isinstance(name, str):
+        path = inside / f"{name}.json"
+        path.write_text(source)
+        return str(path)
+    return place(value, what)
+
+
+def _referring(content: dict[str, Any], inside: Path) -> dict[str, Any]:
+    """The same, with a model that a file refers to by an absolute path."""
+    model = content.get("model")
+    if isinstance(model, str) and Path(model).is_file():
+        content["model"] = str(Path(model).resolve())
+    elif model is not None and not isinstance(model, str):
+        content["model"] = file_of(model, "model", inside)
+    return content
+
+
+def answered(
+    arguments: list[str],
+    progress: Progress | None,
+) -> tuple[dict[str, Any], bool, list[str]]:
+    """The JSON of a command, whether its answer is good, and notes."""
+    text, is_good, notes = _denavit.run([*arguments, "--json"], progress)
+    return json.loads(text), is_good, notes

@@ -1,0 +1,347 @@
+//! The command inside another program: the same use cases, options and answers, for a caller in the
+//! same process. The Python package is one.
+//!
+//! What a person reads of a run in a terminal goes to an [`Observer`]: notes and progress. Nothing
+//! is written to standard output or error, and signals are left to the program.
+
+use super::failure::Failure;
+use super::printed::Printed;
+use super::remarks::print_remarks;
+use super::{Answer, Cli, Command, files};
+use clap::Parser;
+use denavit::effect::{self, Effect};
+use denavit::import::nothing_included;
+use denavit::model::Robot;
+use denavit::simulate::Log;
+use std::any::Any;
+use std::cell::RefCell;
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, ThreadId};
+
+/// Who hears what a run says while it goes on.
+pub trait Observer: Send + Sync {
+    /// Something that the reader of the answer should know.
+    fn note(&self, text: &str);
+
+    /// What is being done now, and the share of it that is done where that is known. Answers
+    /// whether to go on; a run that is not to stops at once, without an answer.
+    fn progress(&self, stage: &str, share: Option<f64>) -> bool;
+}
+
+/// What a command answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answered {
+    /// What it would have written to standard output: JSON, with `--json`.
+    pub output: Vec<u8>,
+    /// Whether the answer is good: exit code 0, not 1.
+    pub is_good: bool,
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unanswered {
+    /// The arguments are wrong, as the command says it.
+    Usage(String),
+    /// Inputs are wrong; holds the subcommand.
+    Input(&'static str, Vec<Wrong>),
+    /// The observer did not want to go on.
+    Stopped,
+    /// A fault of denavit itself.
+    Internal(String),
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wrong {
+    /// The file, or the name of a model or scenario, that is to blame.
+    pub file: Option<String>,
+    /// Line, from 1.
+    pub line: Option<usize>,
+    /// Column in characters, from 1.
+    pub column: Option<usize>,
+    /// What is wrong.
+    pub cause: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+thread_local! {
+    static OBSERVED: RefCell<Option<Observed>> = const { RefCell::new(None) };
+}
+
+/// Whether the process is another program's.
+static IS_EMBEDDED: AtomicBool = AtomicBool::new(false);
+
+/// A run with an observer.
+#[derive(Clone)]
+pub(super) struct Observed {
+    observer: Arc<dyn Observer>,
+    /// The thread that can end the run by unwinding.
+    thread: ThreadId,
+}
+
+/// What unwinds a run that is not to go on.
+struct Stopped;
+
+impl Observed {
+    pub(super) fn note(&self, text: &str) {
+        self.observer.note(text);
+    }
+
+    /// Passes progress on; unwinds to [`answer`] if the run is not to go on.
+    pub(super) fn progress(&self, stage: &str, share: Option<f64>) {
+        let goes_on = self.observer.progress(stage, share);
+        if !goes_on && thread::current().id() == self.thread {
+            resume_unwind(Box::new(Stopped));
+        }
+    }
+}
+
+/// The observer of this thread's run; none in the command's own process.
+pub(super) fn observed() -> Option<Observed> {
+    OBSERVED.with_borrow(Clone::clone)
+}
+
+/// Whether signals belong to another program.
+pub(super) fn is_embedded() -> bool {
+    IS_EMBEDDED.load(Ordering::Relaxed)
+}
+
+/// Runs the command with its arguments, `identify tulip_leg --train leg.csv --json`, without its
+/// name. Runs need a stack of 64 MiB for large models.
+///
+/// # Errors
+/// What would end the command with exit code 2.
+pub fn answer(arguments: &[OsString], observer: Arc<dyn Observer>) -> Result<Answered, Unanswered> {
+    let command = parsed(arguments)?;
+    let mut out = Printed::new(Vec::new());
+    let ran = observed_run(command.name(), observer, || command.run(&mut out));
+    ran.map(|answer| Answered { output: out.into_inner(), is_good: answer == Answer::Done })
+}
+
+/// The same of `simulate SCENARIO ..`, with the log of the run.
+///
+/// # Errors
+/// As of [`answer`].
+pub fn simulate(
+    arguments: &[OsString],
+    observer: Arc<dyn Observer>,
+) -> Result<(Answered, Log), Unanswered> {
+    let command = parsed(arguments)?;
+    let Command::Simulate(options) = &command else {
+        return Err(Unanswered::Internal(format!("{} is no simulation", command.name())));
+    };
+    let mut out = Printed::new(Vec::new());
+    let ran =
+        observed_run(command.name(), observer, || super::simulate::run_kept(options, &mut out));
+    ran.map(|(answer, log)| {
+        (Answered { output: out.into_inner(), is_good: answer == Answer::Done }, log)
+    })
+}
+
+/// A model that was read.
+#[derive(Debug)]
+pub struct OpenedModel {
+    /// The robot, with its effects.
+    pub robot: Robot,
+    /// The text of its model file: of a URDF or MJCF that of the model that it became.
+    pub source: String,
+}
+
+/// Reads the model of a path or of a shipped name, with definitions of effects from a folder, or
+/// from the folder `effects` beside it.
+///
+/// # Errors
+/// If there is none, or it is wrong.
+pub fn open_model(
+    place: &Path,
+    effects: Option<&Path>,
+    observer: Arc<dyn Observer>,
+) -> Result<OpenedModel, Unanswered> {
+    observed_run("inspect", observer, || {
+        let (name, bytes) = files::read_model_bytes(place)?;
+        opened(&name, bytes, &files::effects_beside(place, effects)?)
+    })
+}
+
+/// The same of the text of a model file, a URDF or an MJCF. `name` is that of the file, for
+/// messages alone.
+///
+/// # Errors
+/// If it is wrong.
+pub fn open_model_text(
+    name: &str,
+    text: &str,
+    effects: Option<&Path>,
+    observer: Arc<dyn Observer>,
+) -> Result<OpenedModel, Unanswered> {
+    observed_run("inspect", observer, || {
+        let own = effects.map_or(Ok(Vec::new()), files::given_effects)?;
+        let bytes = files::described(name, text.as_bytes().to_vec(), &mut nothing_included)?;
+        opened(name, bytes, &own)
+    })
+}
+
+fn opened(name: &str, bytes: Vec<u8>, own: &[Effect]) -> Result<OpenedModel, Failure> {
+    let robot = effect::read_model(name, &bytes, own).map_err(Failure::Model)?;
+    print_remarks(name, &robot, &bytes);
+    // a model that was read is UTF-8
+    Ok(OpenedModel { robot, source: String::from_utf8_lossy(&bytes).into_owned() })
+}
+
+fn parsed(arguments: &[OsString]) -> Result<Command, Unanswered> {
+    let whole = [OsString::from("denavit")].into_iter().chain(arguments.iter().cloned());
+    let cli = Cli::try_parse_from(whole);
+    cli.map(|cli| cli.command).map_err(|error| Unanswered::Usage(error.render().to_string()))
+}
+
+/// Runs something with an observer, which may stop it.
+fn observed_run<T>(
+    command: &'static str,
+    observer: Arc<dyn Observer>,
+    run: impl FnOnce() -> Result<T, Failure>,
+) -> Result<T, Unanswered> {
+    IS_EMBEDDED.store(true, Ordering::Relaxed);
+    files::begin();
+    OBSERVED.set(Some(Observed { observer, thread: thread::current().id() }));
+    let ran = catch_unwind(AssertUnwindSafe(run));
+    OBSERVED.set(None);
+    match ran {
+        Ok(Ok(answer)) => Ok(answer),
+        Ok(Err(failure)) => Err(Unanswered::Input(command, wrongs(&failure.to_string()))),
+        Err(payload) if payload.is::<Stopped>() => Err(Unanswered::Stopped),
+        Err(payload) => Err(Unanswered::Internal(panic_text(payload.as_ref()))),
+    }
+}
+
+fn panic_text(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
+    text.unwrap_or("no reason is given").to_owned()
+}
+
+/// What is wrong, of the form in which every failure is printed: `FILE:LINE:COLUMN: CAUSE`, with
+/// less of a place perhaps, and below it `  hint: HINT`.
+fn wrongs(printed: &str) -> Vec<Wrong> {
+    let mut all: Vec<Wrong> = Vec::new();
+    for line in printed.lines() {
+        match (line.strip_prefix("  hint: "), all.last_mut()) {
+            (Some(hint), Some(last)) => last.hint = Some(hint.to_owned()),
+            // what goes on below a hint goes on with it
+            (None, Some(last)) if line.starts_with("  ") => {
+                let text = last.hint.as_mut().unwrap_or(&mut last.cause);
+                text.push('\n');
+                text.push_str(line.trim());
+            }
+            _ => all.push(wrong(line)),
+        }
+    }
+    all
+}
+
+fn wrong(line: &str) -> Wrong {
+    let bare = || Wrong { cause: line.to_owned(), ..Wrong::default() };
+    let number = |text: &str| {
+        let (rest, number) = text.rsplit_once(':')?;
+        Some((rest.to_owned(), number.parse::<usize>().ok()?))
+    };
+    let Some((place, cause)) = line.split_once(": ") else { return bare() };
+    let cause = cause.to_owned();
+    if let Some((rest, last)) = number(place) {
+        return match number(&rest) {
+            Some((file, line)) => {
+                let (file, line, column) = (Some(file), Some(line), Some(last));
+                Wrong { file, line, column, cause, hint: None }
+            }
+            None => Wrong { file: Some(rest), line: Some(last), cause, ..Wrong::default() },
+        };
+    }
+    // a name, or a file with blanks in its name; else a sentence with a colon
+    let is_name = !place.is_empty() && !place.contains(char::is_whitespace);
+    match is_name && !place.starts_with("--") || Path::new(place).exists() {
+        true => Wrong { file: Some(place.to_owned()), cause, ..Wrong::default() },
+        false => bare(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Hears everything, and stops at a stage.
+    #[derive(Default)]
+    struct Heard {
+        notes: Mutex<Vec<String>>,
+        stages: Mutex<Vec<String>>,
+        stops_at: Option<&'static str>,
+    }
+
+    impl Observer for Heard {
+        fn note(&self, text: &str) {
+            self.notes.lock().unwrap().push(text.to_owned());
+        }
+
+        fn progress(&self, stage: &str, _: Option<f64>) -> bool {
+            self.stages.lock().unwrap().push(stage.to_owned());
+            !self.stops_at.is_some_and(|stop| stage.contains(stop))
+        }
+    }
+
+    fn run(line: &str, heard: Heard) -> (Result<Answered, Unanswered>, Arc<Heard>) {
+        let heard = Arc::new(heard);
+        let arguments: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
+        (answer(&arguments, heard.clone()), heard)
+    }
+
+    #[test]
+    fn an_answer_is_that_of_the_command() {
+        let (found, _) = run("base double_pendulum --json", Heard::default());
+        let found = found.unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&found.output).unwrap();
+        assert!(found.is_good);
+        assert_eq!(json["model"], "double_pendulum");
+    }
+
+    #[test]
+    fn failures_have_place_and_hint() {
+        let (found, _) = run("inspect puma650", Heard::default());
+        let Err(Unanswered::Input("inspect", wrong)) = found else { panic!("{found:?}") };
+        assert_eq!(wrong[0].file.as_deref(), Some("puma650"));
+        assert!(wrong[0].hint.as_ref().unwrap().contains("puma560"));
+        let (found, _) = run("inspect --no-such-flag", Heard::default());
+        assert!(matches!(found, Err(Unanswered::Usage(text)) if text.contains("--no-such-flag")));
+    }
+
+    #[test]
+    fn an_observer_stops_a_run() {
+        let heard = Heard { stops_at: Some("reading"), ..Heard::default() };
+        let (found, heard) = run("identify tulip_leg --train none.csv --json", heard);
+        assert_eq!(found, Err(Unanswered::Stopped));
+        assert_eq!(heard.stages.lock().unwrap().len(), 1);
+    }
+
+    #[test]
+    fn places_are_read_as_they_are_printed() {
+        let printed = "a/b.json:2:20: /x: nothing\n  hint: declare it:\n  more\nc.csv:7: a gap\n\
+                       --prior: no\ntulip: none: of it\nthe model:3:4: wrong\nit is: so";
+        let found = wrongs(printed);
+        let places: Vec<_> = found.iter().map(|one| (one.file.as_deref(), one.line)).collect();
+        let expected = [
+            (Some("a/b.json"), Some(2)),
+            (Some("c.csv"), Some(7)),
+            (None, None),
+            (Some("tulip"), None),
+            (Some("the model"), Some(3)),
+            (None, None),
+        ];
+        assert_eq!(places, expected);
+        assert_eq!(found[0].column, Some(20));
+        assert_eq!(found[0].hint.as_deref(), Some("declare it:\nmore"));
+        assert_eq!(found[3].cause, "none: of it");
+    }
+}

@@ -1,5 +1,5 @@
-//! The numbers that decide estimates, what is said of them, and excitation, each with its unit
-//! and where it is from: those of each module. Doubts have a table of their own.
+//! The numbers that decide estimates and what is said of them, each with its unit and where it is
+//! from: those of each module. Doubts have a table of their own.
 
 /// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
 /// links, do to each equation (thesis 3.3, 5.2.1).
@@ -278,50 +278,6 @@ pub(crate) mod widening {
     pub(crate) const LEAST: f64 = 1.0 / 16.0;
 }
 
-/// `excite/mod.rs`: Trajectories that excite what is to be identified (thesis 3.2.3).
-pub(crate) mod excite {
-    /// Sharpness of the limits of the two solutions, and the share of the evaluations of the
-    /// first.
-    pub(crate) const SHARPNESS: [f64; 2] = [40.0, 200.0];
-
-    /// See [`SHARPNESS`].
-    pub(crate) const FIRST_SHARE: f64 = 0.4;
-
-    /// Share of each limit that stays unused on the solver's grid.
-    pub(crate) const RESERVE: f64 = 0.004;
-
-    /// The use of limits that a motion is made smaller to: what remains is for what happens
-    /// between the samples of a check.
-    pub(crate) const SAFE: f64 = 1.0 - 1e-4;
-}
-
-/// `excite/objective.rs`: How well a motion excites: condition number and determinant of the
-/// stacked regressor, and their derivatives by its entries.
-pub(crate) mod objective {
-    /// ln of what counts as infinite: 1e26.
-    pub(crate) const LARGEST_LOG: f64 = 60.0;
-}
-
-/// `excite/options.rs`: What an excitation is asked for, compared with what the model can do.
-pub(crate) mod options {
-    /// Laps that are looked for: longer than a robot's shaking, and shorter than a day \[s\].
-    pub(crate) const DURATIONS_S: std::ops::RangeInclusive<f64> = 0.01..=1e4;
-}
-
-/// `excite/problem.rs`: The optimisation problem: objective and limits as functions of the
-/// coordinates of all joints that move, with their derivatives.
-pub(crate) mod problem {
-    /// Length by which a missing height is divided \[m\].
-    pub(crate) const HEIGHT_M: f64 = 0.1;
-}
-
-/// `excite/stack.rs`: From motion to the stacked regressor W, and back: from derivatives by the
-/// entries of W to derivatives by the motion.
-pub(crate) mod stack {
-    /// Width of a smooth sign, of the largest speed of the joint.
-    pub(crate) const SIGN_WIDTH: f64 = 0.02;
-}
-
 /// `identification.rs`: All that identification says: data alone, for tables, files and reports to
 /// show.
 pub(crate) mod identification {
@@ -430,10 +386,4 @@ pub(crate) mod readings {
 
     /// Standard errors that a stiffness is above 0.
     pub(crate) const SURE: f64 = 5.0;
-}
-
-/// `excite/space.rs`
-pub(crate) mod space {
-    /// Below this share a direction of conditions is rounding of others.
-    pub(crate) const ROUNDING: f64 = 1e-9;
 }

@@ -1,5 +1,6 @@
 //! Identification: from motion and torques to parameters.
 
+mod agreement;
 mod emps;
 mod estimate;
 mod forward;

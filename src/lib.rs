@@ -8,7 +8,8 @@
 //! - [`simulate`]: robots in motion, on the ground
 //! - [`diagnose`]: what a model lacks, from measurements
 //! - [`plants`]: robots as numbers, generated or interpreted
-//! - [`identify`]: parameters from measured motion, and motion that shows them
+//! - [`excite`]: motion that shows the parameters of a robot
+//! - [`identify`]: parameters from measured motion
 //! - [`import`]: URDF and MJCF as model files, and back
 //! - [`logs`]: files of logs of any format as tables
 //! - [`measure`]: logs: read, checked, filtered; noise of their positions
@@ -28,6 +29,7 @@ pub use denavit_codegen::{
     model, number, program, regressor, regroup, spatial,
 };
 pub use denavit_diagnose as diagnose;
+pub use denavit_excite as excite;
 pub use denavit_identify as identify;
 pub use denavit_import as import;
 pub use denavit_logs as logs;

@@ -11,7 +11,7 @@ use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
 use answer::Found;
 use clap::{Args, ValueEnum};
-use denavit::identify::excite::{
+use denavit::excite::{
     Check, Columns, Ends, ExciteOptions, Excited, Family, Objective, check_trajectory, excite,
 };
 use denavit::model::Robot;
@@ -243,7 +243,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return checked(arguments, (&robot, &effects), &options, path, out);
     }
     let progress = Progress::new();
-    let tell = |at: &denavit::identify::excite::Progress| {
+    let tell = |at: &denavit::excite::Progress| {
         let (start, count) = (at.start + 1, options.starts);
         let (evaluations, condition) = (at.evaluations, at.iterate.condition);
         progress.show(&format!(

@@ -19,7 +19,7 @@ use super::turning::turning;
 use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_identify::excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
+use denavit_excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;

@@ -1,6 +1,5 @@
 //! Identification: from motion to parameters, with honest errors (thesis chapter 3).
 //!
-//! - [`excite`]: trajectories that excite what is to be identified
 //! - [`add_contact_forces`], [`add_wrenches`]: what the ground, and pushes, do to each equation
 //! - [`take_out`]: effects that the model has beside its equations, taken out of logs
 //! - [`leave_out_idle_motors`]: torques of joints that a brake holds
@@ -16,18 +15,15 @@
 mod contact_forces;
 pub mod doubt;
 pub mod estimate;
-pub mod excite;
 pub mod forward;
 mod identification;
 mod idle;
 pub mod knowledge;
 mod known_effects;
-mod lacking;
 mod model_text;
 mod model_values;
 mod no_bodies;
 mod noisy_logs;
-mod odd_log;
 mod policy;
 pub mod statics;
 mod statics_file;

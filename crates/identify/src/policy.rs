@@ -1,5 +1,5 @@
-//! The numbers that decide estimates, what is said of them, and excitation, each with its unit
-//! and where it is from: those of each module. Doubts have a table of their own.
+//! The numbers that decide estimates and what is said of them, each with its unit and where it is
+//! from: those of each module. Doubts have a table of their own.
 
 /// `contact_forces.rs`: Robots that are pushed from outside: what contact forces, and wrenches on
 /// links, do to each equation (thesis 3.3, 5.2.1).
@@ -14,13 +14,6 @@ pub(crate) mod contact_forces {
 pub(crate) mod bounds {
     /// The least share of its size that an entry keeps.
     pub(crate) const LEAST: f64 = 1e-3;
-}
-
-/// `estimate/comparison.rs`: Logs for an estimate that are compared with each other.
-pub(crate) mod comparison {
-    /// An estimate is that of some logs if no parameter is further from what they say, in their
-    /// standard errors.
-    pub(crate) const APART: f64 = 3.0;
 }
 
 /// `estimate/consistent.rs`: Bodies that exist: the parameters nearest to an estimate with
@@ -45,32 +38,6 @@ pub(crate) mod consistent {
     pub(crate) const FAR: f64 = 2.0;
 }
 
-/// `estimate/contradiction.rs`: Logs that contradict the others: parameters of their own would
-/// explain what those of all do not.
-pub(crate) mod contradiction {
-    /// What own parameters explain must be this share of a joint's torque, as root of mean square,
-    /// and so many times what they leave, which noise may have made them follow; where parts of
-    /// the log do not say for how long that is alike, so many times,
-    pub(crate) const OF_TORQUE: f64 = 0.03;
-
-    /// See [`OF_TORQUE`].
-    pub(crate) const OF_OWN: f64 = 0.5;
-
-    /// See [`OF_TORQUE`].
-    pub(crate) const OF_OWN_ALONE: f64 = 1.5;
-
-    /// and this many times what chance explains with as many parameters, in variance.
-    pub(crate) const OF_CHANCE: f64 = 25.0;
-
-    /// and what noise of the positions makes of it, in variance: to follow that, parameters of a
-    /// log's own are biased. That noise is known to a few times, since steps of an encoder may
-    /// beat with the samples.
-    pub(crate) const OF_BEATS: f64 = 10.0;
-
-    /// What a constant or a factor leaves of the squares of what it is told for, at most.
-    pub(crate) const ALIKE: f64 = 0.25;
-}
-
 /// `estimate/errors.rs`: Standard errors that hold where residuals are alike from one sample to
 /// the next.
 pub(crate) mod errors {
@@ -86,25 +53,6 @@ pub(crate) mod errors {
 
     /// Neighbouring parts are taken to be no more alike than this.
     pub(crate) const MOST_ALIKE: f64 = 0.8;
-}
-
-/// `estimate/exceeding.rs`: Joints of whose torque far more is left in a log for validation than
-/// anything explains.
-pub(crate) mod exceeding {
-    /// What is left must be this share of a joint's torque, as root of mean square,
-    pub(crate) const OF_TORQUE: f64 = 0.05;
-
-    /// so many times what all that is known explains, of which noise of the positions is known to
-    /// a few times, in variance,
-    pub(crate) const MANY: f64 = 5.0;
-
-    /// See [`MANY`].
-    pub(crate) const OF_NOISE: f64 = 4.0;
-
-    /// and behind half the cutoff still so many times what that takes away of it, in variance:
-    /// half of white noise is left there, and of noise whose band ends at a tenth of the cutoff
-    /// twelve times what is taken.
-    pub(crate) const OF_BAND: f64 = 25.0;
 }
 
 /// `estimate/half_cutoff.rs`: What changes with half the cutoff of the filter: more than chance
@@ -148,13 +96,6 @@ pub(crate) mod left_out {
 
     /// The least share of its rows that a joint keeps.
     pub(crate) const LEAST: f64 = 0.1;
-}
-
-/// `estimate/left_over.rs`: What is left of torques: how much, and whether it is noise.
-pub(crate) mod left_over {
-    /// Noise is another one after half a period of the filter's cutoff: what is left is still
-    /// correlated with itself by so much if it is none.
-    pub(crate) const NO_NOISE: f64 = 0.5;
 }
 
 /// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual
@@ -226,34 +167,6 @@ pub(crate) mod solve {
     pub(crate) const MOST_WEIGHT: f64 = 1e100;
 }
 
-/// `estimate/unexplained.rs`: Joints whose torque an estimate does not explain, in all logs, in
-/// one of them, or while a joint rests.
-pub(crate) mod unexplained {
-    /// The share of a joint's torque, as root of mean square, that must be left.
-    pub(crate) const LEFT: f64 = 0.9;
-
-    /// The share that must be left where it is no noise: noise is another one after half a period
-    /// of the filter's cutoff, and what is left is still correlated with itself by so much.
-    pub(crate) const LEFT_ALIKE: f64 = 0.3;
-
-    /// See [`LEFT_ALIKE`].
-    pub(crate) const ALIKE: f64 = 0.5;
-
-    /// A joint that moves less than this share of the one of its kind that moves most is at rest:
-    /// nothing but noise may be in its torque, and what stiction holds: at most so many times its
-    /// Coulomb friction. Of what is no noise after a whole period this share must be left.
-    pub(crate) const AT_REST: f64 = 0.01;
-
-    /// See [`AT_REST`].
-    pub(crate) const STICTION: f64 = 2.0;
-
-    /// See [`AT_REST`].
-    pub(crate) const LEFT_AT_REST: f64 = 0.03;
-
-    /// What is left is that of noise of the positions if that makes one part in so many of it.
-    pub(crate) const OF_NOISE: f64 = 2.0;
-}
-
 /// `estimate/weights.rs`: Weights of rows by the noise of each joint in each log, which is that of
 /// its residuals.
 pub(crate) mod weights {
@@ -278,53 +191,13 @@ pub(crate) mod widening {
     pub(crate) const LEAST: f64 = 1.0 / 16.0;
 }
 
-/// `excite/mod.rs`: Trajectories that excite what is to be identified (thesis 3.2.3).
-pub(crate) mod excite {
-    /// Sharpness of the limits of the two solutions, and the share of the evaluations of the
-    /// first.
-    pub(crate) const SHARPNESS: [f64; 2] = [40.0, 200.0];
-
-    /// See [`SHARPNESS`].
-    pub(crate) const FIRST_SHARE: f64 = 0.4;
-
-    /// Share of each limit that stays unused on the solver's grid.
-    pub(crate) const RESERVE: f64 = 0.004;
-
-    /// The use of limits that a motion is made smaller to: what remains is for what happens
-    /// between the samples of a check.
-    pub(crate) const SAFE: f64 = 1.0 - 1e-4;
-}
-
-/// `excite/objective.rs`: How well a motion excites: condition number and determinant of the
-/// stacked regressor, and their derivatives by its entries.
-pub(crate) mod objective {
-    /// ln of what counts as infinite: 1e26.
-    pub(crate) const LARGEST_LOG: f64 = 60.0;
-}
-
-/// `excite/options.rs`: What an excitation is asked for, compared with what the model can do.
-pub(crate) mod options {
-    /// Laps that are looked for: longer than a robot's shaking, and shorter than a day \[s\].
-    pub(crate) const DURATIONS_S: std::ops::RangeInclusive<f64> = 0.01..=1e4;
-}
-
-/// `excite/problem.rs`: The optimisation problem: objective and limits as functions of the
-/// coordinates of all joints that move, with their derivatives.
-pub(crate) mod problem {
-    /// Length by which a missing height is divided \[m\].
-    pub(crate) const HEIGHT_M: f64 = 0.1;
-}
-
-/// `excite/stack.rs`: From motion to the stacked regressor W, and back: from derivatives by the
-/// entries of W to derivatives by the motion.
-pub(crate) mod stack {
-    /// Width of a smooth sign, of the largest speed of the joint.
-    pub(crate) const SIGN_WIDTH: f64 = 0.02;
-}
-
 /// `identification.rs`: All that identification says: data alone, for tables, files and reports to
 /// show.
 pub(crate) mod identification {
+    /// Parameters are those of some logs alone if none is further from what these say, in their
+    /// standard errors.
+    pub(crate) const APART: f64 = 3.0;
+
     /// Periods of the filter's cutoff below which logs are short.
     pub(crate) const SHORT: f64 = 80.0;
 
@@ -362,21 +235,15 @@ pub(crate) mod knowledge {
     pub(crate) const ROUNDING: f64 = 1e-9;
 }
 
-/// `lacking.rs`: That what is left of torques is no noise: something is not as the model has it.
-pub(crate) mod lacking {
-    /// The share of a joint's torque from which on it is said.
-    pub(crate) const SAID: f64 = 0.005;
-
-    /// What is left with the model's own values, over the torques, from which on the robot is
-    /// another.
-    pub(crate) const OTHER: f64 = 10.0;
-}
-
 /// `no_bodies.rs`: Estimates that belong to no bodies that exist.
 pub(crate) mod no_bodies {
     /// Standard errors between an estimate and the nearest bodies from which on what it is from is
     /// doubted: good logs have next to none, misread ones any number.
     pub(crate) const FAR: f64 = 20.0;
+
+    /// What is left with the model's own values, over the torques, from which on the robot is
+    /// another.
+    pub(crate) const OTHER: f64 = 10.0;
 }
 
 /// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias
@@ -430,10 +297,4 @@ pub(crate) mod readings {
 
     /// Standard errors that a stiffness is above 0.
     pub(crate) const SURE: f64 = 5.0;
-}
-
-/// `excite/space.rs`
-pub(crate) mod space {
-    /// Below this share a direction of conditions is rounding of others.
-    pub(crate) const ROUNDING: f64 = 1e-9;
 }

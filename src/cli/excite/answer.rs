@@ -3,9 +3,7 @@
 use crate::cli::failure::Failure;
 use crate::cli::json::write_json;
 use crate::cli::model_effects::EffectUse;
-use denavit::identify::excite::{
-    Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport,
-};
+use denavit::excite::{Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport};
 use denavit::model::Robot;
 use denavit::report::{Align, Table, paragraph, short};
 use serde_json::{Value, json};

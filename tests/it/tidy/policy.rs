@@ -45,27 +45,29 @@ fn entries(source: &str) -> Vec<Entry> {
     all
 }
 
-/// The packages that judge logs, and what their numbers are of.
-const TABLES: [(&str, &str); 4] = [
-    ("evidence", "Hypotheses and names"),
-    ("diagnose", "What is said of what was found"),
-    ("identify", "Estimates, doubts about logs, excitation"),
-    ("measure", "Logs and filters"),
+/// The packages that judge logs, and motion for them; what their numbers are of, and the fewest
+/// that a table which was read has.
+const TABLES: [(&str, &str, usize); 5] = [
+    ("evidence", "Hypotheses and names", 20),
+    ("diagnose", "What is said of what was found", 20),
+    ("identify", "Estimates, doubts about logs", 20),
+    ("measure", "Logs and filters", 20),
+    ("excite", "Motion that excites", 5),
 ];
 
 fn page() -> String {
     let mut page = String::from(
         "# The numbers that decide\n\n\
-         Made from the tables `policy.rs` of four packages (`UPDATE_EXPECT=1 cargo test --release \
+         Made from the tables `policy.rs` of five packages (`UPDATE_EXPECT=1 cargo test --release \
          --test it policy` writes it anew).\n",
     );
-    for (package, what) in TABLES {
+    for (package, what, fewest) in TABLES {
         let mut files = rust_files(&format!("crates/{package}/src"));
         files.retain(|path| path.ends_with("policy.rs"));
         files.sort();
         let read = |path: &std::path::PathBuf| entries(&fs::read_to_string(path).unwrap());
         let entries: Vec<Entry> = files.iter().flat_map(read).collect();
-        assert!(entries.len() > 20, "the table of {package} has {} entries", entries.len());
+        assert!(entries.len() > fewest, "the table of {package} has {} entries", entries.len());
         page += &format!("\n## {what} (`crates/{package}`)\n");
         for Entry { name, value, text } in entries {
             let text = text.replace("\\[", "[").replace("\\]", "]").replace("[`", "`");
@@ -94,7 +96,7 @@ const MOST_ELSEWHERE: usize = 40;
 #[test]
 fn numbers_outside_the_policy_do_not_become_more() {
     let mut count = 0;
-    for (package, _) in TABLES {
+    for (package, ..) in TABLES {
         for path in rust_files(&format!("crates/{package}/src")) {
             if path.ends_with("policy.rs") {
                 continue;

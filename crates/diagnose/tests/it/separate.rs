@@ -3,7 +3,7 @@
 
 use super::one_joint::{diagnosed, log};
 use denavit_diagnose::Verdict;
-use denavit_identify::excite::{ExciteOptions, check_trajectory};
+use denavit_excite::{ExciteOptions, check_trajectory};
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::scenario::read_trajectory;
 use std::f64::consts::TAU;

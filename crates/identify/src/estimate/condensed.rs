@@ -16,7 +16,7 @@ use std::borrow::Cow;
 const PARTS: usize = 96;
 
 /// The fewest samples of a part.
-pub(super) const MIN_PART: usize = 20;
+const MIN_PART: usize = 20;
 
 /// Triangles of every joint, part by part.
 #[derive(Clone, Debug)]
@@ -141,22 +141,6 @@ impl Condensed {
         }
     }
 
-    /// Some of the logs alone.
-    pub(super) fn of_logs(&self, logs: &[usize]) -> Self {
-        let number = |part: usize| logs.iter().position(|log| *log == self.log_of_part[part]);
-        let own: Vec<(usize, usize)> =
-            (0..self.parts.len()).filter_map(|part| Some((part, number(part)?))).collect();
-        Self {
-            pattern: self.pattern.clone(),
-            parts: own.iter().map(|&(part, _)| self.parts[part].clone()).collect(),
-            log_of_part: own.iter().map(|&(_, log)| log).collect(),
-            end_s: own.iter().map(|&(part, _)| self.end_s[part]).collect(),
-            independent: logs.iter().map(|&log| self.independent[log]).collect(),
-            row_s: logs.iter().map(|&log| self.row_s[log]).collect(),
-            rank: self.rank,
-        }
-    }
-
     /// For each log the triangles of its joints, of the given parts.
     pub fn merged(&self, parts: impl Iterator<Item = usize>) -> Vec<Vec<Triangle>> {
         let none = || self.pattern.iter().map(|places| Triangle::new(places.len())).collect();
@@ -173,18 +157,6 @@ impl Condensed {
                 sum.merge(own);
             }
         }
-    }
-
-    /// The mean of what phi leaves of each joint's torque in some logs.
-    pub(super) fn means(&self, logs: &[usize], phi: &[f64]) -> Vec<f64> {
-        let own = self.parts.iter().zip(&self.log_of_part).filter(|(_, log)| logs.contains(log));
-        let of = |joint: usize| {
-            let phi = self.of_joint(joint, phi);
-            let all = own.clone().map(|(part, _)| (part[joint].rows(), part[joint].sum(&phi)));
-            let (rows, sum) = all.fold((0, 0.0), |(n, s), (rows, sum)| (n + rows, s + sum));
-            sum / rows.max(1) as f64
-        };
-        (0..self.pattern.len()).map(of).collect()
     }
 
     /// For each log the triangles of its joints, of all parts.

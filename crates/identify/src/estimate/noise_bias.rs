@@ -12,10 +12,9 @@ use super::least_squares::Estimate;
 use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
-use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_numerics::Random;
-use denavit_plants::regression::{RegressionJoint, RegressionModel};
+use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -51,8 +50,6 @@ pub struct NoiseOfLog {
     /// The largest bias of what this log alone says of an entry of phi, in standard errors of
     /// residuals that are independent.
     pub alone: f64,
-    /// What it adds to W^T [W | y] of each joint, as it was weighted.
-    pub(super) of_joints: Vec<DMatrix<f64>>,
 }
 
 /// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
@@ -69,90 +66,29 @@ pub(super) fn noise_bias(
         let of = (&found.weights[number][..], longest, factors);
         Noise::of_log(model, ((number, log), left_out), of, &mut random)
     };
-    let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
-    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise::of_joints(one)).collect();
+    let of_logs: Vec<Noise> = logs.iter().enumerate().map(of_log).collect();
     let mut all = Noise::new(model.rank());
     of_logs.iter().for_each(|one| all.0 += &one.0);
     let solution = &found.solution;
     let (bias, phi) = all.bias(solution, given);
     let triangles = found.condensed.whole();
-    let of_log = |((log, noise), of_joints): ((usize, &Noise), Vec<DMatrix<f64>>)| {
+    let of_log = |(log, noise): (usize, &Noise)| {
         let (own, weights) = (&triangles[log..=log], &found.weights[log..=log]);
         let bias = noise.lost(solution, &phi);
         if noise.0.amax() == 0.0 {
             // a log whose rows are all left out shows nothing
             let is_empty = triangles[log].iter().all(|one| one.rows() == 0);
             let share = f64::from(u8::from(is_empty));
-            return NoiseOfLog { bias, share, alone: 0.0, of_joints };
+            return NoiseOfLog { bias, share, alone: 0.0 };
         }
         let own = solve(&found.condensed.system(own, weights, &[]), given);
         let alone = in_errors(&own, &noise.bias(&own, given).0);
         let share = noise.share(&own);
         let alone = alone * found.condensed.independent[log].sqrt();
-        NoiseOfLog { bias, share, alone, of_joints }
+        NoiseOfLog { bias, share, alone }
     };
-    let of_logs = of_logs.iter().enumerate().zip(of_joints).map(of_log).collect();
+    let of_logs = of_logs.iter().enumerate().map(of_log).collect();
     NoiseBias { bias, share: all.share(solution), of_logs }
-}
-
-/// What noise of some logs adds to an estimate of theirs, whose rows count so many times as much as
-/// when it was found, by log and joint.
-pub(super) fn bias_of_some<'a>(
-    noise: impl Iterator<Item = (&'a NoiseOfLog, Vec<f64>)>,
-    solution: &Solution,
-    given: &[f64],
-) -> DVector<f64> {
-    let mut all = Noise::new(solution.phi.len());
-    for (one, times) in noise {
-        one.of_joints.iter().zip(times).for_each(|(own, times)| all.0 += own * times);
-    }
-    all.bias(solution, given).0
-}
-
-/// The squares that noise of the positions of a log makes of what phi leaves of each joint's
-/// torque, of the rows that count.
-pub(super) fn noise_squares(
-    model: &RegressionModel,
-    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
-    phi: &DVector<f64>,
-) -> Vec<f64> {
-    let mut squares = vec![0.0; model.joints.len()];
-    if log.position_noise.iter().all(|noise| *noise == 0.0) {
-        return squares;
-    }
-    let own = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-    let phi: Vec<Vec<f64>> = (0..squares.len()).map(own).collect();
-    let rests = &left_out.all_rests((number, log));
-    let mut random = Random::new(SEED);
-    with_noise(model, (log, SAMPLES, rests), &mut random, |first, block, noisy, of_all| {
-        for (joint, sum) in squares.iter_mut().enumerate() {
-            let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
-            let counts = left_out.counts((number, log), joint, (first, block.samples));
-            let counts = counts.unwrap_or_else(|| vec![true; clean.len()]);
-            for noisy in noisy.iter().filter_map(|block| block.residual(joint, &phi[joint])) {
-                let both = noisy.iter().zip(&clean).zip(&counts).filter(|(_, counts)| **counts);
-                *sum += 0.5 * of_all * both.map(|((a, b), _)| (a - b).powi(2)).sum::<f64>();
-            }
-        }
-    });
-    squares
-}
-
-/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
-/// square over root of mean square; 0 where none was measured.
-pub(crate) fn noise_in_torques(
-    model: &RegressionModel,
-    log: &Conditioned,
-    phi: &[f64],
-) -> Vec<f64> {
-    let all = LeftOut::none(std::slice::from_ref(log));
-    let noise = noise_squares(model, ((0, log), &all), &DVector::from_column_slice(phi));
-    let left = validate(model, phi, &[log]);
-    let share = |(joint, noise): (&RegressionJoint, f64)| {
-        let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
-        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
-    };
-    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:
@@ -199,18 +135,14 @@ impl Noise {
         Self(DMatrix::zeros(rank, rank + 1))
     }
 
-    fn of_joints(of_joints: &[DMatrix<f64>]) -> Self {
-        Self(of_joints.iter().sum())
-    }
-
-    /// That of each joint of a log, of which so many samples are looked at before decimation.
+    /// That of a log, of which so many samples are looked at before decimation.
     fn of_log(
         model: &RegressionModel,
         ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
         (weights, longest, factors): (&[f64], usize, Option<RowFactors<'_>>),
         random: &mut Random,
-    ) -> Vec<DMatrix<f64>> {
-        let mut noise = vec![Self::new(model.rank()).0; model.joints.len()];
+    ) -> Self {
+        let mut noise = Self::new(model.rank());
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }
@@ -226,7 +158,7 @@ impl Noise {
                 let counts = left_out.counts((number, log), joint, (first, count));
                 let all = squares.iter_mut().zip(counts.unwrap_or_default());
                 all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
-                add(&mut noise[joint], (model, joint), (block, noisy), &squares);
+                add(&mut noise.0, (model, joint), (block, noisy), &squares);
             }
         });
         noise

@@ -1,8 +1,8 @@
 //! Identification: from motion and torques to parameters.
 
+mod agreement;
 mod emps;
 mod estimate;
-mod excite;
 mod forward;
 mod friction;
 mod leg;

@@ -4,7 +4,7 @@
 use super::super::svg::Svg;
 use super::axes::{Axes, Scale, TICK};
 use super::{BLUE, COLOURS, HEADING, SCALE, SIDE, WANTED, WIDTH, draw_legend};
-use denavit_identify::excite::{Excited, JointUse};
+use denavit_excite::{Excited, JointUse};
 use denavit_plants::trajectory::{Reference, Setpoint};
 
 /// What a picture of an excitation is about.
@@ -108,7 +108,7 @@ fn joint_diagrams(
 /// log10 of the condition number of every iterate.
 fn history(svg: &mut Svg, excited: &Excited, corner: [f64; 2], width: f64) {
     svg.label([corner[0], corner[1] + 14.0], "start", HEADING, "condition number over iterations");
-    let of = |start: &denavit_identify::excite::StartReport| -> Vec<f64> {
+    let of = |start: &denavit_excite::StartReport| -> Vec<f64> {
         start.iterates.iter().map(|iterate| iterate.condition.log10()).collect()
     };
     let all: Vec<Vec<f64>> = excited.starts.iter().map(of).collect();

@@ -26,10 +26,11 @@ use denavit_evidence::policy::NOTHING_LIKE;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
-use reading::Reading;
-use sample::Sample;
+pub(super) use reading::Reading;
+pub(super) use sample::{Halves, JointRows, Sample};
 use search::Search;
 use std::fmt;
+pub(super) use weigh::is_positive;
 use weigh::{Beliefs, Shares};
 
 /// Columns that seem to be other ones than they are taken for.

@@ -4,9 +4,10 @@ use super::line::Line;
 use super::reading::Reading;
 use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
-use denavit_measure::condition::Conditioned;
+use denavit_measure::condition::{Butterworth, Conditioned};
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
 
 /// Samples of a block: residuals that are alike for long are seen so.
 const BLOCK: usize = 256;
@@ -15,8 +16,8 @@ const BLOCK: usize = 256;
 const KEPT: usize = 2;
 
 /// Some samples of logs, to be read in one way or another.
-pub(super) struct Sample<'a> {
-    pub(super) model: &'a RegressionModel,
+pub(in crate::doubt) struct Sample<'a> {
+    pub(in crate::doubt) model: &'a RegressionModel,
     evaluator: RegressionEvaluator,
     rows: RegressionRows,
     windows: Vec<Window<'a>>,
@@ -28,7 +29,7 @@ pub(super) struct Sample<'a> {
 /// What is of the rows of a joint: the mean products of the measured torque, of what is known of
 /// it, of 1, of the columns of the regressor and of lines with each other, in this order.
 #[derive(Clone)]
-pub(super) struct JointRows {
+pub(in crate::doubt) struct JointRows {
     rows: usize,
     products: DMatrix<f64>,
 }
@@ -46,17 +47,21 @@ impl JointRows {
         self.products[(0, 0)]
     }
 
-    /// The mean products of what is to be explained and of the columns, in this order.
-    pub(super) fn of_columns(&self) -> DMatrix<f64> {
+    /// The mean products of what is to be explained, of 1 and of the columns, in this order.
+    pub(in crate::doubt) fn with_constant(&self) -> DMatrix<f64> {
         let size = self.products.nrows();
-        let combined =
-            DMatrix::from_fn(size, size - BEFORE + 1, |row, column| match (row, column) {
-                (0, 0) => 1.0,
-                (1, 0) => -1.0,
-                (row, column) if column > 0 && row + 1 == column + BEFORE => 1.0,
-                _ => 0.0,
-            });
+        let combined = DMatrix::from_fn(size, size - 1, |row, column| match (row, column) {
+            (0, 0) => 1.0,
+            (1, 0) => -1.0,
+            (row, column) if column > 0 && row == column + 1 => 1.0,
+            _ => 0.0,
+        });
         combined.tr_mul(&(&self.products * &combined))
+    }
+
+    /// The same without 1.
+    pub(super) fn of_columns(&self) -> DMatrix<f64> {
+        self.with_constant().remove_row(1).remove_column(1)
     }
 
     /// The same of a torque that is multiplied with a factor, and has a constant added.
@@ -71,7 +76,7 @@ impl JointRows {
 
 impl<'a> Sample<'a> {
     /// Of logs, so many samples of all, whose signals are read up to `latest` samples late.
-    pub(super) fn new(
+    pub(in crate::doubt) fn new(
         model: &'a RegressionModel,
         (logs, latest): (&[&'a Conditioned], isize),
         samples: usize,
@@ -93,12 +98,12 @@ impl<'a> Sample<'a> {
     }
 
     /// Whether a joint moves in some of the logs.
-    pub(super) fn moves(&self, joint: usize) -> bool {
+    pub(in crate::doubt) fn moves(&self, joint: usize) -> bool {
         self.windows.iter().any(|window| window.log().resting.get(joint) != Some(&true))
     }
 
     /// Whether the torque of a joint is measured in some of the logs.
-    pub(super) fn is_measured(&self, joint: usize) -> bool {
+    pub(in crate::doubt) fn is_measured(&self, joint: usize) -> bool {
         self.windows.iter().any(|window| window.log().torque[joint].is_some())
     }
 
@@ -110,7 +115,7 @@ impl<'a> Sample<'a> {
 
     /// How many samples of each column of torque that is measured the filter leaves independent of
     /// each other.
-    pub(super) fn independent_by_filter(&self) -> Vec<f64> {
+    pub(in crate::doubt) fn independent_by_filter(&self) -> Vec<f64> {
         let of = |column: usize| {
             let measured = |window: &&Window<'_>| window.log().torque[column].is_some();
             self.windows.iter().filter(measured).map(Window::independent).sum()
@@ -135,7 +140,7 @@ impl<'a> Sample<'a> {
     }
 
     /// The rows of each joint under a reading; none of one whose torque is not measured.
-    pub(super) fn rows(&mut self, reading: &Reading) -> Vec<Option<JointRows>> {
+    pub(in crate::doubt) fn rows(&mut self, reading: &Reading) -> Vec<Option<JointRows>> {
         let plain = reading.with_plain_torques();
         let kept = self.kept.iter().find(|(one, _)| *one == plain).map(|(_, rows)| rows.clone());
         let rows = kept.unwrap_or_else(|| {
@@ -284,9 +289,37 @@ impl<'a> Sample<'a> {
         sums.into_iter().map(share).collect()
     }
 
+    /// What phi leaves of each torque, by the halves of the band; none of one that is not measured.
+    pub(in crate::doubt) fn halves(
+        &mut self,
+        reading: &Reading,
+        phi: &DVector<f64>,
+    ) -> Vec<Option<Halves>> {
+        let mut all: Vec<Option<Halves>> = vec![None; self.model.joints.len()];
+        for window in 0..self.windows.len() {
+            self.read(window, reading);
+            for (joint, sum) in all.iter_mut().enumerate() {
+                let Some(mut torque) = self.windows[window].torque(&reading.torques[joint]) else {
+                    continue;
+                };
+                self.count(window, joint, &mut torque);
+                let left = self.left(window, reading, (joint, phi));
+                let log = self.windows[window].log();
+                let filter = (log.filter.as_ref(), log.decimation.max(1) as f64);
+                let own = Halves::of(&left, &torque, filter);
+                *sum = Some(sum.unwrap_or_default().with(&own));
+            }
+        }
+        all
+    }
+
     /// How many samples of each torque that is measured are independent of each other: by how long
     /// what phi leaves is like itself, and no more than the filter lets be.
-    pub(super) fn independent(&mut self, reading: &Reading, phi: &DVector<f64>) -> Vec<f64> {
+    pub(in crate::doubt) fn independent(
+        &mut self,
+        reading: &Reading,
+        phi: &DVector<f64>,
+    ) -> Vec<f64> {
         let n = self.model.joints.len();
         let mut alike = vec![vec![0.0; BLOCK]; n];
         let mut rows = vec![0.0; n];
@@ -305,6 +338,51 @@ impl<'a> Sample<'a> {
         measured
             .map(|joint| by_filter.min(rows[joint] / time_alike(&alike[joint])).max(1.0))
             .collect()
+    }
+}
+
+/// The power of a residual in the halves of the band that a filter passes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::doubt) struct Halves {
+    /// Sums over lines of the spectrum, of the lower half and of the upper one [(N m)^2, N^2].
+    pub(in crate::doubt) power: [f64; 2],
+    /// How many lines these are.
+    pub(in crate::doubt) lines: [f64; 2],
+    /// The same sum of the torque, over all its lines.
+    pub(in crate::doubt) torque: f64,
+}
+
+impl Halves {
+    /// Of more windows.
+    pub(in crate::doubt) fn with(self, other: &Self) -> Self {
+        let both = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            power: both(self.power, other.power),
+            lines: both(self.lines, other.lines),
+            torque: self.torque + other.torque,
+        }
+    }
+
+    /// Of a residual that some filter left, one sample in so many.
+    fn of(left: &[f64], torque: &[f64], (filter, every): (Option<&Butterworth>, f64)) -> Self {
+        let count = left.len() as f64;
+        let mut halves = Self::default();
+        let cutoff = filter.map_or(0.5, |filter| filter.cutoff() * every);
+        let last = (cutoff.min(0.5) * count) as usize;
+        for line in 1..last.max(1) {
+            let turn = TAU * line as f64 / count;
+            let sums = left.iter().enumerate().fold([0.0; 2], |[a, b], (at, one)| {
+                let (sine, cosine) = (turn * at as f64).sin_cos();
+                [a + one * cosine, b + one * sine]
+            });
+            let half = usize::from(2 * line > last);
+            let passes = filter.map_or(1.0, |one| one.passes(line as f64 / (count * every)));
+            halves.power[half] +=
+                2.0 * sums.iter().map(|sum| sum * sum / (count * passes * passes)).sum::<f64>();
+            halves.lines[half] += 1.0;
+        }
+        halves.torque = torque.iter().map(|one| one * one).sum();
+        halves
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{arm, shipped_robot};
 use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::RegressorOptions;
-use denavit_identify::excite::{
+use denavit_excite::{
     Columns, Excitation, ExciteFault, ExciteOptions, Excited, Family, LimitKind, Objective,
     check_trajectory, excite,
 };

@@ -1,6 +1,6 @@
 //! Spaces of trajectories have the ends that are asked for, and are what their references say.
 
-use denavit_identify::excite::{Ends, Family, Space};
+use denavit_excite::{Ends, Family, Space};
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::scenario::read_trajectory;
 use proptest::prelude::*;

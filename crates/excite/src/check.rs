@@ -5,7 +5,7 @@ use super::fault::LimitKind;
 use super::model::{Evaluators, ExcitedModel, JointLimits};
 use super::objective::{Excitation, Stacked};
 use super::stack::{Signs, Stack};
-use crate::estimate::DEAD;
+use crate::policy::check::DEAD;
 use denavit_plants::trajectory::Reference;
 
 /// The extremes of a quantity of a joint.

@@ -18,6 +18,7 @@ mod feasible;
 mod model;
 mod objective;
 mod options;
+mod policy;
 mod problem;
 mod solve;
 mod space;

@@ -4,7 +4,7 @@ use super::fault::{ExciteError, ExciteFault, LimitKind};
 use super::model::{Columns, ExcitedModel, JointLimits};
 use super::objective::Objective;
 use super::space::{Ends, Family, Space};
-pub(super) use crate::policy::options::DURATIONS_S;
+pub(crate) use crate::policy::options::DURATIONS_S;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;

@@ -1,0 +1,220 @@
+//! The search for logs that contradict the others: one after another is left out, until the others
+//! agree.
+
+use super::super::policy;
+use super::{ContradictingJoint, ContradictingLog, Likeness, Standing};
+use crate::doubt::compared::{Compared, Line, Shared};
+use denavit_evidence::policy::NAMED;
+use denavit_measure::condition::Conditioned;
+use nalgebra::DVector;
+
+/// How logs agree.
+pub(crate) struct Agreement {
+    /// Logs for the estimate that contradict the others, in their order, and those for validation
+    /// that contradict those for the estimate.
+    pub(crate) contradicting: Vec<ContradictingLog>,
+    /// Of several logs for the estimate the one that agrees least with the others.
+    pub(crate) oddest: Option<OddLog>,
+}
+
+/// A log, and what the others say without it.
+pub(crate) struct OddLog {
+    pub(crate) log: usize,
+    /// The parameters of the others, and their standard errors.
+    pub(crate) phi: DVector<f64>,
+    pub(crate) errors: DVector<f64>,
+}
+
+/// A log that is held against others.
+struct Apart {
+    log: usize,
+    /// The log odds that it has something of its own.
+    log_odds: f64,
+    others: Shared,
+    joints: Vec<ContradictingJoint>,
+}
+
+impl Apart {
+    fn contradicts(&self) -> bool {
+        self.log_odds > NAMED && !self.joints.is_empty()
+    }
+}
+
+/// How logs agree, the first so many of which are for an estimate, and the others for validation;
+/// of those that are not `shown` noise of the positions makes most. `is_of` says whether the
+/// parameters that were found are those of some logs alone.
+pub(crate) fn agreement(
+    first: &Compared<'_>,
+    (count, shown): (usize, &[usize]),
+    is_of: &dyn Fn(&[usize]) -> bool,
+) -> Agreement {
+    if first.logs.len() < 2 {
+        return Agreement { contradicting: Vec::new(), oddest: None };
+    }
+    let mut search = Search {
+        agreeing: (0..count).collect(),
+        held_out: (count..first.logs.len()).collect(),
+        told: Vec::new(),
+        alike: Vec::new(),
+    };
+    search.ask(first);
+    let oddest = search.oddest(shown);
+    let mut is_noisy = search.is_noisy(first);
+    let mut lower: Vec<Conditioned> = first.logs.iter().map(|&log| log.clone()).collect();
+    for _ in 0..policy::HALVINGS {
+        if !is_noisy {
+            break;
+        }
+        lower = lower.iter().map(behind_half_the_cutoff).collect();
+        let compared = Compared::new(first.model, &lower.iter().collect::<Vec<_>>());
+        search.ask(&compared);
+        is_noisy = search.is_noisy(&compared);
+    }
+    Agreement { contradicting: search.named((first, count), is_of), oddest }
+}
+
+/// A log, or a piece of a long one, behind half the cutoff of its filter; as it is if it is too
+/// short for that.
+fn behind_half_the_cutoff(log: &Conditioned) -> Conditioned {
+    let piece = log.pieces(policy::HALVED_SAMPLES)[0];
+    log.halved(piece).map_or_else(|| log.clone(), |[_, lower]| lower)
+}
+
+/// Where the search has come to.
+struct Search {
+    /// Logs for the estimate that agree so far.
+    agreeing: Vec<usize>,
+    /// Logs for validation that contradict nothing so far.
+    held_out: Vec<usize>,
+    told: Vec<Apart>,
+    /// Those for the estimate that were held against each other last and do not.
+    alike: Vec<Apart>,
+}
+
+impl Search {
+    /// Takes logs out of those that agree until the others do. Of two that contradict each other
+    /// neither is believed.
+    fn ask(&mut self, compared: &Compared<'_>) {
+        let base = self.agreeing.clone();
+        while self.agreeing.len() > 1 {
+            let all = self.agreeing.iter().map(|&log| compared.apart(log, &self.agreeing));
+            let (mut odd, alike): (Vec<Apart>, Vec<Apart>) = all.partition(Apart::contradicts);
+            self.alike = alike;
+            odd.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+            odd.truncate(if self.agreeing.len() > 2 { 1 } else { 2 });
+            if odd.is_empty() {
+                break;
+            }
+            self.agreeing.retain(|log| odd.iter().all(|one| one.log != *log));
+            self.told.extend(odd);
+        }
+        let base = if self.agreeing.is_empty() { &base } else { &self.agreeing };
+        let against = self.held_out.iter().map(|&log| compared.apart(log, base));
+        self.told.extend(against.filter(Apart::contradicts));
+        self.held_out.retain(|log| self.told.iter().all(|one| one.log != *log));
+    }
+
+    /// Whether noise of the positions may hide a contradiction of a log that is not told.
+    fn is_noisy(&self, compared: &Compared<'_>) -> bool {
+        self.agreeing.iter().chain(&self.held_out).any(|&log| compared.is_noisy(log))
+    }
+
+    /// Of the logs that are shown, or of those of them that contradict the others, the one that
+    /// agrees least.
+    fn oddest(&self, shown: &[usize]) -> Option<OddLog> {
+        let most = |all: &[Apart]| -> Option<OddLog> {
+            let all = all.iter().filter(|one| shown.contains(&one.log));
+            let most = all.max_by(|a, b| a.log_odds.total_cmp(&b.log_odds))?;
+            let Shared { phi, errors, .. } = most.others.clone();
+            Some(OddLog { log: most.log, phi, errors })
+        };
+        most(&self.told).or_else(|| most(&self.alike))
+    }
+
+    /// What is said of logs that contradict the others, of so many for the estimate.
+    fn named(
+        mut self,
+        (compared, count): (&Compared<'_>, usize),
+        is_of: &dyn Fn(&[usize]) -> bool,
+    ) -> Vec<ContradictingLog> {
+        self.told.sort_by_key(|one| one.log);
+        let time_s = |log: usize| compared.logs[log].range.len() as f64 * compared.logs[log].step_s;
+        let odd = || self.told.iter().map(|one| one.log).filter(|log| *log < count);
+        let [all, few] = [(0..count).map(time_s).sum::<f64>(), odd().map(time_s).sum::<f64>()];
+        let is_few = 2 * odd().count() < count && 2.0 * few < all;
+        let standing = match is_few {
+            false => Standing::Undecided,
+            true if odd().count() == 0 || is_of(&self.agreeing) => Standing::OfFew,
+            true => Standing::OfFewFollowed,
+        };
+        let of = |one: Apart| ContradictingLog {
+            file: compared.logs[one.log].file.clone(),
+            joints: one.joints,
+            standing: if one.log < count { standing } else { Standing::HeldOut },
+        };
+        self.told.into_iter().map(of).collect()
+    }
+}
+
+impl Compared<'_> {
+    /// Holds a log against others.
+    fn apart(&self, log: usize, others: &[usize]) -> Apart {
+        let others: Vec<usize> = others.iter().copied().filter(|other| *other != log).collect();
+        let both = [&others[..], &[log]].concat();
+        let (together, without) = (self.shared(&both, &[]), self.shared(&others, &[]));
+        let own = self.shared(&[log], &[]);
+        let phi = self.shared_beside(&others, log).phi;
+        let by_own = without.log_evidence + own.log_evidence - together.log_evidence + policy::OWN;
+        let beside = self.beside(log, &both, (&phi, &together));
+        let by_lines =
+            beside.1.log_evidence - together.log_evidence + policy::MISREAD * beside.0.len() as f64;
+        let is_own = by_own > by_lines || beside.0.is_empty();
+        let joint = |joint: usize| {
+            let left = self.left((log, joint), &phi, (&[], &[]))?;
+            let of_own = match is_own {
+                true => self.left((log, joint), &own.phi, (&[], &[]))?,
+                false => self.left((log, joint), &beside.1.phi, (&beside.0, &beside.1.sizes))?,
+            };
+            let is_told = self.likelier((log, joint), [of_own, left]) > NAMED
+                && left - of_own > policy::AGREE.powi(2);
+            let line = beside.0.iter().zip(&beside.1.sizes).find(|(line, _)| line.joint == joint);
+            is_told.then(|| ContradictingJoint {
+                joint: self.model.joints[joint].name.clone(),
+                left: left.sqrt(),
+                own: of_own.sqrt(),
+                like: line.filter(|_| !is_own).map(|(line, &size)| match line.is_gain {
+                    true => Likeness::Factor(1.0 + size),
+                    false if self.model.joints[joint].slides => Likeness::Constant(size, "N"),
+                    false => Likeness::Constant(size, "N m"),
+                }),
+            })
+        };
+        let joints = (0..self.model.joints.len()).filter_map(joint).collect();
+        Apart { log, log_odds: by_own.max(by_lines), others: without, joints }
+    }
+
+    /// The lines of a log beside the parameters that it shares, one after the other as long as
+    /// evidence grows.
+    fn beside(
+        &self,
+        log: usize,
+        both: &[usize],
+        (phi, together): (&DVector<f64>, &Shared),
+    ) -> (Vec<Line>, Shared) {
+        let (mut lines, mut best) = (Vec::new(), together.clone());
+        let mut tried = self.lines(log, phi);
+        tried.retain(|line| self.by_line(line, phi) > NAMED - policy::MISREAD);
+        while !tried.is_empty() {
+            let with = |line: &Line| self.shared(both, &[&lines[..], &[line.clone()]].concat());
+            let all = tried.iter().map(with).enumerate();
+            let most = all.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
+            let Some((at, next)) = most else { break };
+            if next.log_evidence + policy::MISREAD <= best.log_evidence {
+                break;
+            }
+            lines.push(tried.remove(at));
+            best = next;
+        }
+        (lines, best)
+    }
+}

@@ -1,17 +1,19 @@
 //! All that identification says: data alone, for tables, files and reports to show.
 
 use super::doubt::{
-    Agreement, Compared, ContradictingLog, GivenValues, Judged, MisreadColumns, Spectra, Standing,
-    Unexplained, agreement, lacking_text, misread_apart, misread_columns,
+    Agreement, ContradictingLog, GivenValues, MisreadColumns, Standing, agreement, misread_apart,
+    misread_columns,
 };
 use super::estimate::{
-    Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, Options, SlowRows,
-    Status, Validation, biased_frictions, consistent, convergence, estimate, filter_errors,
-    long_enough, noise_of_positions, parameters, validate,
+    Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, Judgement, Options,
+    SlowRows, Status, Unexplained, Validation, biased_frictions, consistent, convergence, estimate,
+    exceeding_joints, filter_errors, long_enough, noise_in_torques, parameters, unexplained_joints,
+    validate,
 };
-use super::no_bodies::{no_bodies, other_robot};
+use super::lacking::{lacking, other_robot, said};
+use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
-use crate::policy::identification::{APART, NOISY, SHORT, SMEARED};
+use crate::policy::identification::{NOISY, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -159,7 +161,7 @@ impl Identification {
 
     /// What is to be said of rows that do not count, and of what is left of the others.
     pub fn notes(&self) -> Vec<String> {
-        let lacking = lacking_text(&self.lacking).filter(|_| !self.is_noise());
+        let lacking = said(&self.lacking).filter(|_| !self.is_noise());
         self.rows_left_out().into_iter().chain(lacking).collect()
     }
 
@@ -286,7 +288,7 @@ impl Estimated {
     /// Whether a log for validation needs a lower filter, if it is not the motion that is too fast
     /// for the one that it has.
     pub fn is_noisy(&self, model: &RegressionModel, log: &Conditioned) -> bool {
-        let noise = noise_of_positions(model, &[log], self.found.solution.phi.as_slice());
+        let noise = noise_in_torques(model, log, self.found.solution.phi.as_slice());
         noise.into_iter().any(|share| share > NOISY)
     }
 
@@ -313,23 +315,26 @@ impl Estimated {
         let counted: Vec<f64> = noise.zip(torques.iter().copied()).map(share).collect();
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
-        let logs: Vec<&Conditioned> = train.iter().chain(held_out).collect();
-        let compared = &Compared::new(model, &logs);
-        let agreement =
-            agreement(compared, (train.len(), &shown), &|logs| is_of(request, &found, logs));
+        let agreement = agreement(model, (train, held_out), (&shown, &found.solution.phi));
         let misread = misread(request, (&found, &shown), &agreement);
         let contradicting_logs = agreement.contradicting;
-        let all: Vec<usize> = (0..logs.len()).collect();
-        let spectra = &Spectra::new(compared, &all, &found.solution.phi);
-        let validating: Vec<usize> = (train.len()..logs.len()).collect();
-        let (shown, held_out) = (&shown[..], &validating[..]);
-        let judged = Judged { model, compared, spectra, found: &found, shown, held_out };
-        let mut unexplained = judged.unexplained();
-        let is_of_contradiction = |one: &Unexplained| {
-            let is_same = |log: &ContradictingLog| one.file.as_ref() == Some(&log.file);
-            one.beside.is_some() && contradicting_logs.iter().any(is_same)
+        let (judges, judging) = match held_out.is_empty() {
+            true => (train, shown.clone()),
+            false => (held_out, (0..held_out.len()).collect()),
         };
-        unexplained.retain(|one| !is_of_contradiction(one));
+        let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
+        let left_together = validate(model, phi, &together);
+        let exceeding = exceeding_joints(model, held_out, (&found, options, &counted));
+        let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
+        let mut unexplained = unexplained_joints(model, (judges, &judging), judgement);
+        let is_told = |one: &Unexplained| {
+            let contradicts = |log: &ContradictingLog| one.file.as_ref() == Some(&log.file);
+            contradicting_logs.iter().any(contradicts)
+                || unexplained.iter().any(|other| other.joint == one.joint)
+        };
+        let exceeding: Vec<Unexplained> =
+            exceeding.into_iter().filter(|one| !is_told(one)).collect();
+        unexplained.extend(exceeding);
         Identification {
             unexplained,
             misread,
@@ -337,14 +342,14 @@ impl Estimated {
             left_out: left_out(model, train, (&found, &counted)),
             contradicting_logs,
             noisy_logs: noisy_logs(model, train, &found),
-            lacking: judged.lacking(),
+            lacking: lacking(model, (train, &shown), (&found, &torques)),
             periods: train.iter().map(Conditioned::periods).sum(),
             parameters: listed,
             filter_error,
             train: left,
             validate: held_out_left,
             before: given.map(|phi| {
-                let logs = if request.validate.is_empty() { train } else { request.validate };
+                let logs = if held_out.is_empty() { train } else { held_out };
                 validate(model, &phi, logs).relative
             }),
             convergence: convergence(model, &found),
@@ -361,22 +366,6 @@ fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
         found.map_or(0.0, |one| one.torque_rms)
     };
     model.joints.iter().map(of_joint).collect()
-}
-
-/// Whether parameters are those of some of the logs alone, within the errors of these.
-fn is_of(request: Request<'_>, found: &Estimate, logs: &[usize]) -> bool {
-    let some = |all: &[Conditioned]| -> Vec<Conditioned> {
-        logs.iter().filter_map(|&log| all.get(log).cloned()).collect()
-    };
-    let (train, instruments) = (some(request.train), some(request.instruments));
-    let start = found.solution.phi.as_slice();
-    let others = estimate(request.model, &train, &instruments, request.options, start);
-    others.is_ok_and(|others| {
-        let apart = &found.solution.phi - &others.solution.phi;
-        let variances = others.covariance.diagonal();
-        let mut both = apart.iter().zip(&variances);
-        both.all(|(by, variance)| by * by <= APART.powi(2) * variance.max(f64::MIN_POSITIVE))
-    })
 }
 
 /// Columns that seem to be other ones than they are taken for. Logs of which noise makes most show

@@ -20,6 +20,7 @@ mod identification;
 mod idle;
 pub mod knowledge;
 mod known_effects;
+mod lacking;
 mod model_text;
 mod model_values;
 mod no_bodies;

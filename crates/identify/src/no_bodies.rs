@@ -1,6 +1,6 @@
-//! Estimates that belong to no bodies that exist, and logs of another robot.
+//! Estimates that belong to no bodies that exist.
 
-use crate::policy::no_bodies::{FAR, OTHER};
+use crate::policy::no_bodies::FAR;
 
 /// What it may mean that the nearest bodies are so many standard errors away; none if near.
 pub(super) fn no_bodies(distance: f64) -> Option<String> {
@@ -12,13 +12,4 @@ pub(super) fn no_bodies(distance: f64) -> Option<String> {
              believed."
         )
     })
-}
-
-/// What is to be said if the model's own values leave so many times the torques; none if few.
-pub(super) fn other_robot(before: Option<f64>) -> Option<String> {
-    let before = before.filter(|before| *before > OTHER)?;
-    Some(format!(
-        "With the model's own values {before:.0} times the torques are left: the log is of another \
-         robot, or the values of the model are far off."
-    ))
 }

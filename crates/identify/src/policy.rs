@@ -55,6 +55,25 @@ pub(crate) mod errors {
     pub(crate) const MOST_ALIKE: f64 = 0.8;
 }
 
+/// `estimate/exceeding.rs`: Joints of whose torque far more is left in a log for validation than
+/// anything explains.
+pub(crate) mod exceeding {
+    /// What is left must be this share of a joint's torque, as root of mean square,
+    pub(crate) const OF_TORQUE: f64 = 0.05;
+
+    /// so many times what all that is known explains, of which noise of the positions is known to
+    /// a few times, in variance,
+    pub(crate) const MANY: f64 = 5.0;
+
+    /// See [`MANY`].
+    pub(crate) const OF_NOISE: f64 = 4.0;
+
+    /// and behind half the cutoff still so many times what that takes away of it, in variance:
+    /// half of white noise is left there, and of noise whose band ends at a tenth of the cutoff
+    /// twelve times what is taken.
+    pub(crate) const OF_BAND: f64 = 25.0;
+}
+
 /// `estimate/half_cutoff.rs`: What changes with half the cutoff of the filter: more than chance
 /// where noise of the positions biases parameters in a way that it does not by itself.
 pub(crate) mod half_cutoff {
@@ -96,6 +115,13 @@ pub(crate) mod left_out {
 
     /// The least share of its rows that a joint keeps.
     pub(crate) const LEAST: f64 = 0.1;
+}
+
+/// `estimate/left_over.rs`: What is left of torques: how much, and whether it is noise.
+pub(crate) mod left_over {
+    /// Noise is another one after half a period of the filter's cutoff: what is left is still
+    /// correlated with itself by so much if it is none.
+    pub(crate) const NO_NOISE: f64 = 0.5;
 }
 
 /// `estimate/likelihood.rs`: Noise on both sides: what noise of the positions does to the residual
@@ -167,6 +193,34 @@ pub(crate) mod solve {
     pub(crate) const MOST_WEIGHT: f64 = 1e100;
 }
 
+/// `estimate/unexplained.rs`: Joints whose torque an estimate does not explain, in all logs, in
+/// one of them, or while a joint rests.
+pub(crate) mod unexplained {
+    /// The share of a joint's torque, as root of mean square, that must be left.
+    pub(crate) const LEFT: f64 = 0.9;
+
+    /// The share that must be left where it is no noise: noise is another one after half a period
+    /// of the filter's cutoff, and what is left is still correlated with itself by so much.
+    pub(crate) const LEFT_ALIKE: f64 = 0.3;
+
+    /// See [`LEFT_ALIKE`].
+    pub(crate) const ALIKE: f64 = 0.5;
+
+    /// A joint that moves less than this share of the one of its kind that moves most is at rest:
+    /// nothing but noise may be in its torque, and what stiction holds: at most so many times its
+    /// Coulomb friction. Of what is no noise after a whole period this share must be left.
+    pub(crate) const AT_REST: f64 = 0.01;
+
+    /// See [`AT_REST`].
+    pub(crate) const STICTION: f64 = 2.0;
+
+    /// See [`AT_REST`].
+    pub(crate) const LEFT_AT_REST: f64 = 0.03;
+
+    /// What is left is that of noise of the positions if that makes one part in so many of it.
+    pub(crate) const OF_NOISE: f64 = 2.0;
+}
+
 /// `estimate/weights.rs`: Weights of rows by the noise of each joint in each log, which is that of
 /// its residuals.
 pub(crate) mod weights {
@@ -194,10 +248,6 @@ pub(crate) mod widening {
 /// `identification.rs`: All that identification says: data alone, for tables, files and reports to
 /// show.
 pub(crate) mod identification {
-    /// Parameters are those of some logs alone if none is further from what these say, in their
-    /// standard errors.
-    pub(crate) const APART: f64 = 3.0;
-
     /// Periods of the filter's cutoff below which logs are short.
     pub(crate) const SHORT: f64 = 80.0;
 
@@ -235,15 +285,21 @@ pub(crate) mod knowledge {
     pub(crate) const ROUNDING: f64 = 1e-9;
 }
 
+/// `lacking.rs`: That what is left of torques is no noise: something is not as the model has it.
+pub(crate) mod lacking {
+    /// The share of a joint's torque from which on it is said.
+    pub(crate) const SAID: f64 = 0.005;
+
+    /// What is left with the model's own values, over the torques, from which on the robot is
+    /// another.
+    pub(crate) const OTHER: f64 = 10.0;
+}
+
 /// `no_bodies.rs`: Estimates that belong to no bodies that exist.
 pub(crate) mod no_bodies {
     /// Standard errors between an estimate and the nearest bodies from which on what it is from is
     /// doubted: good logs have next to none, misread ones any number.
     pub(crate) const FAR: f64 = 20.0;
-
-    /// What is left with the model's own values, over the torques, from which on the robot is
-    /// another.
-    pub(crate) const OTHER: f64 = 10.0;
 }
 
 /// `noisy_logs.rs`: Logs of which noise of the positions makes most, and those that bias

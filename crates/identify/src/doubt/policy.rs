@@ -26,25 +26,6 @@ pub(super) const AGREE: f64 = 0.03;
 /// an encoder may beat with the samples.
 pub(super) const NOISE_KNOWN: f64 = 10.0;
 
-/// The share of a joint's torque, as root of mean square, that may be left and be no noise where
-/// parameters are believed: with a third of a torque unknown bodies may be anything.
-pub(super) const LEFT: f64 = 0.3;
-
-/// The share of a joint's torque, as root of mean square, that may be left at rest and be no noise:
-/// that of a load which is off by as much.
-pub(super) const LEFT_AT_REST: f64 = 0.03;
-
-/// What stiction holds at most, over Coulomb friction.
-pub(super) const STICTION: f64 = 2.0;
-
-/// The share of a joint's torque, as root of mean square, from which on it is reported that it is
-/// left and no noise: of good logs less is.
-pub(super) const SAID: f64 = 0.005;
-
-/// The share of a joint's torque, as root of mean square, that may be left in a log for validation
-/// beyond what is known: laws that a model lacks differ from motion to motion by as much.
-pub(super) const BEYOND: f64 = 0.05;
-
 /// What rows count, against those of other logs, that decide nothing but what these do not show.
 pub(super) const FAINT: f64 = 1e-3;
 

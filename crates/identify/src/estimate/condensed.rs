@@ -16,7 +16,7 @@ use std::borrow::Cow;
 const PARTS: usize = 96;
 
 /// The fewest samples of a part.
-const MIN_PART: usize = 20;
+pub(super) const MIN_PART: usize = 20;
 
 /// Triangles of every joint, part by part.
 #[derive(Clone, Debug)]
@@ -138,6 +138,22 @@ impl Condensed {
                 }
             }
             from = to;
+        }
+    }
+
+    /// Some of the logs alone.
+    pub(super) fn of_logs(&self, logs: &[usize]) -> Self {
+        let number = |part: usize| logs.iter().position(|log| *log == self.log_of_part[part]);
+        let own: Vec<(usize, usize)> =
+            (0..self.parts.len()).filter_map(|part| Some((part, number(part)?))).collect();
+        Self {
+            pattern: self.pattern.clone(),
+            parts: own.iter().map(|&(part, _)| self.parts[part].clone()).collect(),
+            log_of_part: own.iter().map(|&(_, log)| log).collect(),
+            end_s: own.iter().map(|&(part, _)| self.end_s[part]).collect(),
+            independent: logs.iter().map(|&log| self.independent[log]).collect(),
+            row_s: logs.iter().map(|&log| self.row_s[log]).collect(),
+            rank: self.rank,
         }
     }
 

@@ -92,12 +92,14 @@ pub(super) struct LeftOut {
     /// For each log and joint whether samples before decimation are none of a rest whose rows count
     /// beside a constant, though they are left out else; none where there is no such rest.
     pub(super) awake: Vec<Vec<Option<Vec<bool>>>>,
+    /// Joints whose rows near reversals are left out, and the times they were widened to.
+    widened: Vec<(usize, f64)>,
 }
 
 impl LeftOut {
     fn of(rows: Vec<Vec<Option<Vec<bool>>>>) -> Self {
         let awake = rows.iter().map(|of_log| vec![None; of_log.len()]).collect();
-        Self { rows, awake }
+        Self { rows, awake, widened: Vec::new() }
     }
 
     /// Nothing.
@@ -156,11 +158,55 @@ impl LeftOut {
         }
     }
 
+    /// The same of other logs.
+    pub(super) fn of_others(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        options: &Options,
+    ) -> Self {
+        let mut others = Self::asked(model, logs, options);
+        self.widened.iter().for_each(|&(joint, times)| _ = others.widen(logs, joint, times));
+        others
+    }
+
+    /// The same of other logs, and all besides where Coulomb friction as the sign of a rate is not
+    /// sure, however little that leaves: near reversals and at rest, where the sign is that of
+    /// noise or of the filter, and beside, as far as the filter smears that.
+    pub(super) fn sure(
+        &self,
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        options: &Options,
+    ) -> Self {
+        let mut sure = self.of_others(model, logs, options).without_rests();
+        let coulomb = model.coulomb().iter().filter(|_| model.law == CoulombLaw::Sign);
+        for &(joint, _) in coulomb {
+            for (log, rows) in logs.iter().zip(&mut sure.rows) {
+                let Some(mut unsure) = log.near_reversals(joint, 1.0) else { continue };
+                for all in rows[joint].iter().chain(&log.unsure_signs(joint)) {
+                    unsure.iter_mut().zip(all).for_each(|(unsure, one)| *unsure |= one);
+                }
+                rows[joint] = Some(wider(&unsure, 2 * smear(log)));
+            }
+        }
+        sure
+    }
+
     /// The same of pieces whose edges and filters smear over twice the time: each with its log,
     /// where its first sample stands there, and how many it has.
-    pub(super) fn of_halved(&self, logs: &[Conditioned], places: &[(usize, Range<usize>)]) -> Self {
+    pub(super) fn of_halved(&self, logs: &[Conditioned], pieces: &[(usize, Range<usize>)]) -> Self {
+        self.of_places(pieces, |number| smear(&logs[number]))
+    }
+
+    /// The same of places of logs, and of so many beside those that are left out.
+    pub(super) fn of_places(
+        &self,
+        places: &[(usize, Range<usize>)],
+        beside: impl Fn(usize) -> usize,
+    ) -> Self {
         let of = |all: &[Vec<Option<Vec<bool>>>], (number, range): &(usize, Range<usize>)| {
-            let beside = smear(&logs[*number]);
+            let beside = beside(*number);
             let part = |all: &Vec<bool>| wider(all, beside)[range.clone()].to_vec();
             all[*number].iter().map(|one| one.as_ref().map(part)).collect()
         };
@@ -188,6 +234,7 @@ impl LeftOut {
             for (of_log, near) in self.rows.iter_mut().zip(near) {
                 of_log[joint] = Some(near);
             }
+            self.widened.push((joint, times));
         }
         is_enough
     }

@@ -1,15 +1,17 @@
 //! What is left of torques: how much, and whether it is noise.
 
+use super::least_squares::Estimate;
 use super::left_out::LeftOut;
 use super::rows::BlockMaker;
-use denavit_evidence::policy::NAMED;
+use super::unexplained::samples_of;
+use crate::policy::left_over::NO_NOISE;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::collections::VecDeque;
 
 /// What is left of the torque of a joint in a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Left {
+pub(super) struct Left {
     pub(super) rows: f64,
     pub(super) squares: f64,
     /// Of rows half a period of the filter's cutoff apart their products, and mean squares.
@@ -21,20 +23,9 @@ pub(crate) struct Left {
     pub(super) friction: f64,
 }
 
-/// Samples that are left in so many periods of the filter's cutoff.
-pub(crate) fn samples_of(log: &Conditioned, periods: f64) -> usize {
-    let cutoff = log.filter.as_ref().map_or(0.5, |filter| filter.cutoff());
-    ((periods / (cutoff * log.decimation.max(1) as f64)).ceil().min(1e6) as usize).max(1)
-}
-
 impl Left {
-    /// Of no rows, that are compared with those so many before.
-    pub(crate) fn over(apart: usize) -> Self {
-        Self { apart: apart as f64, ..Self::default() }
-    }
-
     /// Adds a row, or one that does not count; `recent` are those before, the last one first.
-    pub(crate) fn add(&mut self, one: Option<f64>, recent: &mut VecDeque<Option<f64>>) {
+    pub(super) fn add(&mut self, one: Option<f64>, recent: &mut VecDeque<Option<f64>>) {
         if let Some(one) = one {
             self.rows += 1.0;
             self.squares += one * one;
@@ -47,21 +38,38 @@ impl Left {
         recent.truncate(self.apart as usize);
     }
 
+    /// The same of another log, too.
+    fn with(self, other: &Self) -> Self {
+        Self {
+            rows: self.rows + other.rows,
+            squares: self.squares + other.squares,
+            alike: self.alike + other.alike,
+            both: self.both + other.both,
+            apart: self.apart.max(other.apart),
+            friction: self.friction,
+        }
+    }
+
     pub(super) fn mean_square(&self) -> f64 {
         self.squares / self.rows.max(1.0)
     }
 
-    /// The mean square of what is no noise.
-    pub(crate) fn without_noise(&self) -> f64 {
+    /// How much it is like itself half a period later, and how much of that is chance.
+    fn alike(&self) -> [f64; 2] {
         let alike = if self.both > 0.0 { self.alike / self.both } else { 0.0 };
-        // rows that are independent, by whose number a correlation is likelier than none
-        let nats = 0.25 * self.rows / self.apart * alike * alike;
-        if alike > 0.0 && nats > NAMED { alike * self.mean_square() } else { 0.0 }
+        [alike, (2.0 * self.apart / self.rows.max(1.0)).sqrt()]
     }
 
-    /// Whether most of it is no noise.
+    /// The mean square of what is surely no noise.
+    pub(super) fn without_noise(&self) -> f64 {
+        let [alike, by_chance] = self.alike();
+        self.mean_square() * (alike - by_chance).max(0.0)
+    }
+
+    /// Whether it is no noise, by more than chance.
     pub(super) fn is_no_noise(&self) -> bool {
-        2.0 * self.without_noise() > self.mean_square()
+        let [alike, by_chance] = self.alike();
+        alike > NO_NOISE + by_chance
     }
 }
 
@@ -101,6 +109,21 @@ impl LeftOut {
         };
         logs.iter().enumerate().map(of_log).collect()
     }
+}
+
+/// The root of the mean square of what an estimate leaves of each joint's torque in logs, of rows
+/// that count, where that is no noise [N m, N].
+pub(crate) fn no_noise(
+    model: &RegressionModel,
+    (logs, shown): (&[Conditioned], &[usize]),
+    found: &Estimate,
+) -> Vec<(usize, f64)> {
+    let left = found.left_out.left(model, logs, found.solution.phi.as_slice());
+    let of_joint = |joint: usize| {
+        let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log][joint]));
+        all.is_no_noise().then(|| (joint, all.mean_square().sqrt()))
+    };
+    (0..model.joints.len()).filter_map(of_joint).collect()
 }
 
 #[cfg(test)]

@@ -5,12 +5,14 @@
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
+//! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
 mod condensed;
 mod consistent;
 mod errors;
+mod exceeding;
 mod filter_error;
 mod half_cutoff;
 mod instruments;
@@ -20,6 +22,7 @@ mod left_over;
 mod likelihood;
 mod noise_bias;
 mod nominal;
+mod own_estimate;
 mod report;
 mod rests;
 mod robust;
@@ -27,6 +30,7 @@ mod rows;
 mod solve;
 mod total;
 mod triangle;
+mod unexplained;
 mod validate;
 mod weights;
 mod widening;
@@ -34,14 +38,16 @@ mod widening;
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
 pub use errors::{Errors, interval_factor};
+pub(crate) use exceeding::exceeding_joints;
 pub(crate) use filter_error::filter_errors;
 pub use half_cutoff::Change;
 pub use least_squares::{Estimate, EstimateError, Method, Options, estimate, long_enough};
 pub use left_out::SlowRows;
 pub(crate) use left_out::{biased_frictions, is_biased};
-pub(crate) use left_over::{Left, samples_of};
+pub(crate) use left_over::no_noise;
 pub(crate) use likelihood::noise_of_positions;
 pub use noise_bias::NoiseOfLog;
+pub(crate) use noise_bias::noise_in_torques;
 pub(crate) use nominal::{is_of_joints, nominal_values};
 pub(crate) use report::BIASING;
 pub use report::{Convergence, HalfCutoff, IdentifiedParameter, Status, convergence, parameters};
@@ -50,4 +56,5 @@ pub use rows::{Block, BlockMaker};
 pub(crate) use rows::{Coulomb, coulomb};
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
+pub use unexplained::{Judgement, Unexplained, unexplained_joints};
 pub use validate::{JointResidual, LAGS, Validation, validate};

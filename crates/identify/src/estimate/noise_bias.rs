@@ -12,9 +12,10 @@ use super::least_squares::Estimate;
 use super::left_out::LeftOut;
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
+use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_numerics::Random;
-use denavit_plants::regression::RegressionModel;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -89,6 +90,52 @@ pub(super) fn noise_bias(
     };
     let of_logs = of_logs.iter().enumerate().map(of_log).collect();
     NoiseBias { bias, share: all.share(solution), of_logs }
+}
+
+/// The squares that noise of the positions of a log makes of what phi leaves of each joint's
+/// torque, of the rows that count.
+pub(super) fn noise_squares(
+    model: &RegressionModel,
+    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+    phi: &DVector<f64>,
+) -> Vec<f64> {
+    let mut squares = vec![0.0; model.joints.len()];
+    if log.position_noise.iter().all(|noise| *noise == 0.0) {
+        return squares;
+    }
+    let own = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let phi: Vec<Vec<f64>> = (0..squares.len()).map(own).collect();
+    let rests = &left_out.all_rests((number, log));
+    let mut random = Random::new(SEED);
+    with_noise(model, (log, SAMPLES, rests), &mut random, |first, block, noisy, of_all| {
+        for (joint, sum) in squares.iter_mut().enumerate() {
+            let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
+            let counts = left_out.counts((number, log), joint, (first, block.samples));
+            let counts = counts.unwrap_or_else(|| vec![true; clean.len()]);
+            for noisy in noisy.iter().filter_map(|block| block.residual(joint, &phi[joint])) {
+                let both = noisy.iter().zip(&clean).zip(&counts).filter(|(_, counts)| **counts);
+                *sum += 0.5 * of_all * both.map(|((a, b), _)| (a - b).powi(2)).sum::<f64>();
+            }
+        }
+    });
+    squares
+}
+
+/// How much of each joint's torque in a log noise of its positions makes with phi, root of mean
+/// square over root of mean square; 0 where none was measured.
+pub(crate) fn noise_in_torques(
+    model: &RegressionModel,
+    log: &Conditioned,
+    phi: &[f64],
+) -> Vec<f64> {
+    let all = LeftOut::none(std::slice::from_ref(log));
+    let noise = noise_squares(model, ((0, log), &all), &DVector::from_column_slice(phi));
+    let left = validate(model, phi, &[log]);
+    let share = |(joint, noise): (&RegressionJoint, f64)| {
+        let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
+        (torque > 0.0).then(|| (noise / log.samples() as f64).sqrt() / torque)
+    };
+    model.joints.iter().zip(noise).map(|both| share(both).unwrap_or(0.0)).collect()
 }
 
 /// Calls `visit` with blocks of a log, of which so many samples are looked at before decimation:

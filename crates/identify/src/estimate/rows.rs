@@ -161,7 +161,7 @@ impl<'a> BlockMaker<'a> {
     }
 
     /// The Coulomb friction of a joint by phi \[N m, N\].
-    pub(crate) fn coulomb_friction(&self, joint: usize, phi: &[f64]) -> f64 {
+    pub(super) fn coulomb_friction(&self, joint: usize, phi: &[f64]) -> f64 {
         let of_joint = self.coulomb.iter().filter(|one| one.joint == joint);
         let at = |one: &Coulomb| phi[self.model.pattern()[joint][one.place]];
         of_joint.map(|one| (one.factor * at(one)).abs()).sum()

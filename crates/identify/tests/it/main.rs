@@ -1,6 +1,5 @@
 //! Identification: from motion and torques to parameters.
 
-mod agreement;
 mod emps;
 mod estimate;
 mod forward;

@@ -43,12 +43,6 @@ impl Butterworth {
         self.cutoff
     }
 
-    /// What is left of a sine of so many cycles per sample after two passes, as a factor.
-    pub fn passes(&self, frequency: f64) -> f64 {
-        let [of, at] = [frequency, self.cutoff].map(|one| (PI * one).tan());
-        1.0 / (1.0 + (of / at).powi(2 * self.order as i32))
-    }
-
     /// Samples on either side of a step that two passes smear it over: half a period of the
     /// cutoff.
     pub fn smear(&self) -> usize {

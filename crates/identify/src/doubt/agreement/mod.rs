@@ -7,6 +7,7 @@
 //! the least that its torques have. Where that noise is all that is left, filters of half the
 //! cutoff leave less of it, and the logs are asked once more behind these.
 
+mod logs;
 mod search;
 
 pub(crate) use search::{Agreement, agreement};

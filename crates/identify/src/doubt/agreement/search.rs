@@ -2,10 +2,11 @@
 //! agree.
 
 use super::super::policy;
+use super::logs::{Compared, Line, Shared};
 use super::{ContradictingJoint, ContradictingLog, Likeness, Standing};
-use crate::doubt::compared::{Compared, Line, Shared};
 use denavit_evidence::policy::NAMED;
 use denavit_measure::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
 
 /// How logs agree.
@@ -40,37 +41,37 @@ impl Apart {
     }
 }
 
-/// How logs agree, the first so many of which are for an estimate, and the others for validation;
-/// of those that are not `shown` noise of the positions makes most. `is_of` says whether the
-/// parameters that were found are those of some logs alone.
+/// How logs for an estimate, which found `phi`, and those for validation agree; of those that are
+/// not `shown` noise of the positions makes most.
 pub(crate) fn agreement(
-    first: &Compared<'_>,
-    (count, shown): (usize, &[usize]),
-    is_of: &dyn Fn(&[usize]) -> bool,
+    model: &RegressionModel,
+    (train, held_out): (&[Conditioned], &[Conditioned]),
+    (shown, phi): (&[usize], &DVector<f64>),
 ) -> Agreement {
-    if first.logs.len() < 2 {
+    let logs: Vec<&Conditioned> = train.iter().chain(held_out).collect();
+    if logs.len() < 2 {
         return Agreement { contradicting: Vec::new(), oddest: None };
     }
+    let first = Compared::new(model, &logs);
     let mut search = Search {
-        agreeing: (0..count).collect(),
-        held_out: (count..first.logs.len()).collect(),
+        agreeing: (0..train.len()).collect(),
+        held_out: (train.len()..logs.len()).collect(),
         told: Vec::new(),
-        alike: Vec::new(),
     };
-    search.ask(first);
-    let oddest = search.oddest(shown);
-    let mut is_noisy = search.is_noisy(first);
-    let mut lower: Vec<Conditioned> = first.logs.iter().map(|&log| log.clone()).collect();
+    search.ask(&first);
+    let oddest = search.oddest(&first, shown);
+    let mut is_noisy = search.is_noisy(&first);
+    let mut lower: Vec<Conditioned> = logs.iter().map(|&log| log.clone()).collect();
     for _ in 0..policy::HALVINGS {
         if !is_noisy {
             break;
         }
         lower = lower.iter().map(behind_half_the_cutoff).collect();
-        let compared = Compared::new(first.model, &lower.iter().collect::<Vec<_>>());
+        let compared = Compared::new(model, &lower.iter().collect::<Vec<_>>());
         search.ask(&compared);
         is_noisy = search.is_noisy(&compared);
     }
-    Agreement { contradicting: search.named((first, count), is_of), oddest }
+    Agreement { contradicting: search.named((&first, train.len()), phi), oddest }
 }
 
 /// A log, or a piece of a long one, behind half the cutoff of its filter; as it is if it is too
@@ -87,8 +88,6 @@ struct Search {
     /// Logs for validation that contradict nothing so far.
     held_out: Vec<usize>,
     told: Vec<Apart>,
-    /// Those for the estimate that were held against each other last and do not.
-    alike: Vec<Apart>,
 }
 
 impl Search {
@@ -98,8 +97,7 @@ impl Search {
         let base = self.agreeing.clone();
         while self.agreeing.len() > 1 {
             let all = self.agreeing.iter().map(|&log| compared.apart(log, &self.agreeing));
-            let (mut odd, alike): (Vec<Apart>, Vec<Apart>) = all.partition(Apart::contradicts);
-            self.alike = alike;
+            let mut odd: Vec<Apart> = all.filter(Apart::contradicts).collect();
             odd.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
             odd.truncate(if self.agreeing.len() > 2 { 1 } else { 2 });
             if odd.is_empty() {
@@ -120,22 +118,28 @@ impl Search {
     }
 
     /// Of the logs that are shown, or of those of them that contradict the others, the one that
-    /// agrees least.
-    fn oddest(&self, shown: &[usize]) -> Option<OddLog> {
-        let most = |all: &[Apart]| -> Option<OddLog> {
-            let all = all.iter().filter(|one| shown.contains(&one.log));
-            let most = all.max_by(|a, b| a.log_odds.total_cmp(&b.log_odds))?;
-            let Shared { phi, errors, .. } = most.others.clone();
-            Some(OddLog { log: most.log, phi, errors })
+    /// agrees least with those that agree.
+    fn oddest(&self, compared: &Compared<'_>, shown: &[usize]) -> Option<OddLog> {
+        let is_told = |log: &&usize| self.told.iter().any(|one| one.log == **log);
+        let told: Vec<usize> = shown.iter().filter(is_told).copied().collect();
+        let asked = if told.is_empty() { shown } else { &told };
+        let of = |&log: &usize| {
+            let is_other = |other: &&usize| **other != log && shown.contains(other);
+            let agreeing: Vec<usize> = self.agreeing.iter().filter(is_other).copied().collect();
+            let all: Vec<usize> = shown.iter().copied().filter(|other| *other != log).collect();
+            let others = if agreeing.is_empty() { all } else { agreeing };
+            (!others.is_empty()).then(|| compared.apart(log, &others))
         };
-        most(&self.told).or_else(|| most(&self.alike))
+        let all = asked.iter().filter_map(of);
+        let most = all.max_by(|a, b| a.log_odds.total_cmp(&b.log_odds))?;
+        Some(OddLog { log: most.log, phi: most.others.phi, errors: most.others.errors })
     }
 
     /// What is said of logs that contradict the others, of so many for the estimate.
     fn named(
         mut self,
         (compared, count): (&Compared<'_>, usize),
-        is_of: &dyn Fn(&[usize]) -> bool,
+        phi: &DVector<f64>,
     ) -> Vec<ContradictingLog> {
         self.told.sort_by_key(|one| one.log);
         let time_s = |log: usize| compared.logs[log].range.len() as f64 * compared.logs[log].step_s;
@@ -144,7 +148,7 @@ impl Search {
         let is_few = 2 * odd().count() < count && 2.0 * few < all;
         let standing = match is_few {
             false => Standing::Undecided,
-            true if odd().count() == 0 || is_of(&self.agreeing) => Standing::OfFew,
+            true if odd().count() == 0 || compared.is_of(&self.agreeing, phi) => Standing::OfFew,
             true => Standing::OfFewFollowed,
         };
         let of = |one: Apart| ContradictingLog {
@@ -216,5 +220,13 @@ impl Compared<'_> {
             best = next;
         }
         (lines, best)
+    }
+
+    /// Whether parameters are what some logs say.
+    fn is_of(&self, logs: &[usize], phi: &DVector<f64>) -> bool {
+        let shared = self.shared(logs, &[]);
+        let apart = phi - &shared.phi;
+        let mut both = apart.iter().zip(&shared.errors);
+        both.all(|(by, error)| by.abs() <= policy::ERRORS_HOLD * error)
     }
 }

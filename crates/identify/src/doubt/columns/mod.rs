@@ -27,7 +27,7 @@ use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 pub(super) use reading::Reading;
-pub(super) use sample::{Halves, JointRows, Sample};
+pub(super) use sample::{JointRows, Sample};
 use search::Search;
 use std::fmt;
 pub(super) use weigh::is_positive;

@@ -4,10 +4,9 @@ use super::line::Line;
 use super::reading::Reading;
 use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
-use denavit_measure::condition::{Butterworth, Conditioned};
+use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use nalgebra::{DMatrix, DVector};
-use std::f64::consts::TAU;
 
 /// Samples of a block: residuals that are alike for long are seen so.
 const BLOCK: usize = 256;
@@ -289,30 +288,6 @@ impl<'a> Sample<'a> {
         sums.into_iter().map(share).collect()
     }
 
-    /// What phi leaves of each torque, by the halves of the band; none of one that is not measured.
-    pub(in crate::doubt) fn halves(
-        &mut self,
-        reading: &Reading,
-        phi: &DVector<f64>,
-    ) -> Vec<Option<Halves>> {
-        let mut all: Vec<Option<Halves>> = vec![None; self.model.joints.len()];
-        for window in 0..self.windows.len() {
-            self.read(window, reading);
-            for (joint, sum) in all.iter_mut().enumerate() {
-                let Some(mut torque) = self.windows[window].torque(&reading.torques[joint]) else {
-                    continue;
-                };
-                self.count(window, joint, &mut torque);
-                let left = self.left(window, reading, (joint, phi));
-                let log = self.windows[window].log();
-                let filter = (log.filter.as_ref(), log.decimation.max(1) as f64);
-                let own = Halves::of(&left, &torque, filter);
-                *sum = Some(sum.unwrap_or_default().with(&own));
-            }
-        }
-        all
-    }
-
     /// How many samples of each torque that is measured are independent of each other: by how long
     /// what phi leaves is like itself, and no more than the filter lets be.
     pub(in crate::doubt) fn independent(
@@ -338,51 +313,6 @@ impl<'a> Sample<'a> {
         measured
             .map(|joint| by_filter.min(rows[joint] / time_alike(&alike[joint])).max(1.0))
             .collect()
-    }
-}
-
-/// The power of a residual in the halves of the band that a filter passes.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::doubt) struct Halves {
-    /// Sums over lines of the spectrum, of the lower half and of the upper one [(N m)^2, N^2].
-    pub(in crate::doubt) power: [f64; 2],
-    /// How many lines these are.
-    pub(in crate::doubt) lines: [f64; 2],
-    /// The same sum of the torque, over all its lines.
-    pub(in crate::doubt) torque: f64,
-}
-
-impl Halves {
-    /// Of more windows.
-    pub(in crate::doubt) fn with(self, other: &Self) -> Self {
-        let both = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-        Self {
-            power: both(self.power, other.power),
-            lines: both(self.lines, other.lines),
-            torque: self.torque + other.torque,
-        }
-    }
-
-    /// Of a residual that some filter left, one sample in so many.
-    fn of(left: &[f64], torque: &[f64], (filter, every): (Option<&Butterworth>, f64)) -> Self {
-        let count = left.len() as f64;
-        let mut halves = Self::default();
-        let cutoff = filter.map_or(0.5, |filter| filter.cutoff() * every);
-        let last = (cutoff.min(0.5) * count) as usize;
-        for line in 1..last.max(1) {
-            let turn = TAU * line as f64 / count;
-            let sums = left.iter().enumerate().fold([0.0; 2], |[a, b], (at, one)| {
-                let (sine, cosine) = (turn * at as f64).sin_cos();
-                [a + one * cosine, b + one * sine]
-            });
-            let half = usize::from(2 * line > last);
-            let passes = filter.map_or(1.0, |one| one.passes(line as f64 / (count * every)));
-            halves.power[half] +=
-                2.0 * sums.iter().map(|sum| sum * sum / (count * passes * passes)).sum::<f64>();
-            halves.lines[half] += 1.0;
-        }
-        halves.torque = torque.iter().map(|one| one * one).sum();
-        halves
     }
 }
 

@@ -1,10 +1,9 @@
-//! Logs condensed to products, the evidence of models that some of them share, and what these
-//! leave.
+//! Logs condensed to products, and the evidence of models that some of them share.
 
-use super::columns::{Halves, JointRows, Reading, Sample, is_positive};
-use super::policy;
+use super::super::columns::{JointRows, Reading, Sample, is_positive};
+use super::super::policy;
 use crate::estimate::noise_of_positions;
-use denavit_evidence::policy::{NAMED, NOISE_LEVEL, SIZE};
+use denavit_evidence::policy::{NOISE_LEVEL, SIZE};
 use denavit_evidence::{Condensed, Told};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
@@ -17,9 +16,6 @@ pub(super) const BEFORE: usize = 2;
 struct OfJoint {
     /// Mean products of the torque, of 1 and of the columns of phi with each other.
     products: DMatrix<f64>,
-    /// The same over the mean square of the torque, of the torque and of columns that each make as
-    /// much as is believed.
-    scaled: DMatrix<f64>,
     /// How many of the rows are independent of each other.
     independent: f64,
     /// The least mean square of their noise, of positions, over that of the torque.
@@ -72,19 +68,8 @@ pub(super) struct Shared {
     pub(super) sizes: Vec<f64>,
 }
 
-/// A model of some logs.
-#[derive(Clone, Copy, Default)]
-struct Asked<'a> {
-    logs: &'a [usize],
-    /// A log whose rows hardly count.
-    faint: Option<usize>,
-    lines: &'a [Line],
-    /// Logs in which nothing explains the torque of a joint.
-    blind: (&'a [usize], usize),
-}
-
 /// Logs that are compared.
-pub(crate) struct Compared<'a> {
+pub(super) struct Compared<'a> {
     pub(super) model: &'a RegressionModel,
     pub(super) logs: Vec<&'a Conditioned>,
     /// By log and joint; none where no torque was measured, or the joint rests: friction is
@@ -96,21 +81,17 @@ pub(crate) struct Compared<'a> {
 }
 
 impl<'a> Compared<'a> {
-    pub(crate) fn new(model: &'a RegressionModel, logs: &[&'a Conditioned]) -> Self {
+    pub(super) fn new(model: &'a RegressionModel, logs: &[&'a Conditioned]) -> Self {
         let lowest = |is_positive| if is_positive { 0.0 } else { f64::NEG_INFINITY };
         let lowest = is_positive(model).into_iter().map(lowest).collect();
         let logs = logs.to_vec();
         let mut compared = Self { model, logs, rows: Vec::new(), units: Vec::new(), lowest };
         let straight = Reading::straight(model.joints.len());
-        let samples = compared.samples();
+        let samples = policy::SAMPLES[1] / compared.logs.len().max(1);
         let sample = |&log: &&'a Conditioned| Sample::new(model, (&[log], 1), samples);
         let mut all: Vec<Sample<'_>> = compared.logs.iter().map(sample).collect();
         compared.rows = all.iter_mut().map(|one| compared.of_log(one, &straight)).collect();
         compared.units = compared.units();
-        let plain = compared.columns((0, 0), &Asked::default());
-        for own in compared.rows.iter_mut().flatten().flatten() {
-            own.scaled = plain.tr_mul(&(&own.products * &plain)) / own.size();
-        }
         for (at, sample) in all.iter_mut().enumerate() {
             let phi = compared.shared(&[at], &[]).phi;
             let noise = noise_of_positions(model, &compared.logs[at..=at], phi.as_slice());
@@ -125,19 +106,13 @@ impl<'a> Compared<'a> {
         compared
     }
 
-    /// Samples of each log that are looked at.
-    fn samples(&self) -> usize {
-        policy::SAMPLES[1] / self.logs.len().max(1)
-    }
-
     /// The rows of a log, with as many independent ones as its filter leaves.
     fn of_log(&self, sample: &mut Sample<'_>, straight: &Reading) -> Vec<Option<OfJoint>> {
         let independent = by_joint(sample, &sample.independent_by_filter());
         let rows = sample.rows(straight);
         let of = |(joint, rows): (usize, Option<JointRows>)| {
             let products = self.of_phi(joint, &rows.filter(|_| sample.moves(joint))?);
-            let (scaled, independent) = (DMatrix::zeros(0, 0), independent[joint]);
-            Some(OfJoint { products, scaled, independent, noise: 0.0 })
+            Some(OfJoint { products, independent: independent[joint], noise: 0.0 })
         };
         rows.into_iter().enumerate().map(of).collect()
     }
@@ -169,23 +144,15 @@ impl<'a> Compared<'a> {
 
     /// What some logs say if they have one set of parameters, beside lines.
     pub(super) fn shared(&self, logs: &[usize], lines: &[Line]) -> Shared {
-        self.asked(&Asked { logs, lines, ..Asked::default() })
+        self.with_faint((logs, None), lines)
     }
 
     /// What some logs say, and of what they do not show another one, whose rows hardly count.
     pub(super) fn shared_beside(&self, logs: &[usize], faint: usize) -> Shared {
-        self.asked(&Asked { logs, faint: Some(faint), ..Asked::default() })
+        self.with_faint((logs, Some(faint)), &[])
     }
 
-    /// The log odds that the torque of a joint in some of all logs is noise of its own size, which
-    /// parameters do not explain.
-    pub(super) fn nothing(&self, all: &[usize], (logs, joint): (&[usize], usize)) -> f64 {
-        let blind = self.asked(&Asked { logs: all, blind: (logs, joint), ..Asked::default() });
-        blind.log_evidence - self.shared(all, &[]).log_evidence
-    }
-
-    fn asked(&self, asked: &Asked<'_>) -> Shared {
-        let Asked { logs, faint, lines, .. } = *asked;
+    fn with_faint(&self, (logs, faint): (&[usize], Option<usize>), lines: &[Line]) -> Shared {
         let rank = self.units.len();
         let deviations: Vec<f64> =
             self.units.iter().copied().chain(lines.iter().map(|line| line.deviation)).collect();
@@ -198,11 +165,14 @@ impl<'a> Compared<'a> {
                 let own = self.rows[log].iter().enumerate();
                 own.filter_map(move |(joint, own)| Some((log, joint, own.as_ref()?, counts)))
             })
-            .map(|(log, joint, own, counts)| Condensed {
-                rows: counts * own.independent,
-                expected: NOISE_LEVEL.powi(2),
-                least: own.noise,
-                products: self.scaled((log, joint), own, asked),
+            .map(|(log, joint, own, counts)| {
+                let columns = self.columns((log, joint), lines);
+                Condensed {
+                    rows: counts * own.independent,
+                    expected: NOISE_LEVEL.powi(2),
+                    least: own.noise,
+                    products: columns.tr_mul(&(&own.products * &columns)) / own.size(),
+                }
             })
             .collect();
         if cells.is_empty() {
@@ -226,28 +196,12 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// The mean products that the model of a joint in a log has.
-    fn scaled(&self, place: (usize, usize), own: &OfJoint, asked: &Asked<'_>) -> DMatrix<f64> {
-        let Asked { lines, blind: (blind, of_blind), .. } = *asked;
-        let is_blind = place.1 == of_blind && blind.contains(&place.0);
-        if !is_blind && lines.iter().all(|line| (line.log, line.joint) != place) {
-            let size = own.scaled.nrows() + lines.len();
-            return own.scaled.clone().resize(size, size, 0.0);
-        }
-        let columns = self.columns(place, asked);
-        columns.tr_mul(&(&own.products * &columns)) / own.size()
-    }
-
     /// The torque and all columns of a model, made of what products are of: those of phi, and the
     /// lines of a joint in a log.
-    fn columns(&self, (log, joint): (usize, usize), asked: &Asked<'_>) -> DMatrix<f64> {
-        let Asked { lines, blind: (blind, of_blind), .. } = *asked;
+    fn columns(&self, (log, joint): (usize, usize), lines: &[Line]) -> DMatrix<f64> {
         let rank = self.units.len();
         let mut columns = DMatrix::zeros(BEFORE + rank, 1 + rank + lines.len());
         columns[(0, 0)] = 1.0;
-        if joint == of_blind && blind.contains(&log) {
-            return columns;
-        }
         for (at, unit) in self.units.iter().enumerate() {
             columns[(BEFORE + at, 1 + at)] = *unit;
         }
@@ -310,26 +264,6 @@ impl<'a> Compared<'a> {
         })
     }
 
-    /// The share of a joint's torque in some logs that phi leaves, as mean square; none where no
-    /// rows of it count.
-    pub(super) fn left_of(&self, logs: &[usize], joint: usize, phi: &DVector<f64>) -> Option<f64> {
-        self.mean((logs, joint), |log| self.left((log, joint), phi, (&[], &[])).unwrap_or(0.0))
-    }
-
-    /// The same of what noise of the positions makes.
-    pub(super) fn noise_of(&self, logs: &[usize], joint: usize) -> f64 {
-        let of = |log: usize| self.rows[log][joint].as_ref().map_or(0.0, |own| own.noise);
-        self.mean((logs, joint), of).unwrap_or(0.0)
-    }
-
-    /// The mean of shares of a joint's torque in some logs.
-    fn mean(&self, (logs, joint): (&[usize], usize), of: impl Fn(usize) -> f64) -> Option<f64> {
-        let rows = logs.iter().filter_map(|&log| Some((log, self.rows[log][joint].as_ref()?)));
-        let both = rows.map(|(log, own)| [own.size() * of(log), own.size()]);
-        let [sum, all] = both.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
-        (all > 0.0).then_some(sum / all)
-    }
-
     /// Whether noise of the positions may be all that a log's own parameters leave of a torque.
     pub(super) fn is_noisy(&self, log: usize) -> bool {
         let phi = self.shared(&[log], &[]).phi;
@@ -338,38 +272,6 @@ impl<'a> Compared<'a> {
             own.as_ref().zip(left).is_some_and(|(own, left)| left < own.noise)
         };
         self.rows[log].iter().enumerate().any(is_noisy)
-    }
-}
-
-/// What parameters leave of logs, as spectra: noise of torques is as large in either half of the
-/// band that the filter passes.
-pub(crate) struct Spectra(Vec<Vec<Option<Halves>>>);
-
-impl Spectra {
-    /// Of some logs.
-    pub(crate) fn new(compared: &Compared<'_>, logs: &[usize], phi: &DVector<f64>) -> Self {
-        let straight = Reading::straight(compared.model.joints.len());
-        let of = |&log: &usize| {
-            let logs = &compared.logs[log..=log];
-            let samples = compared.samples();
-            Sample::new(compared.model, (logs, 1), samples).halves(&straight, phi)
-        };
-        Self(logs.iter().map(of).collect())
-    }
-
-    /// The share of a joint's torque in some of them, as mean square, that is no noise: more in the
-    /// lower half of the band than in the upper one, by more than chance.
-    pub(super) fn no_noise(&self, logs: &[usize], joint: usize) -> f64 {
-        let all = logs.iter().filter_map(|&log| self.0[log][joint].as_ref());
-        let all = all.fold(Halves::default(), |sum, one| sum.with(one));
-        let [low, high] = [0, 1].map(|half| all.power[half] / all.lines[half].max(1.0));
-        let whole = (all.power[0] + all.power[1]) / (all.lines[0] + all.lines[1]).max(1.0);
-        let nats =
-            |half: usize, power: f64| all.lines[half] * (whole / power.max(f64::MIN_POSITIVE)).ln();
-        match low > high && nats(0, low) + nats(1, high) > NAMED {
-            true => (low - high) * all.lines[0] / all.torque,
-            false => 0.0,
-        }
     }
 }
 

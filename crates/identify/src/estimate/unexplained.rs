@@ -1,0 +1,269 @@
+//! Joints whose torque an estimate does not explain, in all logs, in one of them, or while a joint
+//! rests.
+
+use super::least_squares::Estimate;
+use super::likelihood::noise_of_positions;
+use super::rows::BlockMaker;
+use super::validate::{Validation, validate};
+use crate::policy::unexplained::{
+    ALIKE, AT_REST, LEFT, LEFT_ALIKE, LEFT_AT_REST, OF_NOISE, STICTION,
+};
+use denavit_measure::condition::Conditioned;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
+use std::fmt;
+
+/// Samples of each log that are looked at, and in blocks of so many.
+const BLOCKS: usize = 16;
+const BLOCK: usize = 64;
+
+/// Whether each joint moves, against the one of its kind (turning, sliding) that moves most.
+pub(super) fn moves(model: &RegressionModel, logs: &[&Conditioned]) -> Vec<bool> {
+    let n = model.joints.len();
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; n];
+    for log in logs {
+        let samples = log.samples();
+        let step = samples.div_ceil(BLOCKS).max(BLOCK);
+        for first in (0..samples).step_by(step) {
+            let mut motion = Vec::new();
+            log.motion_at(first, BLOCK.min(samples - first), &mut motion);
+            for ([low, high], positions) in ranges.iter_mut().zip(&motion) {
+                *low = positions.iter().copied().fold(*low, f64::min);
+                *high = positions.iter().copied().fold(*high, f64::max);
+            }
+        }
+    }
+    let ranges: Vec<f64> = ranges.iter().map(|[low, high]| (high - low).max(0.0)).collect();
+    let most = |slides: bool| {
+        let alike = ranges.iter().zip(&model.joints).filter(|(_, joint)| joint.slides == slides);
+        alike.map(|(range, _)| *range).fold(0.0, f64::max)
+    };
+    let most = [false, true].map(most);
+    let of_joint = |(range, joint): (&f64, &RegressionJoint)| {
+        *range > AT_REST * most[usize::from(joint.slides)]
+    };
+    ranges.iter().zip(&model.joints).map(of_joint).collect()
+}
+
+/// Samples that are left in so many periods of the filter's cutoff.
+pub(super) fn samples_of(log: &Conditioned, periods: f64) -> usize {
+    let cutoff = log.filter.as_ref().map_or(0.5, |filter| filter.cutoff());
+    ((periods / (cutoff * log.decimation.max(1) as f64)).ceil().min(1e6) as usize).max(1)
+}
+
+/// A joint of whose torque nearly all is left, or much that is no noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unexplained {
+    /// The joint.
+    pub joint: String,
+    /// The log, if it is one of several and not all are like it.
+    pub file: Option<String>,
+    /// Root of the mean square of the residual over that of the torque.
+    pub share: f64,
+    /// The longest time that the joint rests in between \[s\], if it is that of which it is left;
+    /// all of the log if it never moves.
+    pub rest_s: Option<[f64; 2]>,
+    /// What is left of it in the logs for the estimate, if it is that beside which too much is
+    /// left in a log for validation.
+    pub beside: Option<f64>,
+}
+
+impl fmt::Display for Unexplained {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (joint, percent) = (&self.joint, 100.0 * self.share);
+        write!(f, "The torque of {joint} is not explained: {percent:.0} % of it is left")?;
+        if let Some(file) = &self.file {
+            write!(f, " in {file}")?;
+        }
+        match (self.beside, self.rest_s) {
+            (Some(share), _) => {
+                return write!(
+                    f,
+                    ", without what is near reversals, and {:.1} % in the logs for the estimate: \
+                     far more than noise, the filter and errors of the parameters make. The unit \
+                     of its time or of another column may be another, or the robot, or it shows a \
+                     law that the model lacks; it does not confirm what was found.",
+                    100.0 * share
+                );
+            }
+            (None, None) => write!(
+                f,
+                ", although the joint moves. Its column may be another quantity, in another unit, \
+                 or noise, or the zero of a position may be off, or the model's geometry"
+            )?,
+            (None, Some([from, to])) => write!(
+                f,
+                ", although the joint rests, from {from:.2} to {to:.2} s, and its friction holds \
+                 less. The column of its position may be stuck while it moves, or stiction or a \
+                 brake holds it, which no equation knows"
+            )?,
+        }
+        write!(f, "; what was found is not to be believed.")
+    }
+}
+
+/// What joints are judged by.
+#[derive(Clone, Copy)]
+pub struct Judgement<'a> {
+    /// The estimate.
+    pub found: &'a Estimate,
+    /// What it leaves of the logs of which noise does not make most, together.
+    pub left: &'a Validation,
+    /// The share of each joint's torque that is left of the rows that count: what is left of those
+    /// near reversals is no misfit.
+    pub counted: &'a [f64],
+}
+
+/// The joints of whose torque nearly all is left, or much that is no noise, of all logs together of
+/// which noise does not make most, or of one of these. Equations of a floating base are none of
+/// joints.
+pub fn unexplained_joints(
+    model: &RegressionModel,
+    (logs, shown): (&[Conditioned], &[usize]),
+    judged: Judgement<'_>,
+) -> Vec<Unexplained> {
+    let phi = judged.found.solution.phi.as_slice();
+    let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log]).collect();
+    // a joint that moves may be left with nothing but noise of the positions
+    let noise = noise_of_positions(model, &together, phi);
+    let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
+    let mut all = moving(model, &together, (judged, &least));
+    let not_noise = vec![f64::INFINITY; noise.len()];
+    for &log in &together {
+        let left = validate(model, phi, &[log]);
+        let mut own = resting(model, log, (judged.found, &left));
+        if logs.len() > 1 {
+            own.extend(moving(model, &[log], (Judgement { left: &left, ..judged }, &not_noise)));
+        }
+        own.retain(|one| all.iter().all(|other| other.joint != one.joint || other.file.is_some()));
+        let file = (logs.len() > 1).then(|| log.file.clone());
+        all.extend(own.into_iter().map(|one| Unexplained { file: file.clone(), ..one }));
+    }
+    all
+}
+
+/// The joints that move and of whose torque much that is no noise is left, or so much in any case.
+fn moving(
+    model: &RegressionModel,
+    logs: &[&Conditioned],
+    (judged, noise): (Judgement<'_>, &[f64]),
+) -> Vec<Unexplained> {
+    let lag = logs.iter().map(|log| samples_of(log, 0.5)).max().unwrap_or(1);
+    let of = |(((joint, moves), counted), noise): (((&RegressionJoint, bool), &f64), &f64)| {
+        let found = judged.left.joints.iter().find(|one| one.name == joint.name)?;
+        let is_alike = found.autocorrelation.get(lag - 1).is_some_and(|one| *one > ALIKE);
+        let least = if is_alike && *counted > LEFT_ALIKE { LEFT_ALIKE } else { *noise };
+        let is_left = !joint.is_base && moves && found.relative > least;
+        is_left.then(|| Unexplained {
+            joint: joint.name.clone(),
+            file: None,
+            share: found.relative,
+            rest_s: None,
+            beside: None,
+        })
+    };
+    let moving = moves(model, logs);
+    model.joints.iter().zip(moving).zip(judged.counted).zip(noise).filter_map(of).collect()
+}
+
+/// The joints of whose torque something that is no noise is left while they rest, and more than
+/// stiction holds.
+fn resting(
+    model: &RegressionModel,
+    log: &Conditioned,
+    (found, left): (&Estimate, &Validation),
+) -> Vec<Unexplained> {
+    let moving = moves(model, &[log]);
+    let rests: Vec<Vec<bool>> = (0..model.joints.len())
+        .map(|joint| match moving[joint] {
+            _ if model.joints[joint].is_base || log.torque[joint].is_none() => Vec::new(),
+            true => log.rests(joint),
+            false => vec![true; log.range.len()],
+        })
+        .collect();
+    if !rests.iter().flatten().any(|rests| *rests) {
+        return Vec::new();
+    }
+    let first_s = log.start_s + log.step_s * log.range.start as f64;
+    let of = |(joint, own): (usize, RestingJoint)| {
+        let name = &model.joints[joint].name;
+        let torque = left.joints.iter().find(|one| one.name == *name)?.torque_rms;
+        let share = own.unexplained(samples_of(log, 1.0))?.sqrt() / torque;
+        let spell = longest(&rests[joint]);
+        (share > LEFT_AT_REST).then(|| Unexplained {
+            joint: name.clone(),
+            file: None,
+            share,
+            rest_s: Some([spell.start, spell.end].map(|at| first_s + log.step_s * at as f64)),
+            beside: None,
+        })
+    };
+    at_rest(model, log, (found, &rests)).into_iter().enumerate().filter_map(of).collect()
+}
+
+/// What is left of the torque of a joint that rests.
+#[derive(Clone, Default)]
+struct RestingJoint {
+    /// What is left of each sample, and whether the joint rests there.
+    left: Vec<(f64, bool)>,
+    /// What stiction holds.
+    held: f64,
+}
+
+impl RestingJoint {
+    /// The mean square of what is left at rest and stiction does not hold; none if it is noise, as
+    /// far as so many periods tell, each of so many samples.
+    fn unexplained(&self, period: usize) -> Option<f64> {
+        let beyond = |left: f64| (left.abs() - self.held).max(0.0).powi(2);
+        let at_rest = self.left.iter().filter(|(_, rests)| *rests);
+        let [rows, beyond] =
+            at_rest.fold([0.0; 2], |[rows, sum], (left, _)| [rows + 1.0, sum + beyond(*left)]);
+        let pairs = self.left.iter().zip(self.left.iter().skip(period));
+        let pairs = pairs.filter(|((_, one), (_, other))| *one && *other);
+        let [alike, all] = pairs.fold([0.0; 2], |[alike, all], ((one, _), (other, _))| {
+            [alike + one * other, all + 0.5 * (one * one + other * other)]
+        });
+        let by_chance = (period as f64 / rows).sqrt();
+        (alike > (ALIKE + by_chance) * all).then_some(beyond / rows)
+    }
+}
+
+fn at_rest(
+    model: &RegressionModel,
+    log: &Conditioned,
+    (found, rests): (&Estimate, &[Vec<bool>]),
+) -> Vec<RestingJoint> {
+    let phi = found.solution.phi.as_slice();
+    // friction that is not shown holds nothing that is known
+    let rows = found.solution.factor.row_iter();
+    let is_shown = rows.map(|row| f64::from(u8::from(row.norm() > 0.0)));
+    let shown: Vec<f64> = phi.iter().zip(is_shown).map(|(phi, is_shown)| phi * is_shown).collect();
+    let mut maker = BlockMaker::new(model, log);
+    let held = |joint: usize| STICTION * maker.coulomb_friction(joint, &shown);
+    let mut joints: Vec<RestingJoint> = (0..rests.len())
+        .map(|joint| RestingJoint { left: Vec::new(), held: held(joint) })
+        .collect();
+    maker.for_each(|block| {
+        let places: Vec<usize> = log.places(block.first, block.samples).collect();
+        for (joint, rests) in rests.iter().enumerate().filter(|(_, rests)| !rests.is_empty()) {
+            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+            let left = block.residual(joint, &own).unwrap_or_default();
+            let rests = places.iter().map(|place| rests[place - log.range.start]);
+            joints[joint].left.extend(left.into_iter().zip(rests));
+        }
+    });
+    joints
+}
+
+/// The longest spell of samples.
+fn longest(samples: &[bool]) -> std::ops::Range<usize> {
+    let mut longest = 0..0;
+    let mut from = 0;
+    for (at, is_in) in samples.iter().enumerate() {
+        if !is_in {
+            from = at + 1;
+        } else if at + 1 - from > longest.len() {
+            longest = from..at + 1;
+        }
+    }
+    longest
+}

@@ -1,18 +1,17 @@
 //! All that identification says: data alone, for tables, files and reports to show.
 
-use super::doubt::{
-    Agreement, ContradictingLog, GivenValues, MisreadColumns, Standing, agreement, misread_apart,
-    misread_columns,
-};
+use super::doubt::{GivenValues, MisreadColumns, misread_apart, misread_columns};
 use super::estimate::{
-    Consistent, Convergence, Estimate, EstimateError, IdentifiedParameter, Judgement, Options,
-    SlowRows, Status, Unexplained, Validation, biased_frictions, consistent, convergence, estimate,
+    Consistent, ContradictingLog, Convergence, Estimate, EstimateError, IdentifiedParameter,
+    Judgement, Options, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions,
+    consistent, contradicting_held_out, contradicting_logs, convergence, estimate,
     exceeding_joints, filter_errors, long_enough, noise_in_torques, parameters, unexplained_joints,
     validate,
 };
 use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
+use super::odd_log::odd_log;
 use crate::policy::identification::{NOISY, SHORT, SMEARED};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
@@ -315,15 +314,19 @@ impl Estimated {
         let counted: Vec<f64> = noise.zip(torques.iter().copied()).map(share).collect();
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
-        let agreement = agreement(model, (train, held_out), (&shown, &found.solution.phi));
-        let misread = misread(request, (&found, &shown), &agreement);
-        let contradicting_logs = agreement.contradicting;
+        let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
+        let misread = misread(request, &found, &contradicting_logs);
         let (judges, judging) = match held_out.is_empty() {
             true => (train, shown.clone()),
             false => (held_out, (0..held_out.len()).collect()),
         };
         let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
         let left_together = validate(model, phi, &together);
+        contradicting_logs.extend(contradicting_held_out(
+            model,
+            (train, held_out),
+            (&found, options),
+        ));
         let exceeding = exceeding_joints(model, held_out, (&found, options, &counted));
         let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
         let mut unexplained = unexplained_joints(model, (judges, &judging), judgement);
@@ -372,19 +375,26 @@ fn torques(model: &RegressionModel, left: &Validation) -> Vec<f64> {
 /// nothing of that.
 fn misread(
     request: Request<'_>,
-    (found, shown): (&Estimate, &[usize]),
-    agreement: &Agreement,
+    found: &Estimate,
+    contradicting: &[ContradictingLog],
 ) -> Vec<MisreadColumns> {
     let Request { model, train, validate: held_out, .. } = request;
     if found.noise_share > MOST {
         return Vec::new();
     }
+    let shown = shown_logs(train.len(), found);
     let logs: Vec<&Conditioned> = shown.iter().map(|&log| &train[log]).collect();
     let mut misread = misread_columns(model, &logs, None);
-    if let (true, Some(odd)) = (misread.is_empty(), &agreement.oddest) {
-        let values = GivenValues { phi: odd.phi.as_slice(), errors: odd.errors.as_slice() };
-        misread = misread_apart(model, &[&train[odd.log]], Some(values));
-        if agreement.contradicting.iter().any(|one| one.standing == Standing::Undecided) {
+    // values that a log gives which contradicts the others would accuse a good one
+    let is_told = |&log: &usize| contradicting.iter().any(|one| one.file == train[log].file);
+    let told: Vec<usize> = shown.iter().copied().filter(is_told).collect();
+    let asked = if told.is_empty() { &shown } else { &told };
+    let odd = odd_log(model, (asked, &shown), found);
+    if let (true, Some((log, others))) = (misread.is_empty(), odd) {
+        let errors: Vec<f64> = others.factor.row_iter().map(|row| row.norm()).collect();
+        let values = GivenValues { phi: others.phi.as_slice(), errors: &errors };
+        misread = misread_apart(model, &[&train[log]], Some(values));
+        if contradicting.iter().any(|one| one.standing == Standing::Undecided) {
             misread.iter_mut().for_each(|one| one.is_sure = false);
         }
     }

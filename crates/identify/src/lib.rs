@@ -25,6 +25,7 @@ mod model_text;
 mod model_values;
 mod no_bodies;
 mod noisy_logs;
+mod odd_log;
 mod policy;
 pub mod statics;
 mod statics_file;

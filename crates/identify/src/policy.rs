@@ -16,6 +16,13 @@ pub(crate) mod bounds {
     pub(crate) const LEAST: f64 = 1e-3;
 }
 
+/// `estimate/comparison.rs`: Logs for an estimate that are compared with each other.
+pub(crate) mod comparison {
+    /// An estimate is that of some logs if no parameter is further from what they say, in their
+    /// standard errors.
+    pub(crate) const APART: f64 = 3.0;
+}
+
 /// `estimate/consistent.rs`: Bodies that exist: the parameters nearest to an estimate with
 /// positive definite pseudo-inertias, and friction and rotor inertia that are not negative.
 pub(crate) mod consistent {
@@ -36,6 +43,32 @@ pub(crate) mod consistent {
     /// the estimate, in so many stages: where columns are products, what fits lies in valleys that
     /// are narrow and bent, and each stage begins at the bottom of one.
     pub(crate) const FAR: f64 = 2.0;
+}
+
+/// `estimate/contradiction.rs`: Logs that contradict the others: parameters of their own would
+/// explain what those of all do not.
+pub(crate) mod contradiction {
+    /// What own parameters explain must be this share of a joint's torque, as root of mean square,
+    /// and so many times what they leave, which noise may have made them follow; where parts of
+    /// the log do not say for how long that is alike, so many times,
+    pub(crate) const OF_TORQUE: f64 = 0.03;
+
+    /// See [`OF_TORQUE`].
+    pub(crate) const OF_OWN: f64 = 0.5;
+
+    /// See [`OF_TORQUE`].
+    pub(crate) const OF_OWN_ALONE: f64 = 1.5;
+
+    /// and this many times what chance explains with as many parameters, in variance.
+    pub(crate) const OF_CHANCE: f64 = 25.0;
+
+    /// and what noise of the positions makes of it, in variance: to follow that, parameters of a
+    /// log's own are biased. That noise is known to a few times, since steps of an encoder may
+    /// beat with the samples.
+    pub(crate) const OF_BEATS: f64 = 10.0;
+
+    /// What a constant or a factor leaves of the squares of what it is told for, at most.
+    pub(crate) const ALIKE: f64 = 0.25;
 }
 
 /// `estimate/errors.rs`: Standard errors that hold where residuals are alike from one sample to

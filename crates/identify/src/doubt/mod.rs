@@ -1,10 +1,7 @@
 //! Doubts about logs: what they may be other than they are taken for.
 
-mod agreement;
 mod columns;
 mod policy;
 
-pub(crate) use agreement::{Agreement, agreement};
-pub use agreement::{ContradictingJoint, ContradictingLog, Likeness, Standing};
 pub(crate) use columns::misread_apart;
 pub use columns::{ExchangedColumns, GivenValues, MisreadColumns, Misreading, misread_columns};

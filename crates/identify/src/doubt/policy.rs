@@ -15,20 +15,6 @@ pub(super) const VALUES_IDLE: f64 = -6.0;
 /// what cancels have errors of their terms, and what is symmetric is so to a few millimetres.
 pub(super) const LITTLE: f64 = 0.02;
 
-/// Log odds that a log has parameters of its own, as of another payload: 1 to 20.
-pub(super) const OWN: f64 = -3.0;
-
-/// Logs of one robot agree within this share of a torque, as root of mean square: friction of warm
-/// and of cold joints differs by as much.
-pub(super) const AGREE: f64 = 0.03;
-
-/// How many times as large as it is computed noise of the positions may be, in variance: steps of
-/// an encoder may beat with the samples.
-pub(super) const NOISE_KNOWN: f64 = 10.0;
-
-/// What rows count, against those of other logs, that decide nothing but what these do not show.
-pub(super) const FAINT: f64 = 1e-3;
-
 /// Rounds in which the noise of joints is found, of each reading.
 pub(super) const WEIGHING_ROUNDS: usize = 8;
 

@@ -175,6 +175,18 @@ impl Condensed {
         }
     }
 
+    /// The mean of what phi leaves of each joint's torque in some logs.
+    pub(super) fn means(&self, logs: &[usize], phi: &[f64]) -> Vec<f64> {
+        let own = self.parts.iter().zip(&self.log_of_part).filter(|(_, log)| logs.contains(log));
+        let of = |joint: usize| {
+            let phi = self.of_joint(joint, phi);
+            let all = own.clone().map(|(part, _)| (part[joint].rows(), part[joint].sum(&phi)));
+            let (rows, sum) = all.fold((0, 0.0), |(n, s), (rows, sum)| (n + rows, s + sum));
+            sum / rows.max(1) as f64
+        };
+        (0..self.pattern.len()).map(of).collect()
+    }
+
     /// For each log the triangles of its joints, of all parts.
     pub fn whole(&self) -> Vec<Vec<Triangle>> {
         self.merged(0..self.parts.len())

@@ -5,12 +5,15 @@
 //! - [`Errors`]: standard errors for residuals that are correlated
 //! - [`SlowRows`]: what is left out near reversals
 //! - [`validate`]: what is left of the torques
+//! - [`ContradictingLog`]: logs that no parameters explain together with the others
 //! - [`unexplained_joints`]: whose torque is as good as unexplained
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
+mod comparison;
 mod condensed;
 mod consistent;
+mod contradiction;
 mod errors;
 mod exceeding;
 mod filter_error;
@@ -37,6 +40,8 @@ mod widening;
 
 pub use condensed::Condensed;
 pub use consistent::{Consistent, consistent};
+pub use contradiction::{ContradictingJoint, ContradictingLog, Likeness, Standing};
+pub(crate) use contradiction::{contradicting_held_out, contradicting_logs};
 pub use errors::{Errors, interval_factor};
 pub(crate) use exceeding::exceeding_joints;
 pub(crate) use filter_error::filter_errors;
@@ -54,6 +59,7 @@ pub use report::{Convergence, HalfCutoff, IdentifiedParameter, Status, convergen
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
 pub(crate) use rows::{Coulomb, coulomb};
+pub(crate) use solve::DEAD;
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
 pub use unexplained::{Judgement, Unexplained, unexplained_joints};

@@ -51,6 +51,8 @@ pub struct NoiseOfLog {
     /// The largest bias of what this log alone says of an entry of phi, in standard errors of
     /// residuals that are independent.
     pub alone: f64,
+    /// What it adds to W^T [W | y] of each joint, as it was weighted.
+    pub(super) of_joints: Vec<DMatrix<f64>>,
 }
 
 /// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
@@ -67,29 +69,44 @@ pub(super) fn noise_bias(
         let of = (&found.weights[number][..], longest, factors);
         Noise::of_log(model, ((number, log), left_out), of, &mut random)
     };
-    let of_logs: Vec<Noise> = logs.iter().enumerate().map(of_log).collect();
+    let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
+    let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise::of_joints(one)).collect();
     let mut all = Noise::new(model.rank());
     of_logs.iter().for_each(|one| all.0 += &one.0);
     let solution = &found.solution;
     let (bias, phi) = all.bias(solution, given);
     let triangles = found.condensed.whole();
-    let of_log = |(log, noise): (usize, &Noise)| {
+    let of_log = |((log, noise), of_joints): ((usize, &Noise), Vec<DMatrix<f64>>)| {
         let (own, weights) = (&triangles[log..=log], &found.weights[log..=log]);
         let bias = noise.lost(solution, &phi);
         if noise.0.amax() == 0.0 {
             // a log whose rows are all left out shows nothing
             let is_empty = triangles[log].iter().all(|one| one.rows() == 0);
             let share = f64::from(u8::from(is_empty));
-            return NoiseOfLog { bias, share, alone: 0.0 };
+            return NoiseOfLog { bias, share, alone: 0.0, of_joints };
         }
         let own = solve(&found.condensed.system(own, weights, &[]), given);
         let alone = in_errors(&own, &noise.bias(&own, given).0);
         let share = noise.share(&own);
         let alone = alone * found.condensed.independent[log].sqrt();
-        NoiseOfLog { bias, share, alone }
+        NoiseOfLog { bias, share, alone, of_joints }
     };
-    let of_logs = of_logs.iter().enumerate().map(of_log).collect();
+    let of_logs = of_logs.iter().enumerate().zip(of_joints).map(of_log).collect();
     NoiseBias { bias, share: all.share(solution), of_logs }
+}
+
+/// What noise of some logs adds to an estimate of theirs, whose rows count so many times as much as
+/// when it was found, by log and joint.
+pub(super) fn bias_of_some<'a>(
+    noise: impl Iterator<Item = (&'a NoiseOfLog, Vec<f64>)>,
+    solution: &Solution,
+    given: &[f64],
+) -> DVector<f64> {
+    let mut all = Noise::new(solution.phi.len());
+    for (one, times) in noise {
+        one.of_joints.iter().zip(times).for_each(|(own, times)| all.0 += own * times);
+    }
+    all.bias(solution, given).0
 }
 
 /// The squares that noise of the positions of a log makes of what phi leaves of each joint's
@@ -182,14 +199,18 @@ impl Noise {
         Self(DMatrix::zeros(rank, rank + 1))
     }
 
-    /// That of a log, of which so many samples are looked at before decimation.
+    fn of_joints(of_joints: &[DMatrix<f64>]) -> Self {
+        Self(of_joints.iter().sum())
+    }
+
+    /// That of each joint of a log, of which so many samples are looked at before decimation.
     fn of_log(
         model: &RegressionModel,
         ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
         (weights, longest, factors): (&[f64], usize, Option<RowFactors<'_>>),
         random: &mut Random,
-    ) -> Self {
-        let mut noise = Self::new(model.rank());
+    ) -> Vec<DMatrix<f64>> {
+        let mut noise = vec![Self::new(model.rank()).0; model.joints.len()];
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }
@@ -205,7 +226,7 @@ impl Noise {
                 let counts = left_out.counts((number, log), joint, (first, count));
                 let all = squares.iter_mut().zip(counts.unwrap_or_default());
                 all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
-                add(&mut noise.0, (model, joint), (block, noisy), &squares);
+                add(&mut noise[joint], (model, joint), (block, noisy), &squares);
             }
         });
         noise

@@ -1,7 +1,7 @@
 //! Least squares of condensed rows, and which directions of phi they say nothing about.
 
 use super::triangle::{Triangle, upper};
-pub(super) use crate::policy::solve::DEAD;
+pub(crate) use crate::policy::solve::DEAD;
 use crate::policy::solve::MOST_WEIGHT;
 use nalgebra::{DMatrix, DVector, SVD};
 

@@ -4,13 +4,15 @@
 //! R^T R = [W | y]^T [W | y], without the squares ever being formed. Triangles of parts of a log
 //! make the triangle of the whole.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// R of the rows so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     /// Columns of W, and y: square, upper triangular.
     r: DMatrix<f64>,
+    /// Sums of the columns of W, and y.
+    sums: DVector<f64>,
     rows: usize,
 }
 
@@ -18,7 +20,7 @@ impl Triangle {
     /// No rows of `width` columns.
     pub fn new(width: usize) -> Self {
         let size = width + 1;
-        Self { r: DMatrix::zeros(size, size), rows: 0 }
+        Self { r: DMatrix::zeros(size, size), sums: DVector::zeros(size), rows: 0 }
     }
 
     /// Number of rows condensed.
@@ -49,6 +51,7 @@ impl Triangle {
             let mut target = stacked.column_mut(index);
             target.rows_mut(0, size).copy_from(&self.r.column(index));
             target.rows_mut(size, added).as_mut_slice().copy_from_slice(column);
+            self.sums[index] += column.iter().sum::<f64>();
         }
         self.r = upper(stacked);
         self.rows += added;
@@ -61,13 +64,27 @@ impl Triangle {
         stacked.rows_mut(0, size).copy_from(&self.r);
         stacked.rows_mut(size, size).copy_from(&other.r);
         self.r = upper(stacked);
+        self.sums += &other.sums;
         self.rows += other.rows;
+    }
+
+    /// Turns y round.
+    pub fn negate_target(&mut self) {
+        let last = self.width();
+        self.r.column_mut(last).neg_mut();
+        self.sums[last] = -self.sums[last];
     }
 
     /// |W phi - y|^2.
     pub fn squares(&self, phi: &[f64]) -> f64 {
         let residual = self.residual(phi);
         residual.iter().map(|entry| entry * entry).sum()
+    }
+
+    /// The sum of y - W phi.
+    pub(super) fn sum(&self, phi: &[f64]) -> f64 {
+        let fitted: f64 = self.sums.iter().zip(phi).map(|(sum, phi)| sum * phi).sum();
+        self.sums[self.width()] - fitted
     }
 
     /// Q^T (y - W phi).
@@ -121,11 +138,13 @@ mod tests {
         };
         let squares: f64 = (0..90).map(|k| residual(k).powi(2)).sum();
         let score: f64 = (0..90).map(|k| columns[1][k] * residual(k)).sum();
+        let sum: f64 = (0..90).map(residual).sum();
         first.merge(&second);
         assert_eq!(first.rows(), 90);
         for triangle in [&whole, &first] {
             assert!((triangle.squares(&phi) - squares).abs() < 1e-10);
             assert!((triangle.score(&phi)[1] - score).abs() < 1e-10);
+            assert!((triangle.sum(&phi) - sum).abs() < 1e-10);
         }
     }
 }

@@ -58,6 +58,13 @@ impl Fit<'_> {
         best
     }
 
+    /// The same, from weights that are not far.
+    pub(super) fn settled_from(&self, condensed: &Condensed, weights: ByLog) -> Settled {
+        let triangles = condensed.whole();
+        let first = self.weighed(condensed, &triangles, weights);
+        self.settle(condensed, &triangles, first)
+    }
+
     fn weighed(
         &self,
         condensed: &Condensed,

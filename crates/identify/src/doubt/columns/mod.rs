@@ -26,11 +26,10 @@ use denavit_evidence::policy::NOTHING_LIKE;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
-pub(super) use reading::Reading;
-pub(super) use sample::{JointRows, Sample};
+use reading::Reading;
+use sample::Sample;
 use search::Search;
 use std::fmt;
-pub(super) use weigh::is_positive;
 use weigh::{Beliefs, Shares};
 
 /// Columns that seem to be other ones than they are taken for.

@@ -52,7 +52,7 @@ impl Source {
 
 /// What each signal is.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::doubt) struct Reading {
+pub(super) struct Reading {
     pub(super) time: f64,
     pub(super) positions: Vec<Source>,
     pub(super) torques: Vec<Source>,
@@ -60,7 +60,7 @@ pub(in crate::doubt) struct Reading {
 
 impl Reading {
     /// As the log says it.
-    pub(in crate::doubt) fn straight(joints: usize) -> Self {
+    pub(super) fn straight(joints: usize) -> Self {
         let own = |column: usize| Source { column, factor: 1.0, offset: 0.0, late: 0 };
         let own: Vec<Source> = (0..joints).map(own).collect();
         Self { time: 1.0, positions: own.clone(), torques: own }

@@ -15,8 +15,8 @@ const BLOCK: usize = 256;
 const KEPT: usize = 2;
 
 /// Some samples of logs, to be read in one way or another.
-pub(in crate::doubt) struct Sample<'a> {
-    pub(in crate::doubt) model: &'a RegressionModel,
+pub(super) struct Sample<'a> {
+    pub(super) model: &'a RegressionModel,
     evaluator: RegressionEvaluator,
     rows: RegressionRows,
     windows: Vec<Window<'a>>,
@@ -28,7 +28,7 @@ pub(in crate::doubt) struct Sample<'a> {
 /// What is of the rows of a joint: the mean products of the measured torque, of what is known of
 /// it, of 1, of the columns of the regressor and of lines with each other, in this order.
 #[derive(Clone)]
-pub(in crate::doubt) struct JointRows {
+pub(super) struct JointRows {
     rows: usize,
     products: DMatrix<f64>,
 }
@@ -46,21 +46,17 @@ impl JointRows {
         self.products[(0, 0)]
     }
 
-    /// The mean products of what is to be explained, of 1 and of the columns, in this order.
-    pub(in crate::doubt) fn with_constant(&self) -> DMatrix<f64> {
-        let size = self.products.nrows();
-        let combined = DMatrix::from_fn(size, size - 1, |row, column| match (row, column) {
-            (0, 0) => 1.0,
-            (1, 0) => -1.0,
-            (row, column) if column > 0 && row == column + 1 => 1.0,
-            _ => 0.0,
-        });
-        combined.tr_mul(&(&self.products * &combined))
-    }
-
-    /// The same without 1.
+    /// The mean products of what is to be explained and of the columns, in this order.
     pub(super) fn of_columns(&self) -> DMatrix<f64> {
-        self.with_constant().remove_row(1).remove_column(1)
+        let size = self.products.nrows();
+        let combined =
+            DMatrix::from_fn(size, size - BEFORE + 1, |row, column| match (row, column) {
+                (0, 0) => 1.0,
+                (1, 0) => -1.0,
+                (row, column) if column > 0 && row + 1 == column + BEFORE => 1.0,
+                _ => 0.0,
+            });
+        combined.tr_mul(&(&self.products * &combined))
     }
 
     /// The same of a torque that is multiplied with a factor, and has a constant added.
@@ -75,7 +71,7 @@ impl JointRows {
 
 impl<'a> Sample<'a> {
     /// Of logs, so many samples of all, whose signals are read up to `latest` samples late.
-    pub(in crate::doubt) fn new(
+    pub(super) fn new(
         model: &'a RegressionModel,
         (logs, latest): (&[&'a Conditioned], isize),
         samples: usize,
@@ -97,12 +93,12 @@ impl<'a> Sample<'a> {
     }
 
     /// Whether a joint moves in some of the logs.
-    pub(in crate::doubt) fn moves(&self, joint: usize) -> bool {
+    pub(super) fn moves(&self, joint: usize) -> bool {
         self.windows.iter().any(|window| window.log().resting.get(joint) != Some(&true))
     }
 
     /// Whether the torque of a joint is measured in some of the logs.
-    pub(in crate::doubt) fn is_measured(&self, joint: usize) -> bool {
+    pub(super) fn is_measured(&self, joint: usize) -> bool {
         self.windows.iter().any(|window| window.log().torque[joint].is_some())
     }
 
@@ -114,7 +110,7 @@ impl<'a> Sample<'a> {
 
     /// How many samples of each column of torque that is measured the filter leaves independent of
     /// each other.
-    pub(in crate::doubt) fn independent_by_filter(&self) -> Vec<f64> {
+    pub(super) fn independent_by_filter(&self) -> Vec<f64> {
         let of = |column: usize| {
             let measured = |window: &&Window<'_>| window.log().torque[column].is_some();
             self.windows.iter().filter(measured).map(Window::independent).sum()
@@ -139,7 +135,7 @@ impl<'a> Sample<'a> {
     }
 
     /// The rows of each joint under a reading; none of one whose torque is not measured.
-    pub(in crate::doubt) fn rows(&mut self, reading: &Reading) -> Vec<Option<JointRows>> {
+    pub(super) fn rows(&mut self, reading: &Reading) -> Vec<Option<JointRows>> {
         let plain = reading.with_plain_torques();
         let kept = self.kept.iter().find(|(one, _)| *one == plain).map(|(_, rows)| rows.clone());
         let rows = kept.unwrap_or_else(|| {
@@ -290,11 +286,7 @@ impl<'a> Sample<'a> {
 
     /// How many samples of each torque that is measured are independent of each other: by how long
     /// what phi leaves is like itself, and no more than the filter lets be.
-    pub(in crate::doubt) fn independent(
-        &mut self,
-        reading: &Reading,
-        phi: &DVector<f64>,
-    ) -> Vec<f64> {
+    pub(super) fn independent(&mut self, reading: &Reading, phi: &DVector<f64>) -> Vec<f64> {
         let n = self.model.joints.len();
         let mut alike = vec![vec![0.0; BLOCK]; n];
         let mut rows = vec![0.0; n];

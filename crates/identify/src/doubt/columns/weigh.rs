@@ -74,19 +74,17 @@ pub(super) fn together(all: &[Believed]) -> f64 {
     most + all.iter().map(|one| (one.log_evidence - most).exp()).sum::<f64>().ln()
 }
 
-/// For each entry of phi whether it cannot be below 0.
-pub(in crate::doubt) fn is_positive(model: &RegressionModel) -> Vec<bool> {
-    let of_member = |&(member, factor): &(usize, f64)| {
-        let owner = model.standard[member].owner.as_ref();
-        let is_own = |prefix| POSITIVE.iter().any(|entry| entry.prefix() == prefix);
-        factor > 0.0 && owner.is_some_and(|(_, prefix)| is_own(*prefix))
-    };
-    model.axes.iter().map(|axis| axis.members.iter().all(of_member)).collect()
-}
-
 impl Beliefs {
     /// With values of phi in place of the model's own.
     pub(super) fn new(model: &RegressionModel, values: Option<GivenValues<'_>>) -> Self {
+        let is_positive = |at: usize| {
+            let is_positive = |&(member, factor): &(usize, f64)| {
+                let owner = model.standard[member].owner.as_ref();
+                let is_own = |prefix| POSITIVE.iter().any(|entry| entry.prefix() == prefix);
+                factor > 0.0 && owner.is_some_and(|(_, prefix)| is_own(*prefix))
+            };
+            model.axes[at].members.iter().all(is_positive)
+        };
         let own = values.map(|own| own.phi.to_vec()).or_else(|| nominal_values(model));
         // friction is what it is on a day, and a sum of what cancels has errors of its terms
         let scale = |at: usize| {
@@ -100,7 +98,7 @@ impl Beliefs {
             errors: values.map(|own| own.errors.to_vec()),
             values: own.map(DVector::from_vec),
             pattern: model.pattern().to_vec(),
-            is_positive: is_positive(model),
+            is_positive: (0..model.rank()).map(is_positive).collect(),
         }
     }
 

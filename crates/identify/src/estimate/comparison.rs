@@ -1,0 +1,130 @@
+//! Logs for an estimate that are compared with each other.
+
+use super::condensed::Condensed;
+use super::contradiction::{Claim, ContradictingLog};
+use super::errors::{Errors, Problem};
+use super::least_squares::Fit;
+use super::left_out::LeftOut;
+use super::noise_bias::{NoiseOfLog, bias_of_some};
+use super::own_estimate::Tested;
+use super::solve::Solution;
+use crate::policy::comparison::APART;
+use denavit_measure::condition::Conditioned;
+use denavit_plants::regression::RegressionModel;
+use nalgebra::{DMatrix, DVector};
+
+/// Logs, and how their rows are weighted.
+pub(super) struct Comparison<'a> {
+    pub(super) model: &'a RegressionModel,
+    pub(super) logs: &'a [Conditioned],
+    pub(super) condensed: &'a Condensed,
+    /// Those of the estimate of all of them: those of some begin with them.
+    pub(super) weights: &'a [Vec<f64>],
+    pub(super) fit: Fit<'a>,
+    pub(super) left_out: &'a LeftOut,
+    /// What noise of the positions does, by rows that are weighted so.
+    pub(super) noise: (&'a [NoiseOfLog], &'a [Vec<f64>]),
+}
+
+/// What some of the logs say.
+struct Said {
+    solution: Solution,
+    covariance: DMatrix<f64>,
+    /// What rows of each joint count by their noise in these logs.
+    weights: Vec<f64>,
+}
+
+impl Comparison<'_> {
+    fn said(&self, logs: &[usize]) -> Said {
+        let condensed = self.condensed.of_logs(logs);
+        let weights: Vec<Vec<f64>> = logs.iter().map(|&log| self.weights[log].clone()).collect();
+        let settled = self.fit.settled_from(&condensed, weights);
+        let (solution, noise) = (settled.solution, settled.noise);
+        let (prior, weights) = (&self.fit.options.prior[..], &settled.weights[..]);
+        let problem = Problem { condensed: &condensed, weights, prior, solution: &solution };
+        let mut covariance = problem.covariance(Errors::Correlated);
+        let bias = self.bias(logs, (&solution, weights));
+        covariance += &bias * bias.transpose();
+        let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
+        let weights = condensed.noise_of_joints(&noise).into_iter().map(weight).collect();
+        Said { solution, covariance, weights }
+    }
+
+    /// What noise of the positions makes of what some logs say.
+    fn bias(&self, logs: &[usize], (solution, weights): (&Solution, &[Vec<f64>])) -> DVector<f64> {
+        let times = |(&log, weights): (&usize, &Vec<f64>)| {
+            let before = &self.noise.1[log];
+            let square = |(now, before): (&f64, &f64)| match *before > 0.0 {
+                true => (now / before).powi(2),
+                false => 0.0,
+            };
+            let times = weights.iter().zip(before).map(square).collect();
+            self.noise.0.get(log).map(|noise| (noise, times))
+        };
+        let noise = logs.iter().zip(weights).filter_map(times);
+        bias_of_some(noise, solution, self.fit.start)
+    }
+
+    /// The logs that contradict what the others say without them.
+    pub(super) fn odd(&self, logs: &[usize]) -> Vec<(usize, ContradictingLog)> {
+        let without = |odd: usize| logs.iter().copied().filter(|log| *log != odd).collect();
+        let of = |&log: &usize| {
+            let others: Vec<usize> = without(log);
+            Some((log, self.against(log, &others)?))
+        };
+        logs.iter().filter_map(of).collect()
+    }
+
+    /// Whether a log contradicts what others say.
+    pub(super) fn against(&self, log: usize, others: &[usize]) -> Option<ContradictingLog> {
+        let Self { model, left_out, .. } = *self;
+        let said = self.said(others);
+        let one = Tested::new(self.condensed, log, &said.weights);
+        let phi = &one.with_own(&said.solution);
+        let means = &self.condensed.means(others, phi.as_slice());
+        let claim = Claim { model, phi, covariance: &said.covariance, left_out, means };
+        claim.against((log, self.logs), &one)
+    }
+
+    /// Of logs that contradict the others the one without which fewest of these contradict each
+    /// other, and of several such that without which least is left beside their own estimates, in
+    /// units of what chance explains (Chow 1960).
+    pub(super) fn oddest(&self, logs: &[usize], odd: &[(usize, ContradictingLog)]) -> usize {
+        let alone = |log: usize| {
+            let said = self.said(&[log]);
+            let one = Tested::new(self.condensed, log, &said.weights);
+            (one.own(said.solution.phi.as_slice()), one.triangles)
+        };
+        let own: Vec<_> = logs.iter().map(|&log| alone(log)).collect();
+        let among = |odd: usize| -> f64 {
+            let others: Vec<usize> = logs.iter().copied().filter(|log| *log != odd).collect();
+            let phi = self.said(&others).solution.phi;
+            let all = logs.iter().zip(&own).filter(|(log, _)| **log != odd);
+            let explained = all.flat_map(|(_, (own, triangles))| {
+                let phi = &phi;
+                own.iter().zip(triangles).enumerate().map(move |(joint, (own, triangle))| {
+                    let phi = self.condensed.of_joint(joint, phi.as_slice());
+                    let explained = (triangle.squares(&phi) - own.squares).max(0.0);
+                    if own.chance > 0.0 { explained / own.chance } else { 0.0 }
+                })
+            });
+            explained.sum()
+        };
+        let without = |log: usize| {
+            let others: Vec<usize> = logs.iter().copied().filter(|other| *other != log).collect();
+            self.odd(&others).len()
+        };
+        let all = odd.iter().map(|(log, _)| (*log, without(*log), among(*log)));
+        let least = all.min_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)));
+        least.map_or(logs[0], |(log, ..)| log)
+    }
+
+    /// Whether parameters are what some logs say.
+    pub(super) fn is_of(&self, logs: &[usize], phi: &DVector<f64>) -> bool {
+        let Said { solution, covariance, .. } = self.said(logs);
+        let to = self.model.to_listed();
+        let apart = to * (phi - &solution.phi);
+        let variances = (to * covariance * to.transpose()).diagonal();
+        apart.iter().zip(&variances).all(|(by, variance)| by * by <= APART.powi(2) * variance)
+    }
+}

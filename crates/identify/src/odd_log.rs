@@ -1,0 +1,33 @@
+//! The log of several that is unlike the others.
+
+use super::estimate::{Estimate, Solution, Triangle, solve};
+use denavit_plants::regression::RegressionModel;
+
+/// Of several logs the one, of those that are asked, without which the others agree best, and what
+/// the others say.
+pub(super) fn odd_log(
+    model: &RegressionModel,
+    (asked, logs): (&[usize], &[usize]),
+    found: &Estimate,
+) -> Option<(usize, Solution)> {
+    let condensed = &found.condensed;
+    if logs.len() < 2 || condensed.rank != model.rank() {
+        return None;
+    }
+    // weighted by log, a log that is odd would count for little
+    let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
+    let by_joint: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
+    let weights = vec![by_joint; condensed.independent.len()];
+    let without = |log: usize| {
+        let others = (0..condensed.parts.len()).filter(|&part| condensed.log_of_part[part] != log);
+        let triangles = condensed.merged(others);
+        let r = condensed.system(&triangles, &weights, &[]);
+        let solution = solve(&r, found.solution.phi.as_slice());
+        // of rows that are weighted, the last of R is what is left
+        let rows: usize = triangles.iter().flatten().map(Triangle::rows).sum();
+        let left = r[(condensed.rank, condensed.rank)].powi(2);
+        (left / rows.max(1) as f64, log, solution)
+    };
+    let least = asked.iter().copied().map(without).min_by(|a, b| a.0.total_cmp(&b.0));
+    least.map(|(_, log, solution)| (log, solution))
+}

@@ -59,7 +59,6 @@ pub use report::{Convergence, HalfCutoff, IdentifiedParameter, Status, convergen
 pub use robust::Loss;
 pub use rows::{Block, BlockMaker};
 pub(crate) use rows::{Coulomb, coulomb};
-pub(crate) use solve::DEAD;
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
 pub use unexplained::{Judgement, Unexplained, unexplained_joints};

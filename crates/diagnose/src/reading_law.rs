@@ -21,7 +21,7 @@ use crate::policy::reading_law::REACH;
 use denavit_codegen::effect::Channel;
 use denavit_plants::effect::{EffectLaw, JointSamples, LawParameter};
 
-/// An effect that stands between a position or rate and its log: the model was given what is
+/// An effect that stands between a position or velocity and its log: the model was given what is
 /// logged, and gives other torques for what is true.
 pub(super) struct ReadingLaw {
     /// The law.
@@ -113,8 +113,7 @@ struct Bends {
 
 impl Bends {
     /// The deflections along loads that would be if the joint moved with its drive, by implicit
-    /// steps of first order: a joint that is caught does not bounce, as one that its transmission
-    /// damps.
+    /// steps of first order. These damp a joint that hits the side of its gap: it does not bounce.
     fn along(&self, t: &[f64], load: &[f64], inertia: &[f64]) -> Vec<f64> {
         let mut before = load.first().map_or(0.0, |load| self.step(*load, 0.0, 0.0));
         let (mut velocity, mut time) = (0.0, t.first().copied().unwrap_or(0.0));

@@ -54,9 +54,8 @@ pub const STEP: f64 = 0.05;
 /// have periods of 1 to 5 ms, and a drive sticks as long unseen.
 pub const LATE_S: f64 = 1.5e-3;
 
-/// The share of a sample of the log by which torque and motion may be of different times: a torque
-/// that is held over a sample is late by half of it.
-pub const TIME: f64 = 0.5;
+/// The share of a sample of the log by which torque and motion may be of different times.
+pub const TIME: f64 = 0.1;
 
 /// Log odds of an effect that is met less often than the common ones, and of one that is hardly
 /// ever met: 1 to 20 and 1 to 400.

@@ -4,6 +4,7 @@ use super::floor::rms;
 use super::law::{Law, Motion, Response};
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
 use denavit_codegen::effect::SpringSide;
+use denavit_evidence::Unpredicted;
 use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 
 /// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
@@ -143,13 +144,15 @@ impl Law for DemandLaw {
         &self.law.parameters
     }
 
-    fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> f64 {
+    fn unpredicted(&self, motion: Motion<'_>, values: &[f64]) -> Unpredicted {
         let measured = self.measured(&motion);
         let samples = JointSamples { tau: &measured, ..samples(&motion, self.joint, None) };
         let torque = self.law.torque(&samples, values);
         let is_cut = |(all, less): &(&f64, &f64)| less.abs() > ALL_GIVEN * all.abs();
-        let cut = measured.iter().zip(&torque).filter(is_cut).count();
-        cut as f64 / measured.len().max(1) as f64
+        let cut = measured.iter().zip(&torque).filter(is_cut);
+        let given: Vec<f64> = cut.map(|(all, less)| all - less).collect();
+        let share = given.len() as f64 / measured.len().max(1) as f64;
+        Unpredicted { share, left: rms(&given).powi(2) }
     }
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {

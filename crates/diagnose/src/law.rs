@@ -4,6 +4,7 @@ use super::given::Belief;
 use super::nominal::{Nominal, Phi};
 use super::rows::{PerJoint, torques};
 use super::signals::Signals;
+use denavit_evidence::Unpredicted;
 use denavit_plants::effect::{Drive, LawParameter};
 
 /// What a law may depend on: the motion of a log and the torques that the model gives it; those
@@ -58,9 +59,9 @@ pub trait Law {
         false
     }
 
-    /// The share of the samples of which the law says nothing: it takes what was measured as it is.
-    fn unpredicted(&self, _motion: Motion<'_>, _values: &[f64]) -> f64 {
-        0.0
+    /// The samples of which the law says nothing: it takes what was measured as it is.
+    fn unpredicted(&self, _motion: Motion<'_>, _values: &[f64]) -> Unpredicted {
+        Unpredicted::default()
     }
 
     /// What the model says of its parameters; nothing of laws that the model does not have.

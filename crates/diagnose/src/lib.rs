@@ -35,6 +35,7 @@ mod known;
 mod law;
 mod leftover;
 mod nominal;
+mod pairs;
 mod policy;
 mod problem;
 mod reading_law;

@@ -122,13 +122,20 @@ impl<'a> Search<'a> {
                 break (is_full, is_stopped);
             }
             let all = self.with_one_more(&now, &now.parts, &|_| true);
-            let Some(step) = self.step(&now, &all) else { break (false, false) };
-            let is_taken = step.is_taken;
-            steps.push(step);
-            if !is_taken {
-                break (false, false);
-            }
-            let next = self.chosen(&now, all).expect("a step was taken");
+            let room = self.options.most_effects - now.parts.len();
+            let pair = self.pair(&now, &all).filter(|_| room > 1);
+            steps.extend(match &pair {
+                Some(pair) => self.steps_of_pair(&now, pair),
+                None => self.step(&now, &all).into_iter().collect(),
+            });
+            let is_taken = |step: &Step| step.is_taken;
+            let next = match pair {
+                Some(pair) => pair,
+                None if steps.last().is_some_and(is_taken) => {
+                    self.chosen(&now, all).expect("a step was taken")
+                }
+                None => break (false, false),
+            };
             let (next, others) = self.exchanged(next);
             if seen.contains(&next.names()) {
                 break (false, false);
@@ -331,15 +338,20 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Hypotheses of one more effect beside `parts`, those that the evidence asks for most first.
-    fn with_one_more(
+    /// A first look from parts, with the variances of a hypothesis.
+    pub(super) fn glance(&self, now: &Hypothesis, parts: &[Part]) -> Glance {
+        let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
+        Glance::new(&self.weighing.base, &terms, &now.weighed.variances)
+    }
+
+    /// What a first look sees of each candidate beside `parts`, at the best of its starts: the best
+    /// candidate first.
+    pub(super) fn seen(
         &self,
-        now: &Hypothesis,
+        glance: &Glance,
         parts: &[Part],
         is_asked: &dyn Fn(usize) -> bool,
-    ) -> Vec<Hypothesis> {
-        let terms: Vec<&Terms> = parts.iter().map(|part| &part.terms).collect();
-        let glance = Glance::new(&self.weighing.base, &terms, &now.weighed.variances);
+    ) -> Vec<(f64, &Part)> {
         let is_there =
             |candidate: usize| parts.iter().any(|part| part.placed.candidate == candidate);
         let mut seen: Vec<(f64, &Part)> = Vec::new();
@@ -354,6 +366,17 @@ impl<'a> Search<'a> {
             seen.extend(gains.max_by(|a, b| a.0.total_cmp(&b.0)));
         }
         seen.sort_by(|a, b| b.0.total_cmp(&a.0));
+        seen
+    }
+
+    /// Hypotheses of one more effect beside `parts`, those that the evidence asks for most first.
+    fn with_one_more(
+        &self,
+        now: &Hypothesis,
+        parts: &[Part],
+        is_asked: &dyn Fn(usize) -> bool,
+    ) -> Vec<Hypothesis> {
+        let seen = self.seen(&self.glance(now, parts), parts, is_asked);
         let most = seen.first().map_or(0.0, |(gain, _)| *gain);
         let near = |(gain, _): &&(f64, &Part)| gain.is_finite() && *gain > most - policy::FAR;
         let chosen = seen.iter().filter(near).take(policy::WEIGHED);
@@ -441,8 +464,7 @@ impl<'a> Search<'a> {
     /// What is seen of every candidate of one parameter beside what was found: its number, how far
     /// its value may be off, and what that is of its joint's torque.
     pub(super) fn precisions(&self, after: &Hypothesis) -> Vec<(usize, f64, f64)> {
-        let terms: Vec<&Terms> = after.parts.iter().map(|part| &part.terms).collect();
-        let glance = Glance::new(&self.weighing.base, &terms, &after.weighed.variances);
+        let glance = self.glance(after, &after.parts);
         let there = after.candidates();
         let mut all = Vec::new();
         for (candidate, own) in self.screen.iter().enumerate() {

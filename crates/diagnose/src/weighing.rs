@@ -6,7 +6,7 @@ use super::hypothesis::Part;
 use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::Taken;
-use denavit_evidence::{Base, Spectrum, Terms, policy};
+use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
 
 /// An effect near values of its parameters, with what is believed of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -198,19 +198,21 @@ impl<'a> Weighing<'a> {
         }
     }
 
-    /// The share of the samples of which an effect says nothing.
-    fn unpredicted(&self, placed: &Placed) -> f64 {
+    /// The samples of which an effect says nothing.
+    fn unpredicted(&self, placed: &Placed) -> Unpredicted {
         let law = self.candidates[placed.candidate].law.as_ref();
-        let (mut sum, mut all) = (0.0, 0.0);
+        let (mut cut, mut squares, mut all) = (0.0, 0.0, 0.0);
         for (data, torques) in self.sets.iter().zip(&self.torques) {
             for (signals, torques) in data.signals.iter().zip(torques) {
                 let samples = signals.samples() as f64;
                 let motion = torques.motion(data.nominal, signals);
-                sum += samples * law.unpredicted(motion, &placed.values);
+                let Unpredicted { share, left } = law.unpredicted(motion, &placed.values);
+                cut += samples * share;
+                squares += samples * share * left;
                 all += samples;
             }
         }
-        sum / f64::max(all, 1.0)
+        Unpredicted { share: cut / f64::max(all, 1.0), left: squares / f64::max(cut, 1.0) }
     }
 
     /// What an effect does at the joint where that is most, as a share of its torque.

@@ -113,29 +113,36 @@ impl Glance {
         let solved = self.factor.solve(&cross);
         let beyond = &normal - cross.tr_mul(&solved);
         let slope = inner - solved.tr_mul(&right);
-        let precision = (0..count).map(|k| beyond[(k, k)].max(0.0)).collect();
-        let mut posterior = beyond;
-        (0..count).for_each(|k| posterior[(k, k)] += 1.0);
-        let Some(chol) = posterior.cholesky() else {
+        let precision: Vec<f64> = (0..count).map(|k| beyond[(k, k)].max(0.0)).collect();
+        let lowest: Vec<f64> =
+            terms.lowest.iter().zip(&terms.believed).map(|(low, own)| low - own).collect();
+        let Some(chol) = with_belief(&beyond, 1.0) else {
             return Seen { gain: f64::NEG_INFINITY, precision, factors: vec![0.0; count] };
         };
-        let mut factors = chol.solve(&slope);
-        for k in 0..count {
-            factors[k] = factors[k].max(terms.lowest[k] - terms.believed[k]);
-        }
-        let own = self.factor.solve(&(right - &cross * &factors));
-        let variances = self.variances(&|channel| match &touched[channel] {
-            Some((data, columns)) => data - columns * &factors - &self.columns[channel] * &own,
-            None => &self.data[channel] - &self.columns[channel] * &own,
-        });
         let determinant: f64 = (0..count).map(|k| chol.l_dirty()[(k, k)].ln()).sum();
-        let gain = self.density(&variances)
-            - self.idle
-            - determinant
-            - 0.5 * factors.norm_squared()
-            - 0.5 * own.norm_squared()
-            - self.unpredicted(terms, &variances);
-        let gain = if gain.is_finite() { gain } else { f64::NEG_INFINITY };
+        let gain = |factors: &DVector<f64>| {
+            let own = self.factor.solve(&(&right - &cross * factors));
+            let variances = self.variances(&|channel| match &touched[channel] {
+                Some((data, columns)) => data - columns * factors - &self.columns[channel] * &own,
+                None => &self.data[channel] - &self.columns[channel] * &own,
+            });
+            let gain = self.density(&variances)
+                - self.idle
+                - determinant
+                - 0.5 * factors.norm_squared()
+                - 0.5 * own.norm_squared()
+                - self.unpredicted(terms, &variances);
+            if gain.is_finite() { gain } else { f64::NEG_INFINITY }
+        };
+        // Beside large variances the belief in small factors weighs more than it will once these
+        // have become what the terms leave.
+        let all = [1.0, UNBELIEVED].into_iter().filter_map(|belief| {
+            let mut factors = with_belief(&beyond, belief)?.solve(&slope);
+            factors.iter_mut().zip(&lowest).for_each(|(factor, low)| *factor = factor.max(*low));
+            Some((gain(&factors), factors))
+        });
+        let best = all.max_by(|a, b| a.0.total_cmp(&b.0));
+        let (gain, factors) = best.expect("the first has a solution");
         let factors = (0..count).map(|k| factors[k] + terms.believed[k]).collect();
         Seen { gain, precision, factors }
     }
@@ -159,21 +166,32 @@ impl Glance {
 
     /// What terms do not earn, since they say nothing of some rows.
     fn unpredicted(&self, terms: &Terms, variances: &[f64]) -> f64 {
-        let of = |((channel, rows), variance): (&(usize, Range<usize>), &f64)| {
-            let known = terms.known.get(*channel).filter(|own| !own.is_empty());
-            let weights = &self.weights[*channel][rows.clone()];
-            let known = known.into_iter().flat_map(|own| own[rows.clone()].iter().zip(weights));
-            let mean =
-                known.map(|(own, weight)| (own * weight).powi(2)).sum::<f64>() / rows.len() as f64;
-            0.5 * terms.unpredicted * rows.len() as f64 * (mean / variance).ln_1p()
-        };
-        self.cells.iter().zip(variances).map(of).sum()
+        if terms.unpredicted.share <= 0.0 {
+            return 0.0;
+        }
+        let mut channels = vec![Vec::new(); self.data.len()];
+        for ((channel, rows), variance) in self.cells.iter().zip(variances) {
+            let weight = self.weights[*channel][rows.start];
+            channels[*channel].push((rows.clone(), variance / weight.powi(2)));
+        }
+        let both = terms.known.iter().zip(&channels);
+        both.map(|(known, cells)| terms.unpredicted.cost(known, cells)).sum()
     }
 }
 
 /// Rows with those that the prior of a variance counts for.
 fn counted(rows: &Range<usize>) -> f64 {
     rows.len() as f64 + 2.0 * policy::NOISE_SHAPE + 2.0
+}
+
+/// What is left of a belief that hardly counts.
+const UNBELIEVED: f64 = 1e-3;
+
+/// The factor of what the data say of factors and what is believed of them.
+fn with_belief(beyond: &DMatrix<f64>, belief: f64) -> Option<Cholesky<f64, Dyn>> {
+    let mut normal = beyond.clone();
+    (0..normal.nrows()).for_each(|k| normal[(k, k)] += belief);
+    normal.cholesky()
 }
 
 fn weighted(rows: &[f64], weights: &[f64]) -> DVector<f64> {

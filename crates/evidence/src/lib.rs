@@ -23,6 +23,7 @@ mod layout;
 mod orthant;
 pub mod policy;
 mod terms;
+mod unpredicted;
 mod weigh;
 
 pub use base::Base;
@@ -30,4 +31,5 @@ pub use condensed::{Condensed, Told};
 pub use glance::{Glance, Seen};
 pub use layout::{Layout, Spectrum};
 pub use terms::Terms;
+pub use unpredicted::Unpredicted;
 pub use weigh::Weighed;

@@ -89,6 +89,9 @@ pub const WEIGHED: usize = 14;
 /// See [`WEIGHED`].
 pub const FAR: f64 = 60.0;
 
+/// Pairs of effects that are weighed whole after the first look.
+pub const PAIRS: usize = 3;
+
 /// Rounds in which variances are found, of candidates and of what is told.
 pub const ROUNDS: [usize; 2] = [8, 25];
 

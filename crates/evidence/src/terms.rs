@@ -1,6 +1,7 @@
 //! What one effect adds to a model, near some values of its parameters.
 
 use crate::layout::Spectrum;
+use crate::unpredicted::Unpredicted;
 
 /// A known part and columns whose factors are unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,8 +17,8 @@ pub struct Terms {
     /// For each factor what it would be by what is believed alone: columns begin at the values
     /// where the effect was linearised.
     pub believed: Vec<f64>,
-    /// The share of the rows of which the effect says nothing but that the data are as they are.
-    pub unpredicted: f64,
+    /// What the effect says nothing of.
+    pub unpredicted: Unpredicted,
 }
 
 impl Terms {
@@ -29,6 +30,22 @@ impl Terms {
     /// Whether nothing is unknown.
     pub fn is_empty(&self) -> bool {
         self.columns.is_empty()
+    }
+
+    /// These terms and others, as those of one effect. Rows that either says nothing of are left
+    /// out of account.
+    pub fn beside(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        both.known.resize(both.known.len().max(other.known.len()), Vec::new());
+        for (sum, own) in both.known.iter_mut().zip(&other.known) {
+            sum.resize(sum.len().max(own.len()), 0.0);
+            sum.iter_mut().zip(own).for_each(|(sum, entry)| *sum += entry);
+        }
+        both.columns.extend(other.columns.iter().cloned());
+        both.lowest.extend(&other.lowest);
+        both.is_curved.extend(&other.is_curved);
+        both.believed.extend(&other.believed);
+        both
     }
 
     /// The terms without the columns that are curved.

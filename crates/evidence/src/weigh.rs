@@ -77,21 +77,17 @@ impl Base {
         posterior.told(terms, self.parameters, (evidence, variances))
     }
 
-    /// What is not earned where effects take away what data are, whatever that is: rows that are
-    /// not predicted have the density of what was taken away, and not that of noise.
+    /// What is not earned where effects take away what data are, whatever that is.
     fn unpredicted(&self, terms: &[&Terms], variances: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        for one in terms.iter().filter(|one| one.unpredicted > 0.0) {
-            for ((channel, rows), variance) in self.layout.cells().zip(variances) {
-                let Some(known) = one.known.get(channel).filter(|own| !own.is_empty()) else {
-                    continue;
-                };
-                let (count, own) = (rows.len() as f64, &known[rows]);
-                let mean = own.iter().map(|entry| entry * entry).sum::<f64>() / count;
-                sum += 0.5 * one.unpredicted * count * (mean / variance).ln_1p();
-            }
+        let mut channels = vec![Vec::new(); self.layout.channels()];
+        for ((channel, rows), variance) in self.layout.cells().zip(variances) {
+            channels[channel].push((rows, *variance));
         }
-        sum
+        let of = |one: &&Terms| -> f64 {
+            let both = one.known.iter().zip(&channels);
+            both.map(|(known, cells)| one.unpredicted.cost(known, cells)).sum()
+        };
+        terms.iter().map(of).sum()
     }
 
     /// The products of every cell with those of terms.

@@ -1,6 +1,6 @@
 //! The evidence of small problems against the density of all rows at once.
 
-use denavit_evidence::{Base, Glance, Layout, Spectrum, Terms, Weighed};
+use denavit_evidence::{Base, Glance, Layout, Spectrum, Terms, Unpredicted, Weighed};
 use denavit_numerics::Random;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -27,7 +27,7 @@ fn problem(seed: u64) -> (Spectrum, Vec<Spectrum>, Terms) {
         lowest: vec![f64::NEG_INFINITY; 2],
         is_curved: vec![false; 2],
         believed: vec![0.3, 0.0],
-        unpredicted: 0.0,
+        unpredicted: Unpredicted::default(),
     };
     (data, own, terms)
 }

@@ -17,13 +17,14 @@ use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
 use super::nominal::{Nominal, Uncertainty};
 use super::regime::{Where, where_left};
-use super::search::{Found, Search, SearchOptions, Step};
+use super::rounds::Found;
+use super::search::{Search, SearchOptions, Step};
 use super::signals::{Filters, Signals};
 use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
 use super::state::{Setting, State, Taken};
 use super::structure::{Structure, describe};
 use super::verdict::{Verdict, judge};
-use super::weighing::Weighing;
+use super::weighing::{Placed, Weighing};
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
 use denavit_measure::log::MeasuredLog;
@@ -158,19 +159,21 @@ pub fn diagnose(
     let options = if misread.is_empty() { request.options } else { SearchOptions::none() };
     let sets = vec![setting.train, setting.held_out];
     let own = (setting.candidates, setting.given.as_slice());
-    let mut searched = |z: &[f64], may_move: bool| {
+    let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
         let options = (setting.given.len(), options);
         let search =
             Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
-        let found = search.run(may_move, &mut |taken| watch(&Progress::Found(taken.to_vec())));
+        let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
+        let found = search.run((begun, may_move), watch);
         (search, found)
     };
     let mut z = null(&sets, own);
-    let mut moves = 0;
+    let (mut begun, mut moves) = (Vec::new(), 0);
     let (search, mut found) = loop {
-        let (search, found) = searched(&z, moves < MOST_MOVES);
+        let (search, found) = searched(&z, &begun, moves < MOST_MOVES);
         let Some(moved) = found.moved else { break (search, found) };
+        begun = found.after.parts.into_iter().map(|part| part.placed).collect();
         (z, moves) = (moved, moves + 1);
     };
     let before = setting.state(&found.before.parts, &z);

@@ -40,6 +40,7 @@ mod policy;
 mod problem;
 mod reading_law;
 mod regime;
+mod rounds;
 mod rows;
 mod search;
 mod signals;

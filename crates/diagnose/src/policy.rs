@@ -153,6 +153,9 @@ pub(crate) mod signals {
     /// Rows in a period of the cutoff: what the filter passes is below half their rate.
     pub(crate) const ROWS_PER_PERIOD: f64 = 2.5;
 
+    /// Rows of a log, at least: some for each band of frequencies.
+    pub(crate) const LEAST_ROWS: usize = 32;
+
     /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a
     /// cell knows where it is.
     pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;

@@ -43,35 +43,14 @@ pub struct Step {
     pub runners_up: Vec<(usize, f64)>,
 }
 
-/// What a search found.
-pub(super) struct Found {
-    /// The model without effects.
-    pub(super) before: Hypothesis,
-    /// The model with what was found.
-    pub(super) after: Hypothesis,
-    /// For each effect that was found, others in its place.
-    pub(super) rivals: Vec<Vec<Hypothesis>>,
-    /// How it came about.
-    pub(super) steps: Vec<Step>,
-    /// Whether as many effects were found as are allowed.
-    pub(super) is_full: bool,
-    /// Whether the search was stopped.
-    pub(super) is_stopped: bool,
-    /// Candidates that make logs less likely that their values were not fitted to.
-    pub(super) dropped: Vec<usize>,
-    /// The model's own numbers to begin again with: the search ended since what it found moves
-    /// them.
-    pub(super) moved: Option<Vec<f64>>,
-}
-
 /// What every candidate does from where its search begins.
 pub(super) struct Search<'a> {
     pub(super) weighing: Weighing<'a>,
     /// For each candidate its starts.
-    screen: Vec<Vec<Part>>,
+    pub(super) screen: Vec<Vec<Part>>,
     /// The log of what all candidates are expected to weigh together.
-    log_choices: f64,
-    options: SearchOptions,
+    pub(super) log_choices: f64,
+    pub(super) options: SearchOptions,
 }
 
 /// The log odds of an effect before any log is looked at.
@@ -107,78 +86,8 @@ impl<'a> Search<'a> {
         Self { weighing, screen, log_choices, options }
     }
 
-    /// Searches which candidates are missing. `watch` hears of what was found so far, and says
-    /// whether to go on.
-    pub(super) fn run(&self, may_move: bool, watch: &mut dyn FnMut(&[usize]) -> bool) -> Found {
-        let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
-        let mut now = before.clone();
-        let (mut steps, mut rivals, mut moved) = (Vec::new(), Vec::new(), None);
-        // Exchanges must not lead round in circles.
-        let mut seen = vec![now.names()];
-        let (is_full, is_stopped) = loop {
-            let is_stopped = !watch(&now.candidates());
-            let is_full = now.parts.len() >= self.options.most_effects;
-            if is_full || is_stopped {
-                break (is_full, is_stopped);
-            }
-            let all = self.with_one_more(&now, &now.parts, &|_| true);
-            let room = self.options.most_effects - now.parts.len();
-            let pair = self.pair(&now, &all).filter(|_| room > 1);
-            steps.extend(match &pair {
-                Some(pair) => self.steps_of_pair(&now, pair),
-                None => self.step(&now, &all).into_iter().collect(),
-            });
-            let is_taken = |step: &Step| step.is_taken;
-            let next = match pair {
-                Some(pair) => pair,
-                None if steps.last().is_some_and(is_taken) => {
-                    self.chosen(&now, all).expect("a step was taken")
-                }
-                None => break (false, false),
-            };
-            let (next, others) = self.exchanged(next);
-            if seen.contains(&next.names()) {
-                break (false, false);
-            }
-            seen.push(next.names());
-            (now, rivals) = (next, others);
-            moved = if may_move { self.moved_numbers(&now) } else { None };
-            if moved.is_some() {
-                break (false, false);
-            }
-        };
-        let dropped = Vec::new();
-        Found { before, after: now, rivals, steps, is_full, is_stopped, dropped, moved }
-    }
-
-    /// What was found without the effect in one place.
-    pub(super) fn drop(&self, found: &mut Found, place: usize) {
-        let mut parts = found.after.parts.clone();
-        found.dropped.push(parts.remove(place).placed.candidate);
-        let rest = self.weighed(parts, Some(&found.after), policy::ROUNDS[1]);
-        let (after, rivals) = self.exchanged(rest.clone());
-        // What was dropped must not come back, or this would not end.
-        let is_back = after.candidates().iter().any(|one| found.dropped.contains(one));
-        (found.after, found.rivals) = if is_back { (rest, Vec::new()) } else { (after, rivals) };
-    }
-
-    /// The model's own numbers by what was found, if the logs are more likely where laws are
-    /// evaluated with these: a law of an angle that is off by much turns what the numbers do, too.
-    fn moved_numbers(&self, now: &Hypothesis) -> Option<Vec<f64>> {
-        let Weighing { sets, candidates, given, .. } = &self.weighing;
-        let z = &now.weighed.own[..sets[0].columns.len()];
-        let other = Weighing::new(sets.clone(), (candidates, given), z);
-        let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
-        let other = Self { weighing: other, screen: Vec::new(), ..*self };
-        let start = Some(now);
-        let moved =
-            other.linearised(other.weighed(parts, start, policy::ROUNDS[1]), policy::ROUNDS[1]);
-        let gain = moved.weighed.log_evidence - now.weighed.log_evidence;
-        (gain > policy::NAMED).then(|| z.to_vec())
-    }
-
     /// The step to the best of some hypotheses.
-    fn step(&self, now: &Hypothesis, all: &[Hypothesis]) -> Option<Step> {
+    pub(super) fn step(&self, now: &Hypothesis, all: &[Hypothesis]) -> Option<Step> {
         let worth = |one: &Hypothesis| self.is_worth(now, one, one.parts.len() - 1);
         let best = all.iter().find(|one| worth(one)).or(all.first())?;
         let added = best.parts.last()?.placed.candidate;
@@ -197,7 +106,7 @@ impl<'a> Search<'a> {
     }
 
     /// The best of hypotheses of one more effect that is worth it, by its plainest name.
-    fn chosen(&self, now: &Hypothesis, all: Vec<Hypothesis>) -> Option<Hypothesis> {
+    pub(super) fn chosen(&self, now: &Hypothesis, all: Vec<Hypothesis>) -> Option<Hypothesis> {
         let best = all.iter().find(|one| self.is_worth(now, one, one.parts.len() - 1))?;
         Some(self.plainest(best, best.parts.len() - 1, &all).clone())
     }
@@ -227,7 +136,7 @@ impl<'a> Search<'a> {
         own.at == other.at && self.apart(than, one) < policy::SAME * self.told(than, place)
     }
 
-    fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {
+    pub(super) fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {
         &self.weighing.candidates[hypothesis.parts[place].placed.candidate]
     }
 
@@ -248,58 +157,76 @@ impl<'a> Search<'a> {
         (0..left.len()).map(|channel| self.weighing.spectra.share(&left, channel)).collect()
     }
 
-    /// Exchanges effects for what does better in their place, until nothing does; with what else
-    /// would do in the place of each.
-    fn exchanged(&self, mut now: Hypothesis) -> (Hypothesis, Vec<Vec<Hypothesis>>) {
-        let mut rivals = Vec::new();
-        let mut place = 0;
+    /// Exchanges effects that are asked for by what does better in their place, until nothing does;
+    /// with what else would do in the place of each. An exchange has those of its joint looked at
+    /// again.
+    pub(super) fn exchanged(
+        &self,
+        mut now: Hypothesis,
+        is_asked: &dyn Fn(&Candidate) -> bool,
+    ) -> (Hypothesis, Vec<Vec<Hypothesis>>) {
+        let unseen = |now: &Hypothesis| -> Vec<Option<Vec<Hypothesis>>> {
+            let asked = |place: usize| is_asked(self.candidate(now, place));
+            (0..now.parts.len()).map(|place| (!asked(place)).then(Vec::new)).collect()
+        };
+        let mut rivals = unseen(&now);
         let mut exchanges = 0;
-        while place < now.parts.len() {
+        loop {
+            let may_exchange = exchanges < MOST_EXCHANGES;
+            let Some(place) = rivals.iter().position(Option::is_none) else {
+                let Some(merged) = self.merged(&now, is_asked).filter(|_| may_exchange) else {
+                    break;
+                };
+                (now, exchanges) = (merged, exchanges + 1);
+                rivals = unseen(&now);
+                continue;
+            };
+            let joint = self.candidate(&now, place).joint;
             let mut others = now.parts.clone();
             let own = others.remove(place);
             let rest = self.weighed(others.clone(), Some(&now), policy::ROUNDS[0]);
             // what others took over is not needed any more
             let is_idle = now.posterior - rest.posterior < policy::NAMED
                 || !self.is_worth(&rest, &now, place);
-            if is_idle && exchanges < MOST_EXCHANGES {
-                now = rest;
-                exchanges += 1;
-                (rivals, place) = (Vec::new(), 0);
-                continue;
-            }
-            let mut all =
-                self.with_one_more(&rest, &others, &|candidate| candidate != own.placed.candidate);
-            // the new one stands last there
-            for one in &mut all {
-                let last = one.parts.len() - 1;
-                one.parts[place..=last].rotate_right(1);
-            }
-            let better = self.better(&now, (&rest, place), &all);
-            if let Some(better) = better.filter(|_| exchanges < MOST_EXCHANGES) {
-                now = self.weighed(better.parts.clone(), Some(better), policy::ROUNDS[1]);
-                exchanges += 1;
-                (rivals, place) = (Vec::new(), 0);
-                continue;
-            }
-            // a better formula of the same is no rival of the plain name
-            let is_met_less = |one: &Hypothesis| {
-                let [own, other] = [&now, one].map(|of| log_occurrence(self.candidate(of, place)));
-                own > other
+            let mut all = Vec::new();
+            let next = if is_idle && may_exchange {
+                rivals.remove(place);
+                Some(rest)
+            } else {
+                let is_other = |candidate| candidate != own.placed.candidate;
+                all = self.with_one_more(&rest, &others, &is_other);
+                // the new one stands last there
+                for one in &mut all {
+                    let last = one.parts.len() - 1;
+                    one.parts[place..=last].rotate_right(1);
+                }
+                let better = self.better(&now, (&rest, place), &all).filter(|_| may_exchange);
+                better.map(|one| self.weighed(one.parts.clone(), Some(one), policy::ROUNDS[1]))
             };
-            let is_better = |one: &Hypothesis| one.posterior > now.posterior && is_met_less(one);
-            all.retain(|one| !(is_better(one) && self.is_same(&now, one, place)));
-            rivals.push(all);
-            place += 1;
-            if place == now.parts.len()
-                && exchanges < MOST_EXCHANGES
-                && let Some(merged) = self.merged(&now)
-            {
-                now = merged;
-                exchanges += 1;
-                (rivals, place) = (Vec::new(), 0);
+            let Some(next) = next else {
+                rivals[place] = Some(self.rivals(&now, place, all));
+                continue;
+            };
+            (now, exchanges) = (next, exchanges + 1);
+            for (place, rivals) in rivals.iter_mut().enumerate() {
+                let other = self.candidate(&now, place);
+                if other.joint == joint && is_asked(other) {
+                    *rivals = None;
+                }
             }
         }
-        (now, rivals)
+        (now, rivals.into_iter().flatten().collect())
+    }
+
+    /// What else would do in a place. A better formula of the same is no rival of the plain name.
+    fn rivals(&self, now: &Hypothesis, place: usize, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
+        let is_met_less = |one: &Hypothesis| {
+            let [own, other] = [now, one].map(|of| log_occurrence(self.candidate(of, place)));
+            own > other
+        };
+        let is_better = |one: &Hypothesis| one.posterior > now.posterior && is_met_less(one);
+        all.retain(|one| !(is_better(one) && self.is_same(now, one, place)));
+        all
     }
 
     /// What is better in a place than what is there: of all hypotheses, and the present one, the
@@ -318,17 +245,22 @@ impl<'a> Search<'a> {
         (plainest.candidates() != now.candidates()).then_some(plainest)
     }
 
-    /// One effect in place of two that act at one place, if that is more likely.
-    fn merged(&self, now: &Hypothesis) -> Option<Hypothesis> {
-        let at = |place: usize| &self.weighing.candidates[now.parts[place].placed.candidate].at;
+    /// One effect in place of two that act at one place that is asked for, if that is more likely.
+    fn merged(
+        &self,
+        now: &Hypothesis,
+        is_asked: &dyn Fn(&Candidate) -> bool,
+    ) -> Option<Hypothesis> {
+        let of = |place: usize| self.candidate(now, place);
         let count = now.parts.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
-        for (a, b) in pairs.filter(|&(a, b)| at(a) == at(b)) {
+        for (a, b) in pairs.filter(|&(a, b)| of(a).at == of(b).at && is_asked(of(a))) {
             let mut others = now.parts.clone();
             others.remove(b);
             others.remove(a);
             let rest = self.weighed(others.clone(), Some(now), policy::ROUNDS[0]);
-            let all = self.with_one_more(&rest, &others, &|_| true);
+            let is_there = |candidate: usize| self.weighing.candidates[candidate].at == of(a).at;
+            let all = self.with_one_more(&rest, &others, &is_there);
             let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
             if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
                 let next = self.plainest(best, best.parts.len() - 1, &all);
@@ -370,7 +302,7 @@ impl<'a> Search<'a> {
     }
 
     /// Hypotheses of one more effect beside `parts`, those that the evidence asks for most first.
-    fn with_one_more(
+    pub(super) fn with_one_more(
         &self,
         now: &Hypothesis,
         parts: &[Part],

@@ -10,7 +10,7 @@ use super::floor::white_noise;
 use super::law::derivative;
 use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
-use crate::policy::signals::{LEAST_RATE_HZ, ROWS_PER_PERIOD};
+use crate::policy::signals::{LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
 use denavit_evidence::policy;
 use denavit_measure::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
@@ -111,14 +111,16 @@ impl Signals {
         let samples = joints.first().map_or(0, |joint| joint.q.len());
         let edge = STENCIL + wide.settling();
         let stride = ((ROWS_PER_PERIOD * filters.torque_hz * step_s).recip() as usize).max(1);
-        let cut = edge + filter.settling();
-        if samples < 2 * cut + 64 * stride {
-            return Err(ConditionError::TooShort { samples, needed: 2 * cut + 64 * stride });
+        // What is compared passes the filter of torques over the same samples, so that both sides
+        // have the same of what was before them. Noise is larger where it is mirrored.
+        let first = filter.smear();
+        let needed = 2 * (edge + first) + LEAST_ROWS * stride;
+        if samples < needed {
+            return Err(ConditionError::TooShort { samples, needed });
         }
         let kept = edge..samples - edge;
-        let first = filter.settling();
         let within = samples_within(step_s);
-        let rows = Rows { range: first..kept.len() - filter.settling(), stride, within };
+        let rows = Rows { range: first..kept.len() - first, stride, within };
         let fine = step_s / within as f64;
         // The cell of a sample is around it.
         let offset = 0.5 * (within - 1) as f64 * fine;

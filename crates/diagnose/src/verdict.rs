@@ -5,7 +5,7 @@ use super::diagnosis::{Diagnosis, Gaps};
 use super::effects_found::FoundEffect;
 use super::excitation::unseen;
 use super::leftover::{Leftover, name};
-use super::search::Found;
+use super::rounds::Found;
 use super::signals::Signals;
 use super::state::Setting;
 use denavit_evidence::policy;

@@ -17,7 +17,7 @@ impl Search<'_> {
         let most = others.map(|at| self.size(without, at)).fold(0.0, f64::max);
         let size = self.size(with, place);
         let own = || size * self.beyond(with, place) / self.told(with, place);
-        size > policy::WORTH && (most == 0.0 || own() > policy::FURTHER * most)
+        size > policy::WORTH && (most == 0.0 || own() > policy::SAME * most)
     }
 
     /// What an effect does that others of its hypothesis cannot, as a share of the torque where

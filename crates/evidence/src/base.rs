@@ -1,7 +1,8 @@
 //! The data, and what every hypothesis has: the model's own parameters.
 
 use crate::layout::{Layout, Spectrum};
-use nalgebra::{DMatrix, DVector};
+use crate::policy;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::ops::Range;
 
 /// Data with the columns of everything that the model itself is not sure of.
@@ -11,11 +12,15 @@ pub struct Base {
     pub layout: Layout,
     /// What is to be explained.
     pub data: Spectrum,
-    /// For each channel the columns of the model's own parameters, one deviation of each.
+    /// For each channel the columns of the model's own parameters, one deviation of each: of
+    /// combinations of these that rows show.
     pub(crate) own: Vec<DMatrix<f64>>,
+    /// For each combination its shares of the own parameters, orthonormal: factors of combinations
+    /// have the prior N(0, 1), too.
+    basis: DMatrix<f64>,
     /// For each cell the products of data and own columns with each other, the data first.
     pub(crate) products: Vec<DMatrix<f64>>,
-    /// Number of own parameters.
+    /// Number of combinations of own parameters.
     pub(crate) parameters: usize,
 }
 
@@ -34,7 +39,10 @@ impl Base {
             columns
         };
         let own: Vec<DMatrix<f64>> = (0..layout.channels()).map(of_channel).collect();
-        let mut base = Self { layout, data, own, products: Vec::new(), parameters };
+        let basis = shown(&layout, &own, parameters);
+        let own: Vec<DMatrix<f64>> = own.iter().map(|columns| columns * &basis).collect();
+        let parameters = basis.ncols();
+        let mut base = Self { layout, data, own, basis, products: Vec::new(), parameters };
         let cells: Vec<(usize, Range<usize>)> = base.layout.cells().collect();
         let of_cell = |(channel, rows): &(usize, Range<usize>)| {
             let mut all = DMatrix::zeros(rows.len(), 1 + parameters);
@@ -49,15 +57,30 @@ impl Base {
 
     /// What factors of the own columns leave of the data.
     pub fn left(&self, factors: &[f64]) -> Spectrum {
-        let factors = DVector::from_column_slice(factors);
+        let factors = self.basis.tr_mul(&DVector::from_column_slice(factors));
         let of = |(data, own): (&Vec<f64>, &DMatrix<f64>)| {
             (DVector::from_column_slice(data) - own * &factors).as_slice().to_vec()
         };
         self.data.iter().zip(&self.own).map(of).collect()
     }
 
-    /// Number of the model's own parameters.
-    pub fn parameters(&self) -> usize {
-        self.parameters
+    /// The factors of the own columns that have those of the combinations; others stay 0.
+    pub(crate) fn own_factors(&self, combinations: &[f64]) -> Vec<f64> {
+        (&self.basis * DVector::from_column_slice(combinations)).as_slice().to_vec()
     }
+}
+
+/// The combinations of own columns that rows show: the others do nothing beside the least noise.
+fn shown(layout: &Layout, own: &[DMatrix<f64>], parameters: usize) -> DMatrix<f64> {
+    let mut squares = DMatrix::zeros(parameters, parameters);
+    if parameters == 0 {
+        return squares;
+    }
+    for (columns, level) in own.iter().zip(&layout.levels) {
+        squares += columns.tr_mul(columns) / level.powi(2);
+    }
+    let found = SymmetricEigen::new(squares);
+    let places = (0..parameters).filter(|&k| found.eigenvalues[k] > policy::LEAST_SHOWN);
+    let kept: Vec<usize> = places.collect();
+    found.eigenvectors.select_columns(&kept)
 }

@@ -72,16 +72,19 @@ pub const NAMED: f64 = 4.6;
 /// The least share of its joint's torque that is worth a name.
 pub const WORTH: f64 = 3e-3;
 
-/// The least size of a further effect over that of the largest one on its joint.
-pub const FURTHER: f64 = 0.15;
-
 /// Two laws of one place that differ by less than this share of what they do are one to a
-/// user: the one that is met more often is named. Laws of friction are not better than that.
+/// user: the one that is met more often is named. Laws of friction are not better than that, so a
+/// further effect of a joint that is smaller than this share of the largest one has no name.
 pub const SAME: f64 = 0.1;
 
 /// A rival within these log odds of what is named is told beside it: less than what a name asks
 /// for.
 pub const RIVAL: f64 = 4.6;
+
+/// Combinations of the model's own parameters that do less are left out: the sum of squares of what
+/// one deviation does, over the level of noise. Data can have a hundredth of that level, and then
+/// such a combination changes the evidence by 1e-3.
+pub const LEAST_SHOWN: f64 = 1e-5;
 
 /// Candidates that are weighed whole after the first look, and the nats below the best from which
 /// on none is.

@@ -74,7 +74,9 @@ impl Base {
         let (evidence, variances) = settled(&cells, &expected, (start, rounds), &[]);
         let evidence = evidence - self.unpredicted(terms, &variances);
         let posterior = Posterior::new(&cells, &variances, &[]);
-        posterior.told(terms, self.parameters, (evidence, variances))
+        let mut weighed = posterior.told(terms, self.parameters, (evidence, variances));
+        weighed.own = self.own_factors(&weighed.own);
+        weighed
     }
 
     /// What is not earned where effects take away what data are, whatever that is.

@@ -87,10 +87,10 @@ fn the_picture_is_what_inspect_draws() {
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let drawn = std::fs::read_to_string(directory.path.join("tulip.svg")).expect("the picture");
     if std::env::var_os("UPDATE_EXPECT").is_some() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/tulip.svg");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/tulip.svg");
         std::fs::write(path, &drawn).expect("the picture");
     }
-    assert!(drawn == project("docs/tulip.svg"), "docs/tulip.svg is not up to date");
+    assert!(drawn == project("docs/guide/tulip.svg"), "docs/guide/tulip.svg is not up to date");
 }
 
 #[test]

@@ -67,11 +67,9 @@ fn fresh(printed: &str, shown: &str) -> String {
             continue;
         }
         if is_skipping {
-            let same = |other: &&str| **other == *line;
-            let alike = |other: &&str| key(other) == key(line);
             let rest = &lines[at..];
-            let found = rest.iter().position(|other| same(&other));
-            let found = found.or_else(|| rest.iter().position(|other| alike(&other)));
+            let found = rest.iter().position(|other| *other == line);
+            let found = found.or_else(|| rest.iter().position(|other| key(other) == key(line)));
             at += found.unwrap_or_else(|| panic!("no line `{line}` in:\n{printed}"));
             is_skipping = false;
         }
@@ -80,7 +78,10 @@ fn fresh(printed: &str, shown: &str) -> String {
         at += 1;
     }
     if !is_skipping {
-        lines[at..].iter().for_each(|line| text = format!("{text}{line}\n"));
+        for line in &lines[at..] {
+            text += line;
+            text.push('\n');
+        }
     }
     text
 }

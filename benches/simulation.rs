@@ -4,7 +4,7 @@
 //! joints, h = 1 ms. From event to event: parts of shipped scenarios, with log and audits.
 //!
 //! A sample of time stepping is 1000 steps: one simulated second. The setting is that of the peers'
-//! figures in docs/benchmarks.md: standing still, and marching on the spot.
+//! figures in docs/evidence/benchmarks.md: standing still, and marching on the spot.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use denavit::plants::{Plant, tulip};

@@ -5,7 +5,7 @@
 //! With `--diagnose DENAVIT`, the path of the command, each case is diagnosed as soon as it is
 //! written, and `DIR/report.md` has the figures; what it said stays in `DIR/N/said.json` and is not
 //! asked for again. `--case suite` takes the cases of the tests, `--case
-//! reported` those of the reported run. docs/blind-battery.md describes it.
+//! reported` those of the reported run. docs/evidence/battery.md describes it.
 
 use denavit_blind::battery::{Files, answer, examine, report, reported, suite};
 use denavit_blind::case::Case;

@@ -2,7 +2,7 @@
 //! minimal coordinates. Prints how far the joints come apart, without and with Baumgarte's terms,
 //! and draws it.
 //!
-//!     cargo run --release --example constraint_drift -- docs/constraint-drift.svg
+//!     cargo run --release --example constraint_drift -- docs/evidence/constraint-drift.svg
 
 use denavit::model;
 use denavit::plants::LoadedPlant;

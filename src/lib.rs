@@ -42,7 +42,7 @@ pub use denavit_report as report;
 pub use denavit_simulate as simulate;
 pub use denavit_walk as walk;
 
-/// The examples of the README, as tests.
+/// The examples of the guide, as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-pub struct ReadmeExamples;
+#[doc = include_str!("../docs/guide/controller-code.md")]
+pub struct GuideExamples;

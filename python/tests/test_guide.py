@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-GUIDE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
+GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guide" / "python.md"
 
 
 def test_the_guide_runs():

@@ -163,7 +163,7 @@ impl Failure {
                     .to_owned()
             }
             Self::ModelledAndMore => "the others add those of all joints".to_owned(),
-            Self::Effect(..) => "see \"effects\" in docs/model-file.md".to_owned(),
+            Self::Effect(..) => "see \"effects\" in docs/reference/model-file.md".to_owned(),
             Self::Lower(..) | Self::Emit(..) => {
                 "check the exponents of the numbers in the model".to_owned()
             }
@@ -213,8 +213,8 @@ fn smallest_scenario(model: &str) -> String {
     let model = serde_json::Value::from(model);
     format!(
         "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
-         \"duration_s\": 1}} lets it go from rest; docs/scenario.md has the rest, `denavit schema \
-         scenario` all keys",
+         \"duration_s\": 1}} lets it go from rest; docs/reference/scenario.md has the rest, \
+         `denavit schema scenario` all keys",
         denavit::simulate::scenario::FORMAT
     )
 }

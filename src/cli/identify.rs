@@ -36,12 +36,12 @@ use std::path::PathBuf;
 /// Identify parameters: base parameters with standard errors, from logs of motion and torque
 ///
 /// A log is CSV with the columns t, q_JOINT, tau_JOINT (qd_, qdd_, ref_, f_CONTACT_x|y|z if there
-/// are any), or MCAP or the folder of a ROS 2 bag with sensor_msgs/JointState (docs/logs.md);
-/// --columns maps those of other logs. Positions and torques pass one zero-phase filter,
-/// torques and regressor one decimator. Base parameters are exact; what the motion does not show
-/// keeps the model's value and is said to. Exits with 1 if what is found leaves as much of the
-/// torques as nothing would, or, of the torque of a joint that moves, nearly all, or a third that
-/// is no noise; or if a log of --validate says the same as one of --train.
+/// are any), or MCAP or the folder of a ROS 2 bag with sensor_msgs/JointState
+/// (docs/reference/logs.md); --columns maps those of other logs. Positions and torques pass one
+/// zero-phase filter, torques and regressor one decimator. Base parameters are exact; what the
+/// motion does not show keeps the model's value and is said to. Exits with 1 if what is found
+/// leaves as much of the torques as nothing would, or, of the torque of a joint that moves, nearly
+/// all, or a third that is no noise; or if a log of --validate says the same as one of --train.
 #[derive(Debug, Default, Args)]
 #[command(after_help = "\
 Examples:

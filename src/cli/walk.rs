@@ -33,7 +33,8 @@ fn say_what_is_no_fall(out: &mut dyn Write, model: &PlantModel) -> Result<(), Fa
 
 /// Walk: design gaits, and say whether they are stable
 ///
-/// The criteria are those of the thesis's chapter 4; docs/walking.md says what each means.
+/// The criteria are those of the thesis's chapter 4; docs/reference/walking.md says what each
+/// means.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

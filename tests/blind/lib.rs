@@ -1,5 +1,6 @@
 //! The blind battery: data in which an effect is hidden, made by code that shares nothing with the
-//! symbolic engine, the catalogue of effects or the simulator. docs/blind-battery.md describes it.
+//! symbolic engine, the catalogue of effects or the simulator. docs/evidence/battery.md describes
+//! it.
 
 pub mod battery;
 pub mod case;

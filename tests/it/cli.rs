@@ -13,6 +13,7 @@ mod errors;
 mod excite;
 mod gears;
 mod given_effects;
+mod guide;
 mod help;
 mod identify;
 mod identify_contradiction;

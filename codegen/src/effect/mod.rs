@@ -1,7 +1,8 @@
 //! Effects as data: physics that a rigid-body model lacks, one law to a file.
 //!
 //! An effect is a file `denavit-effect/1`: its law in the expression language, parameters with
-//! units and bounds, states, and what it is taken for. docs/effects.md lists the catalogue.
+//! units and bounds, states, and what it is taken for. docs/reference/effects.md lists the
+//! catalogue.
 //!
 //! 1. `read`: text to an [`Effect`], all faults at once
 //! 2. `spelling`: units that depend on the joint, as `torque/rate`

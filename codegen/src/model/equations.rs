@@ -1,8 +1,8 @@
 //! Equations as text: `denavit-equations/1`.
 //!
 //! For systems that are given by their equations and not by a table (thesis, appendix B): names of
-//! variables, knowns and unknowns, and equations `left = right` in them. docs/equations.md
-//! describes the format; faults are reported as those of models are.
+//! variables, knowns and unknowns, and equations `left = right` in them.
+//! docs/reference/equations.md describes the format; faults are reported as those of models are.
 
 use super::check::Scope;
 use super::entry::{Name, Scalar};

@@ -239,12 +239,12 @@ impl Cause {
             }
             Self::DuplicateKey(_) => "only one of them could count: remove the other",
             Self::WrongFormat { expected: "denavit-effect/1", .. } => {
-                "docs/effects.md describes the format"
+                "docs/reference/effects.md describes the format"
             }
             Self::WrongFormat { expected, .. } if *expected == super::equations::FORMAT => {
-                "docs/equations.md describes the format"
+                "docs/reference/equations.md describes the format"
             }
-            Self::WrongFormat { .. } => "docs/model-file.md describes the format",
+            Self::WrongFormat { .. } => "docs/reference/model-file.md describes the format",
             Self::NoEquations => "an equation is a text, as \"tau = m*l^2*thdd + m*g*l*cos(th)\"",
             Self::NotAnEquation(_) => "write two expressions with one = between them",
             Self::MissingKey("about") => {
@@ -316,10 +316,11 @@ impl Cause {
             Self::NeverVanishes => {
                 "give `nominal` to the parameters that switch it off, as 0 to a coefficient"
             }
-            Self::WrongPlace(..) => "docs/effects.md says where each effect acts",
+            Self::WrongPlace(..) => "docs/reference/effects.md says where each effect acts",
             Self::AddedTwice(_) => "add it once, with the sum of both",
             Self::UnknownEffect(..) => {
-                "effects are those of docs/effects.md, and the files of your own folder of effects"
+                "effects are those of docs/reference/effects.md, and the files of your own folder \
+                 of effects"
             }
             _ => return None,
         })

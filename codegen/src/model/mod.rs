@@ -7,7 +7,7 @@
 //!
 //! All faults are found in one run: [`ModelError`] lists them with file, line, column, JSON
 //! pointer, cause and hint. [`remarks`] are what a model may say by mistake and is no fault.
-//! docs/model-file.md describes the format.
+//! docs/reference/model-file.md describes the format.
 
 mod bake;
 pub(crate) mod check;

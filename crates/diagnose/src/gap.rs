@@ -1,4 +1,4 @@
-//! How far measured and computed torques are apart, as one number (docs/diagnosis.md).
+//! How far measured and computed torques are apart, as one number (docs/reference/diagnosis.md).
 
 use super::data::{Data, Stretch};
 use super::floor::{NoiseFloor, rms};

@@ -1,8 +1,8 @@
 //! What the model says, and how sure it is of it.
 //!
-//! Torques are linear in theta0 (docs/base-parameters.md). The numbers of the model file move
-//! theta0 each within its standard deviation; a unit of z moves one of them by one deviation, so
-//! that z has the prior N(0, 1) in all its entries.
+//! Torques are linear in theta0 (docs/reference/base-parameters.md). The numbers of the model file
+//! move theta0 each within its standard deviation; a unit of z moves one of them by one deviation,
+//! so that z has the prior N(0, 1) in all its entries.
 
 use super::data::SPRING_ZERO;
 use super::elastic::SeriesSpring;

@@ -2,7 +2,7 @@
 //!
 //! phi are the base parameters on the joint axes, whose columns are cheapest and best conditioned;
 //! what is reported are those of kept columns, pi, with phi = T pi exactly
-//! (docs/base-parameters.md).
+//! (docs/reference/base-parameters.md).
 //! Rows are torques on the joint side along the joint axes, in the order of the joints; of a
 //! floating base the generalized forces of its virtual joints come first.
 

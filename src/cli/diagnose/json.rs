@@ -1,4 +1,4 @@
-//! A diagnosis as JSON (the keys that others rely on stand in docs/diagnosis.md).
+//! A diagnosis as JSON (the keys that others rely on stand in docs/reference/diagnosis.md).
 
 use super::Shown;
 use crate::cli::failure::Failure;

@@ -11,7 +11,7 @@ const POINTS: [(&str, Criterion); 4] = [
     ("capture", Criterion::Capture),
 ];
 
-/// All criteria, row by row; docs/walking.md lists the columns.
+/// All criteria, row by row; docs/reference/walking.md lists the columns.
 pub(super) fn series(judged: &Judged) -> Log {
     let mut columns = vec!["t".to_owned()];
     let axes = ["x", "y", "z"];

@@ -28,9 +28,9 @@ use std::path::{Path, PathBuf};
 /// Design a gait: from a file of a few lines to a scenario that walks (thesis 4.4.2, 4.4.3)
 ///
 /// Gaits are walking primitives, walks by the linear inverted pendulum, walks in space on planned
-/// footsteps, and limit cycles; docs/gait.md describes their files. Residuals of inverse kinematics
-/// and margins are reported at every posture and between. A gait that cannot be exits with 2, and
-/// is named with posture, time and residual.
+/// footsteps, and limit cycles; docs/reference/gait.md describes their files. Residuals of inverse
+/// kinematics and margins are reported at every posture and between. A gait that cannot be exits
+/// with 2, and is named with posture, time and residual.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:

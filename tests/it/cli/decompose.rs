@@ -106,7 +106,7 @@ fn what_is_short_is_printed_and_what_is_long_is_summed_up() {
     assert!(long.lines().count() < 5 && long.contains("--json"), "{long}");
 }
 
-/// A.93, entry 2 with the sign of docs/errata.md, in this order.
+/// A.93, entry 2 with the sign of docs/evidence/errata.md, in this order.
 const A93: [&str; 8] = [
     "c2*m2",
     "c1*m1 - (m1*c1^2 + I1)/l1",

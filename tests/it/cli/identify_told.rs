@@ -1,5 +1,5 @@
-//! What a table of docs/identification.md claims of logs that are not what they seem, of logs made
-//! by hand: the planar arm, whose torques are written out here.
+//! What a table of docs/reference/identification.md claims of logs that are not what they seem, of
+//! logs made by hand: the planar arm, whose torques are written out here.
 
 use super::{Directory, run_in};
 use denavit::numerics::Random;

@@ -118,7 +118,7 @@ fn the_page_leads_from_urdf_and_bag_to_a_verdict() {
     for file in ["arm_in_the_room.urdf", "train.json", "validate.json"] {
         fs::remove_file(directory.path.join(file)).expect("removed");
     }
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/from-your-urdf.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/from-your-urdf.md");
     let page = fs::read_to_string(page).expect("the page");
     let (_, part) = page.split_once("## From URDF and bag to a verdict").expect("the part");
     let part = part.split("\n## ").next().unwrap_or_default();

@@ -1,11 +1,11 @@
-//! Each row of docs/errata.md names the test that decides it.
+//! Each row of docs/evidence/errata.md names the test that decides it.
 
 use super::{all_files, assert_none, root};
 use std::fs;
 
 #[test]
 fn every_test_that_the_errata_name_exists() {
-    let errata = fs::read_to_string(root().join("docs/errata.md")).unwrap();
+    let errata = fs::read_to_string(root().join("docs/evidence/errata.md")).unwrap();
     let files: Vec<_> =
         all_files().into_iter().filter(|path| path.to_string_lossy().contains("tests/")).collect();
     let is_there = |module: &str, test: &str| {
@@ -23,5 +23,5 @@ fn every_test_that_the_errata_name_exists() {
         .filter(|(module, test)| !is_there(module, test))
         .map(|(module, test)| format!("{module}::{test}"))
         .collect();
-    assert_none(&missing, "a test that docs/errata.md names exists");
+    assert_none(&missing, "a test that docs/evidence/errata.md names exists");
 }

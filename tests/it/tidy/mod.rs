@@ -1,8 +1,11 @@
 //! The rules of docs/ARCHITECTURE.md that a machine can hold, over the whole tree.
 
 mod circles;
+mod command_page;
+mod documents;
 mod errata;
 mod ignored;
+mod markdown;
 mod policy;
 mod python;
 mod reached;

@@ -1,18 +1,18 @@
-//! README.md lists what is shipped.
+//! docs/reference/shipped.md lists what is shipped.
 
 use super::{assert_none, root};
 use std::fs;
 
 #[test]
-fn the_readme_lists_shipped_models_scenarios_and_gaits() {
-    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+fn the_page_lists_shipped_models_scenarios_and_gaits() {
+    let page = fs::read_to_string(root().join("docs/reference/shipped.md")).unwrap();
     let mut missing = Vec::new();
     for (folder, title) in [
         ("models", "Shipped models: "),
         ("models/scenarios", "Shipped scenarios: "),
         ("models/gaits", "Shipped gaits: "),
     ] {
-        let (_, list) = readme.split_once(title).unwrap_or_else(|| panic!("{title}"));
+        let (_, list) = page.split_once(title).unwrap_or_else(|| panic!("{title}"));
         let (list, _) = list.split_once('\n').unwrap();
         for entry in fs::read_dir(root().join(folder)).unwrap().map(Result::unwrap) {
             let path = entry.path();
@@ -23,5 +23,5 @@ fn the_readme_lists_shipped_models_scenarios_and_gaits() {
             }
         }
     }
-    assert_none(&missing, "README.md lists all that is shipped");
+    assert_none(&missing, "docs/reference/shipped.md lists all that is shipped");
 }

@@ -215,7 +215,7 @@ fn all_faults_are_told_at_once_with_their_places() {
     }
     assert!(faults(&file("")).contains("there is no equation"));
     let said = faults(&file(r#""x = y""#).replace("equations/1", "equations/2"));
-    assert!(said.contains("docs/equations.md"), "{said}");
+    assert!(said.contains("docs/reference/equations.md"), "{said}");
     let said = faults(&file(r#""x = y""#).replace(r#""b": {}"#, r#""x": {}"#));
     assert!(said.contains("the name `x` is already that of another symbol"), "{said}");
     let said = faults(&file(r#""x = y""#).replace(r#""y": {}"#, r#""y": 3"#));

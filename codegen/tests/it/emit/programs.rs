@@ -1,4 +1,4 @@
-//! Programs of a user: those of docs/c-and-cpp.md, and one with a scalar of its own.
+//! Programs of a user: those of docs/reference/c-and-cpp.md, and one with a scalar of its own.
 
 use super::compiled::{Language, compilers, warning_free};
 use crate::robots::{load, repository};
@@ -37,7 +37,7 @@ fn printed(folder: &Path, compiler: &str, standard: &str, files: &[&str]) -> Str
 
 /// The block of a language on the page.
 fn block(language: &str) -> String {
-    let page = std::fs::read_to_string(repository().join("docs/c-and-cpp.md")).unwrap();
+    let page = std::fs::read_to_string(repository().join("docs/reference/c-and-cpp.md")).unwrap();
     let (_, rest) = page.split_once(&format!("```{language}\n")).unwrap();
     rest.split_once("```").unwrap().0.to_owned()
 }

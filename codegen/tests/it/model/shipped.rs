@@ -45,7 +45,8 @@ fn every_shipped_model_is_in_order_and_says_where_it_comes_from() {
 
 #[test]
 fn the_first_example_of_the_format_page_is_in_order() {
-    let page = std::fs::read_to_string(package().join("../docs/model-file.md")).expect("the page");
+    let page = std::fs::read_to_string(package().join("../docs/reference/model-file.md"))
+        .expect("the page");
     let example = page.split("```json").nth(1).and_then(|rest| rest.split("```").next());
     assert_eq!(robot_of("pendulum", example.expect("an example")).name, "pendulum");
 }

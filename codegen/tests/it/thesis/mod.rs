@@ -1,6 +1,7 @@
 //! What the thesis prints, recomputed: its equations as text, in its own symbols, against the
-//! derivations of this crate. Each misprint of docs/errata.md that can be decided by calculation
-//! has a test here which shows that the printed form is wrong and the corrected one right.
+//! derivations of this crate. Each misprint of docs/evidence/errata.md that can be decided by
+//! calculation has a test here which shows that the printed form is wrong and the corrected one
+//! right.
 
 mod appendix_a;
 mod appendix_b;

@@ -168,7 +168,7 @@ fn intervals_of_friction_hold_although_joints_turn_round() {
     assert!(wrong(&without) < 0.5 * wrong(&with), "{} {}", wrong(&without), wrong(&with));
 }
 
-/// The figures of docs/identification.md.
+/// The figures of docs/reference/identification.md.
 #[test]
 #[ignore = "takes minutes: the figures are in the docs"]
 fn intervals_of_friction_hold_over_many_seeds() {

@@ -1,4 +1,4 @@
-//! docs/effects.md says what the files say, and its example is an effect.
+//! docs/reference/effects.md says what the files say, and its example is an effect.
 
 use denavit_codegen::effect::{SHIPPED, catalogue, files, read, read_model};
 use denavit_report::effects_page;
@@ -8,7 +8,7 @@ use std::path::Path;
 const MARK: &str = "UPDATE_EXPECT=1 writes it anew. -->\n\n";
 
 fn page() -> (std::path::PathBuf, String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/effects.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/effects.md");
     let text = fs::read_to_string(&path).expect("the page");
     (path, text)
 }
@@ -21,7 +21,10 @@ fn the_page_of_effects_is_that_of_their_files() {
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         fs::write(&path, format!("{head}{MARK}{made}")).expect("writable");
     } else {
-        assert!(listed == made, "docs/effects.md is not fresh: UPDATE_EXPECT=1 writes it anew");
+        assert!(
+            listed == made,
+            "docs/reference/effects.md is not fresh: UPDATE_EXPECT=1 writes it anew"
+        );
     }
     assert!(SHIPPED.iter().all(|(name, _)| made.contains(&format!("### `{name}`:"))));
     assert!(made.contains(r"\frac{\partial \tau}{\partial"), "signatures");

@@ -153,7 +153,11 @@ impl Explained for Cause {
             Self::Form(model::Cause::MissingKey(key)) => format!("add `\"{key}\": ..`"),
             Self::Form(cause) => {
                 return cause.hint().or_else(|| {
-                    Some("docs/scenario.md says what is right, docs/gait.md of gaits".into())
+                    Some(
+                        "docs/reference/scenario.md says what is right, docs/reference/gait.md of \
+                         gaits"
+                            .into(),
+                    )
                 });
             }
             Self::UnknownLink(_, Some(near))
@@ -181,7 +185,9 @@ impl Cause {
             Self::NoPosition(_) => "a posture has the position of every joint",
             Self::Undrivable(_) => "control the joints between links",
             Self::TooManyRows(_) => "write a row less often: `log_period_s`",
-            Self::Log(_) => "a log is a table with a column `t` that increases (docs/scenario.md)",
+            Self::Log(_) => {
+                "a log is a table with a column `t` that increases (docs/reference/scenario.md)"
+            }
             Self::RowsTooNear(_) => {
                 "`t` is in seconds; no log has rows that are less than 1e-9 s apart"
             }
@@ -229,6 +235,8 @@ fn start_hint(error: &StartError) -> &'static str {
         StartError::Breakdown(_) => {
             "start in the air or at rest, or give `contact` a finite friction"
         }
-        StartError::Length(..) | StartError::Number(_) => "docs/scenario.md says what is right",
+        StartError::Length(..) | StartError::Number(_) => {
+            "docs/reference/scenario.md says what is right"
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Scenario files: a robot, where it starts, what drives it, and how it is simulated.
 //!
-//! `"format": "denavit-scenario/1"`, described in docs/scenario.md and by the schema that
+//! `"format": "denavit-scenario/1"`, described in docs/reference/scenario.md and by the schema that
 //! `denavit schema scenario` prints. All faults of a file are found in one run.
 
 mod controller;
@@ -165,7 +165,7 @@ impl Scenario {
         let first = run.events.iter().find(|event| event.kind == EventKind::LeastLoads)?;
         Some(format!(
             "at {:.6} s equally compliant points of a sliding sole found no loads; the least were \
-             taken until contacts changed (docs/scenario.md)",
+             taken until contacts changed (docs/reference/scenario.md)",
             first.t_s
         ))
     }

@@ -220,13 +220,17 @@ fn faults_of_a_controller_have_their_place() {
     assert!(said("{\"format\": \"denavit-scenario/1\"}").contains("denavit-controller/1"));
 }
 
-/// The example of docs/scenario.md is a shipped file, as it is.
+/// The example of docs/reference/scenario.md is a shipped file, as it is.
 #[test]
 fn the_page_shows_a_shipped_scenario() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenario.md");
+    let path =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/scenario.md");
     let page = std::fs::read_to_string(path).expect("the page");
     let (_, rest) = page.split_once("```json\n").expect("an example");
     let (example, _) = rest.split_once("```").expect("its end");
     let shipped = shipped::find_scenario("rocking_block").expect("it is shipped");
-    assert!(example == shipped.text, "docs/scenario.md shows another file than is shipped");
+    assert!(
+        example == shipped.text,
+        "docs/reference/scenario.md shows another file than is shipped"
+    );
 }

@@ -1,9 +1,14 @@
 //! Signals between their samples.
 
-/// A signal at so many places in the cell of each sample, by the cubic through four samples.
+/// A signal at so many places in the cell of each sample, by the cubic through four samples. Beyond
+/// its ends it goes on turned about its last sample.
 pub(super) fn between(signal: &[f64], within: usize) -> Vec<f64> {
     let last = signal.len() as isize - 1;
-    let at = |k: isize| signal[k.clamp(0, last) as usize];
+    let at = |k: isize| {
+        let within = k.clamp(0, last);
+        let turned = (2 * within - k).clamp(0, last);
+        2.0 * signal[within as usize] - signal[turned as usize]
+    };
     let middle = 0.5 * (within - 1) as f64;
     let mut fine = Vec::with_capacity(signal.len() * within);
     for k in 0..signal.len() as isize {

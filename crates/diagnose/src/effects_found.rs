@@ -54,8 +54,8 @@ pub struct FoundEffect {
     pub size: f64,
     /// The share of what can be explained that is open again without it, on held-out logs.
     pub share: f64,
-    /// By how much more likely held-out logs are with it, after those that were fitted: a log of
-    /// odds.
+    /// By how much more likely held-out logs are with it, as those that were fitted have it: a log
+    /// of odds.
     pub log_predicted: f64,
     /// Whether it fits: else it is only the nearest of the catalogue to something without a name.
     pub is_named: bool,
@@ -90,6 +90,8 @@ pub(super) fn found_effects(
     let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
     let given = setting.given.len();
     let all = &found.after;
+    let judging = setting.judging(&before.z);
+    let predicted = setting.log_predicted(&judging, after);
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
@@ -102,7 +104,7 @@ pub(super) fn found_effects(
             log_odds: all.posterior - without.posterior,
             size: search.size(all, place),
             share: (gap(&reopened) - gap(after)) / whole,
-            log_predicted: search.log_predicted(after) - search.log_predicted(&reopened),
+            log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             is_named: true,
             parameters: values(setting, (all, after), place),
             alternatives: alternatives(found, place),

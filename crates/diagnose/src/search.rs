@@ -3,7 +3,6 @@
 
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
-use super::state::State;
 use super::weighing::{Placed, Weighing, subtract};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
@@ -359,14 +358,6 @@ impl<'a> Search<'a> {
         };
         let steps = hypothesis.by_parts(&hypothesis.weighed.step);
         Some(hypothesis.parts.iter().zip(steps).map(move_part).collect())
-    }
-
-    /// The log of the density of held-out logs by what was fitted to the others: effects stay
-    /// linearised where these have them. p(held out | fitted) = p(both) / p(fitted).
-    pub(super) fn log_predicted(&self, fitted: &State) -> f64 {
-        let parts = fitted.placed.iter().map(|placed| self.weighing.part(placed)).collect();
-        let both = self.weighed(parts, None, policy::ROUNDS[1]);
-        both.weighed.log_evidence - fitted.log_evidence
     }
 
     /// Effects together, weighed.

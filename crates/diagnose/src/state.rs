@@ -10,7 +10,7 @@ use super::search::{Search, SearchOptions};
 use super::simulated::{MotionGap, Moved, NotMoved};
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
-use denavit_evidence::policy;
+use denavit_evidence::{Terms, policy};
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,10 +54,6 @@ pub(super) struct State {
     pub(super) held_out_residual: Vec<f64>,
     /// Torques that the model gives the motion of the logs.
     pub(super) torques: [Vec<ModelTorques>; 2],
-    /// Where the effects that were found were linearised by the logs that were fitted.
-    pub(super) placed: Vec<Placed>,
-    /// The log of the evidence of these logs.
-    pub(super) log_evidence: f64,
 }
 
 /// Rounds in which entries of z are held.
@@ -106,9 +102,27 @@ impl<'a> Setting<'a> {
             deviations,
             z,
             torques,
-            placed: fitted.parts.iter().map(|part| part.placed.clone()).collect(),
-            log_evidence: fitted.weighed.log_evidence,
         }
+    }
+
+    /// Held-out logs alone, in which effects are weighed.
+    pub(super) fn judging(&self, z: &[f64]) -> Weighing<'_> {
+        Weighing::new(vec![self.held_out], (self.candidates, self.given.as_slice()), z)
+    }
+
+    /// The log of the evidence of held-out logs with the effects as those that were fitted have
+    /// them. Noise is that of the held-out logs: what changes between logs is no reason to leave
+    /// an effect out.
+    pub(super) fn log_predicted(&self, judging: &Weighing<'_>, state: &State) -> f64 {
+        let found = state.taken.iter().zip(&state.deviations).skip(self.given.len());
+        let terms = found.map(|(taken, deviations)| {
+            let Taken { candidate, values } = taken.clone();
+            let (center, deviations) = (values.clone(), deviations.clone());
+            judging.terms(&Placed { candidate, values, center, deviations, log_share: 0.0 })
+        });
+        let terms: Vec<Terms> = terms.collect();
+        let all: Vec<&Terms> = terms.iter().collect();
+        judging.base.weigh(&all, None, policy::ROUNDS[1]).log_evidence
     }
 
     /// What the model as it is given leaves of a set of logs: those fitted, or the others.

@@ -284,7 +284,8 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
     let wanted_hz = (policy::CUTOFF_OVER_DRIVEN * driven_hz).max(least_hz).min(widest_hz);
     let wanted = Filters { torque_hz: wanted_hz, ..widest };
     // A lower cutoff needs longer logs.
-    Ok(if conditioned(logs.to_vec(), wanted).is_ok() { wanted } else { widest })
+    let has_rows = |logs: Vec<Signals>| logs.iter().all(Signals::has_rows_to_spare);
+    Ok(if conditioned(logs.to_vec(), wanted).is_ok_and(has_rows) { wanted } else { widest })
 }
 
 /// The gaps of the models before and after in motion.

@@ -156,6 +156,9 @@ pub(crate) mod signals {
     /// Rows of a log, at least: some for each band of frequencies.
     pub(crate) const LEAST_ROWS: usize = 32;
 
+    /// Rows on either side of a log's middle beyond which rows at its ends are spared.
+    pub(crate) const ENOUGH_ROWS: usize = 32;
+
     /// The rate of laws \[Hz\], at least: a step of friction is not at a sample, and the mean of a
     /// cell knows where it is.
     pub(crate) const LEAST_RATE_HZ: f64 = 1000.0;

@@ -10,7 +10,7 @@ use super::floor::white_noise;
 use super::law::derivative;
 use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
-use crate::policy::signals::{LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
+use crate::policy::signals::{ENOUGH_ROWS, LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
 use denavit_evidence::policy;
 use denavit_measure::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
@@ -98,6 +98,27 @@ fn samples_within(step_s: f64) -> usize {
     (asked / 2 * 2 + 1).min(9)
 }
 
+impl Rows {
+    /// The rows of so many samples, of which the edges are cut off by the filter of positions.
+    ///
+    /// What is compared passes the filter of torques over the same samples, so that both sides have
+    /// the same of what was before them. But noise is larger where it is mirrored, and motions begin
+    /// and end at rest: a log with rows to spare leaves more out.
+    fn new(
+        (samples, edge): (usize, usize),
+        filter: &Butterworth,
+        (stride, within): (usize, usize),
+    ) -> Result<Self, ConditionError> {
+        let needed = 2 * (edge + filter.smear()) + LEAST_ROWS * stride;
+        if samples < needed {
+            return Err(ConditionError::TooShort { samples, needed });
+        }
+        let spare = samples.saturating_sub(2 * (edge + ENOUGH_ROWS * stride)) / 2;
+        let first = spare.clamp(filter.smear(), filter.settling());
+        Ok(Self { range: first..samples - 2 * edge - first, stride, within })
+    }
+}
+
 impl Signals {
     /// Filters a log.
     pub fn new(log: MeasuredLog, filters: Filters) -> Result<Self, ConditionError> {
@@ -111,16 +132,9 @@ impl Signals {
         let samples = joints.first().map_or(0, |joint| joint.q.len());
         let edge = STENCIL + wide.settling();
         let stride = ((ROWS_PER_PERIOD * filters.torque_hz * step_s).recip() as usize).max(1);
-        // What is compared passes the filter of torques over the same samples, so that both sides
-        // have the same of what was before them. Noise is larger where it is mirrored.
-        let first = filter.smear();
-        let needed = 2 * (edge + first) + LEAST_ROWS * stride;
-        if samples < needed {
-            return Err(ConditionError::TooShort { samples, needed });
-        }
+        let rows = Rows::new((samples, edge), &filter, (stride, samples_within(step_s)))?;
         let kept = edge..samples - edge;
-        let within = samples_within(step_s);
-        let rows = Rows { range: first..kept.len() - first, stride, within };
+        let within = rows.within;
         let fine = step_s / within as f64;
         // The cell of a sample is around it.
         let offset = 0.5 * (within - 1) as f64 * fine;
@@ -306,6 +320,11 @@ impl Signals {
     /// Number of rows of a joint.
     pub fn rows(&self) -> usize {
         self.rows.range.len().div_ceil(self.rows.stride)
+    }
+
+    /// Whether the log is long enough to leave out all that its ends may be wrong in.
+    pub(super) fn has_rows_to_spare(&self) -> bool {
+        self.rows.range.start == self.filter.settling()
     }
 
     /// The frequency up to which references drive the motion \[Hz\].

@@ -45,9 +45,11 @@ pub(super) fn judge(
     setting: &Setting<'_>,
     (found, misread): (&Found, &[MisreadColumns]),
 ) {
+    // Of a model that is nothing like the logs, nothing has a name.
+    let is_alike = left_open(diagnosis) <= policy::NOTHING_LIKE;
     for one in &mut diagnosis.effects {
         let left = left_beside(setting, &diagnosis.leftovers, one);
-        one.is_named = left.is_none_or(|left| !is_unexplained(left, one.size));
+        one.is_named = is_alike && left.is_none_or(|left| !is_unexplained(left, one.size));
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
@@ -81,6 +83,13 @@ fn left_beside<'l>(
     own.max_by(|a, b| a.share.total_cmp(&b.share))
 }
 
+/// The share of the torque that is left of held-out logs, without noise: that says nothing of the
+/// model.
+fn left_open(diagnosis: &Diagnosis) -> f64 {
+    let Gaps { after, floor, .. } = &diagnosis.held_out;
+    (after.all * after.all - floor.all * floor.all).max(0.0).sqrt()
+}
+
 /// The verdict with its first reasons.
 fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
@@ -88,9 +97,7 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     let explained = diagnosis.effects.iter().map(|one| one.size).fold(0.0, f64::max);
     let unexplained = most.filter(|left| is_unexplained(left, explained));
     let of_data: &Data<'_> = setting.train;
-    let Gaps { after, floor, .. } = &diagnosis.held_out;
-    // What is noise says nothing of the model.
-    let left = (after.all * after.all - floor.all * floor.all).max(0.0).sqrt();
+    let left = left_open(diagnosis);
     if left > policy::NOTHING_LIKE {
         let why = format!(
             "the model is nothing like the logs: {} of the torque is left; a column of another \

@@ -136,7 +136,7 @@ impl Glance {
         };
         // Beside large variances the belief in small factors weighs more than it will once these
         // have become what the terms leave.
-        let all = [1.0, UNBELIEVED].into_iter().filter_map(|belief| {
+        let all = [1.0, policy::UNBELIEVED].into_iter().filter_map(|belief| {
             let mut factors = with_belief(&beyond, belief)?.solve(&slope);
             factors.iter_mut().zip(&lowest).for_each(|(factor, low)| *factor = factor.max(*low));
             Some((gain(&factors), factors))
@@ -183,9 +183,6 @@ impl Glance {
 fn counted(rows: &Range<usize>) -> f64 {
     rows.len() as f64 + 2.0 * policy::NOISE_SHAPE + 2.0
 }
-
-/// What is left of a belief that hardly counts.
-const UNBELIEVED: f64 = 1e-3;
 
 /// The factor of what the data say of factors and what is believed of them.
 fn with_belief(beyond: &DMatrix<f64>, belief: f64) -> Option<Cholesky<f64, Dyn>> {

@@ -3,9 +3,9 @@
 //!
 //! Of such a row a hypothesis says that the demand is beyond the limit, on the side where the model
 //! needs it. With m what the model needs, v its variance and L the limit, that has the probability
-//! P = Phi((m - L) / sqrt v); how far beyond the demand is, e, has the density of what is taken away
-//! on this side alone, 2 N(e; 0, s). The row was weighed as one that is given to be L, with the
-//! density N(L; m, v). So what it does not earn is
+//! P = Phi((m - L) / sqrt v). How far beyond the demand is, e, has the density of what is taken
+//! away on this side alone, 2 N(e; 0, s). The row was weighed as one that is given to be L, with
+//! the density N(L; m, v). So what it does not earn is
 //!
 //! ```text
 //! 1/2 log(s / v) + e^2 / 2 s - (m - L)^2 / 2 v - log 2 - log P
@@ -17,7 +17,7 @@
 //! one to the other in proportion. So who takes nearly everything away must predict the sides of
 //! what is left. Where little is taken away s counts beside v.
 
-use std::f64::consts::LN_2;
+use crate::policy;
 use std::ops::Range;
 
 /// What an effect says nothing of.
@@ -29,12 +29,6 @@ pub struct Unpredicted {
     pub left: f64,
 }
 
-/// Of a row at the limit that the model predicts, the mean of -log P, less log 2.
-const PREDICTED: f64 = 1.0 - LN_2;
-
-/// The same of a row of which the model says nothing: -log Phi(-1) - log 2.
-const NOT_PREDICTED: f64 = 1.841_021_645_009_263_7 - LN_2;
-
 impl Unpredicted {
     /// What the rows of a channel do not earn: `known` is taken away from them, and each of its
     /// cells has a variance.
@@ -45,7 +39,8 @@ impl Unpredicted {
         }
         let sum: f64 = cells.iter().map(|(rows, variance)| rows.len() as f64 * variance).sum();
         let not_predicted = (sum / rows as f64 / self.left.max(f64::MIN_POSITIVE)).min(1.0);
-        let of_side = PREDICTED + not_predicted * (NOT_PREDICTED - PREDICTED);
+        let [least, most] = policy::SIDE;
+        let of_side = least + not_predicted * (most - least);
         let of_cell = |(rows, variance): &(Range<usize>, f64)| {
             let (count, own) = (rows.len() as f64, &known[rows.clone()]);
             let mean = own.iter().map(|entry| entry * entry).sum::<f64>() / count;

@@ -103,8 +103,8 @@ pub(crate) mod check {
     /// Seconds in an hour.
     pub(crate) const HOUR_S: f64 = 3600.0;
 
-    /// A turning joint without limits hardly goes further \[rad\]: ten turns. In degrees most motions
-    /// do. Of less the torques tell the unit.
+    /// A turning joint without limits hardly goes further \[rad\]: ten turns. In degrees most
+    /// motions do. Of less the torques tell the unit.
     pub(crate) const LARGEST_ANGLE_RAD: f64 = 63.0;
 
     /// Changes of a torque below this are rounding [N m, N].

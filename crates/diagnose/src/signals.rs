@@ -102,8 +102,8 @@ impl Rows {
     /// The rows of so many samples, of which the edges are cut off by the filter of positions.
     ///
     /// What is compared passes the filter of torques over the same samples, so that both sides have
-    /// the same of what was before them. But noise is larger where it is mirrored, and motions begin
-    /// and end at rest: a log with rows to spare leaves more out.
+    /// the same of what was before them. But noise is larger where it is mirrored, and motions
+    /// begin and end at rest: a log with rows to spare leaves more out.
     fn new(
         (samples, edge): (usize, usize),
         filter: &Butterworth,

@@ -96,8 +96,8 @@ pub const FAR: f64 = 60.0;
 /// where it says nothing, -log Phi(-1) - log 2.
 pub const SIDE: [f64; 2] = [0.306_852_819_440_054_7, 1.147_874_464_449_318_4];
 
-/// What is left of the belief in small factors in a second first look: large effects are seen beside
-/// the noise that they leave.
+/// What is left of the belief in small factors in a second first look: large effects are seen
+/// beside the noise that they leave.
 pub const UNBELIEVED: f64 = 1e-3;
 
 /// Pairs of effects that are weighed whole after the first look.

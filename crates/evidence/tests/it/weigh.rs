@@ -192,3 +192,24 @@ fn a_glance_sees_errors_and_factors() {
     let precision = 1.0 / whole.covariance[(0, 0)] - 1.0;
     assert!((glance.see(&alone).precision[0] - precision).abs() < 1e-8 * precision);
 }
+
+/// A limit far below the data leaves little of them. That is no gain where nothing predicts their
+/// sides, although the noise becomes small.
+#[test]
+fn what_takes_nearly_all_away_must_predict_the_rest() {
+    let mut random = Random::new(11);
+    let data = vec![(0..400).map(|_| random.normal()).collect::<Vec<f64>>()];
+    let scaled = |by: f64| vec![data[0].iter().map(|row| by * row).collect::<Vec<f64>>()];
+    let layout = Layout { bands: vec![vec![0..400]], levels: vec![0.02] };
+    let base = Base::new(layout, data.clone(), &[]);
+    let evidence = |terms: &[&Terms]| base.weigh(terms, None, 40).log_evidence;
+    for share in [0.7, 0.9, 0.97] {
+        let left = scaled(1.0 - share)[0].iter().map(|row| row * row).sum::<f64>() / 400.0;
+        let free = Terms { known: scaled(share), ..Terms::default() };
+        let unpredicted = Unpredicted { share, left };
+        let limited = Terms { unpredicted, ..free.clone() };
+        let none = evidence(&[]);
+        assert!(evidence(&[&free]) > none + 100.0, "{share}");
+        assert!(evidence(&[&limited]) < none, "{share}");
+    }
+}

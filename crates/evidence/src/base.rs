@@ -73,11 +73,13 @@ impl Base {
 /// The combinations of own columns that rows show: the others do nothing beside the least noise.
 fn shown(layout: &Layout, own: &[DMatrix<f64>], parameters: usize) -> DMatrix<f64> {
     let mut squares = DMatrix::zeros(parameters, parameters);
-    if parameters == 0 {
-        return squares;
-    }
     for (columns, level) in own.iter().zip(&layout.levels) {
         squares += columns.tr_mul(columns) / level.powi(2);
+    }
+    // Where the level is that of no torque at all, or a column is not finite, all are kept.
+    let is_finite = squares.iter().all(|entry: &f64| entry.is_finite());
+    if parameters == 0 || !is_finite || squares.amax() > f64::MAX.sqrt() {
+        return DMatrix::identity(parameters, parameters);
     }
     let found = SymmetricEigen::new(squares);
     let places = (0..parameters).filter(|&k| found.eigenvalues[k] > policy::LEAST_SHOWN);

@@ -213,3 +213,13 @@ fn what_takes_nearly_all_away_must_predict_the_rest() {
         assert!(evidence(&[&limited]) < none, "{share}");
     }
 }
+
+/// A channel without torque has the least level there is.
+#[test]
+fn a_channel_without_torque_is_weighed() {
+    let (_, own, _) = problem(3);
+    let least = f64::MIN_POSITIVE.sqrt();
+    let layout = Layout { levels: vec![0.1, least], ..layout() };
+    let base = Base::new(layout, vec![vec![0.0; 19], vec![0.0; 9]], &own);
+    assert_eq!(base.weigh(&[], None, 8).own.len(), own.len());
+}

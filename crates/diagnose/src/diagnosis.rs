@@ -165,12 +165,12 @@ pub fn diagnose(
         let search =
             Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
         let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
-        let found = search.run((begun, may_move), watch);
+        let found = search.run((begun, may_move), &|_| true, watch);
         (search, found)
     };
     let mut z = null(&sets, own);
     let (mut begun, mut moves) = (Vec::new(), 0);
-    let (search, mut found) = loop {
+    let (mut search, mut found) = loop {
         let (search, found) = searched(&z, &begun, moves < MOST_MOVES);
         let Some(moved) = found.moved else { break (search, found) };
         begun = found.after.parts.into_iter().map(|part| part.placed).collect();
@@ -183,7 +183,9 @@ pub fn diagnose(
         let effects = found_effects(&setting, &search, (&found, [&before, &after]));
         let idle = effects.iter().position(|one| one.log_predicted < -policy::NAMED);
         match idle {
-            Some(place) => search.drop(&mut found, place),
+            Some(place) => {
+                search.drop(&mut found, place, &mut |taken| watch(&Progress::Found(taken.to_vec())))
+            }
             None => break (after, effects),
         }
     };

@@ -95,8 +95,7 @@ pub(super) fn found_effects(
     let of = |place: usize| {
         let mut parts = all.parts.clone();
         parts.remove(place);
-        let without = search.weighed(parts.clone(), Some(all), policy::ROUNDS[1]);
-        let without = search.linearised(without, policy::ROUNDS[1]);
+        let without = search.settled(parts.clone(), Some(all));
         let taken = &after.taken[given + place];
         let reopened = setting.state(&parts, &before.z);
         FoundEffect {

@@ -10,6 +10,20 @@ pub(super) struct Part {
     pub(super) terms: Terms,
 }
 
+impl Part {
+    /// The factors by which curved parameters go to other values; 0 of all others.
+    pub(super) fn steps_to(&self, values: &[f64]) -> Vec<f64> {
+        let Placed { values: now, deviations, .. } = &self.placed;
+        let all = values.iter().zip(now).zip(deviations).zip(&self.terms.is_curved);
+        all.map(
+            |(((value, now), deviation), is_curved)| {
+                if *is_curved && *deviation > 0.0 { (value - now) / deviation } else { 0.0 }
+            },
+        )
+        .collect()
+    }
+}
+
 /// Effects together, weighed.
 #[derive(Clone)]
 pub(super) struct Hypothesis {

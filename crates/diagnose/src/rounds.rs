@@ -5,6 +5,7 @@ use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};
 use super::weighing::{Placed, Weighing};
 use denavit_evidence::policy;
+use std::collections::BTreeSet;
 
 /// What a search found.
 pub(super) struct Found {
@@ -28,22 +29,21 @@ pub(super) struct Found {
 }
 
 impl Search<'_> {
-    /// Searches which candidates are missing, from what a search before has found. `watch` hears of
-    /// what was found so far, and says whether to go on.
+    /// Searches which of the candidates that are asked for are missing, from what a search before
+    /// has found. `watch` hears of what was found so far, and says whether to go on.
     pub(super) fn run(
         &self,
         (begun, may_move): (&[Placed], bool),
+        is_asked: &dyn Fn(&Candidate) -> bool,
         watch: &mut dyn FnMut(&[usize]) -> bool,
     ) -> Found {
         let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
         let parts: Vec<Part> = begun.iter().map(|placed| self.weighing.part(placed)).collect();
         let mut now = match parts.is_empty() {
             true => before.clone(),
-            false => {
-                self.linearised(self.weighed(parts, None, policy::ROUNDS[1]), policy::ROUNDS[1])
-            }
+            false => self.settled(parts, None),
         };
-        let (mut steps, mut moved) = (Vec::new(), None);
+        let (mut steps, mut moved, mut unmerged) = (Vec::new(), None, BTreeSet::new());
         // What else would do in the place of each, once all have been looked at.
         let mut rivals = now.parts.is_empty().then(Vec::new);
         // Exchanges must not lead round in circles.
@@ -51,12 +51,14 @@ impl Search<'_> {
         let (is_full, is_stopped) = loop {
             let is_stopped = !watch(&now.candidates());
             let room = self.options.most_effects.saturating_sub(now.parts.len());
-            let next = (room > 0 && !is_stopped).then(|| self.next((&now, room), &mut steps));
+            let next =
+                (room > 0 && !is_stopped).then(|| self.next((&now, room), is_asked, &mut steps));
             if let Some(next) = next.flatten() {
                 // Effects of other joints hardly notice: they are looked at in the end.
-                let joint = |one: &Candidate| one.joint;
-                let last = joint(self.candidate(&next, next.parts.len() - 1));
-                let (next, _) = self.exchanged(next, &|one| joint(one) == last);
+                let new = now.parts.len()..next.parts.len();
+                let joints: Vec<_> = new.map(|place| self.candidate(&next, place).joint).collect();
+                let (next, _) =
+                    self.exchanged(next, &|one| joints.contains(&one.joint), &mut unmerged);
                 if !seen.contains(&next.names()) {
                     seen.push(next.names());
                     rivals = None;
@@ -71,7 +73,7 @@ impl Search<'_> {
             if rivals.is_some() || is_stopped {
                 break (room == 0, is_stopped);
             }
-            let (next, others) = self.exchanged(now.clone(), &|_| true);
+            let (next, others) = self.exchanged(now.clone(), is_asked, &mut unmerged);
             let is_new = !seen.contains(&next.names());
             (now, rivals) = (next, Some(others));
             if !is_new {
@@ -83,28 +85,68 @@ impl Search<'_> {
         Found { before, after: now, rivals, steps, is_full, is_stopped, dropped, moved }
     }
 
-    /// What was found with one more effect that is worth it, or with a pair, if there are any.
-    fn next(&self, (now, room): (&Hypothesis, usize), steps: &mut Vec<Step>) -> Option<Hypothesis> {
-        let all = self.with_one_more(now, &now.parts, &|_| true);
-        if let Some(pair) = self.pair(now, &all).filter(|_| room > 1) {
-            steps.extend(self.steps_of_pair(now, &pair));
-            return Some(pair);
+    /// What was found with one more effect that is asked for and worth it, or with several, if
+    /// there are any.
+    fn next(
+        &self,
+        (now, room): (&Hypothesis, usize),
+        is_asked: &dyn Fn(&Candidate) -> bool,
+        steps: &mut Vec<Step>,
+    ) -> Option<Hypothesis> {
+        let is_asked = |candidate: usize| is_asked(&self.weighing.candidates[candidate]);
+        let all = self.with_one_more((now, &now.parts), &is_asked, None);
+        if let Some(next) = self.together((now, room), &all, &is_asked) {
+            steps.extend(self.steps_together(now, &next));
+            return Some(next);
         }
         let step = self.step(now, &all)?;
         let is_taken = step.is_taken;
         steps.push(step);
-        is_taken.then(|| self.chosen(now, all).expect("a step was taken"))
+        let chosen = is_taken.then(|| self.chosen(now, all).expect("a step was taken"))?;
+        Some(self.settled(chosen.parts.clone(), Some(&chosen)))
     }
 
-    /// What was found without the effect in one place.
-    pub(super) fn drop(&self, found: &mut Found, place: usize) {
-        let mut parts = found.after.parts.clone();
-        found.dropped.push(parts.remove(place).placed.candidate);
-        let rest = self.weighed(parts, Some(&found.after), policy::ROUNDS[1]);
-        let (after, rivals) = self.exchanged(rest.clone(), &|_| true);
-        // What was dropped must not come back, or this would not end.
-        let is_back = after.candidates().iter().any(|one| found.dropped.contains(one));
-        (found.after, found.rivals) = if is_back { (rest, Vec::new()) } else { (after, rivals) };
+    /// Searches on without the effect in one place, which is no candidate any more. Effects of
+    /// other joints hardly notice.
+    pub(super) fn drop(
+        &mut self,
+        found: &mut Found,
+        place: usize,
+        watch: &mut dyn FnMut(&[usize]) -> bool,
+    ) {
+        let dropped = found.after.parts[place].placed.candidate;
+        let joint = self.weighing.candidates[dropped].joint;
+        let is_near = |one: &Candidate| joint.is_none() || one.joint == joint;
+        self.screen[dropped].clear();
+        let mut begun: Vec<Placed> =
+            found.after.parts.iter().map(|part| part.placed.clone()).collect();
+        begun.remove(place);
+        let mut next = self.run((&begun, false), &is_near, watch);
+        for (place, rivals) in next.rivals.iter_mut().enumerate() {
+            if !is_near(self.candidate(&next.after, place)) {
+                *rivals = self.rivals_beside(&next.after, place, found);
+            }
+        }
+        found.steps.append(&mut next.steps);
+        found.dropped.push(dropped);
+        (found.after, found.rivals) = (next.after, next.rivals);
+        (found.is_full, found.is_stopped) = (next.is_full, next.is_stopped);
+    }
+
+    /// What else would do in a place by an earlier search, beside what is there now.
+    fn rivals_beside(&self, now: &Hypothesis, place: usize, before: &Found) -> Vec<Hypothesis> {
+        let own = now.parts[place].placed.candidate;
+        let Some(old) = before.after.candidates().iter().position(|&one| one == own) else {
+            return Vec::new();
+        };
+        let is_near = |one: &&Hypothesis| one.posterior > before.after.posterior - policy::RIVAL;
+        let rivals = before.rivals.get(old).into_iter().flatten().filter(is_near);
+        let beside = |one: &Hypothesis| {
+            let mut parts = now.parts.clone();
+            parts[place] = one.parts[old].clone();
+            self.weighed(parts, Some(now), policy::ROUNDS[1])
+        };
+        rivals.map(beside).collect()
     }
 
     /// The model's own numbers by what was found, if the logs are more likely where laws are
@@ -115,9 +157,7 @@ impl Search<'_> {
         let other = Weighing::new(sets.clone(), (candidates, given), z);
         let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
         let other = Self { weighing: other, screen: Vec::new(), ..*self };
-        let start = Some(now);
-        let moved =
-            other.linearised(other.weighed(parts, start, policy::ROUNDS[1]), policy::ROUNDS[1]);
+        let moved = other.settled(parts, Some(now));
         let gain = moved.weighed.log_evidence - now.weighed.log_evidence;
         (gain > policy::NAMED).then(|| z.to_vec())
     }

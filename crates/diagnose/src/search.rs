@@ -6,6 +6,8 @@ use super::hypothesis::{Hypothesis, Part};
 use super::weighing::{Placed, Weighing, subtract};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
 
 /// What a search is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,11 +124,25 @@ impl<'a> Search<'a> {
         plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best)
     }
 
-    /// Whether an effect in a place is met more often than that of another hypothesis, and does
-    /// nearly the same.
+    /// Whether an effect in a place is plainer than that of another hypothesis, and does nearly the
+    /// same, or as well by the odds that a name asks for.
     fn is_plainer(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
-        let [own, other] = [one, than].map(|of| self.candidate(of, place));
-        log_occurrence(own) > log_occurrence(other) && self.is_same(one, than, place)
+        let is_as_good = || {
+            let [own, other] = [one, than].map(|of| self.candidate(of, place));
+            own.at == other.at && one.posterior > than.posterior - policy::NAMED
+        };
+        self.plainness(one, place) > self.plainness(than, place)
+            && (is_as_good() || self.is_same(one, than, place))
+    }
+
+    /// Effects that are met more often are plainer, and of these the ones of fewer parameters.
+    fn plainness(
+        &self,
+        hypothesis: &Hypothesis,
+        place: usize,
+    ) -> (Reverse<Occurrence>, Reverse<usize>) {
+        let one = self.candidate(hypothesis, place);
+        (Reverse(one.occurrence), Reverse(one.law.parameters().len()))
     }
 
     /// Whether an effect leaves hardly more than that of another hypothesis in the same place.
@@ -136,7 +152,11 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn candidate(&self, hypothesis: &Hypothesis, place: usize) -> &Candidate {
-        &self.weighing.candidates[hypothesis.parts[place].placed.candidate]
+        self.of(&hypothesis.parts[place])
+    }
+
+    fn of(&self, part: &Part) -> &Candidate {
+        &self.weighing.candidates[part.placed.candidate]
     }
 
     /// How much more a hypothesis leaves than another, as a share of the torque where that is most.
@@ -158,11 +178,12 @@ impl<'a> Search<'a> {
 
     /// Exchanges effects that are asked for by what does better in their place, until nothing does;
     /// with what else would do in the place of each. An exchange has those of its joint looked at
-    /// again.
+    /// again. `unmerged` are pairs of candidates for which nothing else would do.
     pub(super) fn exchanged(
         &self,
         mut now: Hypothesis,
         is_asked: &dyn Fn(&Candidate) -> bool,
+        unmerged: &mut BTreeSet<[usize; 2]>,
     ) -> (Hypothesis, Vec<Vec<Hypothesis>>) {
         let unseen = |now: &Hypothesis| -> Vec<Option<Vec<Hypothesis>>> {
             let asked = |place: usize| is_asked(self.candidate(now, place));
@@ -171,11 +192,12 @@ impl<'a> Search<'a> {
         let mut rivals = unseen(&now);
         let mut exchanges = 0;
         loop {
-            let may_exchange = exchanges < MOST_EXCHANGES;
+            let may_exchange = exchanges < MOST_EXCHANGES * (1 + now.parts.len());
             let Some(place) = rivals.iter().position(Option::is_none) else {
-                let Some(merged) = self.merged(&now, is_asked).filter(|_| may_exchange) else {
+                if !may_exchange {
                     break;
-                };
+                }
+                let Some(merged) = self.merged(&now, is_asked, unmerged) else { break };
                 (now, exchanges) = (merged, exchanges + 1);
                 rivals = unseen(&now);
                 continue;
@@ -192,15 +214,20 @@ impl<'a> Search<'a> {
                 rivals.remove(place);
                 Some(rest)
             } else {
+                let beside = self.glance(&now, &now.parts);
                 let is_other = |candidate| candidate != own.placed.candidate;
-                all = self.with_one_more(&rest, &others, &is_other);
+                let of = Some((&beside, &own));
+                all = self.with_one_more((&rest, &others), &is_other, of);
+                all.retain(|one| {
+                    one.posterior <= now.posterior || !self.is_missing_beside(&own, one)
+                });
                 // the new one stands last there
                 for one in &mut all {
                     let last = one.parts.len() - 1;
                     one.parts[place..=last].rotate_right(1);
                 }
                 let better = self.better(&now, (&rest, place), &all).filter(|_| may_exchange);
-                better.map(|one| self.weighed(one.parts.clone(), Some(one), policy::ROUNDS[1]))
+                better.map(|one| self.settled(one.parts.clone(), Some(one)))
             };
             let Some(next) = next else {
                 rivals[place] = Some(self.rivals(&now, place, all));
@@ -217,13 +244,28 @@ impl<'a> Search<'a> {
         (now, rivals.into_iter().flatten().collect())
     }
 
+    /// Whether an effect is asked for beside a hypothesis, whose last one stays worth it, and may
+    /// be added to it.
+    fn is_missing_beside(&self, own: &Part, one: &Hypothesis) -> bool {
+        let place = one.parts.len();
+        if place == self.options.most_effects {
+            return false;
+        }
+        let parts = [&one.parts[..], &[own.clone()]].concat();
+        let both = self.weighed(parts, Some(one), policy::ROUNDS[0]);
+        let mut others = both.parts.clone();
+        others.remove(place - 1);
+        let without = self.weighed(others, Some(&both), policy::ROUNDS[0]);
+        both.posterior - one.posterior > policy::NAMED
+            && self.is_worth(one, &both, place)
+            && self.is_worth(&without, &both, place - 1)
+    }
+
     /// What else would do in a place. A better formula of the same is no rival of the plain name.
     fn rivals(&self, now: &Hypothesis, place: usize, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
-        let is_met_less = |one: &Hypothesis| {
-            let [own, other] = [now, one].map(|of| log_occurrence(self.candidate(of, place)));
-            own > other
+        let is_better = |one: &Hypothesis| {
+            one.posterior > now.posterior && self.plainness(one, place) < self.plainness(now, place)
         };
-        let is_better = |one: &Hypothesis| one.posterior > now.posterior && is_met_less(one);
         all.retain(|one| !(is_better(one) && self.is_same(now, one, place)));
         all
     }
@@ -249,21 +291,25 @@ impl<'a> Search<'a> {
         &self,
         now: &Hypothesis,
         is_asked: &dyn Fn(&Candidate) -> bool,
+        unmerged: &mut BTreeSet<[usize; 2]>,
     ) -> Option<Hypothesis> {
         let of = |place: usize| self.candidate(now, place);
         let count = now.parts.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
         for (a, b) in pairs.filter(|&(a, b)| of(a).at == of(b).at && is_asked(of(a))) {
+            if !unmerged.insert([a, b].map(|place| now.parts[place].placed.candidate)) {
+                continue;
+            }
             let mut others = now.parts.clone();
             others.remove(b);
             others.remove(a);
             let rest = self.weighed(others.clone(), Some(now), policy::ROUNDS[0]);
             let is_there = |candidate: usize| self.weighing.candidates[candidate].at == of(a).at;
-            let all = self.with_one_more(&rest, &others, &is_there);
+            let all = self.with_one_more((&rest, &others), &is_there, None);
             let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
             if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
                 let next = self.plainest(best, best.parts.len() - 1, &all);
-                return Some(self.weighed(next.parts.clone(), Some(next), policy::ROUNDS[1]));
+                return Some(self.settled(next.parts.clone(), Some(next)));
             }
         }
         None
@@ -301,63 +347,109 @@ impl<'a> Search<'a> {
     }
 
     /// Hypotheses of one more effect beside `parts`, those that the evidence asks for most first.
+    /// If `rivals_of` is an effect and a look from parts and it, those that may stand in its place:
+    /// where it is, and where a first look sees less beside it. What is seen as well elsewhere is
+    /// missing as well.
     pub(super) fn with_one_more(
         &self,
-        now: &Hypothesis,
-        parts: &[Part],
+        (now, parts): (&Hypothesis, &[Part]),
         is_asked: &dyn Fn(usize) -> bool,
+        rivals_of: Option<(&Glance, &Part)>,
     ) -> Vec<Hypothesis> {
-        let seen = self.seen(&self.glance(now, parts), parts, is_asked);
+        let glance = self.glance(now, parts);
+        let seen = self.seen(&glance, parts, is_asked);
         let most = seen.first().map_or(0.0, |(gain, _)| *gain);
         let near = |(gain, _): &&(f64, &Part)| gain.is_finite() && *gain > most - policy::FAR;
-        let chosen = seen.iter().filter(near).take(policy::WEIGHED);
+        let is_rival = |(_, part): &&(f64, &Part)| {
+            let gain = |glance: &Glance| glance.see(&part.terms).gain;
+            let at = |part: &Part| &self.weighing.candidates[part.placed.candidate].at;
+            rivals_of.is_none_or(|(beside, own)| {
+                at(own) == at(part) || gain(beside) < gain(&glance) - policy::NAMED
+            })
+        };
+        let chosen = seen.iter().filter(near).filter(is_rival).take(policy::WEIGHED);
         let mut all: Vec<Hypothesis> = chosen
             .map(|(_, part)| {
                 let parts = [parts, &[(*part).clone()]].concat();
                 let first = self.weighed(parts, Some(now), policy::ROUNDS[0]);
-                self.linearised(first, policy::ROUNDS[0])
+                self.linearised(first, &self.near(part), policy::ROUNDS[0])
             })
             .collect();
         all.sort_by(|a, b| b.posterior.total_cmp(&a.posterior));
         all
     }
 
-    /// A hypothesis whose effects are linearised at their most likely values. Where an effect is
-    /// off its shape has no slope, so that the first round says how large it is, and the next ones
-    /// how it is shaped.
-    pub(super) fn linearised(&self, first: Hypothesis, rounds: usize) -> Hypothesis {
+    /// Effects together, weighed where all of them are linearised at their most likely values.
+    pub(super) fn settled(&self, parts: Vec<Part>, from: Option<&Hypothesis>) -> Hypothesis {
+        let first = self.weighed(parts, from, policy::ROUNDS[1]);
+        self.linearised(first, &|_| true, policy::ROUNDS[1])
+    }
+
+    /// Candidates that notice where an effect is linearised: effects of other joints hardly do.
+    fn near(&self, part: &Part) -> impl Fn(&Candidate) -> bool {
+        let joint = self.weighing.candidates[part.placed.candidate].joint;
+        move |one| joint.is_none() || one.joint.is_none() || one.joint == joint
+    }
+
+    /// A hypothesis whose effects that are asked for are linearised at their most likely values.
+    /// Where an effect is off its shape has no slope, so that the first round says how large it
+    /// is, and the next ones how it is shaped.
+    fn linearised(
+        &self,
+        first: Hypothesis,
+        is_asked: &dyn Fn(&Candidate) -> bool,
+        rounds: usize,
+    ) -> Hypothesis {
         let (mut now, mut best) = (first.clone(), first);
+        let mut share = 1.0;
         for round in 0..policy::LINEARISED {
-            let Some(parts) = self.moved(&now) else { break };
-            now = self.weighed(parts, Some(&now), rounds);
-            let gain = now.posterior - best.posterior;
-            if gain > 0.0 {
-                best = now.clone();
-            }
-            let is_lost = round > 2 && gain < -policy::FAR;
-            if round > 0 && now.weighed.away < policy::SETTLED || is_lost {
+            let Some((parts, gain)) = self.moved(&now, is_asked, share) else { break };
+            if round > 0 && gain < policy::SETTLED {
                 break;
+            }
+            now = self.weighed(parts, Some(&now), rounds);
+            if now.posterior > best.posterior {
+                best = now.clone();
+            } else if round > 1 {
+                // too far, for a law that bends on the way
+                (now, share) = (best.clone(), 0.5 * share);
             }
         }
         best
     }
 
-    /// The parts at their most likely values; none if no law is curved.
-    fn moved(&self, hypothesis: &Hypothesis) -> Option<Vec<Part>> {
-        let curved = |part: &Part| part.terms.is_curved.iter().any(|is| *is);
-        if !hypothesis.parts.iter().any(curved) {
+    /// The parts with those that are asked for moved to their most likely values, curved ones by a
+    /// share of the way, and what that gains; none if no law of these is curved.
+    fn moved(
+        &self,
+        hypothesis: &Hypothesis,
+        is_asked: &dyn Fn(&Candidate) -> bool,
+        share: f64,
+    ) -> Option<(Vec<Part>, f64)> {
+        let candidates = self.weighing.candidates;
+        let is_moved = |part: &Part| {
+            let is_curved = part.terms.is_curved.iter().any(|is| *is);
+            is_curved && is_asked(self.of(part))
+        };
+        if !hypothesis.parts.iter().any(is_moved) {
             return None;
         }
-        let move_part = |(part, factors): (&Part, &[f64])| {
-            if !curved(part) {
-                return part.clone();
+        let mut steps = Vec::new();
+        let mut parts = Vec::new();
+        let factors = hypothesis.by_parts(&hypothesis.weighed.step);
+        for (part, factors) in hypothesis.parts.iter().zip(factors) {
+            if !is_moved(part) {
+                steps.resize(steps.len() + factors.len(), 0.0);
+                parts.push(part.clone());
+                continue;
             }
-            let values = part.placed.moved(self.weighing.candidates, factors);
+            let values = part.placed.moved(candidates, factors, share);
+            steps.extend(part.steps_to(&values));
             let placed = Placed { values, ..part.placed.clone() };
-            Part { terms: self.weighing.terms(&placed), placed }
-        };
-        let steps = hypothesis.by_parts(&hypothesis.weighed.step);
-        Some(hypothesis.parts.iter().zip(steps).map(move_part).collect())
+            parts.push(Part { terms: self.weighing.terms(&placed), placed });
+        }
+        let gain = hypothesis.weighed.gain(&steps);
+        Some((parts, gain))
     }
 
     /// Effects together, weighed.
@@ -405,5 +497,5 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Exchanges of one round, at most.
-const MOST_EXCHANGES: usize = 8;
+/// Exchanges of one round for each effect, at most.
+const MOST_EXCHANGES: usize = 4;

@@ -67,8 +67,7 @@ impl<'a> Setting<'a> {
         let options = (self.candidates.len(), SearchOptions::default());
         let search = Search::new(weighing, options, &mut |_| true);
         let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
-        let first = search.weighed(parts, None, policy::ROUNDS[1]);
-        let fitted = search.linearised(first, policy::ROUNDS[1]);
+        let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
     }
 

@@ -250,14 +250,14 @@ impl<'a> Weighing<'a> {
 }
 
 impl Placed {
-    /// Values with factors of their deviations, within bounds; curved ones move by one deviation at
-    /// most.
-    pub(super) fn moved(&self, candidates: &[Candidate], factors: &[f64]) -> Vec<f64> {
+    /// Values with factors of their deviations, within bounds; curved ones move by a share of the
+    /// way, and of one deviation at most.
+    pub(super) fn moved(&self, candidates: &[Candidate], factors: &[f64], share: f64) -> Vec<f64> {
         let parameters = candidates[self.candidate].law.parameters().iter();
         let all = self.values.iter().zip(&self.deviations).zip(factors).zip(parameters);
         all.map(|(((value, deviation), factor), parameter)| {
             let [low, high] = parameter.bounds;
-            let factor = if parameter.linear { *factor } else { factor.clamp(-1.0, 1.0) };
+            let factor = if parameter.linear { *factor } else { share * factor.clamp(-1.0, 1.0) };
             let by = if *deviation > 0.0 { factor * deviation } else { 0.0 };
             (value + by).clamp(low, high)
         })

@@ -24,9 +24,6 @@ use std::ops::Range;
 pub struct Weighed {
     /// Its log evidence, up to a constant that all hypotheses on the same data share.
     pub log_evidence: f64,
-    /// By how much it would grow at other values of parameters that effects are not linear in, to
-    /// second order.
-    pub away: f64,
     /// The variance of a row of each cell.
     pub variances: Vec<f64>,
     /// The most likely factors of the model's own parameters.
@@ -37,6 +34,19 @@ pub struct Weighed {
     pub step: Vec<f64>,
     /// The covariance of all factors.
     pub covariance: DMatrix<f64>,
+}
+
+impl Weighed {
+    /// By how much the log evidence grows with steps of curved factors, to second order; steps of
+    /// factors that are not curved are 0.
+    pub fn gain(&self, steps: &[f64]) -> f64 {
+        let moved: Vec<usize> = (0..steps.len()).filter(|&k| steps[k] != 0.0).collect();
+        let covariance = DMatrix::from_fn(moved.len(), moved.len(), |a, b| {
+            self.covariance[(moved[a], moved[b])] + if a == b { 1e-14 } else { 0.0 }
+        });
+        let off = DVector::from_fn(moved.len(), |k, _| steps[moved[k]]);
+        covariance.cholesky().map_or(f64::INFINITY, |factor| 0.5 * off.dot(&factor.solve(&off)))
+    }
 }
 
 /// The products of one cell: of data, own columns and those of terms, in this order.
@@ -287,7 +297,6 @@ impl Posterior {
         let factors = factors.as_slice().to_vec();
         Weighed {
             log_evidence: evidence + gained,
-            away: 0.0,
             variances,
             own: of_model.as_slice().to_vec(),
             step: factors.clone(),
@@ -312,12 +321,10 @@ impl Posterior {
         let of_curved = DMatrix::from_fn(places.len(), places.len(), |a, b| {
             covariance[(places[a], places[b])] + if a == b { 1e-14 } else { 0.0 }
         });
-        let off = DVector::from_fn(places.len(), |k, _| step[places[k]]);
         let of_prior: f64 = places.iter().map(|&k| 0.5 * believed[k].powi(2)).sum();
         if let Some(factor) = of_curved.cholesky() {
             let narrower: f64 = (0..places.len()).map(|k| factor.l_dirty()[(k, k)].ln()).sum();
             weighed.log_evidence += narrower - of_prior;
-            weighed.away = 0.5 * off.dot(&factor.solve(&off));
         }
         (weighed.covariance, weighed.step) = (covariance, step);
     }

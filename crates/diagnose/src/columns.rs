@@ -5,7 +5,7 @@ use super::data::Data;
 use super::gap::Gap;
 use super::signals::Signals;
 use crate::policy::columns::AT_REST;
-use denavit_evidence::policy::NOTHING_LIKE;
+use denavit_evidence::policy::{LEFT_OF_EXPLAINED, NOTHING_LIKE};
 use denavit_identify::doubt::{MisreadColumns, misread_columns};
 use denavit_measure::condition::Conditioned;
 
@@ -18,8 +18,17 @@ pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> 
     let logs: Vec<Conditioned> = data.signals.iter().map(conditioned).collect();
     let logs: Vec<&Conditioned> = logs.iter().collect();
     let mut found = misread_columns(data.nominal.model, &logs, None);
-    found.retain(|one| one.is_sure);
+    found.retain(|one| one.is_sure && explains(one));
     found
+}
+
+/// Whether a reading leaves little beside what it explains, as is asked of an effect that is named.
+/// What leaves as much, like a stop that was hit, is told from a misread column by no odds between
+/// readings.
+fn explains(reading: &MisreadColumns) -> bool {
+    let [as_is, as_meant] = reading.left_by_estimate;
+    let explained = (as_is * as_is - as_meant * as_meant).max(0.0).sqrt();
+    as_meant <= LEFT_OF_EXPLAINED * explained
 }
 
 /// The motion and torques of a log's rows, as the search for misread columns takes them.

@@ -165,7 +165,7 @@ pub fn diagnose(
         let search =
             Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
         let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
-        let found = search.run((begun, may_move), &|_| true, watch);
+        let found = search.run((begun, may_move), watch);
         (search, found)
     };
     let mut z = null(&sets, own);
@@ -182,12 +182,8 @@ pub fn diagnose(
         let after = setting.state(&found.after.parts, &z);
         let effects = found_effects(&setting, &search, (&found, [&before, &after]));
         let idle = effects.iter().position(|one| one.log_predicted < -policy::NAMED);
-        match idle {
-            Some(place) => {
-                search.drop(&mut found, place, &mut |taken| watch(&Progress::Found(taken.to_vec())))
-            }
-            None => break (after, effects),
-        }
+        let Some(place) = idle else { break (after, effects) };
+        search.drop(&mut found, place);
     };
     if let Some(aliases) = request.aliases {
         tell_aliases(request.candidates, aliases, &mut effects);

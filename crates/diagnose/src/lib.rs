@@ -21,6 +21,7 @@ mod drive_law;
 mod effects_found;
 mod elastic;
 mod elastic_law;
+mod exchange;
 mod excitation;
 mod experiment;
 mod fault;

@@ -29,12 +29,11 @@ pub(super) struct Found {
 }
 
 impl Search<'_> {
-    /// Searches which of the candidates that are asked for are missing, from what a search before
-    /// has found. `watch` hears of what was found so far, and says whether to go on.
+    /// Searches which candidates are missing, from what a search before has found. `watch` hears of
+    /// what was found so far, and says whether to go on.
     pub(super) fn run(
         &self,
         (begun, may_move): (&[Placed], bool),
-        is_asked: &dyn Fn(&Candidate) -> bool,
         watch: &mut dyn FnMut(&[usize]) -> bool,
     ) -> Found {
         let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
@@ -51,8 +50,7 @@ impl Search<'_> {
         let (is_full, is_stopped) = loop {
             let is_stopped = !watch(&now.candidates());
             let room = self.options.most_effects.saturating_sub(now.parts.len());
-            let next =
-                (room > 0 && !is_stopped).then(|| self.next((&now, room), is_asked, &mut steps));
+            let next = (room > 0 && !is_stopped).then(|| self.next((&now, room), &mut steps));
             if let Some(next) = next.flatten() {
                 // Effects of other joints hardly notice: they are looked at in the end.
                 let new = now.parts.len()..next.parts.len();
@@ -73,7 +71,7 @@ impl Search<'_> {
             if rivals.is_some() || is_stopped {
                 break (room == 0, is_stopped);
             }
-            let (next, others) = self.exchanged(now.clone(), is_asked, &mut unmerged);
+            let (next, others) = self.exchanged(now.clone(), &|_| true, &mut unmerged);
             let is_new = !seen.contains(&next.names());
             (now, rivals) = (next, Some(others));
             if !is_new {
@@ -85,17 +83,10 @@ impl Search<'_> {
         Found { before, after: now, rivals, steps, is_full, is_stopped, dropped, moved }
     }
 
-    /// What was found with one more effect that is asked for and worth it, or with several, if
-    /// there are any.
-    fn next(
-        &self,
-        (now, room): (&Hypothesis, usize),
-        is_asked: &dyn Fn(&Candidate) -> bool,
-        steps: &mut Vec<Step>,
-    ) -> Option<Hypothesis> {
-        let is_asked = |candidate: usize| is_asked(&self.weighing.candidates[candidate]);
-        let all = self.with_one_more((now, &now.parts), &is_asked, None);
-        if let Some(next) = self.together((now, room), &all, &is_asked) {
+    /// What was found with one more effect that is worth it, or with several, if there are any.
+    fn next(&self, (now, room): (&Hypothesis, usize), steps: &mut Vec<Step>) -> Option<Hypothesis> {
+        let all = self.with_one_more((now, &now.parts), &|_| true, None);
+        if let Some(next) = self.together((now, room), &all) {
             steps.extend(self.steps_together(now, &next));
             return Some(next);
         }
@@ -106,31 +97,24 @@ impl Search<'_> {
         Some(self.settled(chosen.parts.clone(), Some(&chosen)))
     }
 
-    /// Searches on without the effect in one place, which is no candidate any more. Effects of
-    /// other joints hardly notice.
-    pub(super) fn drop(
-        &mut self,
-        found: &mut Found,
-        place: usize,
-        watch: &mut dyn FnMut(&[usize]) -> bool,
-    ) {
-        let dropped = found.after.parts[place].placed.candidate;
+    /// What was found without the effect in one place, which is no candidate any more. Others of
+    /// its joint are exchanged, and none is added: what did not repeat is like many an effect.
+    /// Effects of other joints hardly notice.
+    pub(super) fn drop(&mut self, found: &mut Found, place: usize) {
+        let mut parts = found.after.parts.clone();
+        let dropped = parts.remove(place).placed.candidate;
         let joint = self.weighing.candidates[dropped].joint;
         let is_near = |one: &Candidate| joint.is_none() || one.joint == joint;
         self.screen[dropped].clear();
-        let mut begun: Vec<Placed> =
-            found.after.parts.iter().map(|part| part.placed.clone()).collect();
-        begun.remove(place);
-        let mut next = self.run((&begun, false), &is_near, watch);
-        for (place, rivals) in next.rivals.iter_mut().enumerate() {
-            if !is_near(self.candidate(&next.after, place)) {
-                *rivals = self.rivals_beside(&next.after, place, found);
+        let rest = self.settled(parts, Some(&found.after));
+        let (after, mut rivals) = self.exchanged(rest, &is_near, &mut BTreeSet::new());
+        for (place, rivals) in rivals.iter_mut().enumerate() {
+            if !is_near(self.candidate(&after, place)) {
+                *rivals = self.rivals_beside(&after, place, found);
             }
         }
-        found.steps.append(&mut next.steps);
         found.dropped.push(dropped);
-        (found.after, found.rivals) = (next.after, next.rivals);
-        (found.is_full, found.is_stopped) = (next.is_full, next.is_stopped);
+        (found.after, found.rivals) = (after, rivals);
     }
 
     /// What else would do in a place by an earlier search, beside what is there now.

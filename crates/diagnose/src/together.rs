@@ -24,12 +24,11 @@ impl Search<'_> {
         &self,
         (now, room): (&Hypothesis, usize),
         all: &[Hypothesis],
-        is_asked: &dyn Fn(usize) -> bool,
     ) -> Option<Hypothesis> {
         let glance = self.glance(now, &now.parts);
         let is_common = |candidate: usize| {
             let one: &Candidate = &self.weighing.candidates[candidate];
-            one.occurrence == Occurrence::Common && one.joint.is_some() && is_asked(candidate)
+            one.occurrence == Occurrence::Common && one.joint.is_some()
         };
         let is_linear = |part: &&Part| part.terms.is_curved.iter().all(|is| !is);
         let seen = self.seen(&glance, &now.parts, &is_common);

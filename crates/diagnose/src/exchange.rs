@@ -1,0 +1,150 @@
+//! Effects that were found, each exchanged for what does better in its place.
+
+use super::candidate::Candidate;
+use super::hypothesis::{Hypothesis, Part};
+use super::search::Search;
+use denavit_evidence::policy;
+use std::collections::BTreeSet;
+
+impl Search<'_> {
+    /// Exchanges effects that are asked for by what does better in their place, until nothing does;
+    /// with what else would do in the place of each. An exchange has those of its joint looked at
+    /// again. `unmerged` are pairs of candidates for which nothing else would do.
+    pub(super) fn exchanged(
+        &self,
+        mut now: Hypothesis,
+        is_asked: &dyn Fn(&Candidate) -> bool,
+        unmerged: &mut BTreeSet<[usize; 2]>,
+    ) -> (Hypothesis, Vec<Vec<Hypothesis>>) {
+        let unseen = |now: &Hypothesis| -> Vec<Option<Vec<Hypothesis>>> {
+            let asked = |place: usize| is_asked(self.candidate(now, place));
+            (0..now.parts.len()).map(|place| (!asked(place)).then(Vec::new)).collect()
+        };
+        let mut rivals = unseen(&now);
+        let mut exchanges = 0;
+        loop {
+            let may_exchange = exchanges < MOST_EXCHANGES * (1 + now.parts.len());
+            let Some(place) = rivals.iter().position(Option::is_none) else {
+                if !may_exchange {
+                    break;
+                }
+                let Some(merged) = self.merged(&now, is_asked, unmerged) else { break };
+                (now, exchanges) = (merged, exchanges + 1);
+                rivals = unseen(&now);
+                continue;
+            };
+            let joint = self.candidate(&now, place).joint;
+            let mut others = now.parts.clone();
+            let own = others.remove(place);
+            let rest = self.weighed(others.clone(), Some(&now), policy::ROUNDS[0]);
+            // what others took over is not needed any more
+            let is_idle = now.posterior - rest.posterior < policy::NAMED
+                || !self.is_worth(&rest, &now, place);
+            let mut all = Vec::new();
+            let next = if is_idle && may_exchange {
+                rivals.remove(place);
+                Some(rest)
+            } else {
+                let beside = self.glance(&now, &now.parts);
+                let is_other = |candidate| candidate != own.placed.candidate;
+                let of = Some((&beside, &own));
+                all = self.with_one_more((&rest, &others), &is_other, of);
+                all.retain(|one| {
+                    one.posterior <= now.posterior || !self.is_missing_beside(&own, one)
+                });
+                // the new one stands last there
+                for one in &mut all {
+                    let last = one.parts.len() - 1;
+                    one.parts[place..=last].rotate_right(1);
+                }
+                let better = self.better(&now, (&rest, place), &all).filter(|_| may_exchange);
+                better.map(|one| self.settled(one.parts.clone(), Some(one)))
+            };
+            let Some(next) = next else {
+                rivals[place] = Some(self.rivals(&now, place, all));
+                continue;
+            };
+            (now, exchanges) = (next, exchanges + 1);
+            for (place, rivals) in rivals.iter_mut().enumerate() {
+                let other = self.candidate(&now, place);
+                if other.joint == joint && is_asked(other) {
+                    *rivals = None;
+                }
+            }
+        }
+        (now, rivals.into_iter().flatten().collect())
+    }
+
+    /// Whether an effect is asked for beside a hypothesis, whose last one stays worth it, and may
+    /// be added to it.
+    fn is_missing_beside(&self, own: &Part, one: &Hypothesis) -> bool {
+        let place = one.parts.len();
+        if place == self.options.most_effects {
+            return false;
+        }
+        let parts = [&one.parts[..], &[own.clone()]].concat();
+        let both = self.weighed(parts, Some(one), policy::ROUNDS[0]);
+        let mut others = both.parts.clone();
+        others.remove(place - 1);
+        let without = self.weighed(others, Some(&both), policy::ROUNDS[0]);
+        both.posterior - one.posterior > policy::NAMED
+            && self.is_worth(one, &both, place)
+            && self.is_worth(&without, &both, place - 1)
+    }
+
+    /// What else would do in a place. A better formula of the same is no rival of the plain name.
+    fn rivals(&self, now: &Hypothesis, place: usize, mut all: Vec<Hypothesis>) -> Vec<Hypothesis> {
+        let is_named =
+            |one: &Hypothesis| one.posterior > now.posterior && self.is_plainer(now, one, place);
+        all.retain(|one| !is_named(one));
+        all
+    }
+
+    /// What is better in a place than what is there: of all hypotheses, and the present one, the
+    /// plainest that does nearly as well as the best. Held against the best alone, a plain name
+    /// stayed although another plain one was better.
+    fn better<'h>(
+        &self,
+        now: &'h Hypothesis,
+        (rest, place): (&Hypothesis, usize),
+        all: &'h [Hypothesis],
+    ) -> Option<&'h Hypothesis> {
+        let best = all.iter().find(|one| self.is_worth(rest, one, place))?;
+        let best = if best.posterior > now.posterior { best } else { now };
+        let plain = all.iter().chain([now]).filter(|one| self.is_plainer(one, best, place));
+        let plainest = plain.max_by(|a, b| a.posterior.total_cmp(&b.posterior)).unwrap_or(best);
+        (plainest.candidates() != now.candidates()).then_some(plainest)
+    }
+
+    /// One effect in place of two that act at one place that is asked for, if that is more likely.
+    fn merged(
+        &self,
+        now: &Hypothesis,
+        is_asked: &dyn Fn(&Candidate) -> bool,
+        unmerged: &mut BTreeSet<[usize; 2]>,
+    ) -> Option<Hypothesis> {
+        let of = |place: usize| self.candidate(now, place);
+        let count = now.parts.len();
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
+        for (a, b) in pairs.filter(|&(a, b)| of(a).at == of(b).at && is_asked(of(a))) {
+            if !unmerged.insert([a, b].map(|place| now.parts[place].placed.candidate)) {
+                continue;
+            }
+            let mut others = now.parts.clone();
+            others.remove(b);
+            others.remove(a);
+            let rest = self.weighed(others.clone(), Some(now), policy::ROUNDS[0]);
+            let is_there = |candidate: usize| self.weighing.candidates[candidate].at == of(a).at;
+            let all = self.with_one_more((&rest, &others), &is_there, None);
+            let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
+            if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
+                let next = self.plainest(best, best.parts.len() - 1, &all);
+                return Some(self.settled(next.parts.clone(), Some(next)));
+            }
+        }
+        None
+    }
+}
+
+/// Exchanges of one round for each effect, at most.
+const MOST_EXCHANGES: usize = 4;

@@ -22,13 +22,15 @@ pub(super) fn misread(data: &Data<'_>, residual: &[f64]) -> Vec<MisreadColumns> 
     found
 }
 
-/// Whether a reading leaves little beside what it explains, as is asked of an effect that is named.
-/// What leaves as much, like a stop that was hit, is told from a misread column by no odds between
-/// readings.
+/// Whether a reading leaves little beside what it explains, as is asked of an effect that is named:
+/// by an estimate, or by the model's own values, since an estimate adapts to a unit. What leaves as
+/// much, like a stop that was hit, is told from a misread column by no odds between readings.
 fn explains(reading: &MisreadColumns) -> bool {
-    let [as_is, as_meant] = reading.left_by_estimate;
-    let explained = (as_is * as_is - as_meant * as_meant).max(0.0).sqrt();
-    as_meant <= LEFT_OF_EXPLAINED * explained
+    let both = [Some(reading.left_by_estimate), reading.left_by_model];
+    both.into_iter().flatten().any(|[as_is, as_meant]| {
+        let explained = (as_is * as_is - as_meant * as_meant).max(0.0).sqrt();
+        as_meant <= LEFT_OF_EXPLAINED * explained
+    })
 }
 
 /// The motion and torques of a log's rows, as the search for misread columns takes them.

@@ -82,7 +82,7 @@ impl Search<'_> {
         if place == self.options.most_effects {
             return false;
         }
-        let parts = [&one.parts[..], &[own.clone()]].concat();
+        let parts = [&one.parts[..], std::slice::from_ref(own)].concat();
         let both = self.weighed(parts, Some(one), policy::ROUNDS[0]);
         let mut others = both.parts.clone();
         others.remove(place - 1);

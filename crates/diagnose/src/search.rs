@@ -111,8 +111,8 @@ impl<'a> Search<'a> {
         Some(self.plainest(best, best.parts.len() - 1, &all).clone())
     }
 
-    /// Of hypotheses that have another effect in one place: that which is met most often of those
-    /// that differ little from the best.
+    /// Of hypotheses that have another effect in one place: the best of those that are plainer than
+    /// the one given, or else that one.
     pub(super) fn plainest<'h>(
         &self,
         best: &'h Hypothesis,
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
     }
 
     /// Whether an effect leaves hardly more than that of another hypothesis in the same place.
-    pub(super) fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
+    fn is_same(&self, one: &Hypothesis, than: &Hypothesis, place: usize) -> bool {
         let [own, other] = [one, than].map(|of| self.candidate(of, place));
         own.at == other.at && self.apart(than, one) < policy::SAME * self.told(than, place)
     }

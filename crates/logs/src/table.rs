@@ -40,7 +40,7 @@ pub(crate) enum Places {
     /// The line of the first row of each run of rows without other lines between, with its row.
     Lines(Vec<(usize, usize)>),
     /// The message of each row.
-    #[cfg_attr(not(feature = "mcap"), allow(dead_code))]
+    #[cfg_attr(not(feature = "mcap"), allow(dead_code))] // only messages have them
     Messages(Vec<usize>),
     /// Rows are counted.
     #[default]

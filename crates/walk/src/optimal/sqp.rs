@@ -209,7 +209,7 @@ impl<P: Program + ?Sized> Search<'_, P> {
 
     /// A second subproblem about what the constraints became after the first step: the correction
     /// of second order, without which curved constraints keep steps short.
-    #[allow(clippy::type_complexity)]
+    #[allow(clippy::type_complexity)] // one caller, and a name would say no more
     fn correct(
         &mut self,
         after: &[f64],

@@ -15,6 +15,7 @@
 //! - [`measure`]: logs: read, checked, filtered; noise of their positions
 //! - [`trajectory`]: references for their joints
 //! - [`walk`]: postures and gaits
+//! - [`workflow`]: use cases as single calls: a robot and logs in, an answer out
 //! - [`report`]: tables and pictures of robots
 
 // The command is part of the library, so that other programs have it in their own process; its
@@ -41,6 +42,7 @@ pub use denavit_plants::{batch, shipped, trajectory};
 pub use denavit_report as report;
 pub use denavit_simulate as simulate;
 pub use denavit_walk as walk;
+pub use denavit_workflow as workflow;
 
 /// The examples of the guide, as tests.
 #[cfg(doctest)]

@@ -7,8 +7,7 @@ mod text;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{Input, read_input};
-use super::model_effects::EffectUse;
+use super::files::read_input;
 use super::options::{EffectsOption, Term, terms};
 use super::outputs::{check_outputs, on_stdout, write_whole};
 use clap::{Args, ValueEnum};
@@ -21,6 +20,8 @@ use denavit::regressor::{
     base_parameters, joint_basis,
 };
 use denavit::report::{Values, short};
+use denavit::workflow::EffectUse;
+use denavit::workflow::Input;
 use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;

@@ -5,14 +5,14 @@
 //! is written to standard output or error, and signals are left to the program.
 
 use super::failure::Failure;
+use super::files::{FILES, say_notes};
 use super::printed::Printed;
-use super::remarks::print_remarks;
-use super::{Answer, Cli, Command, files};
+use super::{Answer, Cli, Command};
 use clap::Parser;
-use denavit::effect::{self, Effect};
 use denavit::import::nothing_included;
 use denavit::model::Robot;
 use denavit::simulate::Log;
+use denavit::workflow::{WholeRobot, described};
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -162,10 +162,7 @@ pub fn open_model(
     effects: Option<&Path>,
     observer: Arc<dyn Observer>,
 ) -> Result<OpenedModel, Unanswered> {
-    observed_run("inspect", observer, || {
-        let (name, bytes) = files::read_model_bytes(place)?;
-        opened(&name, bytes, &files::effects_beside(place, effects)?)
-    })
+    observed_run("inspect", observer, || Ok(opened(FILES.whole_robot(place, effects)?)))
 }
 
 /// The same of the text of a model file, a URDF or an MJCF. `name` is that of the file, for
@@ -180,17 +177,15 @@ pub fn open_model_text(
     observer: Arc<dyn Observer>,
 ) -> Result<OpenedModel, Unanswered> {
     observed_run("inspect", observer, || {
-        let own = effects.map_or(Ok(Vec::new()), files::given_effects)?;
-        let bytes = files::described(name, text.as_bytes().to_vec(), &mut nothing_included)?;
-        opened(name, bytes, &own)
+        let own = effects.map_or(Ok(Vec::new()), |folder| FILES.given_effects(folder))?;
+        let read = described(name.to_owned(), text.as_bytes().to_vec(), &mut nothing_included)?;
+        Ok(opened(WholeRobot::new(read, &own)?))
     })
 }
 
-fn opened(name: &str, bytes: Vec<u8>, own: &[Effect]) -> Result<OpenedModel, Failure> {
-    let robot = effect::read_model(name, &bytes, own).map_err(Failure::Model)?;
-    print_remarks(name, &robot, &bytes);
-    // a model that was read is UTF-8
-    Ok(OpenedModel { robot, source: String::from_utf8_lossy(&bytes).into_owned() })
+fn opened(read: WholeRobot) -> OpenedModel {
+    say_notes(&read.notes);
+    OpenedModel { robot: read.robot, source: read.source }
 }
 
 fn parsed(arguments: &[OsString]) -> Result<Command, Unanswered> {
@@ -206,7 +201,7 @@ fn observed_run<T>(
     run: impl FnOnce() -> Result<T, Failure>,
 ) -> Result<T, Unanswered> {
     IS_EMBEDDED.store(true, Ordering::Relaxed);
-    files::begin();
+    FILES.forget();
     OBSERVED.set(Some(Observed { observer, thread: thread::current().id() }));
     let ran = catch_unwind(AssertUnwindSafe(run));
     OBSERVED.set(None);

@@ -1,22 +1,22 @@
 //! `denavit excite`: trajectories that excite what is to be identified.
 
-mod answer;
-
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{load_beside, read_file};
-use super::model_effects::{EffectUse, ModelApart};
+use super::files::{load_beside, read_file, read_robot};
+use super::json::write_json;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
-use answer::Found;
 use clap::{Args, ValueEnum};
 use denavit::excite::{
     Check, Columns, Ends, ExciteOptions, Excited, Family, Objective, check_trajectory, excite,
 };
 use denavit::model::Robot;
-use denavit::report::{ExcitationPicture, excitation_picture};
+use denavit::report::{
+    ExcitationAnswer, ExcitationPicture, excitation_picture, excited_json, excited_text,
+};
 use denavit::simulate::scenario::read_trajectory;
+use denavit::workflow::EffectUse;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -236,7 +236,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let is_answered = on_stdout(&files, arguments.json)?;
     check_outputs(&files)?;
     let folder = arguments.effects.effects.as_deref();
-    let model = ModelApart::read(&arguments.model.model, folder)?;
+    let model = read_robot(&arguments.model.model, folder)?;
     let (effects, robot) = (model.left_out(), model.apart.robot);
     let options = arguments.options(&robot)?;
     if let Some(path) = &arguments.check {
@@ -261,14 +261,15 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_whole(path, picture(&found).as_bytes())?;
     }
     let (stack, check) = (&found.stack, &found.found().ended);
-    let shown = Found { robot: &robot, effects: &effects, stack, check };
+    let excited = Some(&found);
+    let shown = ExcitationAnswer { robot: &robot, effects: &effects, stack, check, excited };
     let is_withheld = answer == Answer::Negative
         && arguments.output.as_ref().is_some_and(|path| path.as_os_str() == "-");
     match (is_answered && !is_withheld, arguments.json) {
         (true, _) => {}
-        (_, true) => answer::write_json_answer(out, &shown, Some(&found))?,
+        (_, true) => write_json(out, &excited_json(&shown))?,
         (_, false) => {
-            answer::write_text(out, &shown, Some(&found))?;
+            write!(out, "{}", excited_text(&shown))?;
             let output = arguments.output.as_ref().filter(|_| answer == Answer::Done);
             say_written(out, &[output, arguments.svg.as_ref()])?;
         }
@@ -296,10 +297,10 @@ fn checked(
     let bytes = read_file(path)?;
     let trajectory = read_trajectory(&name, &bytes, &load).map_err(Failure::Scenario)?;
     let (check, stack) = check_trajectory(robot, options, &trajectory).map_err(Failure::Excite)?;
-    let shown = Found { robot, effects, stack: &stack, check: &check };
+    let shown = ExcitationAnswer { robot, effects, stack: &stack, check: &check, excited: None };
     match arguments.json {
-        true => answer::write_json_answer(out, &shown, None)?,
-        false => answer::write_text(out, &shown, None)?,
+        true => write_json(out, &excited_json(&shown))?,
+        false => write!(out, "{}", excited_text(&shown))?,
     }
     Ok(verdict(&check))
 }

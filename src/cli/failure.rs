@@ -1,20 +1,18 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
-use super::identify::IdentifyFailure;
 use super::output_failure::OutputFailure;
-use denavit::diagnose::DiagnosisError;
 use denavit::emit::EmitError;
 use denavit::excite::ExciteError;
 use denavit::function::FunctionName;
+use denavit::identify::UpdateError;
 use denavit::import::{ExportError, ImportError};
 use denavit::model::{BakeError, ModelError};
-use denavit::plants::effect::AddedError;
 use denavit::program::LowerError;
 use denavit::regressor::equations::EquationsError;
 use denavit::regressor::{BaseError, DecomposeError};
-use denavit::shipped::ShippedModel;
-use denavit::simulate::LogFaults;
+use denavit::report::html::FormulaError;
 use denavit::simulate::scenario::ScenarioError;
+use denavit::workflow::{self, Hint, reason};
 use std::fmt;
 use std::io;
 
@@ -29,20 +27,10 @@ pub(crate) enum Failure {
     Export(String, ExportError),
     /// A file of states is wrong; holds the file and why.
     States(String, String),
-    /// Neither a file nor a shipped model has this name; holds the name, the shipped model that was
-    /// meant, perhaps, and whether it can only be a file.
-    NoModel { name: String, nearest: Option<&'static str>, is_path: bool },
     /// A file cannot be read.
     Read { file: String, error: io::Error },
-    /// A file is larger than any model.
-    TooLarge { file: String, limit: u64 },
     /// An output is not written.
     Output(OutputFailure),
-    /// A model has an effect beside its equations, for which a command has no place; holds model
-    /// and effect.
-    Effect(String, String),
-    /// The effects of a model cannot be taken apart; holds the model.
-    Apart(String, AddedError),
     /// Values are missing that the baked flavour needs.
     Bake(BakeError),
     /// A model holds numbers that no computer arithmetic holds; holds model and cause.
@@ -71,26 +59,17 @@ pub(crate) enum Failure {
     TooLongToSet { name: String, formulas: usize },
     /// A scenario file is wrong.
     Scenario(ScenarioError),
-    /// Neither a file nor a shipped one of a kind has this name; holds both, the one that was
-    /// meant, perhaps, and all there are.
-    NoShipped {
-        kind: &'static str,
-        name: String,
-        nearest: Option<&'static str>,
-        all: &'static [ShippedModel],
-    },
-    /// A model stands where a scenario should; holds its name.
-    ModelForScenario(String),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
     Window([f64; 2]),
     /// No trajectory can be looked for.
     Excite(ExciteError),
-    /// Nothing is identified.
-    Identify(IdentifyFailure),
-    /// Nothing is diagnosed.
-    Diagnose(DiagnosisError),
-    /// A log is wrong.
-    Log(LogFaults),
+    /// A model has an effect beside its equations, for which a command has no place; holds model
+    /// and effect.
+    Effect(String, String),
+    /// A use case has no answer.
+    Work(workflow::Error),
+    /// Options do not go together, or ask for what is not there.
+    Misuse(Misuse),
     /// A gait has no answer; holds the scenario and why.
     Walk(String, String),
     /// A step was given for the scheme that chooses its own.
@@ -99,30 +78,61 @@ pub(crate) enum Failure {
     Stdout(io::Error),
 }
 
-/// Errors of writing that are not turned into another failure are those of standard output.
-impl Failure {
-    /// All of some logs, or the faults of all that are wrong.
-    pub(crate) fn of_any_log<T>(
-        logs: impl Iterator<Item = Result<T, Self>>,
-    ) -> Result<Vec<T>, Self> {
-        let (mut right, mut wrong) = (Vec::new(), Vec::new());
-        for log in logs {
-            match log {
-                Ok(log) => right.push(log),
-                Err(Self::Identify(IdentifyFailure::Logs(faults))) => wrong.extend(faults),
-                Err(failure) => return Err(failure),
+/// What an answer of a use case has no place for.
+#[derive(Debug)]
+pub(crate) enum Misuse {
+    /// Instruments for a method that takes none.
+    UnusedInstruments,
+    /// A picture of a simulation that was not made.
+    NotSimulated,
+    /// What was found makes no model.
+    NoModel(UpdateError),
+    /// A formula is not shown in a page.
+    Formula(FormulaError),
+}
+
+impl fmt::Display for Misuse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnusedInstruments => {
+                write!(f, "--instruments, and no method that takes them\n  hint: --method iv does")
             }
+            Self::NotSimulated => write!(
+                f,
+                "--motion-svg: no log was simulated again\n  hint: --validate or --controller \
+                 does that, for robots on a fixed base"
+            ),
+            Self::NoModel(error) => write!(f, "{error}"),
+            Self::Formula(error) => write!(f, "{error}"),
         }
-        if wrong.is_empty() { Ok(right) } else { Err(IdentifyFailure::Logs(wrong).into()) }
     }
 }
 
-impl From<IdentifyFailure> for Failure {
-    fn from(failure: IdentifyFailure) -> Self {
-        Self::Identify(failure)
+impl From<Misuse> for Failure {
+    fn from(misuse: Misuse) -> Self {
+        Self::Misuse(misuse)
     }
 }
 
+impl From<workflow::Error> for Failure {
+    fn from(error: workflow::Error) -> Self {
+        Self::Work(error)
+    }
+}
+
+/// A hint of the library by the option that is meant.
+fn by_option(hint: &Hint) -> String {
+    match hint {
+        Hint::AcceptSuspicious => "--accept-suspicious takes the logs as they are".to_owned(),
+        Hint::GiveInstruments => {
+            "--instruments LOG.., or --controller FILE to simulate them".to_owned()
+        }
+        Hint::SimulateInstruments => "--controller FILE simulates instruments".to_owned(),
+        hint => hint.to_string(),
+    }
+}
+
+/// Errors of writing that are not turned into another failure are those of standard output.
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Stdout(error)
@@ -143,21 +153,12 @@ impl Failure {
 
     fn hint(&self) -> Option<String> {
         Some(match self {
-            Self::NoModel { nearest: Some(nearest), .. } => {
-                format!("`{nearest}` is a shipped model")
-            }
-            Self::NoModel { is_path: false, .. } => {
-                let names: Vec<_> = denavit::shipped::MODELS.iter().map(|m| m.name).collect();
-                format!("give the path of a model file, or one of {}", names.join(", "))
-            }
-            Self::NoModel { .. } => "check the path".to_owned(),
             Self::Read { error, .. } if error.kind() == io::ErrorKind::IsADirectory => {
                 "give the path of one model file in it".to_owned()
             }
             Self::Read { error, .. } if error.kind() == io::ErrorKind::PermissionDenied => {
                 "check the permissions of the file and of its directories".to_owned()
             }
-            Self::TooLarge { .. } => "a model is a table of some kilobytes: check the path".into(),
             Self::NoMotionTerms(_) => {
                 "--terms inertia,gravity; --with friction,rotor adds the parameters of joints"
                     .to_owned()
@@ -177,14 +178,10 @@ impl Failure {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
             Self::StepOfEventScheme => "add --scheme time-stepping".to_owned(),
-            Self::NoShipped { kind, nearest: Some(nearest), .. } => {
-                format!("`{nearest}` is a shipped {kind}")
+            Self::Work(error) => {
+                let hints: Vec<String> = error.hints().iter().map(by_option).collect();
+                return (!hints.is_empty()).then(|| hints.join("\n  hint: "));
             }
-            Self::NoShipped { kind, all, .. } => {
-                let names: Vec<_> = all.iter().map(|one| one.name).collect();
-                format!("give the path of a {kind} file, or one of {}", names.join(", "))
-            }
-            Self::ModelForScenario(name) => smallest_scenario(name),
             Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
             | Self::Import(_)
@@ -192,11 +189,8 @@ impl Failure {
             | Self::States(..)
             | Self::Output(_)
             | Self::Scenario(_)
-            | Self::Apart(..)
             | Self::Excite(_)
-            | Self::Identify(_)
-            | Self::Diagnose(_)
-            | Self::Log(_)
+            | Self::Misuse(_)
             | Self::Walk(..)
             | Self::Base(..)
             | Self::Decompose(..)
@@ -206,17 +200,6 @@ impl Failure {
             | Self::Stdout(_) => return None,
         })
     }
-}
-
-/// What to write where a model alone was given.
-fn smallest_scenario(model: &str) -> String {
-    let model = serde_json::Value::from(model);
-    format!(
-        "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
-         \"duration_s\": 1}} lets it go from rest; docs/reference/scenario.md has the rest, \
-         `denavit schema scenario` all keys",
-        denavit::simulate::scenario::FORMAT
-    )
 }
 
 /// Why a model has none of these functions.
@@ -277,22 +260,11 @@ impl Failure {
             Self::NoParallelAxes(model) => {
                 write!(f, "{model}: there are no parallel axes whose angles could be cumulated")?;
             }
-            Self::NoModel { name, is_path: true, .. } => write!(f, "{name}: no such file")?,
-            Self::NoModel { name, is_path: false, .. } => {
-                write!(f, "{name}: there is no such file, and no shipped model of that name")?;
-            }
             Self::Read { file, error } => write!(f, "{file}: cannot be read: {}", reason(error))?,
-            Self::TooLarge { file, limit } => {
-                write!(f, "{file}: has more than the {limit} bytes that are read")?;
-            }
             Self::NoMotionTerms(model) => {
                 write!(f, "{model}: base parameters need inertia or gravity among the terms")?;
             }
             Self::ModelledAndMore => write!(f, "--with modelled stands alone")?,
-            Self::Effect(model, effect) => {
-                write!(f, "{model}: this has no place for the effect `{effect}`")?;
-            }
-            Self::Apart(model, error) => write!(f, "{model}: {error}")?,
             Self::Lower(model, error) => write!(f, "{model}: {error}")?,
             Self::Emit(model, error) => write!(f, "{model}: {error}")?,
             Self::NoFunction { model, asked } => {
@@ -307,18 +279,14 @@ impl Failure {
             }
             Self::Scenario(error) => write!(f, "{error}")?,
             Self::Excite(error) => write!(f, "{error}")?,
-            Self::Identify(error) => write!(f, "{error}")?,
-            Self::Diagnose(error) => write!(f, "{error}")?,
-            Self::Log(error) => write!(f, "{error}")?,
+            Self::Effect(model, effect) => {
+                write!(f, "{model}: this has no place for the effect `{effect}`")?;
+            }
+            Self::Work(error) => write!(f, "{error}")?,
+            Self::Misuse(error) => write!(f, "{error}")?,
             Self::Walk(scenario, why) => write!(f, "{scenario}: {why}")?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
-            }
-            Self::NoShipped { kind, name, .. } => {
-                write!(f, "{name}: there is no such file, and no shipped {kind} of that name")?;
-            }
-            Self::ModelForScenario(name) => {
-                write!(f, "{name}: this is a model, where a scenario is simulated")?;
             }
             Self::Window([from, to]) => write!(f, "--window: the run is from {from} to {to} s")?,
             Self::Stdout(error) => {
@@ -343,14 +311,3 @@ impl Failure {
 }
 
 impl std::error::Error for Failure {}
-
-/// What the system says, without its error number.
-pub(super) fn reason(error: &io::Error) -> String {
-    let text = error.to_string();
-    let end = text.find(" (os error").unwrap_or(text.len());
-    let mut text = text[..end].to_owned();
-    if let Some(first) = text.get_mut(..1) {
-        first.make_ascii_lowercase();
-    }
-    text
-}

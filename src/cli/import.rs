@@ -2,7 +2,7 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_below, read_model_bytes_as_they_are};
+use super::files::FILES;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::say_error;
 use clap::{Args, ValueEnum};
@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let outputs = [Some(&arguments.out)];
     on_stdout(&outputs, false)?;
     check_outputs(&outputs)?;
-    let (name, bytes) = read_model_bytes_as_they_are(&arguments.robot)?;
+    let (name, bytes) = FILES.as_it_is(&arguments.robot)?;
     let options = Options {
         base: match arguments.base {
             None => BaseChoice::AsDescribed,
@@ -80,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             Way::Free => Mimic::Free,
         },
     };
-    let mut include = |file: &str| read_below(&arguments.robot, file);
+    let mut include = |file: &str| FILES.below(&arguments.robot, file);
     let imported = import(&name, &bytes, &options, &mut include).map_err(Failure::Import)?;
     for note in &imported.notes {
         say_error(&format_args!("note: {note}"));

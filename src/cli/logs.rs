@@ -1,34 +1,11 @@
-//! Logs of any format in, runs out.
+//! Runs as files of any format.
 
 use super::failure::Failure;
-use super::files::open;
-use super::identify::IdentifyFailure;
 use super::output_failure::OutputFailure;
-use denavit::logs::{self, Opening};
-use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
+#[cfg(feature = "mcap")]
+use denavit::logs;
 use denavit::simulate::Log;
 use std::path::Path;
-
-/// A log of a robot, of any format. Of one that is cut, the whole part if that is accepted.
-pub(crate) fn measured_log(
-    path: &Path,
-    robot: LogOf<'_>,
-    (mapping, accepts_cut): (&ColumnMapping, bool),
-) -> Result<MeasuredLog, Failure> {
-    let file = path.display().to_string();
-    // a folder is opened by its metadata
-    let opened = match path.is_dir() {
-        true => None,
-        false => {
-            let failed = |error| Failure::Read { file: file.clone(), error };
-            Some(open(path).map_err(failed)?)
-        }
-    };
-    let how = Opening { accepts_cut, named: mapping.beginnings() };
-    let log = logs::open(path, opened, &how)
-        .map_err(|faults| IdentifyFailure::from(of_file(&file, faults)))?;
-    Ok(read_opened(&file, log, robot, mapping).map_err(IdentifyFailure::from)?)
-}
 
 /// A run as the file of a name: MCAP if it ends so, otherwise CSV.
 pub(crate) fn run_file(path: &Path, log: &Log) -> Result<Vec<u8>, Failure> {

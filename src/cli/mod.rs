@@ -25,7 +25,6 @@ mod inspect;
 mod json;
 mod list;
 mod logs;
-mod model_effects;
 mod options;
 mod output_failure;
 mod outputs;

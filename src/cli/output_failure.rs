@@ -1,6 +1,7 @@
 //! Why an output is not written.
 
-use super::failure::{Failure, reason};
+use super::failure::Failure;
+use denavit::workflow::reason;
 use std::fmt;
 use std::io;
 

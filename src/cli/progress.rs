@@ -3,6 +3,7 @@
 
 use super::embedded::{Observed, observed};
 use super::printed::shown;
+use denavit::workflow;
 use std::io::{self, IsTerminal, Write};
 
 /// The line; it is cleared in the end.
@@ -32,6 +33,22 @@ impl Progress {
             observed.progress(what, Some(share));
         }
         self.write(&format!("{what}: {:.0} %", 100.0 * share));
+    }
+
+    /// Says how far a use case has come.
+    pub(crate) fn report(&self, at: &workflow::Progress<'_>) {
+        match at.share {
+            Some(share) => self.show_share(&at.stage.to_string(), share),
+            None => self.show(&at.stage.to_string()),
+        }
+    }
+
+    /// Watches a use case, and stops nothing.
+    pub(crate) fn observer(&self) -> impl FnMut(&workflow::Progress<'_>) -> bool + '_ {
+        |at| {
+            self.report(at);
+            true
+        }
     }
 
     /// Takes the line away, so that an answer can be written.

@@ -1,18 +1,11 @@
-//! What is said of a model that is read as it stands: faults that pass, and work that is large.
+//! What is said of work that is large.
 
 use super::say_error;
-use denavit::model::{Robot, remarks};
+use denavit::model::Robot;
 
 /// From so many joints on, functions whose size grows with the cube of that number take seconds:
 /// 3 n^3 operations are then half a million.
 const MANY_JOINTS: usize = 55;
-
-/// Writes the remarks on a model, read from `source`, to standard error.
-pub(crate) fn print_remarks(file: &str, robot: &Robot, source: &[u8]) {
-    for remark in remarks(robot, source) {
-        say_error(&format_args!("remark: {}", remark.message(file)));
-    }
-}
 
 /// Writes to standard error that the functions of a long chain take their time.
 pub(crate) fn print_size(robot: &Robot, has_derivatives: bool) {

@@ -1,24 +1,18 @@
 //! `denavit simulate`: run a scenario.
 
-mod joints;
-
 use super::Answer;
 use super::failure::Failure;
-use super::files::{load_beside, read_or_shipped};
+use super::files::FILES;
 use super::json::write_json;
 use super::logs::run_file;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::{Args, ValueEnum};
-use denavit::model::json::{self, Value};
-use denavit::report::{RunPicture, run_picture};
-use denavit::shipped;
-use denavit::simulate::scenario::{RunScheme, Scenario};
-use denavit::simulate::{Log, Run, Stop};
-use denavit::walk;
-use serde_json::json as value;
+use denavit::report::{drawn_run, run_json, run_text};
+use denavit::simulate::scenario::RunScheme;
+use denavit::simulate::{Log, Stop};
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::path::PathBuf;
+use std::time::Instant;
 
 /// Simulate a scenario: a robot, its start, its control, the ground
 ///
@@ -91,7 +85,7 @@ pub(super) fn run_kept(
 ) -> Result<(Answer, Log), Failure> {
     let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let mut scenario = open(&arguments.scenario)?;
+    let mut scenario = FILES.scenario(&arguments.scenario)?;
     match arguments.scheme {
         Some(SchemeName::Event) => scenario.scheme = RunScheme::Event,
         Some(SchemeName::TimeStepping) => scenario.scheme = RunScheme::TimeStepping,
@@ -118,150 +112,17 @@ pub(super) fn run_kept(
     if let Some(path) = &arguments.svg {
         // a run that ends before the window is drawn as it is
         let window = arguments.window.filter(|[from, _]| *from < run.end.t_s);
-        let drawn = draw(&mut scenario, &run, window);
+        let drawn = drawn_run(&mut scenario, &run, window);
         write_whole(path, drawn.as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
-        (_, true) => write_json(out, &summary(&scenario, &run, &broken))?,
+        (_, true) => write_json(out, &run_json(&scenario, &run, &broken))?,
         (_, false) => {
-            print(out, &scenario, &run, &broken, took)?;
+            write!(out, "{}", run_text(&scenario, &run, &broken, took))?;
             say_written(out, &outputs)?;
         }
     }
     let good = run.stop == Stop::End && broken.is_empty();
     Ok((if good { Answer::Done } else { Answer::Negative }, run.log))
-}
-
-/// The picture of a run.
-pub(super) fn draw(scenario: &mut Scenario, run: &Run, window_s: Option<[f64; 2]>) -> String {
-    let title = scenario.name.replace('_', " ");
-    let subtitle = format!(
-        "{}, {}: {} at {:.3} s",
-        scenario.plant.model().name,
-        scheme_text(scenario),
-        run.stop,
-        run.end.t_s
-    );
-    let picture = RunPicture { title: &title, subtitle: &subtitle, log: &run.log, window_s };
-    run_picture(scenario.plant.as_mut(), &picture)
-}
-
-fn scheme_text(scenario: &Scenario) -> String {
-    match scenario.scheme {
-        RunScheme::Event => "from event to event".to_owned(),
-        RunScheme::TimeStepping => format!("by steps of {} s", scenario.stepping.step_s),
-    }
-}
-
-fn shown(path: &Path) -> String {
-    path.display().to_string()
-}
-
-pub(super) fn open(path: &Path) -> Result<Scenario, Failure> {
-    let name = shown(path);
-    let bytes = match read_or_shipped(path, ("scenario", shipped::SCENARIOS)) {
-        Err(Failure::NoShipped { .. }) if shipped::find_referred(&name).is_some() => {
-            return Err(Failure::ModelForScenario(name));
-        }
-        read => read?,
-    };
-    if is_model(&bytes) {
-        return Err(Failure::ModelForScenario(name));
-    }
-    let load = |model: &str| load_beside(path, model);
-    walk::read_scenario(&name, &bytes, &load).map_err(Failure::Scenario)
-}
-
-/// Whether a file says of itself that it is a model.
-fn is_model(bytes: &[u8]) -> bool {
-    let root = json::parse(bytes).ok();
-    let tag = root.as_ref().and_then(|root| root.entries().iter().find(|(key, _)| key == "format"));
-    let text = tag.map(|(_, tag)| &tag.value);
-    matches!(text, Some(Value::Text(tag)) if tag.starts_with("denavit-model/"))
-}
-
-fn summary(
-    scenario: &Scenario,
-    run: &Run,
-    broken: &[(&'static str, f64, f64)],
-) -> serde_json::Value {
-    let (audit, cost) = (&run.audit, &run.statistics);
-    value!({
-        "scenario": scenario.name,
-        "model": scenario.plant.model().name,
-        "scheme": scenario.scheme.word(),
-        "stop": run.stop.word(),
-        "message": run.stop.to_string(),
-        "hint": scenario.hint(&run.stop),
-        "note": scenario.note(run),
-        "end_s": run.end.t_s,
-        "events": run.events.len(),
-        "steps": cost.steps,
-        "rejected": cost.rejected,
-        "evaluations": cost.evaluations,
-        "audit": {
-            "energy_j": audit.energy_j,
-            "momentum_ns": audit.momentum_ns,
-            "impact_gain_j": audit.impact_gain_j,
-            "penetration_m": audit.penetration_m,
-            "complementarity_nm": audit.complementarity_nm,
-            "adhesion_n": audit.adhesion_n,
-            "separation_m_s": audit.separation_m_s,
-            "cone_n": audit.cone_n,
-            "friction_angle_rad": audit.friction_angle_rad,
-            "friction_demand": audit.friction_demand,
-            "friction_total": audit.friction_total,
-            "zmp_m": audit.zmp_m,
-            "zmp_margin_m": finite(audit.zmp_margin_m),
-            "force_n": audit.force_n,
-            "torque": audit.torque,
-        },
-        "joints": joints::joints(scenario, run),
-        "exceeded": joints::exceeded(scenario, run),
-        "broken": broken.iter().map(|(law, _, _)| *law).collect::<Vec<_>>(),
-    })
-}
-
-fn finite(number: f64) -> Option<f64> {
-    number.is_finite().then_some(number)
-}
-
-fn print(
-    out: &mut dyn Write,
-    scenario: &Scenario,
-    run: &Run,
-    broken: &[(&'static str, f64, f64)],
-    took: Duration,
-) -> Result<(), Failure> {
-    let scheme = scheme_text(scenario);
-    writeln!(out, "{}, {scheme}: {} at {:.6} s", scenario.name, run.stop, run.end.t_s)?;
-    let simulated = run.end.t_s - scenario.initial.t_s;
-    let speed = simulated / took.as_secs_f64().max(1e-9);
-    let cost = &run.statistics;
-    writeln!(
-        out,
-        "{} events, {} steps ({} rejected), {} evaluations, {speed:.1} times real time",
-        run.events.len(),
-        cost.steps,
-        cost.rejected,
-        cost.evaluations,
-    )?;
-    if let Some(hint) = scenario.hint(&run.stop) {
-        writeln!(out, "hint: {hint}")?;
-    }
-    if let Some(note) = scenario.note(run) {
-        writeln!(out, "note: {note}")?;
-    }
-    writeln!(out)?;
-    for (_, law, worst) in run.audit.listed(scenario.plant.model()) {
-        writeln!(out, "{law:<40} {worst:>10.3e}")?;
-    }
-    for (law, found, allowed) in broken {
-        writeln!(out, "broken: {law}: {found:.3e}, and {allowed:.0e} is tolerated")?;
-    }
-    if let Some(hint) = scenario.broken_hint(broken) {
-        writeln!(out, "hint: {hint}")?;
-    }
-    Ok(joints::print(out, scenario, run)?)
 }

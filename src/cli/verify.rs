@@ -2,9 +2,8 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::read_file;
+use super::files::{read_file, read_robot};
 use super::json::write_json;
-use super::model_effects::ModelApart;
 use super::options::EffectsOption;
 use clap::Args;
 use denavit::regressor::{Certificate, ParameterGroup, Verdict};
@@ -54,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let certificate: Certificate = serde_json::from_slice(&bytes).map_err(|error| {
         Failure::Certificate { file: arguments.certificate.display().to_string(), error }
     })?;
-    let model = ModelApart::read(&arguments.model, arguments.effects.effects.as_deref())?;
+    let model = read_robot(&arguments.model, arguments.effects.effects.as_deref())?;
     let robot = model.apart.robot;
     let verdict = certificate.verify(&robot);
     let about: Vec<&str> = certificate.about().into_iter().map(ParameterGroup::as_str).collect();

@@ -1,7 +1,6 @@
 //! `denavit walk`: gaits, their stability, and what each criterion misses.
 
 mod balance;
-mod balance_log;
 mod capturability;
 mod capture_steps;
 mod compare;
@@ -13,23 +12,13 @@ mod robustness;
 
 use super::Answer;
 use super::failure::Failure;
-use balance::What;
 use clap::{Args, Subcommand};
-use denavit::plants::PlantModel;
+use denavit::report::BalanceCriterion;
 use std::io::Write;
 
 /// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots
 /// scuff, and runs would end there.
 const FALLBACK_FRICTION: f64 = 0.8;
-
-/// A model that names nothing that must not touch the ground never falls, whatever it does.
-fn say_what_is_no_fall(out: &mut dyn Write, model: &PlantModel) -> Result<(), Failure> {
-    if model.fall_points.is_empty() {
-        let name = &model.name;
-        writeln!(out, "\nnothing counts as a fall: {name} has no `bodies_that_must_not_touch`")?;
-    }
-    Ok(())
-}
 
 /// Walk: design gaits, and say whether they are stable
 ///
@@ -83,10 +72,10 @@ Example:
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     match &arguments.command {
-        Command::Zmp(arguments) => balance::run(What::Zmp, arguments, out),
-        Command::Fri(arguments) => balance::run(What::Fri, arguments, out),
-        Command::Capture(arguments) => balance::run(What::Capture, arguments, out),
-        Command::Momentum(arguments) => balance::run(What::Momentum, arguments, out),
+        Command::Zmp(arguments) => balance::run(BalanceCriterion::Zmp, arguments, out),
+        Command::Fri(arguments) => balance::run(BalanceCriterion::Fri, arguments, out),
+        Command::Capture(arguments) => balance::run(BalanceCriterion::Capture, arguments, out),
+        Command::Momentum(arguments) => balance::run(BalanceCriterion::Momentum, arguments, out),
         Command::Design(arguments) => design::run(arguments, out),
         Command::Poincare(arguments) => poincare::run(arguments, out),
         Command::Basin(arguments) => robustness::run_basin(arguments, out),

@@ -3,10 +3,10 @@
 use super::{CertificateJson, Found};
 use crate::cli::failure::Failure;
 use crate::cli::json::{Ordered, write_json};
-use crate::cli::model_effects::EffectUse;
 use denavit::emit::latex::{base_notation, base_sum};
 use denavit::expr::ExprId;
 use denavit::number::Residue;
+use denavit::workflow::EffectUse;
 use serde::Serialize;
 use std::io::Write;
 

@@ -2,7 +2,6 @@
 
 use super::super::elimination::{Elimination, columns};
 use super::super::failure::Failure;
-use crate::cli::model_effects::EffectUse;
 use denavit::emit::latex::{equations_decomposition, robot_decomposition};
 use denavit::expr::text::print_with_intermediates;
 use denavit::expr::{Dag, ExprId};
@@ -12,6 +11,7 @@ use denavit::model::equations::Equations;
 use denavit::regressor::equations::{EquationsRegressor, equations_regressor};
 use denavit::regressor::{RegressorOptions, RobotDecomposition, Theta, decompose_robot};
 use denavit::report::{Align, Table};
+use denavit::workflow::EffectUse;
 use serde::Serialize;
 use std::io::Write;
 

@@ -1,16 +1,17 @@
 //! A blind diagnosis: a leg with an effect that is drawn by the seed, told from model and logs
 //! alone, then revealed beside the answer.
 
-use super::super::diagnose::{self, Named};
+use super::super::diagnose;
 use super::super::failure::Failure;
 use super::super::files::load_beside;
 use super::super::progress::Progress;
 use super::{Written, write};
 use denavit::identify::{NewEffect, NewPlace, with_effects};
 use denavit::numerics::Random;
-use denavit::report::{paragraph, short};
+use denavit::report::{paragraph, short, verdict_paragraph};
 use denavit::shipped;
 use denavit::walk;
+use denavit::workflow::NamedEffect;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -46,7 +47,7 @@ pub(super) struct Diagnosed {
     model: &'static str,
     hidden: HiddenJson,
     verdict: &'static str,
-    answer: Vec<Named>,
+    answer: Vec<NamedEffect>,
     outcome: Outcome,
     /// Gaps of held-out torques: before, after, noise.
     gap: [f64; 3],
@@ -97,8 +98,8 @@ impl Diagnosed {
         }
         progress.show("diagnosing it");
         let folder = directory.join("blind");
-        let shown = diagnose::of_motions(MODEL, &logs, &folder, progress)?;
-        for (path, what) in shown.files() {
+        let (shown, folder) = diagnose::of_motions(MODEL, &logs, &folder, progress)?;
+        for (path, what) in folder.files(&shown) {
             let bytes = std::fs::metadata(&path).map_or(0, |file| file.len() as usize);
             files.push(Written { file: path.display().to_string(), bytes, what: what.to_owned() });
         }
@@ -115,7 +116,7 @@ impl Diagnosed {
             answer,
             gap: [gaps.before.all, gaps.after.all, gaps.floor.all],
             files,
-            told: shown.paragraph(),
+            told: verdict_paragraph(&shown.found, &shown.candidates),
         })
     }
 
@@ -170,7 +171,7 @@ impl HiddenJson {
         Self { effect, at, parameters }
     }
 
-    fn compare(&self, answer: &[Named]) -> Outcome {
+    fn compare(&self, answer: &[NamedEffect]) -> Outcome {
         let is_it = |effect: &str, at: &str| effect == self.effect && at == self.at;
         let is_named = answer.iter().any(|one| is_it(&one.effect, &one.at));
         let mut others = answer.iter().flat_map(|one| &one.or);

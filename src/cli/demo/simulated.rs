@@ -2,8 +2,8 @@
 
 use super::super::failure::Failure;
 use super::super::files::load_beside;
-use super::super::simulate::draw;
 use super::{Written, write};
+use denavit::report::drawn_run;
 use denavit::report::{Align, Table};
 use denavit::shipped;
 use denavit::simulate::Stop;
@@ -62,7 +62,7 @@ impl Simulated {
         let broken = scenario.broken(&run).into_iter().map(|(law, _, _)| law).collect();
         let file = |ending: &str| format!("{name}_{}.{ending}", scheme.word());
         let csv = write(directory, &file("csv"), &run.log.to_csv(), "log of the run".to_owned())?;
-        let drawn = draw(&mut scenario, &run, None);
+        let drawn = drawn_run(&mut scenario, &run, None);
         let svg = write(directory, &file("svg"), &drawn, "picture of the run".to_owned())?;
         let audit = &run.audit;
         Ok(Self {

@@ -1,11 +1,12 @@
 //! A diagnosis as a page of HTML.
 
-use super::{Arguments, Shown};
-use denavit::report::DiagnosisPage;
+use super::Arguments;
 use denavit::report::html::{Fact, Page};
+use denavit::report::{DiagnosisFolder, DiagnosisPage};
+use denavit::workflow::Diagnosed;
 use std::path::PathBuf;
 
-pub(super) fn of(arguments: &Arguments, shown: &Shown) -> Page {
+pub(super) fn of(arguments: &Arguments, shown: &Diagnosed, folder: &DiagnosisFolder) -> Page {
     let list = |paths: &[PathBuf]| {
         let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         names.join(", ")
@@ -28,7 +29,7 @@ pub(super) fn of(arguments: &Arguments, shown: &Shown) -> Page {
     let mut remarks: Vec<String> =
         shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
     remarks.extend(shown.model_effects.iter().map(ToString::to_string));
-    remarks.extend(shown.about_model());
+    remarks.extend(folder.about_model());
     let joints: Vec<&str> = shown.model.joints.iter().map(|joint| joint.name.as_str()).collect();
     DiagnosisPage {
         model: &shown.robot.name,

@@ -1,15 +1,29 @@
 //! What was identified, as a page of HTML.
 
-use super::{Arguments, IdentifyFailure, Shown};
-use crate::cli::failure::Failure;
+use super::arguments::{Arguments, ErrorsName, MethodName};
+use crate::cli::failure::{Failure, Misuse};
 use clap::ValueEnum;
 use denavit::model::Robot;
 use denavit::report::html::Fact;
 use denavit::report::{IdentificationPage, SimulationPart};
+use denavit::workflow::{Identified, Logs};
 use std::path::PathBuf;
 
+/// The words by which method, errors and seed are given.
+pub(super) type Words = [String; 3];
+
+/// Those that are given.
+pub(super) fn words(arguments: &Arguments) -> Words {
+    [word(arguments.method), word(arguments.errors), arguments.seed.to_string()]
+}
+
+/// Those of an identification where nothing is said.
+pub(super) fn default_words() -> Words {
+    [word(MethodName::default()), word(ErrorsName::default()), "1".to_owned()]
+}
+
 /// What an identification is made of.
-pub(super) fn facts(arguments: &Arguments, robot: &Robot) -> Vec<Fact> {
+pub(super) fn facts(robot: &Robot, logs: &Logs, [method, errors, seed]: Words) -> Vec<Fact> {
     let list = |paths: &[PathBuf]| {
         let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         names.join(", ")
@@ -17,36 +31,30 @@ pub(super) fn facts(arguments: &Arguments, robot: &Robot) -> Vec<Fact> {
     let facts = [
         ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
         ("model", format!("{}, content {:016x}", robot.name, robot.hash)),
-        ("estimated from", list(&arguments.train)),
-        ("judged with", list(&arguments.validate)),
-        ("method", word(arguments.method)),
-        ("standard errors", word(arguments.errors)),
-        ("seed", arguments.seed.to_string()),
+        ("estimated from", list(&logs.train)),
+        ("judged with", list(&logs.held_out)),
+        ("method", method),
+        ("standard errors", errors),
+        ("seed", seed),
     ];
     let given = facts.into_iter().filter(|(_, value)| !value.is_empty());
     given.map(|(name, value)| Fact { name: name.to_owned(), value }).collect()
 }
 
-pub(super) fn of(arguments: &Arguments, shown: &Shown<'_>) -> Result<String, Failure> {
-    let facts = facts(arguments, shown.robot);
-    let mut remarks: Vec<String> =
-        shown.remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
-    remarks.extend(shown.effects.iter().map(ToString::to_string));
-    let told = shown.simulated.map(|gap| (gap, gap.method(), gap.reasons()));
+pub(super) fn of(facts: &[Fact], identified: &Identified) -> Result<String, Failure> {
+    let Identified { robot, found, remarks, effects, simulated, .. } = identified;
+    let mut notes: Vec<String> =
+        remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
+    notes.extend(effects.iter().map(ToString::to_string));
+    let told = simulated.as_ref().map(|gap| (gap, gap.method(), gap.reasons()));
     let simulation = told.as_ref().map(|(gap, method, reasons)| SimulationPart {
         method,
         before: gap.before.as_ref().ok(),
         after: gap.after.as_ref().ok(),
         reasons,
     });
-    let page = IdentificationPage {
-        model: &shown.robot.name,
-        facts: &facts,
-        remarks: &remarks,
-        found: shown.found,
-        simulation,
-    };
-    Ok(page.page().map_err(IdentifyFailure::Formula)?.render())
+    let page = IdentificationPage { model: &robot.name, facts, remarks: &notes, found, simulation };
+    Ok(page.page().map_err(Misuse::Formula)?.render())
 }
 
 /// The word by which an option's value is given.

@@ -2,18 +2,16 @@
 
 use super::super::Answer;
 use super::super::failure::Failure;
+use super::super::files::FILES;
 use super::super::json::write_json;
 use super::super::progress::Progress;
-use super::super::simulate::open;
-use super::capturability::steps_value;
 use super::number::{impulse, within};
 use clap::Args;
-use denavit::report::{Align, Table};
+use denavit::report::{capture_steps_json, capture_steps_text};
 use denavit::simulate::scenario::Scenario;
-use denavit::walk::capturability::{Capturability, Steps};
+use denavit::walk::capturability::Capturability;
 use denavit::walk::capture_step::{law_of, step_limits};
-use denavit::walk::robustness::{CapturePush, CapturePushOptions, capture_pushes};
-use serde_json::{Value, json as value};
+use denavit::walk::robustness::{CapturePushOptions, capture_pushes};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -66,21 +64,23 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let mut scenario = open(&arguments.scenario)?;
+    let mut scenario = FILES.scenario(&arguments.scenario)?;
     let name = scenario.name.clone();
     let options = options(arguments, &scenario)?;
     let failure = |why: String| Failure::Walk(name.clone(), why);
     let limits = step_limits(&mut scenario).map_err(|error| failure(error.to_string()))?;
     let found = Capturability::new(limits).map_err(|error| failure(error.to_string()))?;
     let progress = Progress::new();
-    let pushes =
-        capture_pushes(&|| open(&arguments.scenario).ok(), &found, &options, &|done, all| {
-            progress.show(&format!("{done} of {all} pushes"))
-        });
+    let pushes = capture_pushes(
+        &|| FILES.scenario(&arguments.scenario).ok(),
+        &found,
+        &options,
+        &|done, all| progress.show(&format!("{done} of {all} pushes")),
+    );
     progress.clear();
     match arguments.json {
-        true => write_json(out, &answer(&name, &pushes))?,
-        false => print(out, &name, &pushes)?,
+        true => write_json(out, &capture_steps_json(&name, &pushes))?,
+        false => write!(out, "{}", capture_steps_text(&name, &pushes))?,
     }
     Ok(Answer::Done)
 }
@@ -106,66 +106,4 @@ fn options(arguments: &Arguments, scenario: &Scenario) -> Result<CapturePushOpti
         },
         after_s: arguments.after,
     })
-}
-
-fn agreeing(pushes: &[CapturePush]) -> usize {
-    pushes.iter().filter(|push| push.agrees()).count()
-}
-
-fn outcome_word(push: &CapturePush) -> &'static str {
-    match push.outcome.walks() {
-        true if push.stands() => "stands",
-        true => "moves",
-        false => push.outcome.word(),
-    }
-}
-
-fn answer(name: &str, pushes: &[CapturePush]) -> Value {
-    let one = |push: &CapturePush| {
-        value!({
-            "impulse_ns": push.impulse_ns,
-            "capture_m": push.capture_m,
-            "predicted_steps": push.predicted.map(steps_value),
-            "steps": push.steps,
-            "outcome": outcome_word(push),
-            "agrees": push.agrees(),
-        })
-    };
-    value!({
-        "scenario": name,
-        "pushes": pushes.iter().map(one).collect::<Vec<Value>>(),
-        "agree": agreeing(pushes),
-    })
-}
-
-fn print(out: &mut dyn Write, name: &str, pushes: &[CapturePush]) -> Result<(), Failure> {
-    writeln!(out, "{name}: steps after a push, predicted and made\n")?;
-    let columns = [
-        ("impulse [N s]", Align::Right),
-        ("capture point [m]", Align::Right),
-        ("predicted", Align::Right),
-        ("steps", Align::Right),
-        ("then", Align::Left),
-        ("", Align::Left),
-    ];
-    let mut table = Table::new(&columns);
-    for push in pushes {
-        let predicted = match push.predicted {
-            Some(Steps::Least(steps)) => steps.to_string(),
-            Some(Steps::Falls) => "fall".to_owned(),
-            None => "-".to_owned(),
-        };
-        let other = if push.agrees() { "" } else { "other than predicted" };
-        table.push(vec![
-            format!("{:.2}", push.impulse_ns),
-            format!("{:.4}", push.capture_m),
-            predicted,
-            push.steps.to_string(),
-            outcome_word(push).to_owned(),
-            other.to_owned(),
-        ]);
-    }
-    writeln!(out, "{table}")?;
-    writeln!(out, "{} of {} as predicted", agreeing(pushes), pushes.len())?;
-    Ok(())
 }

@@ -2,22 +2,22 @@
 
 use super::super::Answer;
 use super::super::failure::Failure;
+use super::super::files::FILES;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::progress::Progress;
-use super::super::simulate::open;
 use super::number::within;
 use clap::Args;
 use denavit::plants::{PlantModel, PointModel};
-use denavit::report::{Align, HeatMap, Table};
+use denavit::report::{
+    BasinAnswer, PushAnswer, basin_json, basin_log, basin_picture, basin_text, push_json,
+    push_picture, push_text,
+};
+use denavit::simulate::Simulation;
 use denavit::simulate::scenario::Scenario;
-use denavit::simulate::{Log, Simulation};
 use denavit::walk::balance::check_walker;
 use denavit::walk::poincare::{PoincareAnalysis, PoincareOptions, analyse};
-use denavit::walk::robustness::{
-    BasinOptions, BasinStart, LeastPush, PushOptions, basin, grid, least_pushes, noise,
-};
-use serde_json::json as value;
+use denavit::walk::robustness::{BasinOptions, PushOptions, basin, grid, least_pushes, noise};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -155,7 +155,7 @@ fn pushable(path: &Path) -> Result<Scenario, Failure> {
 
 /// The scenario as disturbed runs need it.
 fn disturbed(path: &Path) -> Result<Scenario, Failure> {
-    let mut scenario = open(path)?;
+    let mut scenario = FILES.scenario(path)?;
     scenario.simulation.touching.fallback_friction.get_or_insert(super::FALLBACK_FRICTION);
     Ok(scenario)
 }
@@ -222,112 +222,25 @@ pub(crate) fn run_basin(
         &|done, all| progress.show(&format!("{done} of {all} starts")),
     );
     progress.clear();
+    let (cycles, starts) = (arguments.steps, &starts[..]);
+    let answer = BasinAnswer { name: &name, model: &model, cycles, starts };
     if let Some(path) = &arguments.output {
-        write_whole(path, starts_log(&name, &model, &starts).to_csv().as_bytes())?;
+        write_whole(path, basin_log(&answer).to_csv().as_bytes())?;
     }
     if let Some(path) = &arguments.svg {
-        let map = draw_basin(&name, [&names[0], &names[1]], reach, arguments, &starts);
+        let grid = arguments.grid as usize;
+        let map = basin_picture(&answer, [&names[0], &names[1]], reach, grid);
         write_whole(path, map.as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
-        (_, true) => write_json(out, &basin_answer((&name, &model), arguments, &starts))?,
+        (_, true) => write_json(out, &basin_json(&answer))?,
         (_, false) => {
-            print_basin(out, &name, arguments, &starts)?;
-            super::say_what_is_no_fall(out, &model)?;
+            write!(out, "{}", basin_text(&answer))?;
             say_written(out, &outputs)?;
         }
     }
     Ok(Answer::Done)
-}
-
-/// Outcomes with how often each occurred, in the order of the alphabet.
-fn counted(starts: &[BasinStart]) -> Vec<(&'static str, usize)> {
-    let mut words: Vec<&'static str> = starts.iter().map(|start| start.outcome.word()).collect();
-    words.sort_unstable();
-    words.dedup();
-    let count = |word: &'static str| starts.iter().filter(|s| s.outcome.word() == word).count();
-    words.into_iter().map(|word| (word, count(word))).collect()
-}
-
-fn basin_answer(
-    (name, model): (&str, &PlantModel),
-    arguments: &BasinArguments,
-    starts: &[BasinStart],
-) -> serde_json::Value {
-    let outcomes: serde_json::Map<String, serde_json::Value> =
-        counted(starts).into_iter().map(|(word, count)| (word.to_owned(), count.into())).collect();
-    value!({
-        "scenario": name,
-        "starts": starts.len(),
-        "cycles": arguments.steps,
-        "outcomes": outcomes,
-        "falls_are_seen": !model.fall_points.is_empty(),
-        "walks": starts.iter().filter(|start| start.outcome.walks()).count(),
-    })
-}
-
-fn print_basin(
-    out: &mut dyn Write,
-    name: &str,
-    arguments: &BasinArguments,
-    starts: &[BasinStart],
-) -> Result<(), Failure> {
-    writeln!(out, "{name}: {} starts, {} cycles each\n", starts.len(), arguments.steps)?;
-    let mut table = Table::new(&[("outcome", Align::Left), ("starts", Align::Right)]);
-    for (word, count) in counted(starts) {
-        table.push(vec![word.to_owned(), count.to_string()]);
-    }
-    Ok(write!(out, "{table}")?)
-}
-
-/// Starts row by row: deviations, cycles walked, distance at the end.
-fn starts_log(name: &str, model: &PlantModel, starts: &[BasinStart]) -> Log {
-    let mut columns = vec!["t".to_owned()];
-    for prefix in ["q", "qd"] {
-        columns.extend(model.joints.iter().map(|joint| format!("{prefix}_{}", joint.name)));
-    }
-    columns.extend(["walks", "cycles", "distance"].map(str::to_owned));
-    let mut values = Vec::new();
-    for (index, start) in starts.iter().enumerate() {
-        values.push(index as f64);
-        values.extend(&start.deviation.q);
-        values.extend(&start.deviation.qd);
-        values.push(f64::from(u8::from(start.outcome.walks())));
-        values.push(start.cycles as f64);
-        values.push(start.distance);
-    }
-    let header = vec![
-        ("basin_of".to_owned(), name.to_owned()),
-        ("t".to_owned(), "number of the start".to_owned()),
-    ];
-    Log { header, columns, values }
-}
-
-fn draw_basin(
-    name: &str,
-    names: [&str; 2],
-    reach: [f64; 2],
-    arguments: &BasinArguments,
-    starts: &[BasinStart],
-) -> String {
-    let count = arguments.grid as usize;
-    let values = reach.map(|reach| -> Vec<f64> {
-        let share = |index: usize| 2.0 * index as f64 / (count - 1) as f64 - 1.0;
-        (0..count).map(|index| reach * share(index)).collect()
-    });
-    let cell = |start: &BasinStart| {
-        let share = start.cycles as f64 / f64::from(arguments.steps);
-        let text = if start.outcome.walks() { String::new() } else { start.cycles.to_string() };
-        (Some(1.0 - share.min(1.0)), text)
-    };
-    let cells: Vec<(Option<f64>, String)> = starts.iter().map(cell).collect();
-    let title = format!("{}: basin of attraction", name.replace('_', " "));
-    let subtitle =
-        format!("cycles walked of {}, from deviations off the fixed point", arguments.steps);
-    let meaning = ["walks all cycles", "walks none"];
-    let axes = [(names[0], &values[0][..]), (names[1], &values[1][..])];
-    HeatMap { title: &title, subtitle: &subtitle, axes, cells: &cells, meaning }.draw()
 }
 
 pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result<Answer, Failure> {
@@ -368,14 +281,15 @@ pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result
             progress.show(&format!("{done} of {all} pushes"));
         });
     progress.clear();
+    let answer = PushAnswer { name: &name, model: &model, options: &options, found: &found };
     if let Some(path) = &arguments.svg {
-        write_whole(path, draw_push(&name, &options, &found).as_bytes())?;
+        write_whole(path, push_picture(&answer).as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}
-        (_, true) => write_json(out, &push_answer(&name, (&model, link), (&options, &found)))?,
+        (_, true) => write_json(out, &push_json(&answer))?,
         (_, false) => {
-            print_push(out, &name, (&model, link), (&options, &found))?;
+            write!(out, "{}", push_text(&answer))?;
             say_written(out, &outputs)?;
         }
     }
@@ -393,86 +307,4 @@ fn pushed_link(model: &PlantModel, name: Option<&str>) -> Result<usize, Failure>
     found.ok_or_else(|| {
         Failure::Walk(model.name.clone(), format!("--link: no link is called `{name}`"))
     })
-}
-
-/// A direction in words.
-fn direction_word(direction: [f64; 3]) -> &'static str {
-    match direction {
-        [x, _, _] if x > 0.5 => "forward",
-        [x, _, _] if x < -0.5 => "backward",
-        [_, y, _] if y > 0.5 => "left",
-        _ => "right",
-    }
-}
-
-fn push_answer(
-    name: &str,
-    (model, link): (&PlantModel, usize),
-    (options, found): (&PushOptions, &[LeastPush]),
-) -> serde_json::Value {
-    let one = |push: &LeastPush| {
-        value!({
-            "at_s": push.at_s,
-            "direction": direction_word(push.direction),
-            "least_impulse_ns": push.impulse_ns,
-            "outcome": push.outcome.word(),
-        })
-    };
-    let pushes: Vec<serde_json::Value> = found.iter().map(one).collect();
-    value!({
-        "scenario": name,
-        "link": model.links[link],
-        "resolution_ns": options.resolution_ns,
-        "falls_are_seen": !model.fall_points.is_empty(),
-        "pushes": pushes,
-    })
-}
-
-fn print_push(
-    out: &mut dyn Write,
-    name: &str,
-    (model, link): (&PlantModel, usize),
-    (options, found): (&PushOptions, &[LeastPush]),
-) -> Result<(), Failure> {
-    let (at, to) = (&model.links[link], options.resolution_ns);
-    writeln!(out, "{name}: the least impulse at {at} that fells it, to {to:.2} N s at most\n")?;
-    let columns = [
-        ("direction", Align::Left),
-        ("at [s]", Align::Right),
-        ("impulse [N s]", Align::Right),
-        ("then", Align::Left),
-    ];
-    let mut table = Table::new(&columns);
-    for push in found {
-        table.push(vec![
-            direction_word(push.direction).to_owned(),
-            format!("{:.3}", push.at_s),
-            push.impulse_ns.map_or_else(|| "-".to_owned(), |impulse| format!("{impulse:.2}")),
-            push.outcome.word().to_owned(),
-        ]);
-    }
-    write!(out, "{table}")?;
-    super::say_what_is_no_fall(out, model)
-}
-
-fn draw_push(name: &str, options: &PushOptions, found: &[LeastPush]) -> String {
-    let cell = |push: &LeastPush| {
-        let text = push.impulse_ns.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}"));
-        (Some(push.impulse_ns.unwrap_or(options.most_ns) / options.most_ns), text)
-    };
-    let cells: Vec<(Option<f64>, String)> = found.iter().map(cell).collect();
-    let rows: Vec<f64> = (1..=options.directions.len()).map(|row| row as f64).collect();
-    let words: Vec<&str> = options.directions.iter().map(|d| direction_word(*d)).collect();
-    let title = format!("{}: least push that fells", name.replace('_', " "));
-    let subtitle = format!("impulse [N s]; rows from below: {}", words.join(", "));
-    let strongest = format!("{} N s", options.most_ns);
-    let axes = [("time in the cycle [s]", &options.times_s[..]), ("direction", &rows[..])];
-    HeatMap {
-        title: &title,
-        subtitle: &subtitle,
-        axes,
-        cells: &cells,
-        meaning: ["none", &strongest],
-    }
-    .draw()
 }

@@ -119,12 +119,16 @@ impl MeasuredLog {
     /// Sees to it that no joint behind a spring has the torque of its motor alone, which is not
     /// what the joint gets: a fault, or, where suspicions are accepted, a remark, and the motor's
     /// torque is taken for the joint's.
-    pub fn require_joint_torques(&mut self, robot: LogOf<'_>) -> Result<(), LogFaults> {
+    pub fn require_joint_torques(
+        &mut self,
+        joints: &[RegressionJoint],
+        accepts_suspicious: bool,
+    ) -> Result<(), LogFaults> {
         let mut faults = Vec::new();
-        for (own, joint) in self.joints.iter_mut().zip(robot.joints) {
+        for (own, joint) in self.joints.iter_mut().zip(joints) {
             let (None, Some(command)) = (&own.tau, &own.motor_torque) else { continue };
             let suspicion = Suspicion::CommandOfSpring { joint: joint.name.clone() };
-            if robot.accepts_suspicious {
+            if accepts_suspicious {
                 let factor = joint.gear_ratio;
                 own.tau = Some(command.iter().map(|torque| factor * torque).collect());
                 self.remarks.push(LogRemark::Accepted(suspicion));

@@ -1,14 +1,10 @@
 //! What was identified, as JSON.
 
-use super::{Shown, SimulationGap};
-use crate::cli::failure::Failure;
-use crate::cli::json::write_json;
-use crate::cli::model_effects::EffectUse;
-use denavit::identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
-use denavit::identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
-use denavit::plants::regression::{RegressionModel, StandardParameter};
+use denavit_identify::estimate::{Consistent, IdentifiedParameter, JointResidual, Status};
+use denavit_identify::forward::{Compared, Forward, ForwardJoint, ForwardKind};
+use denavit_plants::regression::{RegressionModel, StandardParameter};
+use denavit_workflow::{EffectUse, Identified, SimulationGap};
 use serde::Serialize;
-use std::io::Write;
 
 #[derive(Serialize)]
 struct IdentifyJson<'a> {
@@ -225,8 +221,9 @@ fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
 }
 
-pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let Shown { robot, model, found, remarks, effects, simulated } = shown;
+/// What was identified, as JSON (docs/reference/identification.md).
+pub fn identified_json(shown: &Identified) -> impl Serialize + '_ {
+    let Identified { robot, model, found, remarks, effects, simulated, .. } = shown;
     let parameters = found.parameters.iter().map(ParameterJson::new);
     let held_out = |joint: &JointResidual| {
         let joints = &found.validate.as_ref()?.joints;
@@ -246,7 +243,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
         values: &point.values,
         condition: finite(point.condition),
     });
-    let json = IdentifyJson {
+    IdentifyJson {
         model: &robot.name,
         parameters: parameters.collect(),
         residual: ResidualJson {
@@ -278,13 +275,12 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
             .collect(),
         consistent: ConsistentJson::new(model, &found.consistent),
         convergence: convergence.collect(),
-        simulation: simulated.map(SimulationJson::new),
+        simulation: simulated.as_ref().map(SimulationJson::new),
         effects,
         remarks: remarks
             .iter()
             .map(|(file, remark)| format!("{file}: {remark}"))
             .chain(found.warnings())
             .collect(),
-    };
-    write_json(out, &json)
+    }
 }

@@ -1,15 +1,20 @@
 //! What was identified, as a table.
 
-use super::{Shown, SimulationGap};
-use crate::cli::failure::Failure;
-use denavit::identify::estimate::{IdentifiedParameter, JointResidual, Status};
-use denavit::identify::forward::Forward;
-use denavit::report::{Align, Table, paragraph, short};
-use std::io::Write;
+use crate::{Align, Table, paragraph, short};
+use denavit_identify::estimate::{IdentifiedParameter, JointResidual, Status};
+use denavit_identify::forward::Forward;
+use denavit_workflow::{Identified, SimulationGap};
+use std::fmt::{self, Write};
 
 /// What is remarked and doubted, for whom the answer does not say it.
-pub(super) fn write_doubts(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    for (file, remark) in shown.remarks {
+pub fn identified_doubts(shown: &Identified) -> String {
+    let mut out = String::new();
+    write_doubts(&mut out, shown).expect("text has room");
+    out
+}
+
+fn write_doubts(out: &mut String, shown: &Identified) -> fmt::Result {
+    for (file, remark) in &shown.remarks {
         writeln!(out, "{file}: {remark}")?;
     }
     for text in shown.found.notes().into_iter().chain(shown.found.warnings()) {
@@ -18,13 +23,20 @@ pub(super) fn write_doubts(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(),
     Ok(())
 }
 
-pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let Shown { robot, model, found, remarks, .. } = shown;
+/// What was identified, as tables of text.
+pub fn identified_text(shown: &Identified) -> String {
+    let mut out = String::new();
+    write(&mut out, shown).expect("text has room");
+    out
+}
+
+fn write(out: &mut String, shown: &Identified) -> fmt::Result {
+    let Identified { robot, model, found, remarks, .. } = shown;
     let solution = &found.estimate.solution;
-    for (file, remark) in *remarks {
+    for (file, remark) in remarks {
         writeln!(out, "{file}: {remark}")?;
     }
-    for effect in shown.effects {
+    for effect in &shown.effects {
         writeln!(out, "{effect}")?;
     }
     if !(remarks.is_empty() && shown.effects.is_empty()) {
@@ -40,7 +52,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failur
     )?;
     writeln!(out, "{}", parameter_table(&found.parameters))?;
     write_residuals(out, shown)?;
-    if let Some(gap) = shown.simulated {
+    if let Some(gap) = &shown.simulated {
         write_simulation(out, gap)?;
     }
     for text in found.notes().into_iter().chain(found.warnings()) {
@@ -86,7 +98,7 @@ pub(super) fn parameter_table(parameters: &[IdentifiedParameter]) -> Table {
 
 /// Says if the bodies nearest to an estimate are so far from it, in standard errors, that it
 /// belongs to none.
-pub(super) fn write_nearest(out: &mut dyn Write, distance: f64) -> Result<(), Failure> {
+pub(super) fn write_nearest(out: &mut String, distance: f64) -> fmt::Result {
     if distance > 1.0 {
         let text = format!(
             "The estimate belongs to no bodies that exist: the nearest ones are {} standard errors \
@@ -108,8 +120,8 @@ fn shortened(formula: &str) -> String {
     format!("{start} ...")
 }
 
-fn write_residuals(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure> {
-    let found = shown.found;
+fn write_residuals(out: &mut String, shown: &Identified) -> fmt::Result {
+    let found = &shown.found;
     let mut table = Table::new(&[
         ("joint", Align::Left),
         ("train", Align::Right),
@@ -151,7 +163,7 @@ fn write_residuals(out: &mut dyn Write, shown: &Shown<'_>) -> Result<(), Failure
     Ok(())
 }
 
-fn write_simulation(out: &mut dyn Write, gap: &SimulationGap) -> Result<(), Failure> {
+fn write_simulation(out: &mut String, gap: &SimulationGap) -> fmt::Result {
     let [before, after] = [&gap.before, &gap.after].map(|made| made.as_ref().ok());
     if gap.kind().is_some() {
         writeln!(out, "\n{}", paragraph("", "", &format!("Logs {}:", gap.method())))?;

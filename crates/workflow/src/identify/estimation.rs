@@ -1,46 +1,36 @@
 //! Estimates of one run, with the filter that noise of the positions asks for.
 
-use super::logs::{self, Halvings};
-use super::{Arguments, IdentifyFailure};
-use crate::cli::failure::Failure;
-use crate::cli::progress::Progress;
-use denavit::effect::{self, Effect};
-use denavit::identify::estimate::{IdentifiedParameter, Method, Options};
-use denavit::identify::{
+use super::Work;
+use super::conditions::Halvings;
+use super::logs::{self, Read};
+use crate::error::{Cause, Error};
+use crate::observer::{Stage, Watched};
+use denavit_codegen::effect::{self, Effect};
+use denavit_identify::estimate::{IdentifiedParameter, Method, Options};
+use denavit_identify::{
     Estimated, Identification, Request, UpdateError, UpdatedModel, estimated, updated_model,
 };
-use denavit::measure::condition::Conditioned;
-use denavit::model::Robot;
-use denavit::plants::effect::AddedLaw;
-use denavit::plants::regression::RegressionModel;
+use denavit_measure::condition::Conditioned;
 
 /// What estimates of one run have in common.
+#[derive(Clone, Copy)]
 pub(super) struct Estimation<'a> {
-    pub(super) arguments: &'a Arguments,
-    pub(super) robot: &'a Robot,
-    pub(super) laws: &'a [AddedLaw],
-    pub(super) model: &'a RegressionModel,
+    pub(super) work: Work<'a>,
     pub(super) own: &'a [Effect],
     pub(super) source: &'a str,
-    pub(super) progress: &'a Progress,
 }
 
 /// What is found, and the model with it.
 pub(super) type Found = (Identification, Result<UpdatedModel, UpdateError>);
 
 impl Estimation<'_> {
-    pub(super) fn read(&self, halvings: &[u32]) -> Result<logs::Read, Failure> {
-        logs::read(self.source(), halvings)
+    pub(super) fn read(&self, halvings: &[u32]) -> Result<Read, Error> {
+        logs::read(self.work, halvings)
     }
 
-    fn source(&self) -> logs::Source<'_> {
-        let Self { arguments, robot, laws, model, .. } = *self;
-        logs::Source { arguments, robot, laws, model }
-    }
-
-    fn request<'a>(&'a self, read: &'a logs::Read, options: &'a Options) -> Request<'a> {
+    fn request<'a>(&'a self, read: &'a Read, options: &'a Options) -> Request<'a> {
         Request {
-            model: self.model,
+            model: self.work.model,
             train: &read.train,
             validate: &read.validate,
             instruments: &read.instruments,
@@ -48,20 +38,20 @@ impl Estimation<'_> {
         }
     }
 
-    pub(super) fn found(&self, read: &logs::Read, options: &Options) -> Result<Found, Failure> {
+    pub(super) fn found(&self, read: &Read, options: &Options) -> Result<Found, Error> {
         let estimated = self.estimated(read, options)?;
         Ok(self.judged(read, options, estimated))
     }
 
-    fn estimated(&self, read: &logs::Read, options: &Options) -> Result<Estimated, Failure> {
-        let failed = |error| IdentifyFailure::Estimate(self.model.model.clone(), error).into();
+    fn estimated(&self, read: &Read, options: &Options) -> Result<Estimated, Error> {
+        let failed = |error| Cause::Estimate(self.work.model.model.clone(), error).into();
         estimated(self.request(read, options)).map_err(failed)
     }
 
-    fn judged(&self, read: &logs::Read, options: &Options, estimated: Estimated) -> Found {
+    fn judged(&self, read: &Read, options: &Options, estimated: Estimated) -> Found {
         let found = estimated.judged(self.request(read, options));
         let both = (&found.consistent, &found.parameters[..]);
-        let updated = updated_model(self.robot, self.model, both, self.source);
+        let updated = updated_model(self.work.robot, self.work.model, both, self.source);
         let updated = updated.and_then(|updated| with_all_effects(updated, self.own));
         (found, updated)
     }
@@ -71,32 +61,42 @@ impl Estimation<'_> {
     /// that makes their errors smallest.
     pub(super) fn unbiased(
         &self,
-        mut read: logs::Read,
+        mut read: Read,
         options: &Options,
-    ) -> Result<(logs::Read, Found), Failure> {
+        watched: &mut Watched<'_>,
+    ) -> Result<(Read, Found), Error> {
         let mut halvings = vec![0; read.train.len()];
-        self.progress.show("estimating");
+        if !watched.begins(Stage::Estimating) {
+            return Err(Cause::Stopped.into());
+        }
         let mut found = self.estimated(&read, options)?;
         let allows_for_noise = options.method == Method::Instrumental;
         while !allows_for_noise && let Some((lower, most)) = self.lower(&read, &halvings, &found) {
-            let times = lower.iter().max().unwrap_or(&0);
-            self.progress.show(&format!("reading logs, filter halved {times} times"));
+            let times = lower.iter().copied().max().unwrap_or(0);
+            if !watched.begins(Stage::ReadingLogsAgain(times)) {
+                break;
+            }
             drop(read); // logs are large: not all of them twice
             read = self.read(&lower)?;
-            self.progress.show(&format!("estimating, filter halved {times} times"));
-            let next = self.estimated(&read, options)?;
-            let is_better = growth_of_errors(&next.parameters, &found.parameters) < most;
-            if next.filter_error.is_some() || !is_better {
-                // worse than the noise that it takes away
+            let next = match watched.begins(Stage::EstimatingAgain(times)) {
+                true => Some(self.estimated(&read, options)?),
+                false => None,
+            };
+            let better = next.filter(|next| {
+                let growth = growth_of_errors(&next.parameters, &found.parameters);
+                next.filter_error.is_none() && growth < most
+            });
+            let Some(better) = better else {
+                // worse than the noise that it takes away, or stopped
                 drop(read);
                 read = self.read(&halvings)?;
                 break;
-            }
-            (found, halvings) = (next, lower);
+            };
+            (found, halvings) = (better, lower);
         }
-        self.lower_held_out(&mut read, halvings, &found)?;
+        self.lower_held_out((&mut read, halvings), &found, watched)?;
         let mut found = self.judged(&read, options, found);
-        let given = logs::mapping(self.arguments)?;
+        let given = &self.work.logs.columns;
         found.0.misread.iter_mut().for_each(|one| one.given = given.clone());
         Ok((read, found))
     }
@@ -105,30 +105,33 @@ impl Estimation<'_> {
     /// their positions, if nobody asked for others.
     fn lower_held_out(
         &self,
-        read: &mut logs::Read,
-        mut halvings: Halvings,
+        (read, mut halvings): (&mut Read, Halvings),
         found: &Estimated,
-    ) -> Result<(), Failure> {
+        watched: &mut Watched<'_>,
+    ) -> Result<(), Error> {
         let train = read.train.len();
         halvings.resize(read.logs().len(), 0);
         let mut is_open = vec![true; read.validate.len()];
         loop {
-            let asks = |(log, is_open): (_, &bool)| *is_open && found.is_noisy(self.model, log);
+            let asks =
+                |(log, is_open): (_, &bool)| *is_open && found.is_noisy(self.work.model, log);
             let others = read.validate.iter().zip(&is_open).map(asks);
             let asking: Vec<bool> = std::iter::repeat_n(false, train).chain(others).collect();
-            let lower = self.arguments.conditions.lower(&read.logs(), (&halvings, &asking));
+            let lower = self.work.options.conditions.lower(&read.logs(), (&halvings, &asking));
             let Some(mut lower) = lower else { return Ok(()) };
-            self.progress.show("reading logs for validation, filter halved");
-            read.held_out(self.source(), &lower[train..])?;
+            if !watched.begins(Stage::ReadingHeldOutAgain) {
+                return Ok(());
+            }
+            read.held_out(self.work, &lower[train..])?;
             for (at, is_open) in is_open.iter_mut().enumerate().filter(|(_, is_open)| **is_open) {
                 let is_lowered = lower[train + at] != halvings[train + at];
-                if is_lowered && found.is_smeared(self.model, &read.validate[at]) {
+                if is_lowered && found.is_smeared(self.work.model, &read.validate[at]) {
                     // worse than the noise that it takes away
                     (lower[train + at], *is_open) = (halvings[train + at], false);
                 }
             }
             if is_open.contains(&false) {
-                read.held_out(self.source(), &lower[train..])?;
+                read.held_out(self.work, &lower[train..])?;
             }
             halvings = lower;
         }
@@ -137,13 +140,8 @@ impl Estimation<'_> {
     /// The next lower filters of logs, if noise of the positions asks for them, and how errors may
     /// grow with them: of the logs that bias parameters, or those that would be biased if they were
     /// alone, or of all where parameters may change with it.
-    fn lower(
-        &self,
-        read: &logs::Read,
-        halvings: &[u32],
-        found: &Estimated,
-    ) -> Option<(Halvings, f64)> {
-        let conditions = &self.arguments.conditions;
+    fn lower(&self, read: &Read, halvings: &[u32], found: &Estimated) -> Option<(Halvings, f64)> {
+        let conditions = &self.work.options.conditions;
         let logs: Vec<&Conditioned> = read.train.iter().collect();
         let lower = |asking: &[bool]| conditions.lower(&logs, (halvings, asking));
         let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, f64::INFINITY));

@@ -1,11 +1,10 @@
 //! Logs as the second stage sees them: with the torques on the loads, which springs measure.
 
-use super::IdentifyFailure;
-use crate::cli::failure::Failure;
-use denavit::identify::two_stage::{Spring, TwoStageError};
-use denavit::measure::condition::{Conditioned, Conditioning};
-use denavit::measure::log::{JointSignals, MeasuredLog};
-use denavit::plants::{JointModel, PlantModel, SeriesElasticModel};
+use crate::error::{Cause, Error};
+use denavit_identify::two_stage::{Spring, TwoStageError};
+use denavit_measure::condition::{Conditioned, Conditioning};
+use denavit_measure::log::{JointSignals, MeasuredLog};
+use denavit_plants::{JointModel, PlantModel, SeriesElasticModel};
 
 /// A log whose torques are those on the loads: of elastic joints r_L (k (r_M th / N - r_L q) + F0)
 /// (3.24), of stiff ones that of the drive less what its rotor takes. Filters are linear: torques
@@ -15,7 +14,7 @@ pub(super) fn conditioned(
     log: &MeasuredLog,
     springs: &[Spring],
     how: &Conditioning,
-) -> Result<Conditioned, Failure> {
+) -> Result<Conditioned, Error> {
     let joints = plant.joints.iter().zip(&log.joints).map(|(joint, own)| {
         let spring = springs.iter().find(|spring| spring.joint == joint.name);
         let tau = match (joint.drive.and_then(|drive| drive.series_elastic), spring) {
@@ -25,7 +24,7 @@ pub(super) fn conditioned(
         Ok(JointSignals { q: own.q.clone(), tau: Some(tau?), ..JointSignals::default() })
     });
     let joints: Result<Vec<JointSignals>, TwoStageError> = joints.collect();
-    let failed = |error| IdentifyFailure::TwoStage(log.file.clone(), error);
+    let failed = |error| Cause::TwoStage(log.file.clone(), error);
     let MeasuredLog { start_s, step_s, .. } = *log;
     let loads = MeasuredLog {
         file: log.file.clone(),
@@ -36,8 +35,7 @@ pub(super) fn conditioned(
     };
     let names: Vec<String> = plant.joints.iter().map(|joint| joint.name.clone()).collect();
     let conditioned = Conditioned::new(loads, &names, how);
-    let mut conditioned =
-        conditioned.map_err(|error| IdentifyFailure::Condition(log.file.clone(), error))?;
+    let mut conditioned = conditioned.map_err(|error| Cause::Condition(log.file.clone(), error))?;
     take_rotors_out(plant, &mut conditioned);
     Ok(conditioned)
 }

@@ -1,34 +1,33 @@
 //! Two stages as JSON.
 
-use super::Found;
-use crate::cli::identify::json::{ConsistentJson, ParameterJson};
-use denavit::identify::two_stage::{Estimate, Spring};
+use super::identified_json::{ConsistentJson, ParameterJson};
+use denavit_identify::two_stage::{Estimate, Spring};
+use denavit_workflow::TwoStageFound;
 use serde::Serialize;
 
-impl Found<'_> {
-    pub(super) fn json(&self) -> TwoStageJson<'_> {
-        let residuals = self.model.joints.iter().zip(&self.stages.residuals);
-        TwoStageJson {
-            model: &self.model.model,
-            springs: self.stages.springs.iter().map(SpringJson::new).collect(),
-            parameters: self.parameters.iter().map(ParameterJson::new).collect(),
-            residual: residuals
-                .map(|(joint, &[residual_rms, torque_rms])| ResidualJson {
-                    joint: &joint.name,
-                    torque_rms,
-                    residual_rms,
-                    validate: self.left_of(&joint.name),
-                })
-                .collect(),
-            validate: self.validate.as_ref().map(|held_out| held_out.relative),
-            consistent: ConsistentJson::new(self.model, &self.bodies),
-            remarks: &self.remarks,
-        }
+/// Springs, motors and load, as JSON (docs/reference/identification.md).
+pub fn two_stage_json(found: &TwoStageFound) -> impl Serialize + '_ {
+    let residuals = found.model.joints.iter().zip(&found.stages.residuals);
+    TwoStageJson {
+        model: &found.model.model,
+        springs: found.stages.springs.iter().map(SpringJson::new).collect(),
+        parameters: found.parameters.iter().map(ParameterJson::new).collect(),
+        residual: residuals
+            .map(|(joint, &[residual_rms, torque_rms])| ResidualJson {
+                joint: &joint.name,
+                torque_rms,
+                residual_rms,
+                validate: found.left_of(&joint.name),
+            })
+            .collect(),
+        validate: found.validate.as_ref().map(|held_out| held_out.relative),
+        consistent: ConsistentJson::new(&found.model, &found.bodies),
+        remarks: &found.remarks,
     }
 }
 
 #[derive(Serialize)]
-pub(super) struct TwoStageJson<'a> {
+struct TwoStageJson<'a> {
     model: &'a str,
     springs: Vec<SpringJson<'a>>,
     parameters: Vec<ParameterJson<'a>>,

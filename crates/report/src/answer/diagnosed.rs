@@ -1,15 +1,22 @@
 //! A diagnosis as text.
 
-use super::Shown;
-use crate::cli::failure::Failure;
-use denavit::diagnose::{
+use super::diagnosis_folder::DiagnosisFolder;
+use crate::{Align, Table, paragraph, percent, short, verdict_paragraph};
+use denavit_diagnose::{
     Candidate, EffectValue, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Visible,
 };
-use denavit::report::{Align, Table, paragraph, percent, short};
-use std::io::Write;
+use denavit_workflow::Diagnosed;
+use std::fmt::{self, Write};
 
-pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
-    let Shown { robot, candidates, found, remarks, .. } = shown;
+/// A diagnosis as text, with the files of its folder if there is one.
+pub fn diagnosed_text(shown: &Diagnosed, folder: Option<&DiagnosisFolder>) -> String {
+    let mut out = String::new();
+    write(&mut out, shown, folder).expect("text has room");
+    out
+}
+
+fn write(out: &mut String, shown: &Diagnosed, folder: Option<&DiagnosisFolder>) -> fmt::Result {
+    let Diagnosed { robot, candidates, found, remarks, .. } = shown;
     writeln!(out, "{}: {}", robot.name, found.verdict.word().replace('_', " "))?;
     for [log, searched] in shown.searched_again() {
         let said = format!(
@@ -18,7 +25,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         );
         writeln!(out, "{}", paragraph("", "", &said))?;
     }
-    writeln!(out, "{}", paragraph("", "", &shown.paragraph()))?;
+    writeln!(out, "{}", paragraph("", "", &verdict_paragraph(found, candidates)))?;
     let places: Vec<String> = found
         .before
         .iter()
@@ -52,7 +59,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     for (file, remark) in remarks {
         writeln!(out, "{file}: {remark}")?;
     }
-    files(out, shown)
+    folder.map_or(Ok(()), |folder| files(out, shown, folder))
 }
 
 /// Odds in words: as powers of ten where they are large.
@@ -65,7 +72,7 @@ fn odds(log_odds: f64) -> String {
 const WORST: usize = 3;
 
 /// How small effects would have been seen.
-fn visible(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+fn visible(out: &mut String, shown: &Diagnosed) -> fmt::Result {
     for (joint, described) in shown.model.joints.iter().enumerate() {
         let mut own: Vec<&Visible> =
             shown.found.visible.iter().filter(|one| one.joint == joint).collect();
@@ -86,7 +93,7 @@ fn visible(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
 }
 
 /// What the model has of effects.
-fn given(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+fn given(out: &mut String, shown: &Diagnosed) -> fmt::Result {
     if shown.model_effects.is_empty() {
         return Ok(());
     }
@@ -112,7 +119,7 @@ fn value(value: &EffectValue) -> String {
     format!("{} = {} {std} {}", value.name, short(value.value), value.unit).trim_end().to_owned()
 }
 
-fn effect(out: &mut dyn Write, shown: &Shown, one: &FoundEffect) -> Result<(), Failure> {
+fn effect(out: &mut String, shown: &Diagnosed, one: &FoundEffect) -> fmt::Result {
     let own = &shown.candidates[one.candidate];
     let doubt = if one.is_named { "" } else { "unnamed, nearest: " };
     writeln!(
@@ -147,7 +154,7 @@ fn effect(out: &mut dyn Write, shown: &Shown, one: &FoundEffect) -> Result<(), F
     Ok(())
 }
 
-fn gaps(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+fn gaps(out: &mut String, shown: &Diagnosed) -> fmt::Result {
     use Align::{Left, Right};
     let mut table = Table::new(&[
         ("joint", Left),
@@ -176,11 +183,11 @@ fn gaps(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
 }
 
 /// The gap of the models in motion.
-fn motion(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
+fn motion(out: &mut String, shown: &Diagnosed) -> fmt::Result {
     use Align::{Left, Right};
     let MotionGaps { train, held_out } = match &shown.found.motion {
         None => return Ok(()),
-        Some(Err(reason)) => return Ok(writeln!(out, "not simulated: {reason}\n")?),
+        Some(Err(reason)) => return writeln!(out, "not simulated: {reason}\n"),
         Some(Ok(gaps)) => gaps,
     };
     let mut table = Table::new(&[
@@ -202,14 +209,14 @@ fn motion(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     table.push(row("all", &|gap| Some(gap.all)));
     let what = "simulation gap: errors of positions in windows of 0.2 s under measured torques, \
                 over how far joints went";
-    Ok(writeln!(out, "{what}\n{table}")?)
+    writeln!(out, "{what}\n{table}")
 }
 
-fn files(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
-    for (path, what) in shown.files() {
+fn files(out: &mut String, shown: &Diagnosed, folder: &DiagnosisFolder) -> fmt::Result {
+    for (path, what) in folder.files(shown) {
         writeln!(out, "wrote {}: {what}", path.display())?;
     }
-    if let Some(remark) = shown.about_model() {
+    if let Some(remark) = folder.about_model() {
         writeln!(out, "{remark}")?;
     }
     Ok(())

@@ -1,37 +1,41 @@
 //! Logs simulated again, with the model as it was and with what was found.
 
+use super::conditions::Conditions;
 use super::logs::Read;
-use super::{Arguments, IdentifyFailure};
-use crate::cli::failure::Failure;
-use crate::cli::files::{load_beside, read_or_shipped};
-use denavit::identify::forward::{
+use crate::error::{Cause, Error};
+use crate::files::Files;
+use denavit_codegen::model::Robot;
+use denavit_identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
-use denavit::identify::{UpdateError, UpdatedModel};
-use denavit::measure::condition::Conditioned;
-use denavit::model::Robot;
-use denavit::plants::{Plant, PlantError, plant_of};
-use denavit::report::{motion_picture, short};
-use denavit::shipped;
-use denavit::simulate::scenario::{Controller, read_controller};
+use denavit_identify::{UpdateError, UpdatedModel};
+use denavit_measure::condition::Conditioned;
+use denavit_numerics::short;
+use denavit_plants::{Plant, PlantError, plant_of, shipped};
+use denavit_simulate::scenario::{Controller, read_controller};
 use std::fmt;
 use std::path::Path;
 
 /// The controller of a robot, with the model that it had.
-pub(super) struct Controlled {
+#[derive(Clone, Debug)]
+pub struct Controlled {
     controller: Controller,
     robot: Robot,
 }
 
 impl Controlled {
-    pub(super) fn read(path: &Path, robot: &Robot) -> Result<Self, Failure> {
+    /// Reads what drove a robot: a controller file, or a shipped controller.
+    ///
+    /// # Errors
+    /// All that is wrong with it, or why it is not read.
+    pub fn read(files: &Files, path: &Path, robot: &Robot) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let bytes = read_or_shipped(path, ("controller", shipped::CONTROLLERS))?;
-        let plant = plant_of(robot, &[])
-            .map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
-        let load = |file: &str| load_beside(path, file);
+        let bytes = files.bytes_or_shipped(path, ("controller", shipped::CONTROLLERS))?;
+        let plant =
+            plant_of(robot, &[]).map_err(|error| Cause::Plant(robot.name.clone(), error))?;
+        let load = |file: &str| files.beside(path, file);
         let controller = read_controller(&name, &bytes, plant.model(), &load);
-        let controller = controller.map_err(Failure::Scenario)?;
+        let controller = controller.map_err(Cause::Scenario)?;
         Ok(Self { controller, robot: robot.clone() })
     }
 
@@ -40,22 +44,22 @@ impl Controlled {
         &self,
         found: &Robot,
         read: &Read,
-        arguments: &Arguments,
-    ) -> Result<Vec<Conditioned>, Failure> {
+        conditions: &Conditions,
+    ) -> Result<Vec<Conditioned>, Error> {
         let plant = |robot: &Robot| {
-            let failed = |error| IdentifyFailure::Plant(robot.name.clone(), error);
+            let failed = |error| Cause::Plant(robot.name.clone(), error);
             plant_of(robot, &[]).map_err(failed)
         };
         let (mut plant, mut believed) = (plant(found)?, plant(&self.robot)?);
         let names: Vec<String> =
             plant.model().joints.iter().map(|joint| joint.name.clone()).collect();
         let mut one = |log: &MotionLog| {
-            let failed = |error| IdentifyFailure::Forward(log.file.clone(), error);
+            let failed = |error| Cause::Forward(log.file.clone(), error);
             let believed = Some(believed.as_mut());
             let simulated = simulated_log(plant.as_mut(), believed, &self.controller, log);
             let simulated = simulated.map_err(failed)?;
-            let how = arguments.conditions.of(log.step_s, simulated.samples(), 0);
-            let failed = |error| IdentifyFailure::Condition(log.file.clone(), error);
+            let how = conditions.of(log.step_s, simulated.samples(), 0);
+            let failed = |error| Cause::Condition(log.file.clone(), error);
             Ok(Conditioned::new(simulated, &names, &how).map_err(failed)?)
         };
         read.whole.iter().map(&mut one).collect()
@@ -64,9 +68,12 @@ impl Controlled {
 
 /// Why a model was not moved.
 #[derive(Clone, Debug)]
-pub(super) enum NotMoved {
+pub enum NotMoved {
+    /// What was found makes no model.
     Update(UpdateError),
+    /// A model has no plant.
     Plant(PlantError),
+    /// A log cannot be simulated; holds its file.
     Forward(String, ForwardError),
 }
 
@@ -81,9 +88,12 @@ impl fmt::Display for NotMoved {
 }
 
 /// Logs simulated with the values that the model had, and with those that were found.
-pub(super) struct SimulationGap {
-    pub(super) before: Result<Forward, NotMoved>,
-    pub(super) after: Result<Forward, NotMoved>,
+#[derive(Debug)]
+pub struct SimulationGap {
+    /// With the values that the model had.
+    pub before: Result<Forward, NotMoved>,
+    /// With those that were found.
+    pub after: Result<Forward, NotMoved>,
 }
 
 impl SimulationGap {
@@ -106,24 +116,24 @@ impl SimulationGap {
     }
 
     /// A controller that does not fit its log is the user's fault, and no result.
-    pub(super) fn check(&self) -> Result<(), Failure> {
+    pub(super) fn check(&self) -> Result<(), Error> {
         match &self.after {
             Err(NotMoved::Forward(_, ForwardError::Stopped { .. })) | Ok(_) => Ok(()),
             Err(NotMoved::Forward(file, error)) => {
-                Err(IdentifyFailure::Forward(file.clone(), error.clone()).into())
+                Err(Cause::Forward(file.clone(), error.clone()).into())
             }
             Err(NotMoved::Plant(_) | NotMoved::Update(_)) => Ok(()),
         }
     }
 
     /// What was made, if anything.
-    pub(super) fn kind(&self) -> Option<ForwardKind> {
+    pub fn kind(&self) -> Option<ForwardKind> {
         let made = self.after.as_ref().or(self.before.as_ref());
         made.ok().map(|forward| forward.kind)
     }
 
     /// How logs were simulated, as part of a sentence.
-    pub(super) fn method(&self) -> String {
+    pub fn method(&self) -> String {
         match self.kind() {
             None => "not simulated again".to_owned(),
             Some(ForwardKind::ClosedLoop) => {
@@ -138,7 +148,7 @@ impl SimulationGap {
     }
 
     /// What kept models from being simulated.
-    pub(super) fn reasons(&self) -> Vec<String> {
+    pub fn reasons(&self) -> Vec<String> {
         let [before, after] =
             [("before", &self.before), ("after", &self.after)].map(|(when, made)| {
                 made.as_ref().err().map(|reason| format!("simulation, {when}: {reason}"))
@@ -173,11 +183,4 @@ fn all(
         }
     }
     Ok(joined.expect("there is a log"))
-}
-
-/// Positions, measured and simulated.
-pub(super) fn picture(model: &str, gap: &SimulationGap) -> Option<String> {
-    let forward = gap.after.as_ref().ok()?;
-    let title = model.replace('_', " ");
-    Some(motion_picture(&title, &gap.method(), forward))
 }

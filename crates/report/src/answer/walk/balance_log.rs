@@ -1,8 +1,8 @@
-//! What `denavit walk zmp|fri|capture|momentum` writes as CSV: criteria row by row, and events.
+//! Balance row by row: criteria, and events.
 
-use super::balance::Judged;
-use denavit::simulate::{EventKind, Log};
-use denavit::walk::balance::{Criterion, Instant};
+use denavit_simulate::{EventKind, Log};
+use denavit_walk::balance::{Criterion, Instant};
+use denavit_workflow::Judged;
 
 const POINTS: [(&str, Criterion); 4] = [
     ("zmp", Criterion::ZeroMoment),
@@ -12,7 +12,7 @@ const POINTS: [(&str, Criterion); 4] = [
 ];
 
 /// All criteria, row by row; docs/reference/walking.md lists the columns.
-pub(super) fn series(judged: &Judged) -> Log {
+pub fn balance_series(judged: &Judged) -> Log {
     let mut columns = vec!["t".to_owned()];
     let axes = ["x", "y", "z"];
     for vector in ["com", "com_velocity", "com_acceleration", "angular_momentum", "cop"] {
@@ -55,7 +55,7 @@ pub(super) fn series(judged: &Judged) -> Log {
 }
 
 fn feet(instant: &Instant) -> f64 {
-    use denavit::walk::balance::Phase;
+    use denavit_walk::balance::Phase;
     match instant.phase {
         Phase::Flight => 0.0,
         Phase::Flat | Phase::Toe => 1.0,
@@ -64,7 +64,7 @@ fn feet(instant: &Instant) -> f64 {
 }
 
 /// Events with their impulses, and the velocities before and after.
-pub(super) fn events(judged: &Judged) -> Log {
+pub fn balance_events(judged: &Judged) -> Log {
     let model = &judged.model;
     let mut columns = ["t", "kind", "energy"].map(str::to_owned).to_vec();
     let points = model.contacts.iter();

@@ -1,10 +1,10 @@
 //! How the joints of a run followed their references, and which limits they went beyond.
 
-use denavit::report::{Align, Table};
-use denavit::simulate::scenario::{Exceeded, Limited, Scenario};
-use denavit::simulate::{JointRecord, Run};
+use crate::{Align, Table};
+use denavit_simulate::scenario::{Exceeded, Limited, Scenario};
+use denavit_simulate::{JointRecord, Run};
 use serde::Serialize;
-use std::io::{self, Write};
+use std::fmt::{self, Write};
 
 /// A joint that is controlled.
 #[derive(Serialize)]
@@ -87,7 +87,7 @@ pub(super) fn exceeded<'a>(scenario: &'a Scenario, run: &Run) -> Vec<ExceededJso
 }
 
 /// A table of the joints, then a line for each limit that was exceeded.
-pub(super) fn print(out: &mut dyn Write, scenario: &Scenario, run: &Run) -> io::Result<()> {
+pub(super) fn write(out: &mut String, scenario: &Scenario, run: &Run) -> fmt::Result {
     let columns = ["final error", "largest error", "at", "at torque limit"];
     let columns = columns.map(|name| (name, Align::Right));
     let mut table = Table::new(&[&[("joint", Align::Left)], &columns[..]].concat());

@@ -1,28 +1,29 @@
 //! What is said of an excitation, as text and as JSON.
 
-use crate::cli::failure::Failure;
-use crate::cli::json::write_json;
-use crate::cli::model_effects::EffectUse;
-use denavit::excite::{Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport};
-use denavit::model::Robot;
-use denavit::report::{Align, Table, paragraph, short};
+use crate::{Align, Table, paragraph, short};
+use denavit_codegen::model::Robot;
+use denavit_excite::{Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport};
+use denavit_workflow::EffectUse;
 use serde_json::{Value, json};
-use std::io::Write;
+use std::fmt::{self, Write};
 
 /// A trajectory that was found or checked.
-pub(super) struct Found<'a> {
-    pub(super) robot: &'a Robot,
+#[derive(Clone, Copy, Debug)]
+pub struct ExcitationAnswer<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
     /// What becomes of the model's effects: limits of torques are kept without those left out.
-    pub(super) effects: &'a [EffectUse],
-    pub(super) stack: &'a Stack,
-    pub(super) check: &'a Check,
+    pub effects: &'a [EffectUse],
+    /// Which columns are excited.
+    pub stack: &'a Stack,
+    /// The trajectory against its limits.
+    pub check: &'a Check,
+    /// How it was found, if it was looked for.
+    pub excited: Option<&'a Excited>,
 }
 
-pub(super) fn write_json_answer(
-    out: &mut dyn Write,
-    found: &Found<'_>,
-    excited: Option<&Excited>,
-) -> Result<(), Failure> {
+/// An excitation as JSON (docs/reference/excitation.md).
+pub fn excited_json(found: &ExcitationAnswer<'_>) -> Value {
     let check = found.check;
     let mut answer = json!({
         "model": found.robot.name,
@@ -45,11 +46,11 @@ pub(super) fn write_json_answer(
     if !found.effects.is_empty() {
         answer["effects"] = json!(found.effects);
     }
-    if let Some(excited) = excited {
+    if let Some(excited) = found.excited {
         answer["start"] = json!(excited.best + 1);
         answer["starts"] = excited.starts.iter().map(start).collect();
     }
-    write_json(out, &answer)
+    answer
 }
 
 fn finite(number: f64) -> Option<f64> {
@@ -83,11 +84,14 @@ fn start(start: &StartReport) -> Value {
     })
 }
 
-pub(super) fn write_text(
-    out: &mut dyn Write,
-    found: &Found<'_>,
-    excited: Option<&Excited>,
-) -> Result<(), Failure> {
+/// An excitation as text.
+pub fn excited_text(found: &ExcitationAnswer<'_>) -> String {
+    let mut out = String::new();
+    write(&mut out, found).expect("text has room");
+    out
+}
+
+fn write(out: &mut String, found: &ExcitationAnswer<'_>) -> fmt::Result {
     let check = found.check;
     let columns = found.stack.names.len();
     writeln!(
@@ -123,7 +127,7 @@ pub(super) fn write_text(
             check.clearance_m
         )?;
     }
-    if let Some(excited) = excited {
+    if let Some(excited) = found.excited {
         writeln!(out, "{}", starts(excited))?;
     }
     match check.is_feasible() {

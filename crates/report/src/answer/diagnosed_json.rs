@@ -1,17 +1,14 @@
 //! A diagnosis as JSON (the keys that others rely on stand in docs/reference/diagnosis.md).
 
-use super::Shown;
-use crate::cli::failure::Failure;
-use crate::cli::json::write_json;
-use crate::cli::model_effects::EffectUse;
-use denavit::diagnose::{
+use super::diagnosis_folder::{DiagnosisFolder, MODEL, REPORT, experiment_file};
+use denavit_diagnose::{
     Candidate, EffectValue, FoundEffect, Gaps, GivenEffect, MotionGap, MotionGaps, Step, Visible,
     Where,
 };
+use denavit_workflow::{Diagnosed, EffectUse};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::io::Write;
 
 #[derive(Serialize)]
 struct DiagnosisJson<'a> {
@@ -171,8 +168,12 @@ impl From<&Gaps> for OneGapJson {
     }
 }
 
-pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
-    let Shown { robot, found, remarks, .. } = shown;
+/// A diagnosis as JSON, with the files of its folder if there is one.
+pub fn diagnosed_json<'a>(
+    shown: &'a Diagnosed,
+    folder: Option<&'a DiagnosisFolder>,
+) -> impl Serialize + 'a {
+    let Diagnosed { robot, found, remarks, .. } = shown;
     let of_joint = |one: &'_ Where| -> (Option<String>, Option<f64>) {
         let part = one.parts.first();
         (part.map(|part| part.regime.to_string()), part.map(|part| part.share))
@@ -191,7 +192,7 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
     let sorted = |is_named: bool| {
         let all = found.effects.iter().enumerate();
         let own = all.filter(|(_, one)| one.is_named == is_named);
-        own.map(|(number, one)| effect(shown, number, one)).collect()
+        own.map(|(number, one)| effect((shown, folder), number, one)).collect()
     };
     let structures = found.structures.iter().map(|one| StructureJson {
         joint: &one.at,
@@ -202,9 +203,8 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         .leftovers
         .iter()
         .map(|one| LeftoverJson { joint: &found.places[one.equation], share: one.share });
-    let written = shown.written.as_ref();
-    let has_model = written.is_some_and(|written| written.model == Ok(true));
-    let answer = DiagnosisJson {
+    let has_model = folder.is_some_and(DiagnosisFolder::has_model);
+    DiagnosisJson {
         model: &robot.name,
         verdict: found.verdict.word(),
         reasons: &found.reasons,
@@ -223,14 +223,17 @@ pub(super) fn write(out: &mut dyn Write, shown: &Shown) -> Result<(), Failure> {
         share_closed: found.share_closed(),
         driven: [&found.driven[0], &found.driven[1]],
         remarks: remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect(),
-        model_file: has_model.then_some(super::MODEL),
-        model_refused: written.and_then(|w| w.model.as_ref().err()).map(String::as_str),
-        report: written.map(|_| super::REPORT),
-    };
-    write_json(out, &answer)
+        model_file: has_model.then_some(MODEL),
+        model_refused: folder.and_then(DiagnosisFolder::refused),
+        report: folder.map(|_| REPORT),
+    }
 }
 
-fn effect<'a>(shown: &'a Shown, number: usize, one: &'a FoundEffect) -> EffectJson<'a> {
+fn effect<'a>(
+    (shown, folder): (&'a Diagnosed, Option<&DiagnosisFolder>),
+    number: usize,
+    one: &'a FoundEffect,
+) -> EffectJson<'a> {
     let candidates = &shown.candidates;
     let own = &candidates[one.candidate];
     let others = one.alternatives.iter().map(|other| OtherJson {
@@ -249,12 +252,12 @@ fn effect<'a>(shown: &'a Shown, number: usize, one: &'a FoundEffect) -> EffectJs
         parameters: values(&one.parameters),
         indistinguishable: others.collect(),
         exact_alias: &one.exact,
-        separating_experiment: experiment(shown, number, one),
+        separating_experiment: experiment((shown, folder), number, one),
     }
 }
 
 /// How small effects would have been seen.
-fn visible(shown: &Shown) -> Vec<VisibleJson<'_>> {
+fn visible(shown: &Diagnosed) -> Vec<VisibleJson<'_>> {
     let known = |value: f64| Some(value).filter(|value| value.is_finite());
     let of = |one: &Visible| {
         let Candidate { effect, at, law, .. } = &shown.candidates[one.candidate];
@@ -265,7 +268,11 @@ fn visible(shown: &Shown) -> Vec<VisibleJson<'_>> {
 }
 
 /// The motion that tells an effect from what would do as well, or why there is none.
-fn experiment(shown: &Shown, number: usize, one: &FoundEffect) -> Option<Value> {
+fn experiment(
+    (shown, folder): (&Diagnosed, Option<&DiagnosisFolder>),
+    number: usize,
+    one: &FoundEffect,
+) -> Option<Value> {
     let name = |&rival: &usize| {
         let Candidate { effect, at, .. } = &shown.candidates[rival];
         json!({"effect": effect, "at": at})
@@ -273,7 +280,7 @@ fn experiment(shown: &Shown, number: usize, one: &FoundEffect) -> Option<Value> 
     Some(match one.experiment.as_ref()? {
         Ok(found) => json!({
             "from": found.rivals.iter().map(name).collect::<Vec<Value>>(),
-            "file": shown.written.as_ref().map(|_| super::experiment_file(number)),
+            "file": folder.map(|_| experiment_file(number)),
             "duration_s": found.duration_s,
             "separation": found.separation,
             "separation_before": found.separation_before,
@@ -285,7 +292,7 @@ fn experiment(shown: &Shown, number: usize, one: &FoundEffect) -> Option<Value> 
 }
 
 /// The gap of the models in motion, or why they are not moved.
-fn motion(shown: &Shown) -> Option<Value> {
+fn motion(shown: &Diagnosed) -> Option<Value> {
     let of = |[before, after]: &[MotionGap; 2]| {
         json!({
             "before": before.all,
@@ -317,7 +324,7 @@ fn values(parameters: &[EffectValue]) -> BTreeMap<&str, ValueJson<'_>> {
     named.collect()
 }
 
-fn given<'a>(shown: &'a Shown, becomes: &'a EffectUse) -> GivenJson<'a> {
+fn given<'a>(shown: &'a Diagnosed, becomes: &'a EffectUse) -> GivenJson<'a> {
     let is_it = |one: &&GivenEffect| {
         let Candidate { effect, at, .. } = &shown.candidates[one.candidate];
         becomes.is_of(effect, at)
@@ -327,7 +334,7 @@ fn given<'a>(shown: &'a Shown, becomes: &'a EffectUse) -> GivenJson<'a> {
     GivenJson { becomes, parameters }
 }
 
-fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {
+fn round<'a>(shown: &'a Diagnosed, step: &Step) -> RoundJson<'a> {
     let added = &shown.candidates[step.added];
     let others = step.runners_up.iter();
     RoundJson {
@@ -340,7 +347,7 @@ fn round<'a>(shown: &'a Shown, step: &Step) -> RoundJson<'a> {
     }
 }
 
-fn runner_up<'a>(shown: &'a Shown, candidate: usize, log_odds: f64) -> RunnerUpJson<'a> {
+fn runner_up<'a>(shown: &'a Diagnosed, candidate: usize, log_odds: f64) -> RunnerUpJson<'a> {
     let other = &shown.candidates[candidate];
     RunnerUpJson { effect: &other.effect, at: &other.at, log_odds }
 }

@@ -1,0 +1,350 @@
+//! Why work has no answer.
+
+use crate::files::reason;
+use denavit_codegen::model::ModelError;
+use denavit_diagnose::DiagnosisError;
+use denavit_identify::UpdateError;
+use denavit_identify::doubt::MisreadColumns;
+use denavit_identify::estimate::EstimateError;
+use denavit_identify::forward::ForwardError;
+use denavit_identify::statics::StaticFault;
+use denavit_identify::two_stage::TwoStageError;
+use denavit_import::ImportError;
+use denavit_measure::condition::ConditionError;
+use denavit_measure::log::{LogFaults as MeasuredFaults, MappingError};
+use denavit_plants::PlantError;
+use denavit_plants::effect::AddedError;
+use denavit_plants::regression::RegressionError;
+use denavit_plants::shipped::{self, ShippedModel};
+use denavit_simulate::LogFaults;
+use denavit_simulate::scenario::ScenarioError;
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+/// Why work has no answer. It is printed with the file, the place and the cause of all that is
+/// wrong; [`Error::hints`] are apart.
+#[derive(Debug)]
+pub struct Error(Box<Cause>);
+
+/// What kind of reason it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// Neither a file nor a shipped one has this name.
+    NotFound,
+    /// A file is not read.
+    Unreadable,
+    /// A file says something that is wrong.
+    Wrong,
+    /// Files are right, and do not suit what is asked.
+    Unsuitable,
+    /// The observer stopped the work before there was anything.
+    Stopped,
+}
+
+/// What to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Hint {
+    /// A sentence.
+    Advice(String),
+    /// Logs can be taken as they are.
+    AcceptSuspicious,
+    /// Logs without noise, or a controller to simulate them, are needed.
+    GiveInstruments,
+    /// A controller simulates instruments.
+    SimulateInstruments,
+}
+
+impl fmt::Display for Hint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Advice(text) => write!(f, "{text}"),
+            Self::AcceptSuspicious => write!(f, "`accepts_suspicious` takes the logs as they are"),
+            Self::GiveInstruments => {
+                write!(f, "give logs as `instruments`, or a `controller` to simulate them")
+            }
+            Self::SimulateInstruments => write!(f, "a `controller` simulates instruments"),
+        }
+    }
+}
+
+/// What is wrong.
+#[derive(Debug)]
+pub(crate) enum Cause {
+    /// A model file is wrong.
+    Model(ModelError),
+    /// A description of a robot in another format is wrong.
+    Import(ImportError),
+    /// Neither a file nor a shipped model has this name; holds the name, the shipped model that was
+    /// meant, perhaps, and whether it can only be a file.
+    NoModel { name: String, nearest: Option<&'static str>, is_path: bool },
+    /// Neither a file nor a shipped one of a kind has this name; holds both, the one that was
+    /// meant, perhaps, and all there are.
+    NoShipped {
+        kind: &'static str,
+        name: String,
+        nearest: Option<&'static str>,
+        all: &'static [ShippedModel],
+    },
+    /// A file cannot be read.
+    Read { file: String, error: io::Error },
+    /// A file is larger than any model.
+    TooLarge { file: String, limit: u64 },
+    /// A model has an effect beside its equations, for which there is no place; holds model and
+    /// effect.
+    Effect(String, String),
+    /// The effects of a model cannot be taken apart; holds the model.
+    Apart(String, AddedError),
+    /// A scenario, a controller or a file of statics is wrong.
+    Scenario(ScenarioError),
+    /// A log of the project's own columns is wrong.
+    Log(LogFaults),
+    /// A model has no regression.
+    Regression(Box<RegressionError>),
+    /// A mapping of columns is wrong.
+    Mapping(MappingError),
+    /// Logs are wrong.
+    Logs(Vec<MeasuredFaults>),
+    /// A log cannot be conditioned; holds its name.
+    Condition(String, ConditionError),
+    /// A model has no plant; holds its name.
+    Plant(String, PlantError),
+    /// Nothing can be estimated; holds the model's name.
+    Estimate(String, EstimateError),
+    /// Columns seem to be other ones than they are taken for.
+    Misread(Vec<MisreadColumns>),
+    /// What was found makes no model.
+    Update(UpdateError),
+    /// A log cannot be simulated again; holds its name.
+    Forward(String, ForwardError),
+    /// Two stages need one log.
+    OneLog,
+    /// A log does not give springs and load; holds its name.
+    TwoStage(String, TwoStageError),
+    /// Measurements at rest do not fit the model; holds their file.
+    Statics(String, Vec<StaticFault>),
+    /// Instrumental variables without instruments, and nothing to simulate them with.
+    NoInstruments,
+    /// Instruments that are a log for training itself, noise and all: its name.
+    OwnInstruments(String),
+    /// Knowledge is asked for, and the model states no standard deviation that says anything.
+    NoPrior(String),
+    /// Two logs for training say the same.
+    SameLogs([String; 2]),
+    /// A gait has no answer; holds the scenario and why.
+    Walk(String, String),
+    /// A model stands where a scenario should; holds its name.
+    ModelForScenario(String),
+    /// Nothing is diagnosed.
+    Diagnosis(DiagnosisError),
+    /// Stopped before there was anything.
+    Stopped,
+}
+
+impl Error {
+    /// A file that cannot be read.
+    pub(crate) fn read(file: &Path, error: io::Error) -> Self {
+        Cause::Read { file: file.display().to_string(), error }.into()
+    }
+
+    /// What kind of reason it is.
+    pub fn kind(&self) -> ErrorKind {
+        match &*self.0 {
+            Cause::NoModel { .. } | Cause::NoShipped { .. } => ErrorKind::NotFound,
+            Cause::Read { error, .. } if error.kind() == io::ErrorKind::NotFound => {
+                ErrorKind::NotFound
+            }
+            Cause::Read { .. } | Cause::TooLarge { .. } => ErrorKind::Unreadable,
+            Cause::Model(_)
+            | Cause::Import(_)
+            | Cause::Scenario(_)
+            | Cause::Log(_)
+            | Cause::Logs(_)
+            | Cause::Mapping(_)
+            | Cause::Statics(..)
+            | Cause::Misread(_) => ErrorKind::Wrong,
+            Cause::Stopped => ErrorKind::Stopped,
+            _ => ErrorKind::Unsuitable,
+        }
+    }
+
+    /// What to do about it.
+    pub fn hints(&self) -> Vec<Hint> {
+        let advice = |text: String| vec![Hint::Advice(text)];
+        match &*self.0 {
+            Cause::NoModel { nearest: Some(nearest), .. } => {
+                advice(format!("`{nearest}` is a shipped model"))
+            }
+            Cause::NoModel { is_path: false, .. } => advice(format!(
+                "give the path of a model file, or one of {}",
+                listed(shipped::MODELS)
+            )),
+            Cause::NoModel { .. } => advice("check the path".to_owned()),
+            Cause::NoShipped { kind, nearest: Some(nearest), .. } => {
+                advice(format!("`{nearest}` is a shipped {kind}"))
+            }
+            Cause::NoShipped { kind, all, .. } => {
+                advice(format!("give the path of a {kind} file, or one of {}", listed(all)))
+            }
+            Cause::Read { error, .. } => match error.kind() {
+                io::ErrorKind::IsADirectory => {
+                    advice("give the path of one model file in it".to_owned())
+                }
+                io::ErrorKind::PermissionDenied => {
+                    advice("check the permissions of the file and of its directories".to_owned())
+                }
+                _ => Vec::new(),
+            },
+            Cause::TooLarge { .. } => {
+                advice("a model is a table of some kilobytes: check the path".to_owned())
+            }
+            Cause::Effect(..) => {
+                advice("see \"effects\" in docs/reference/model-file.md".to_owned())
+            }
+            Cause::Misread(_) => vec![Hint::AcceptSuspicious],
+            Cause::NoInstruments => vec![Hint::GiveInstruments],
+            Cause::OwnInstruments(_) => vec![Hint::SimulateInstruments],
+            Cause::NoPrior(_) => advice(
+                "{\"value\": 2, \"std\": 0.1} states one; all numbers that a parameter depends on \
+                 must have one"
+                    .to_owned(),
+            ),
+            Cause::ModelForScenario(name) => advice(smallest_scenario(name)),
+            Cause::SameLogs(_) => advice("name each log once".to_owned()),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether a file is not there.
+    pub(crate) fn is_not_found(&self) -> bool {
+        matches!(&*self.0, Cause::Read { error, .. } if error.kind() == io::ErrorKind::NotFound)
+    }
+
+    /// All of some logs, or the faults of all that are wrong.
+    pub(crate) fn of_any_log<T>(
+        logs: impl Iterator<Item = Result<T, Self>>,
+    ) -> Result<Vec<T>, Self> {
+        let (mut right, mut wrong) = (Vec::new(), Vec::new());
+        for log in logs {
+            match log {
+                Ok(log) => right.push(log),
+                Err(Self(cause)) => match *cause {
+                    Cause::Logs(faults) => wrong.extend(faults),
+                    cause => return Err(cause.into()),
+                },
+            }
+        }
+        if wrong.is_empty() { Ok(right) } else { Err(Cause::Logs(wrong).into()) }
+    }
+}
+
+fn listed(all: &[ShippedModel]) -> String {
+    let names: Vec<_> = all.iter().map(|one| one.name).collect();
+    names.join(", ")
+}
+
+/// What to write where a model alone was given.
+fn smallest_scenario(model: &str) -> String {
+    let model = serde_json::Value::from(model);
+    format!(
+        "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
+         \"duration_s\": 1}} lets it go from rest; docs/reference/scenario.md has the rest, \
+         `denavit schema scenario` all keys",
+        denavit_simulate::scenario::FORMAT
+    )
+}
+
+impl From<Cause> for Error {
+    fn from(cause: Cause) -> Self {
+        Self(Box::new(cause))
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Model(error) => write!(f, "{error}"),
+            Self::Import(error) => write!(f, "{error}"),
+            Self::NoModel { name, is_path: true, .. } => write!(f, "{name}: no such file"),
+            Self::NoModel { name, is_path: false, .. } => {
+                write!(f, "{name}: there is no such file, and no shipped model of that name")
+            }
+            Self::NoShipped { kind, name, .. } => {
+                write!(f, "{name}: there is no such file, and no shipped {kind} of that name")
+            }
+            Self::Read { file, error } => write!(f, "{file}: cannot be read: {}", reason(error)),
+            Self::TooLarge { file, limit } => {
+                write!(f, "{file}: has more than the {limit} bytes that are read")
+            }
+            Self::Effect(model, effect) => {
+                write!(f, "{model}: this has no place for the effect `{effect}`")
+            }
+            Self::Apart(model, error) => write!(f, "{model}: {error}"),
+            Self::Scenario(error) => write!(f, "{error}"),
+            Self::Log(error) => write!(f, "{error}"),
+            Self::Regression(error) => write!(f, "{error}"),
+            Self::Mapping(error) => write!(f, "{error}"),
+            Self::Logs(all) => lines(f, all),
+            Self::Condition(file, error) => write!(f, "{file}: {error}"),
+            Self::Plant(model, error) => write!(f, "{model}: {error}"),
+            Self::Estimate(model, error) => write!(f, "{model}: {error}"),
+            Self::Misread(all) => lines(f, all),
+            Self::Update(error) => write!(f, "{error}"),
+            Self::Forward(file, error) => write!(f, "{file}: {error}"),
+            Self::OneLog => write!(f, "springs and load are found from one log"),
+            Self::TwoStage(file, error) => write!(f, "{file}: {error}"),
+            Self::Statics(file, faults) => {
+                let all: Vec<String> =
+                    faults.iter().map(|fault| format!("{file}: {fault}")).collect();
+                lines(f, &all)
+            }
+            Self::NoInstruments => write!(f, "instrumental variables need instruments"),
+            Self::OwnInstruments(file) => write!(
+                f,
+                "{file}: a log for training as instrument has its own noise in it, and would say \
+                 what least squares does"
+            ),
+            Self::NoPrior(model) => write!(
+                f,
+                "{model}: no base parameter is known by the standard deviations that the model \
+                 states"
+            ),
+            Self::SameLogs([one, other]) => {
+                write!(f, "{other} says the same as {one}: measured once, it counts once")
+            }
+            Self::Walk(scenario, why) => write!(f, "{scenario}: {why}"),
+            Self::ModelForScenario(name) => {
+                write!(f, "{name}: this is a model, where a scenario is simulated")
+            }
+            Self::Diagnosis(error) => write!(f, "{error}"),
+            Self::Stopped => write!(f, "stopped before there was an answer"),
+        }
+    }
+}
+
+fn lines(f: &mut fmt::Formatter<'_>, all: &[impl fmt::Display]) -> fmt::Result {
+    for (index, one) in all.iter().enumerate() {
+        let end = if index > 0 { "\n" } else { "" };
+        write!(f, "{end}{one}")?;
+    }
+    Ok(())
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &*self.0 {
+            Cause::Model(error) => Some(error),
+            Cause::Read { error, .. } => Some(error),
+            Cause::Scenario(error) => Some(error),
+            _ => None,
+        }
+    }
+}

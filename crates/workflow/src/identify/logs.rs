@@ -1,0 +1,208 @@
+//! Logs read, checked and conditioned as the options say.
+
+use super::Work;
+use crate::error::{Cause, Error};
+use denavit_identify::estimate::Method;
+use denavit_identify::forward::{LONGEST_S, MotionLog};
+use denavit_identify::{
+    Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
+};
+use denavit_measure::condition::{Conditioned, Conditioning, Filter};
+use denavit_measure::log::LogRemark;
+use denavit_plants::regression::CoulombLaw;
+use std::path::{Path, PathBuf};
+
+/// All logs of a run.
+pub(super) struct Read {
+    pub(super) train: Vec<Conditioned>,
+    pub(super) validate: Vec<Conditioned>,
+    pub(super) instruments: Vec<Conditioned>,
+    /// The logs that are simulated again.
+    pub(super) motions: Vec<MotionLog>,
+    /// Whole logs for the estimate, where instruments are to be simulated.
+    pub(super) whole: Vec<MotionLog>,
+    /// What was found, by log, of those that are not for validation, and of those.
+    remarks: [Vec<(String, LogRemark)>; 2],
+    /// Deviation of each measured position [rad, m].
+    pub(super) position_noise: Vec<f64>,
+}
+
+/// All logs, with these halvings of their cutoffs.
+pub(super) fn read(work: Work<'_>, halvings: &[u32]) -> Result<Read, Error> {
+    let Work { logs, options, .. } = work;
+    let (of_train, of_others) = halvings.split_at(logs.train.len().min(halvings.len()));
+    let mut reader = Reader::new(work)?;
+    // Logs for validation are simulated again; with a controller, if there are none, the others.
+    let controlled = options.controller.is_some();
+    let needs_instruments =
+        options.method == Method::Instrumental && options.instruments.is_empty();
+    let simulates_train = controlled && (logs.held_out.is_empty() || needs_instruments);
+    let longest_s = simulates_train.then_some(f64::INFINITY);
+    let train = reader.kept((&logs.train, of_train), longest_s)?;
+    let whole = reader.motions.take().unwrap_or_default();
+    let mut numbered = train.iter().enumerate();
+    let same = numbered.find_map(|(at, log)| {
+        let before = train[..at].iter().find(|other| other.overlaps(log))?;
+        Some([&before.file, &log.file].map(String::clone))
+    });
+    if let Some(same) = same {
+        return Err(Cause::SameLogs(same).into());
+    }
+    let instruments = reader.kept((&options.instruments, &[]), None)?;
+    let is_measured =
+        |one: &&Conditioned| train.iter().any(|log| log.q == one.q && log.torque == one.torque);
+    if let Some(one) = instruments.iter().find(is_measured) {
+        return Err(Cause::OwnInstruments(one.file.clone()).into());
+    }
+    let motions = if logs.held_out.is_empty() { whole.clone() } else { Vec::new() };
+    let Reader { remarks, noise, .. } = reader;
+    let (remarks, position_noise) = ([remarks, Vec::new()], noise);
+    let validate = Vec::new();
+    let mut read = Read { train, validate, instruments, motions, whole, remarks, position_noise };
+    read.held_out(work, of_others)?;
+    Ok(read)
+}
+
+impl Read {
+    /// Reads the logs for validation, again perhaps, with these halvings of their cutoffs.
+    pub(super) fn held_out(&mut self, work: Work<'_>, halvings: &[u32]) -> Result<(), Error> {
+        let Work { logs, options, model, .. } = work;
+        if logs.held_out.is_empty() {
+            return Ok(());
+        }
+        self.validate.clear();
+        let mut reader = Reader::new(work)?;
+        let is_fixed = model.joints.iter().all(|joint| !joint.is_base);
+        let simulates = is_fixed || options.controller.is_some();
+        let longest_s = simulates.then_some(LONGEST_S);
+        self.validate = reader.kept((&logs.held_out, halvings), longest_s)?;
+        self.motions = reader.motions.take().unwrap_or_default();
+        for log in &self.validate {
+            if let Some(same) = self.train.iter().find(|other| other.overlaps(log)) {
+                let remark = LogRemark::SameAs { other: same.file.clone() };
+                reader.remarks.push((log.file.clone(), remark));
+            }
+        }
+        for (all, own) in self.position_noise.iter_mut().zip(reader.noise) {
+            *all = all.max(own);
+        }
+        self.remarks[1] = reader.remarks;
+        Ok(())
+    }
+
+    /// The logs for the estimate and for validation.
+    pub(super) fn logs(&self) -> Vec<&Conditioned> {
+        self.train.iter().chain(&self.validate).collect()
+    }
+
+    /// What was found, by log.
+    pub(super) fn into_remarks(self) -> Vec<(String, LogRemark)> {
+        self.remarks.into_iter().flatten().collect()
+    }
+}
+
+struct Reader<'a> {
+    work: Work<'a>,
+    ground: Option<Ground>,
+    names: Vec<String>,
+    remarks: Vec<(String, LogRemark)>,
+    noise: Vec<f64>,
+    /// Logs to be simulated again, if any are wanted.
+    motions: Option<Vec<MotionLog>>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(work: Work<'a>) -> Result<Self, Error> {
+        let Work { robot, model, .. } = work;
+        let ground = Ground::under(robot, model)
+            .map_err(|error| Cause::Plant(model.model.clone(), error))?;
+        Ok(Self {
+            work,
+            ground,
+            names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
+            remarks: Vec::new(),
+            noise: vec![0.0; model.joints.len()],
+            motions: None,
+        })
+    }
+
+    /// Reads logs, whose cutoffs are halved so often, and keeps their motion for so long \[s\].
+    fn kept(
+        &mut self,
+        (paths, halvings): (&[PathBuf], &[u32]),
+        longest_s: Option<f64>,
+    ) -> Result<Vec<Conditioned>, Error> {
+        self.motions = longest_s.map(|_| Vec::new());
+        let halvings = halvings.iter().copied().chain(std::iter::repeat(0));
+        let all = paths.iter().zip(halvings);
+        Error::of_any_log(all.map(|(path, own)| self.one((path, own), longest_s)))
+    }
+
+    fn one(
+        &mut self,
+        (path, halvings): (&Path, u32),
+        longest_s: Option<f64>,
+    ) -> Result<Conditioned, Error> {
+        let file = path.display().to_string();
+        let Work { logs, options, robot, laws, model } = self.work;
+        let mut log = logs.measured(path, (robot, model))?;
+        let required = log.require_joint_torques(&model.joints, logs.accepts_suspicious);
+        required.map_err(|faults| Cause::Logs(vec![faults]))?;
+        undo_readings(&mut log, laws);
+        if self.ground.is_none() && !log.wrenches.is_empty() {
+            let around = Ground::around(robot, model);
+            let failed = |error| Cause::Plant(model.model.clone(), error);
+            self.ground = Some(around.map_err(failed)?);
+        }
+        if let Some(ground) = &mut self.ground {
+            ground.load(&mut log);
+        }
+        let remarks = std::mem::take(&mut log.remarks);
+        self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
+        let conditions = &options.conditions;
+        let how = Conditioning {
+            resolution: options.resolution,
+            ..conditions.of(log.step_s, log.samples(), halvings)
+        };
+        if let (Some(Filter { cutoff_hz, .. }), 1..) = (how.filter, halvings) {
+            self.remarks.push((file.clone(), LogRemark::LoweredFilter { cutoff_hz }));
+        }
+        if let (Some(motions), Some(longest_s)) = (&mut self.motions, longest_s) {
+            let head = log.head((longest_s / log.step_s).min(1e15) as usize + 1);
+            let motion = MotionLog::new(&head, &self.names, how.filter);
+            let failed = |error| Cause::Condition(file.clone(), error);
+            let mut motion = motion.map_err(failed)?;
+            undo_logged_torques(&mut motion, model, laws);
+            if let CoulombLaw::Tanh(width) = options.friction {
+                motion.stiction_rate = width;
+            }
+            motions.push(motion);
+        }
+        let conditioned = Conditioned::new(log, &self.names, &how);
+        let mut conditioned = conditioned.map_err(|error| Cause::Condition(file.clone(), error))?;
+        take_out(&mut conditioned, model, laws);
+        self.note(&file, &conditioned);
+        for joint in leave_out_idle_motors(model, &mut conditioned) {
+            self.remarks.push((file.clone(), LogRemark::Idle { joint: self.names[joint].clone() }));
+        }
+        Ok(conditioned)
+    }
+
+    /// What a conditioned log says of noise, rest and laps.
+    fn note(&mut self, file: &str, log: &Conditioned) {
+        for (all, own) in self.noise.iter_mut().zip(&log.position_noise) {
+            *all = all.max(*own);
+        }
+        for (joint, name) in self.names.iter().enumerate().filter(|(at, _)| log.resting[*at]) {
+            let remark = (file.to_owned(), LogRemark::Resting { joint: name.clone() });
+            if !(self.work.model.joints[joint].is_base || self.remarks.contains(&remark)) {
+                self.remarks.push(remark);
+            }
+        }
+        if let Some(laps) = &log.laps {
+            let period_s = laps.samples as f64 * log.step_s;
+            let remark = LogRemark::Averaged { laps: laps.count, period_s };
+            self.remarks.push((file.to_owned(), remark));
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Weighings and held postures (thesis 3.2.1), joined with logs.
+
+use super::{Identified, IdentifyOptions, identify, regression};
+use crate::error::{Cause, Error};
+use crate::logs::Logs;
+use crate::observer::Observer;
+use crate::robot_file::RobotFile;
+use denavit_identify::knowledge::{Consequences, Knowledge};
+use denavit_identify::read_statics;
+use denavit_identify::statics::{static_knowledge, suspicious_units};
+use denavit_plants::regression::RegressionModel;
+
+/// What follows from measurements at rest.
+#[derive(Debug)]
+pub struct StaticsFound {
+    /// Parameters and their columns.
+    pub model: RegressionModel,
+    /// The equations.
+    pub knowledge: Knowledge,
+    /// What follows from them.
+    pub found: Consequences,
+    /// What was noticed.
+    pub remarks: Vec<String>,
+}
+
+impl StaticsFound {
+    /// Whether something follows, and nothing contradicts it.
+    pub fn is_good(&self) -> bool {
+        !self.found.combinations.is_empty() && !self.found.contradicts()
+    }
+}
+
+/// Says which parameters, or sums of them, follow from the measurements at rest of a file, given as
+/// its name and bytes; joined with the logs for the estimate if there are any.
+///
+/// # Errors
+/// All that is wrong with the file or the logs, or why they do not suit the robot.
+pub fn identify_statics(
+    robot: &RobotFile,
+    (name, bytes): (&str, &[u8]),
+    (logs, options): (&Logs, &IdentifyOptions),
+    observer: &mut dyn Observer,
+) -> Result<StaticsFound, Error> {
+    if let Some(law) = robot.apart.laws.first() {
+        return Err(Cause::Effect(robot.whole.name.clone(), law.law.name.clone()).into());
+    }
+    let model = regression(&robot.apart.robot, options)?;
+    let measured = read_statics(name, bytes, &model).map_err(Cause::Scenario)?;
+    let suspicious = suspicious_units(&model, &measured);
+    if !(suspicious.is_empty() || logs.accepts_suspicious) {
+        return Err(Cause::Statics(name.to_owned(), suspicious).into());
+    }
+    let mut knowledge = static_knowledge(&model, &measured)
+        .map_err(|faults| Cause::Statics(name.to_owned(), faults))?;
+    let mut remarks = Vec::new();
+    if !logs.train.is_empty() {
+        let identified = identify(robot, logs, options, observer)?;
+        remarks.extend(identified.remarks.iter().map(|(file, one)| format!("{file}: {one}")));
+        remarks.extend(identified.found.warnings());
+        remarks.extend(join(&model, &identified, &mut knowledge).map(str::to_owned));
+    }
+    let found = knowledge.consequences();
+    remarks.extend(nothing_follows(&knowledge, &found).map(str::to_owned));
+    Ok(StaticsFound { model, knowledge, found, remarks })
+}
+
+/// Why nothing follows, if nothing does.
+fn nothing_follows(knowledge: &Knowledge, found: &Consequences) -> Option<&'static str> {
+    match (knowledge.equations(), found.combinations.len()) {
+        (0, _) => Some(
+            "Nothing follows: the file has neither weighings nor torques of postures, and no log \
+             says more. `denavit schema statics` prints what it may have.",
+        ),
+        (_, 0) => Some(
+            "Nothing follows: no equation has an unknown parameter in it. What is on the scale, or \
+             weighs on the joints, is known, or the joints that were held carry nothing.",
+        ),
+        _ => None,
+    }
+}
+
+/// Adds what logs say; a remark if only a part of it can be added.
+fn join(
+    model: &RegressionModel,
+    identified: &Identified,
+    knowledge: &mut Knowledge,
+) -> Option<&'static str> {
+    let estimate = &identified.found.estimate;
+    let phi = estimate.solution.phi.as_slice();
+    let is_joined = knowledge.add_estimate(model, phi, &estimate.covariance);
+    (!is_joined).then_some(
+        "The logs leave directions of the parameters open: they are not joined with the \
+         measurements at rest.",
+    )
+}

@@ -1,0 +1,37 @@
+//! Use cases as single calls: a robot and data in, an answer out.
+//!
+//! - [`Files`]: reads robots ([`RobotFile`]) and what they refer to
+//! - [`Logs`]: which logs, and how they are read
+//! - [`identify()`]: parameters from logs, by [`IdentifyOptions`]; [`identify_two_stage`] and
+//!   [`identify_statics`] for springs, and for measurements at rest
+//! - [`diagnose()`]: what a model lacks, by [`DiagnoseOptions`]
+//! - [`design_gait`], [`judge_run`], [`judge_log`]: gaits, and balance along runs and logs
+//! - [`Observer`]: hears of progress as data, and may stop the work, which then returns what it has
+//! - [`Error`]: why there is no answer, with its kind and hints
+//!
+//! Nothing here prints, and no option is taken from anywhere but the arguments of a call.
+
+mod diagnose;
+mod error;
+mod files;
+mod identify;
+mod logs;
+mod observer;
+mod robot_file;
+mod scenario;
+mod walk;
+
+pub use diagnose::{Completed, DiagnoseOptions, Diagnosed, NamedEffect, diagnose};
+pub use error::{Error, ErrorKind, Hint};
+pub use files::{Files, Input, ModelText, described, effects_folder, reason};
+pub use identify::{
+    Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, NotMoved, SimulationGap,
+    StaticsFound, TwoStageFound, identify, identify_statics, identify_two_stage,
+};
+pub use logs::Logs;
+pub use observer::{Observer, Progress, Silent, Stage};
+pub use robot_file::{EffectUse, RobotFile, WholeRobot};
+pub use walk::{
+    Designed, Gait, GaitCurves, GaitQuantity, JudgeOptions, Judged, design_gait, judge_log,
+    judge_run,
+};

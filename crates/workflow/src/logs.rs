@@ -1,0 +1,67 @@
+//! Which logs, and how they are read.
+
+use crate::error::{Cause, Error};
+use denavit_codegen::model::Robot;
+use denavit_logs::{self as logs, Opening};
+use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
+use denavit_plants::regression::RegressionModel;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// Files of logs, of any format, and how they are read.
+#[derive(Clone, Debug, Default)]
+pub struct Logs {
+    /// Those that an answer is from.
+    pub train: Vec<PathBuf>,
+    /// Those that judge it: another motion.
+    pub held_out: Vec<PathBuf>,
+    /// Which of their columns are ours.
+    pub columns: ColumnMapping,
+    /// Whether logs are taken as they are, however wrong they look.
+    pub accepts_suspicious: bool,
+    /// Whether of a log that is cut or corrupt what is before the damage is taken.
+    pub accepts_cut: bool,
+}
+
+impl Logs {
+    /// Logs that an answer is from, and those that judge it.
+    pub fn new<P: Into<PathBuf>>(
+        train: impl IntoIterator<Item = P>,
+        held_out: impl IntoIterator<Item = P>,
+    ) -> Self {
+        let train = train.into_iter().map(P::into).collect();
+        let held_out = held_out.into_iter().map(P::into).collect();
+        Self { train, held_out, ..Self::default() }
+    }
+
+    /// One of them, as a log of this robot.
+    pub(crate) fn measured(
+        &self,
+        path: &Path,
+        (robot, model): (&Robot, &RegressionModel),
+    ) -> Result<MeasuredLog, Error> {
+        let contacts: Vec<String> = robot.contacts.values().map(|one| one.name.clone()).collect();
+        let of = LogOf {
+            model: &model.model,
+            joints: &model.joints,
+            contacts: &contacts,
+            accepts_suspicious: self.accepts_suspicious,
+        };
+        let log = self.opened(path, of)?;
+        Ok(log)
+    }
+
+    fn opened(&self, path: &Path, robot: LogOf<'_>) -> Result<MeasuredLog, Error> {
+        let file = path.display().to_string();
+        // a folder is opened by its metadata
+        let opened = match path.is_dir() {
+            true => None,
+            false => Some(File::open(path).map_err(|error| Error::read(path, error))?),
+        };
+        let how = Opening { accepts_cut: self.accepts_cut, named: self.columns.beginnings() };
+        let log = logs::open(path, opened, &how)
+            .map_err(|faults| Cause::Logs(vec![of_file(&file, faults)]))?;
+        let read = read_opened(&file, log, robot, &self.columns);
+        Ok(read.map_err(|faults| Cause::Logs(vec![faults]))?)
+    }
+}

@@ -1,0 +1,103 @@
+//! Who watches long work, and may stop it.
+
+use std::fmt;
+
+/// What work is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Logs are read, checked and filtered.
+    ReadingLogs,
+    /// They are read again, behind a filter whose cutoff was halved so often.
+    ReadingLogsAgain(u32),
+    /// Logs that judge are read again, behind a lower filter.
+    ReadingHeldOutAgain,
+    /// Parameters are estimated.
+    Estimating,
+    /// They are estimated again, behind a filter whose cutoff was halved so often.
+    EstimatingAgain(u32),
+    /// Logs are simulated without noise, as instruments.
+    SimulatingInstruments,
+    /// The identified model moves as the logs did.
+    SimulatingLogs,
+    /// Effects of the catalogue are evaluated.
+    EvaluatingEffects,
+    /// So many effects have been found.
+    EffectsFound(usize),
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ReadingLogs => write!(f, "reading logs"),
+            Self::ReadingLogsAgain(times) => write!(f, "reading logs, filter halved {times} times"),
+            Self::ReadingHeldOutAgain => {
+                write!(f, "reading logs for validation, filter halved")
+            }
+            Self::Estimating => write!(f, "estimating"),
+            Self::EstimatingAgain(times) => write!(f, "estimating, filter halved {times} times"),
+            Self::SimulatingInstruments => write!(f, "simulating instruments"),
+            Self::SimulatingLogs => write!(f, "simulating the logs again"),
+            Self::EvaluatingEffects => write!(f, "effects evaluated"),
+            Self::EffectsFound(count) => write!(f, "{count} effects found"),
+        }
+    }
+}
+
+/// How far work has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress<'a> {
+    /// What is being done.
+    pub stage: Stage,
+    /// The share of the stage that is done, from 0 to 1, where that is known.
+    pub share: Option<f64>,
+    /// The best answer so far: effects that are missing, each with its place.
+    pub best: &'a [[String; 2]],
+}
+
+/// Who watches. A closure is one.
+pub trait Observer {
+    /// Work has come so far. Answers whether to go on; work that is not to go on returns what it
+    /// has.
+    fn progress(&mut self, progress: &Progress<'_>) -> bool;
+}
+
+impl<F: FnMut(&Progress<'_>) -> bool> Observer for F {
+    fn progress(&mut self, progress: &Progress<'_>) -> bool {
+        self(progress)
+    }
+}
+
+/// Watches nothing, and stops nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn progress(&mut self, _: &Progress<'_>) -> bool {
+        true
+    }
+}
+
+/// An observer, and whether it has stopped the work.
+pub(crate) struct Watched<'a> {
+    observer: &'a mut dyn Observer,
+    /// Whether the work was stopped.
+    pub(crate) is_stopped: bool,
+}
+
+impl<'a> Watched<'a> {
+    pub(crate) fn new(observer: &'a mut dyn Observer) -> Self {
+        Self { observer, is_stopped: false }
+    }
+
+    /// A stage begins; whether to go on. Work that was stopped stays so.
+    pub(crate) fn begins(&mut self, stage: Stage) -> bool {
+        self.progress(&Progress { stage, share: None, best: &[] })
+    }
+
+    /// Work has come so far; whether to go on.
+    pub(crate) fn progress(&mut self, progress: &Progress<'_>) -> bool {
+        self.is_stopped = self.is_stopped || !self.observer.progress(progress);
+        !self.is_stopped
+    }
+}

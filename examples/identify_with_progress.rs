@@ -1,0 +1,24 @@
+//! Identifies a robot from one log, judges it by another, with a progress line and a time limit:
+//! `cargo run --release --example identify_with_progress -- MODEL TRAIN.csv HELD_OUT.csv`.
+
+use denavit::workflow::{IdentifyOptions, Logs, Progress, RobotFile, identify};
+use std::env::args;
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let [model, train, held_out]: [String; 3] =
+        args().skip(1).collect::<Vec<_>>().try_into().map_err(|_| "MODEL TRAIN HELD_OUT")?;
+    let robot = RobotFile::open(model)?;
+    let started = Instant::now();
+    let mut watch = |at: &Progress<'_>| {
+        eprint!("\r\x1b[2K{} ({:.0} s)", at.stage, started.elapsed().as_secs_f64());
+        started.elapsed() < Duration::from_secs(60)
+    };
+    let logs = Logs::new([train], [held_out]);
+    let identified = identify(&robot, &logs, &IdentifyOptions::default(), &mut watch)?;
+    for one in &identified.found.parameters {
+        println!("{} = {:.4} +- {:.1e} {}", one.name, one.value, one.std.unwrap_or(0.0), one.unit);
+    }
+    Ok(())
+}

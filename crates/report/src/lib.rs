@@ -1,6 +1,6 @@
 //! What people look at: tables and pictures.
 //!
-//! - [`Table`], [`paragraph`]: columns and lines of text
+//! - [`Table`], [`paragraph`]: columns and lines of text; [`Ordered`]: objects of JSON
 //! - [`Values`]: the numbers behind a model's expressions
 //! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
 //! - [`excitation_picture`]: a trajectory with its limits, and how it was found
@@ -12,6 +12,7 @@
 //!   estimate came about; [`IdentificationPage`]: all of it
 //! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
 //! - [`BalancePicture`]: points of balance and support polygon over time
+//! - [`symbolic`]: what the compiler finds, as text, JSON, Markdown and LaTeX
 //! - [`GaitPicture`]: joint angles of a planned gait with its postures marked
 //! - [`UnitCircle`], [`HeatMap`]: Floquet multipliers of a gait, and what disturbances do to it
 //!
@@ -24,6 +25,7 @@ mod effects;
 pub mod html;
 mod identification;
 mod label;
+mod ordered;
 mod outline;
 mod paragraph;
 mod picture;
@@ -32,6 +34,7 @@ mod run;
 mod scene;
 mod space;
 mod svg;
+pub mod symbolic;
 mod table;
 mod two_stage;
 mod values;
@@ -41,6 +44,7 @@ pub use denavit_numerics::{percent, short};
 pub use diagnosis::{DiagnosisPage, verdict_paragraph};
 pub use effects::effects_page;
 pub use identification::{IdentificationPage, SimulationPart};
+pub use ordered::Ordered;
 pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;

@@ -17,6 +17,7 @@
 //! - [`walk`]: postures and gaits
 //! - [`workflow`]: use cases as single calls: a robot and logs in, an answer out
 //! - [`report`]: tables and pictures of robots
+//! - [`demo`]: what the command shows of all that on shipped robots
 
 // The command is part of the library, so that other programs have it in their own process; its
 // files name the library as its users do.
@@ -24,6 +25,7 @@ extern crate self as denavit;
 
 #[doc(hidden)]
 pub mod cli;
+pub mod demo;
 
 pub use denavit_codegen::{
     arena, build_script, derive, dynamics, effect, emit, expr, function, fundamental, kinematics,

@@ -172,6 +172,52 @@ impl fmt::Display for FunctionName {
     }
 }
 
+/// A model has none of the functions that were asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoFunction {
+    /// The model.
+    pub model: String,
+    /// The functions that it does not have.
+    pub asked: Vec<FunctionName>,
+}
+
+impl NoFunction {
+    /// Why a model has none of these functions.
+    fn hint(&self) -> String {
+        use FunctionName::{CapturePoint, CartTableZmp, FootRotationIndicator, ZeroMomentPoint};
+        let why = |name: &FunctionName| match name.as_str() {
+            text if text.contains("contact") => "contacts are declared under \"contacts\"",
+            text if text.starts_with("base_") => {
+                "`denavit base` says why its base parameters are not found"
+            }
+            "state_rates" => "it has no effects with states",
+            _ => match name {
+                ZeroMomentPoint | CartTableZmp | FootRotationIndicator | CapturePoint => {
+                    "points of the ground are those of robots with a floating base and contact \
+                     points"
+                }
+                _ => {
+                    "its mass matrix has no inverse (a joint moves no mass, or none of its own), \
+                     or an effect depends on what would have to be found"
+                }
+            },
+        };
+        let mut reasons: Vec<&str> = self.asked.iter().map(why).collect();
+        reasons.dedup();
+        reasons.join("; ")
+    }
+}
+
+impl fmt::Display for NoFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let asked: Vec<&str> = self.asked.iter().map(|name| name.as_str()).collect();
+        let (model, asked) = (&self.model, asked.join(", "));
+        write!(f, "{model}: the model has no {asked}\n  hint: {}", self.hint())
+    }
+}
+
+impl std::error::Error for NoFunction {}
+
 /// Which formulation of the portfolio a function was derived by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Form {

@@ -1,28 +1,22 @@
 //! `denavit base`: what can be identified, exactly.
 
-mod given;
-mod json;
-mod markdown;
-mod text;
-
 use super::Answer;
 use super::failure::Failure;
 use super::files::read_input;
+use super::json::write_json;
 use super::options::{EffectsOption, Term, terms};
 use super::outputs::{check_outputs, on_stdout, write_whole};
+use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::emit::latex::base_document;
-use denavit::expr::ExprId;
-use denavit::model::{Robot, bake_geometry};
+use denavit::fundamental::{DEFAULT_MEMORY_BYTES, Expansion};
+use denavit::model::Robot;
+use denavit::model::equations::Equations;
 use denavit::regressor::functions::modelled;
 use denavit::regressor::{
-    BaseParameter, BaseParameters, Certificate, JointParameter, Part, RegressorOptions,
-    base_parameters, joint_basis,
+    BaseOptions, DecomposedError, EquationsBase, ProvenBase, RegressorOptions,
 };
-use denavit::report::{Values, short};
-use denavit::workflow::EffectUse;
+use denavit::report::symbolic::{BaseReport, GivenBaseReport};
 use denavit::workflow::Input;
-use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -101,114 +95,6 @@ pub(crate) enum ListedBasis {
     Joints,
 }
 
-/// What was checked, and modulo which prime.
-#[derive(Serialize)]
-struct CertificateJson {
-    verified: bool,
-    prime: u64,
-}
-
-/// Base parameters with all that is shown of them.
-pub(crate) struct Found<'a> {
-    robot: &'a Robot,
-    base: &'a BaseParameters,
-    /// Those on the joint axes, if they are asked for.
-    joints: Option<&'a [JointParameter]>,
-    /// The values of what is listed; none where the model gives none.
-    values: Vec<Option<f64>>,
-    /// What becomes of the model's effects.
-    effects: Vec<EffectUse>,
-    verified: bool,
-}
-
-/// A base parameter as it is listed.
-struct Listed<'a> {
-    name: &'a str,
-    unit: &'a str,
-    members: &'a [(usize, ExprId)],
-    parts: &'a [Part],
-    /// What it is of the base parameters of kept columns, where it is none of them.
-    of_kept: Option<OfKept<'a>>,
-}
-
-/// A sum of base parameters of kept columns.
-struct OfKept<'a> {
-    /// Their places, with factors.
-    members: &'a [(usize, ExprId)],
-    parts: &'a [Part],
-}
-
-impl<'a> Found<'a> {
-    pub(crate) fn new(
-        robot: &'a Robot,
-        base: &'a BaseParameters,
-        joints: Option<&'a [JointParameter]>,
-        verified: bool,
-    ) -> Self {
-        let listed: Vec<ExprId> = match joints {
-            Some(joints) => joints.iter().map(|parameter| parameter.value).collect(),
-            None => base.parameters.iter().map(|parameter| parameter.value).collect(),
-        };
-        let mut values = Values::in_graph(&base.regressor.dag, robot);
-        let values = listed.into_iter().map(|value| values.number(value));
-        Self { robot, base, joints, values: values.collect(), effects: Vec::new(), verified }
-    }
-
-    /// What is listed, in order.
-    fn listed(&self) -> Vec<Listed<'a>> {
-        let base = self.base;
-        let of_kept_column = |parameter: &'a BaseParameter| Listed {
-            name: base.name(parameter.column),
-            unit: &base.regressor.columns[parameter.column].unit,
-            members: &parameter.members,
-            parts: &parameter.parts,
-            of_kept: None,
-        };
-        let on_axis = |parameter: &'a JointParameter| Listed {
-            name: &parameter.name,
-            unit: &parameter.unit,
-            members: &parameter.members,
-            parts: &parameter.parts,
-            of_kept: Some(OfKept { members: &parameter.of_kept, parts: &parameter.parts_of_kept }),
-        };
-        match self.joints {
-            Some(joints) => joints.iter().map(on_axis).collect(),
-            None => base.parameters.iter().map(of_kept_column).collect(),
-        }
-    }
-
-    /// What is said of the list in its title.
-    fn place(&self) -> &'static str {
-        if self.joints.is_some() { ", on the joint axes" } else { "" }
-    }
-
-    /// The values as a person writes them; none at all if the model gives only zeros.
-    pub(super) fn shown_values(&self) -> Vec<String> {
-        let says = |value: &Option<f64>| value.is_some_and(|value| value != 0.0);
-        match self.values.iter().any(says) {
-            true => self.values.iter().map(|value| value.map_or(String::new(), short)).collect(),
-            false => Vec::new(),
-        }
-    }
-
-    fn names(&self, columns: Vec<usize>) -> Vec<&str> {
-        columns.into_iter().map(|column| self.base.name(column)).collect()
-    }
-
-    /// What is listed in the base parameters of kept columns; none of these.
-    fn in_kept(&self) -> Vec<(&'a str, &'a [Part])> {
-        let listed = self.listed().into_iter();
-        listed.filter_map(|one| one.of_kept.map(|sum| (one.name, sum.parts))).collect()
-    }
-
-    /// The columns that are sums of others, with their relations.
-    fn sums(&self) -> impl Iterator<Item = (&'a str, &'a [Part])> {
-        let base = self.base;
-        let sums = base.dependent.iter().filter(|one| !one.relation.is_empty());
-        sums.map(|one| (base.name(one.column), &one.parts[..]))
-    }
-}
-
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let files = [&arguments.certificate, &arguments.latex, &arguments.markdown];
     let files = files.map(Option::as_ref);
@@ -216,53 +102,79 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     check_outputs(&files)?;
     let model = match read_input(&arguments.model, arguments.effects.effects.as_deref())? {
         Input::Model(model) => model,
-        Input::Equations(equations) => return given::run(arguments, &equations, is_answered, out),
+        Input::Equations(equations) => {
+            return of_equations(arguments, &equations, is_answered, out);
+        }
     };
     let effects = model.left_out();
     let mut robot = model.apart.robot;
     if let Some(list) = &arguments.terms {
         robot.terms = terms(list);
     }
-    if !robot.terms.inertia && !robot.terms.gravity {
-        return Err(Failure::NoMotionTerms(robot.name));
-    }
-    if arguments.numeric {
-        robot = bake_geometry(&robot).map_err(Failure::Bake)?;
-    }
-    let options = regressor_options(&robot, &arguments.with)?;
-    let failure = |error| Failure::Base(arguments.model.display().to_string(), Box::new(error));
-    let mut base = base_parameters(&robot, options, &arguments.keep).map_err(failure)?;
-    let joints = match arguments.basis {
-        ListedBasis::Kept => None,
-        ListedBasis::Joints => Some(joint_basis(&mut base, &robot)),
+    let options = BaseOptions {
+        parameters: regressor_options(&robot, &arguments.with)?,
+        numeric: arguments.numeric,
+        keep: arguments.keep.clone(),
+        on_joint_axes: arguments.basis == ListedBasis::Joints,
     };
-    let joints = joints.transpose().map_err(failure)?;
-    let certificate = Certificate::new(&robot, options, &base, arguments.numeric);
-    let verified = certificate.verify(&robot).is_verified();
+    let found = ProvenBase::find(robot, &options)
+        .map_err(|error| Failure::Base(arguments.model.display().to_string(), Box::new(error)))?;
     if let Some(path) = &arguments.certificate {
-        let mut bytes = serde_json::to_vec_pretty(&certificate)?;
-        bytes.push(b'\n');
-        write_whole(path, &bytes)?;
+        write_whole(path, found.certificate.to_text().as_bytes())?;
     }
-    let found = Found { effects, ..Found::new(&robot, &base, joints.as_deref(), verified) };
+    let report = BaseReport::new(&found);
     if let Some(path) = &arguments.latex {
-        write_whole(path, latex(&found).as_bytes())?;
+        write_whole(path, report.latex().as_bytes())?;
     }
     if let Some(path) = &arguments.markdown {
-        write_whole(path, markdown::document(&found).as_bytes())?;
+        write_whole(path, report.markdown().as_bytes())?;
     }
     match (arguments.json, is_answered) {
-        (true, _) => json::write(out, &found)?,
+        (true, _) => write_json(out, &report.json(&effects))?,
         (false, true) => {}
-        (false, false) => text::write(out, &found)?,
+        (false, false) => write!(out, "{}", report.text(&effects))?,
     }
-    Ok(if verified { Answer::Done } else { Answer::Negative })
+    Ok(answer(found.verified))
 }
 
-/// The base parameters as a LaTeX document.
-pub(crate) fn latex(found: &Found<'_>) -> String {
-    base_document(found.robot, found.base, found.joints, &found.shown_values())
-        .expect("our template has a place for each value")
+/// The base parameters of given equations.
+fn of_equations(
+    arguments: &Arguments,
+    equations: &Equations,
+    is_answered: bool,
+    out: &mut dyn Write,
+) -> Result<Answer, Failure> {
+    let is_of_models = !arguments.with.is_empty()
+        || arguments.terms.is_some()
+        || arguments.numeric
+        || arguments.basis == ListedBasis::Joints
+        || arguments.certificate.is_some();
+    if is_of_models {
+        return Err(Failure::NotOfEquations(equations.name.clone()));
+    }
+    let progress = Progress::new();
+    let mut show = |_| progress.show("writing the equations out");
+    let mut expansion = Expansion { memory_bytes: DEFAULT_MEMORY_BYTES, progress: &mut show };
+    let found = EquationsBase::find(equations, &arguments.keep, &mut expansion)
+        .map_err(DecomposedError::Equations)?;
+    progress.clear();
+    let report = GivenBaseReport::new(equations, &found);
+    if let Some(path) = &arguments.latex {
+        write_whole(path, report.latex().as_bytes())?;
+    }
+    if let Some(path) = &arguments.markdown {
+        write_whole(path, report.markdown().as_bytes())?;
+    }
+    match (arguments.json, is_answered) {
+        (true, _) => write_json(out, &report.json())?,
+        (false, true) => {}
+        (false, false) => write!(out, "{}", report.text())?,
+    }
+    Ok(answer(found.verified))
+}
+
+fn answer(verified: bool) -> Answer {
+    if verified { Answer::Done } else { Answer::Negative }
 }
 
 /// What a list of joint parameters asks for.

@@ -1,7 +1,5 @@
 //! `denavit decompose`: the regressor as fundamental functions and a matrix of known parameters.
 
-mod found;
-
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
@@ -11,9 +9,11 @@ use super::options::{EffectsOption, Term, terms};
 use super::outputs::{on_stdout, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
+use denavit::emit::latex::decomposition_document;
 use denavit::fundamental::{Basis, Expansion, Progress as Expanded};
+use denavit::regressor::Decomposed;
+use denavit::report::symbolic::DecompositionTexts;
 use denavit::workflow::Input;
-pub(super) use found::Found;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -96,14 +96,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut found = match input {
         Input::Model(model) => {
             effects = model.left_out();
-            let mut robot = Box::new(model.apart.robot);
+            let mut robot = model.apart.robot;
             if let Some(list) = &arguments.terms {
                 robot.terms = terms(list);
             }
             let options = regressor_options(&robot, &arguments.with)?;
-            Found::of_model(robot, options, basis, &mut expansion)?
+            Decomposed::of_model(robot, options, basis, &mut expansion)?
         }
-        Input::Equations(equations) => Found::of_equations(equations, basis, &mut expansion)?,
+        Input::Equations(equations) => Decomposed::of_equations(*equations, basis, &mut expansion)?,
     };
     if arguments.echelon {
         progress.show("eliminating");
@@ -111,18 +111,18 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     progress.show("writing f and B");
     if let Some(file) = &arguments.latex {
-        write_whole(file, found.latex()?.as_bytes())?;
+        write_whole(file, decomposition_document(&found)?.as_bytes())?;
     }
     if is_answered {
         return Ok(Answer::Done);
     }
-    let texts = found.texts(effects);
+    let texts = DecompositionTexts::new(found, effects);
     progress.clear();
     if arguments.json {
         write_json(out, &texts)?;
         return Ok(Answer::Done);
     }
-    texts.write(out)?;
+    write!(out, "{}", texts.text())?;
     if let Some(file) = &arguments.latex {
         writeln!(out, "\nwrote {}", file.display())?;
     }

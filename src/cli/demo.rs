@@ -1,37 +1,22 @@
 //! `denavit demo`: the whole way on two robots, with checks of what came out, and simulated runs.
 
-mod checks;
-mod compiled;
-mod counts;
-mod decomposed;
 mod diagnosed;
-mod identified;
-mod simulated;
-mod states;
 
 use super::Answer;
-use super::base::{Found, latex};
-use super::emit::Lowered;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
-use super::json::{Ordered, write_json};
+use super::identify;
+use super::json::write_json;
 use super::outputs::{NewDirectory, write_whole};
 use super::progress::Progress;
-use checks::Check;
 use clap::Args;
-use compiled::{Compiled, ROBOTS};
-use counts::Comparison;
-use decomposed::Decomposed;
-use denavit::derive::{Derivation, Flavour, StageReport};
-use denavit::emit::latex::document;
-use denavit::function::FunctionName;
-use denavit::model::Robot;
-use denavit::regressor::{Certificate, RegressorOptions, base_parameters};
-use denavit::report::{Align, Pose, Table, picture};
-use diagnosed::Diagnosed;
-use identified::Identified;
+use denavit::demo::{
+    DecomposedOutcome, DemoRun, DiagnosedOutcome, Document, Experiment, IdentifiedOutcome, ROBOTS,
+    RobotOutcome, Simulated, SimulatedRuns, Written,
+};
+use denavit::report::answer::drawn_run;
+use diagnosed::diagnosed;
 use serde::Serialize;
-use simulated::Simulated;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -60,52 +45,15 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What became of one robot.
-#[derive(Serialize)]
-struct Outcome {
-    model: String,
-    hash: String,
-    degrees_of_freedom: usize,
-    stages: Ordered<StageJson>,
-    operations: Ordered<Comparison>,
-    base: BaseJson,
-    files: Vec<Written>,
-    checks: Vec<Check>,
-}
-
-#[derive(Serialize)]
-struct StageJson {
-    milliseconds: f64,
-    nodes: usize,
-}
-
-/// What was found of the base parameters.
-#[derive(Serialize)]
-struct BaseJson {
-    columns: usize,
-    rank: usize,
-    alone: usize,
-    verified: bool,
-    milliseconds: f64,
-}
-
-/// A file that was written.
-#[derive(Serialize)]
-struct Written {
-    file: String,
-    bytes: usize,
-    what: String,
-}
-
 #[derive(Serialize)]
 struct DemoJson<'a> {
     version: &'a str,
     seed: u64,
-    robots: &'a [Outcome],
-    decomposed: &'a Decomposed,
+    robots: &'a [RobotOutcome],
+    decomposed: &'a DecomposedOutcome,
     simulated: &'a [Simulated],
-    identified: &'a Identified,
-    diagnosed: &'a Diagnosed,
+    identified: &'a IdentifiedOutcome,
+    diagnosed: &'a DiagnosedOutcome,
     seconds: f64,
     passed: bool,
 }
@@ -114,49 +62,44 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let started = Instant::now();
     let progress = Progress::new();
     let version = env!("CARGO_PKG_VERSION");
-    let directory = &arguments.out;
+    let &Arguments { seed, out: ref directory, json } = arguments;
     let _made = NewDirectory::make(directory)?;
-    if !arguments.json {
-        writeln!(out, "denavit {version}, seed {}", arguments.seed)?;
+    if !json {
+        writeln!(out, "denavit {version}, seed {seed}")?;
     }
-    let mut outcomes = Vec::new();
+    let mut robots = Vec::new();
     for compiled in &ROBOTS {
-        let outcome = one_robot(compiled, arguments.seed, directory, &progress)?;
-        if !arguments.json {
+        let robot = read_model_with_effects(Path::new(compiled.name), None)?;
+        let show = |doing: &str| progress.show(doing);
+        let mut write = |document| write(directory, document);
+        let outcome = RobotOutcome::new((&robot, compiled, seed), &show, &mut write)?;
+        if !json {
             progress.clear();
-            write_outcome(out, &outcome)?;
+            write!(out, "{outcome}")?;
             out.flush()?;
         }
-        outcomes.push(outcome);
+        robots.push(outcome);
     }
     progress.show("simulating");
-    let simulated = Simulated::all(directory)?;
-    let identified = Identified::new(arguments.seed, directory, &progress)?;
-    let diagnosed = Diagnosed::new(arguments.seed, directory, &progress)?;
+    let simulated = DemoRun::all(|run, name| finished(run, name, directory))?;
+    let identified = identified(seed, directory, &progress)?;
+    let diagnosed = diagnosed(seed, directory, &progress)?;
     drop(progress);
-    let decomposed = Decomposed::new(directory)?;
-    if !arguments.json {
-        decomposed.write(out)?;
-        simulated::write_all(&simulated, out)?;
-        identified.write(out)?;
-        diagnosed.write(out)?;
+    let decomposed = DecomposedOutcome::new(|document| write(directory, document))?;
+    if !json {
+        write!(out, "{decomposed}{}{identified}{diagnosed}", SimulatedRuns(&simulated))?;
     }
-    let checked = outcomes.iter().flat_map(|outcome| &outcome.checks).all(Check::passed);
-    let walked = simulated.iter().all(Simulated::passed);
-    let passed = checked
-        && walked
-        && identified.passed()
-        && outcomes.iter().all(|outcome| outcome.base.verified);
+    let passed = robots.iter().all(RobotOutcome::passed)
+        && simulated.iter().all(Simulated::passed)
+        && identified.passed();
     let seconds = started.elapsed().as_secs_f64();
-    if arguments.json {
-        let seed = arguments.seed;
-        let (robots, decomposed, simulated) = (&outcomes[..], &decomposed, &simulated[..]);
+    if json {
         let json = DemoJson {
             version,
             seed,
-            robots,
-            decomposed,
-            simulated,
+            robots: &robots,
+            decomposed: &decomposed,
+            simulated: &simulated,
             identified: &identified,
             diagnosed: &diagnosed,
             seconds,
@@ -170,126 +113,35 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     Ok(if passed { Answer::Done } else { Answer::Negative })
 }
 
-fn one_robot(
-    compiled: &Compiled,
+/// Writes the log and the picture of a run.
+fn finished(run: &mut DemoRun, name: &str, directory: &Path) -> Result<Vec<Written>, Failure> {
+    let log = ("csv", run.run.log.to_csv(), "log of the run");
+    let picture = ("svg", drawn_run(&mut run.scenario, &run.run, None), "picture of the run");
+    let files = [log, picture].map(|(ending, text, what)| {
+        write(directory, Document { name: format!("{name}.{ending}"), text, what: what.to_owned() })
+    });
+    files.into_iter().collect()
+}
+
+/// Simulates the experiment, identifies from its log alone, and compares.
+fn identified(
     seed: u64,
     directory: &Path,
     progress: &Progress,
-) -> Result<Outcome, Failure> {
-    let name = compiled.name;
-    let robot = read_model_with_effects(Path::new(name), None)?;
-    progress.show(&format!("{name}: deriving and emitting"));
-    let lowered = Lowered::new(&robot, Flavour::Tunable, false, &FunctionName::ALL)?;
-    let mut files = Vec::new();
-    let functions = lowered.program.routines.len();
-    let what = format!("{functions} functions as Rust, tunable parameters");
-    files.push(write(directory, &format!("{name}_dynamics.rs"), &lowered.rust()?, what)?);
-    progress.show(&format!("{name}: setting the equations"));
-    let document = equations(&robot, &lowered.derivation);
-    let what = "D, C, G and W^T as LaTeX".to_owned();
-    files.push(write(directory, &format!("{name}_equations.tex"), &document, what)?);
-    progress.show(&format!("{name}: finding base parameters"));
-    let base = base(&robot, directory, &mut files)?;
-    progress.show(&format!("{name}: drawing"));
-    let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(name.to_owned(), e))?;
-    let drawn = picture(&robot, &pose);
-    let what = "the robot with the frames of its links".to_owned();
-    files.push(write(directory, &format!("{name}.svg"), &drawn, what)?);
-    progress.show(&format!("{name}: counting"));
-    let operations = counts::compare(&robot, &lowered.program)?;
-    progress.show(&format!("{name}: checking"));
-    let checks = checks::run(&robot, compiled, seed)?;
-    // a robot without contacts has no stage for their functions
-    let made = |stage: &&StageReport| {
-        let name = FunctionName::parse(&stage.stage);
-        name.is_none_or(|name| lowered.derivation.functions.iter().any(|f| f.name == name))
-    };
-    let stages = lowered.derivation.report.iter().filter(made).map(stage_json).collect();
-    Ok(Outcome {
-        model: name.to_owned(),
-        hash: format!("{:016x}", robot.hash),
-        degrees_of_freedom: robot.degrees_of_freedom(),
-        stages: Ordered(stages),
-        operations: Ordered(operations),
-        base,
-        files,
-        checks,
-    })
+) -> Result<IdentifiedOutcome, Failure> {
+    progress.show("simulating an experiment");
+    let log = Experiment::log(seed).map_err(Failure::Scenario)?;
+    let path = directory.join(&log.name);
+    let log = write(directory, log)?;
+    let how = (path, Experiment::CUTOFF_HZ);
+    let (found, page) = identify::of_log(Experiment::MODEL, how, progress)?;
+    let page = write(directory, Experiment::page(page))?;
+    Ok(IdentifiedOutcome::new(&found, vec![log, page]))
 }
 
-/// Finds the base parameters, proves them, and writes both.
-fn base(robot: &Robot, directory: &Path, files: &mut Vec<Written>) -> Result<BaseJson, Failure> {
-    let name = &robot.name;
-    let options = RegressorOptions::default();
-    let started = Instant::now();
-    let base = base_parameters(robot, options, &[])
-        .map_err(|error| Failure::Base(robot.name.clone(), Box::new(error)))?;
-    let milliseconds = 1e3 * started.elapsed().as_secs_f64();
-    let certificate = Certificate::new(robot, options, &base, false);
-    let verified = certificate.verify(robot).is_verified();
-    let document = latex(&Found::new(robot, &base, None, verified));
-    let what = "base parameters as LaTeX".to_owned();
-    files.push(write(directory, &format!("{name}_base_parameters.tex"), &document, what)?);
-    let mut text = serde_json::to_string_pretty(&certificate)?;
-    text.push('\n');
-    let what = "the certificate that they are exact".to_owned();
-    files.push(write(directory, &format!("{name}_certificate.json"), &text, what)?);
-    let (columns, rank) = (base.regressor.columns.len(), base.rank());
-    Ok(BaseJson { columns, rank, alone: base.alone().len(), verified, milliseconds })
-}
-
-/// D, C, G and, of a robot with contacts, W^T as a LaTeX document.
-fn equations(robot: &Robot, derivation: &Derivation) -> String {
-    use FunctionName::{ContactJacobian, CoriolisMatrix, GravityVector, MassMatrix};
-    let is_set =
-        |name| matches!(name, MassMatrix | CoriolisMatrix | GravityVector | ContactJacobian);
-    let functions = derivation.functions.iter().filter(|function| is_set(function.name));
-    let functions: Vec<_> = functions.cloned().collect();
-    document(robot, &derivation.dag, &functions).expect("our template has a place for each value")
-}
-
-fn stage_json(stage: &StageReport) -> (String, StageJson) {
-    let milliseconds = 1e3 * stage.time.as_secs_f64();
-    (stage.stage.clone(), StageJson { milliseconds, nodes: stage.nodes })
-}
-
-fn write(directory: &Path, name: &str, text: &str, what: String) -> Result<Written, Failure> {
+fn write(directory: &Path, document: Document) -> Result<Written, Failure> {
+    let Document { name, text, what } = document;
     let path = directory.join(name);
     write_whole(&path, text.as_bytes())?;
-    Ok(Written { file: path.display().to_string(), bytes: text.len(), what })
-}
-
-fn write_outcome(out: &mut dyn Write, outcome: &Outcome) -> Result<(), Failure> {
-    let Outcome { model, hash, degrees_of_freedom, .. } = outcome;
-    writeln!(out, "\n{model}: {degrees_of_freedom} degrees of freedom, hash {hash}")?;
-    let mut stages =
-        Table::new(&[("stage", Align::Left), ("nodes", Align::Right), ("ms", Align::Right)]);
-    let mut total = 0.0;
-    for (name, stage) in &outcome.stages.0 {
-        total += stage.milliseconds;
-        stages.push(vec![
-            name.clone(),
-            stage.nodes.to_string(),
-            format!("{:.2}", stage.milliseconds),
-        ]);
-    }
-    stages.push(vec!["total".to_owned(), String::new(), format!("{total:.2}")]);
-    writeln!(out, "\nstages (nodes: of the graph after it)\n{stages}")?;
-    writeln!(out, "operations of one call (mul + add)\n{}", counts::table(&outcome.operations.0))?;
-    let BaseJson { columns, rank, alone, verified, milliseconds } = &outcome.base;
-    let verdict = if *verified { "verified" } else { "NOT VERIFIED" };
-    writeln!(
-        out,
-        "base parameters: {rank} of {columns} columns in {milliseconds:.1} ms, {alone} of them \
-         parameters alone; certificate {verdict}\n"
-    )?;
-    writeln!(
-        out,
-        "checks, by running the generated functions\n{}",
-        checks::table(&outcome.checks)
-    )?;
-    for file in &outcome.files {
-        writeln!(out, "wrote {} ({} kB): {}", file.file, file.bytes.div_ceil(1000), file.what)?;
-    }
-    Ok(())
+    Ok(Written::new(&path, text.len(), &what))
 }

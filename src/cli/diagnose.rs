@@ -10,7 +10,7 @@ use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
 use clap::Args;
 use denavit::effect;
-use denavit::report::{DIAGNOSIS_FILES, DiagnosisFolder, diagnosed_json, diagnosed_text};
+use denavit::report::answer::{DIAGNOSIS_FILES, DiagnosisFolder, diagnosed_json, diagnosed_text};
 use denavit::workflow::{self, DiagnoseOptions, Diagnosed, Logs, diagnose};
 use std::io::Write;
 use std::path::{Path, PathBuf};

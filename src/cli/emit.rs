@@ -1,7 +1,5 @@
 //! `denavit emit`: a model as Rust, C or C++.
 
-mod language;
-
 use super::Answer;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
@@ -9,15 +7,10 @@ use super::json::write_json;
 use super::options::{EffectsOption, FlavourOption, FunctionList, ModelArgument};
 use super::outputs::{on_stdout, write_together, write_whole};
 use super::progress::Progress;
-use clap::Args;
-use denavit::derive::{Derivation, Flavour, derive};
-use denavit::dynamics::implicit_effects;
-use denavit::emit::rust::module;
-use denavit::function::FunctionName;
-use denavit::model::Robot;
-use denavit::program::{Program, fuse, lower};
-use language::Language;
-use serde::Serialize;
+use clap::{Args, ValueEnum};
+use denavit::emit::{Language, SourceError, SourceOptions, Sources};
+use denavit::program::CodeOptions;
+use denavit::report::symbolic::{sources_json, sources_text};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -47,7 +40,7 @@ pub(crate) struct Arguments {
     flavour: FlavourOption,
     /// The language; if not given, that of the output's name (.c, .h, .hpp, ..), else Rust
     #[arg(long, visible_alias = "lang", value_name = "NAME")]
-    language: Option<Language>,
+    language: Option<LanguageName>,
     /// Fuse products with the sums that they go into: faster with the feature `fma` of
     /// denavit-runtime and -C target-cpu=native (C: -march=native), but the last bits then depend
     /// on the processor
@@ -61,73 +54,52 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-#[derive(Serialize)]
-struct EmitJson<'a> {
-    model: &'a str,
-    flavour: String,
-    language: String,
-    /// Whether products are fused with sums.
-    fused: bool,
-    file: String,
-    /// The other file of C.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    beside: Option<String>,
-    bytes: usize,
-    lines: usize,
-    functions: Vec<String>,
-    /// Effects that keep functions from being written in closed form.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    implicit_effects: Vec<String>,
+/// A language that code is emitted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LanguageName {
+    /// A module that needs the crate denavit-runtime
+    Rust,
+    /// C99: a header and a source that need nothing else
+    C,
+    /// A header of C++17: templates over the scalar
+    #[value(alias = "c++")]
+    Cpp,
+}
+
+impl LanguageName {
+    fn language(self) -> Language {
+        match self {
+            Self::Rust => Language::Rust,
+            Self::C => Language::C,
+            Self::Cpp => Language::Cpp,
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[Some(&arguments.output)], arguments.json)?;
-    let language = arguments.language.unwrap_or(Language::of(&arguments.output));
-    language.check(&arguments.output)?;
+    let language = arguments.language.map(LanguageName::language);
+    let language = language.unwrap_or(Language::of(&arguments.output));
+    language.check(&arguments.output).map_err(SourceError::FileName)?;
     let robot =
         read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())?;
-    let flavour = arguments.flavour.flavour();
     let progress = Progress::new();
     progress.show(&format!("deriving and emitting {}", robot.name));
-    let lowered = Lowered::new(&robot, flavour, arguments.fused, &arguments.functions.wanted())?;
-    let files = language.files(&lowered.derivation, &lowered.program, &arguments.output)?;
+    let (flavour, functions) = (arguments.flavour.flavour(), arguments.functions.wanted());
+    let code = CodeOptions { flavour, fused: arguments.fused, functions };
+    let options = SourceOptions { language, code };
+    let sources = Sources::new(&robot, &options, &arguments.output)?;
     drop(progress);
-    let found = lowered.program.routines.iter().map(|routine| routine.name);
+    let found = sources.lowered.program.routines.iter().map(|routine| routine.name);
     arguments.functions.refuse_missing(&robot.name, found)?;
-    write_files(&files)?;
+    write_files(&sources.files)?;
     if is_answered {
         return Ok(Answer::Done);
     }
-    let (text, beside) = (&files[0].1, files.get(1).map(|(path, _)| path.display().to_string()));
-    let (file, lines) = (arguments.output.display().to_string(), text.lines().count());
-    let functions: Vec<String> =
-        lowered.program.routines.iter().map(|routine| routine.full_name()).collect();
-    let implicit_effects = implicit_effects(&robot);
     if arguments.json {
-        let json = EmitJson {
-            model: &robot.name,
-            flavour: flavour.to_string(),
-            language: language.to_string(),
-            fused: arguments.fused,
-            file,
-            beside,
-            bytes: text.len(),
-            lines,
-            functions,
-            implicit_effects,
-        };
-        write_json(out, &json)?;
+        write_json(out, &sources_json(&robot, &options, &sources))?;
     } else {
-        let count = functions.len();
-        let file = beside.map_or(file.clone(), |beside| format!("{file}, {beside}"));
-        writeln!(out, "wrote {file}: {count} functions, {lines} lines, {flavour} parameters")?;
-        for effect in &implicit_effects {
-            writeln!(
-                out,
-                "left out: bias, forward dynamics and derivatives, because the effect `{effect}` \
-                 depends on what they would have to find"
-            )?;
-        }
+        write!(out, "{}", sources_text(&robot, &options, &sources))?;
     }
     Ok(Answer::Done)
 }
@@ -140,40 +112,4 @@ fn write_files(files: &[(PathBuf, String)]) -> Result<(), Failure> {
     let files: Vec<_> =
         files.iter().map(|(path, text)| (path.clone(), text.clone().into_bytes())).collect();
     write_together(&files)
-}
-
-/// A model on its way to code.
-pub(crate) struct Lowered {
-    /// Its functions as expressions.
-    pub(crate) derivation: Derivation,
-    /// Its functions as code.
-    pub(crate) program: Program,
-}
-
-impl Lowered {
-    /// Derives the functions of a robot and lowers them.
-    pub(crate) fn new(
-        robot: &Robot,
-        flavour: Flavour,
-        fuses: bool,
-        wanted: &[FunctionName],
-    ) -> Result<Self, Failure> {
-        let derivation = derive(robot, flavour, wanted).map_err(Failure::Bake)?;
-        if derivation.functions.is_empty() {
-            let asked = wanted.iter().map(|name| name.to_string()).collect();
-            return Err(Failure::NoFunction { model: robot.name.clone(), asked });
-        }
-        let mut program = lower(&derivation.dag, &derivation.functions)
-            .map_err(|error| Failure::Lower(robot.name.clone(), error))?;
-        if fuses {
-            fuse(&mut program);
-        }
-        Ok(Self { derivation, program })
-    }
-
-    /// The module of Rust.
-    pub(crate) fn rust(&self) -> Result<String, Failure> {
-        let robot = &self.derivation.robot;
-        module(robot, &self.program).map_err(|error| Failure::Emit(robot.name.clone(), error))
-    }
 }

@@ -12,9 +12,8 @@ use denavit::excite::{
     Check, Columns, Ends, ExciteOptions, Excited, Family, Objective, check_trajectory, excite,
 };
 use denavit::model::Robot;
-use denavit::report::{
-    ExcitationAnswer, ExcitationPicture, excitation_picture, excited_json, excited_text,
-};
+use denavit::report::answer::{ExcitationAnswer, excited_json, excited_text};
+use denavit::report::{ExcitationPicture, excitation_picture};
 use denavit::simulate::scenario::read_trajectory;
 use denavit::workflow::EffectUse;
 use std::io::Write;

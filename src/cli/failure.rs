@@ -1,15 +1,16 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
 use super::output_failure::OutputFailure;
-use denavit::emit::EmitError;
+use denavit::demo::RobotError;
+use denavit::derive::MotionError;
+use denavit::emit::SourceError;
+use denavit::emit::latex::TooLongToSet;
 use denavit::excite::ExciteError;
-use denavit::function::FunctionName;
 use denavit::identify::UpdateError;
 use denavit::import::{ExportError, ImportError};
-use denavit::model::{BakeError, ModelError};
-use denavit::program::LowerError;
-use denavit::regressor::equations::EquationsError;
-use denavit::regressor::{BaseError, DecomposeError};
+use denavit::model::ModelError;
+use denavit::program::{CodeError, StatesError};
+use denavit::regressor::{DecomposedError, ProvenBaseError};
 use denavit::report::html::FormulaError;
 use denavit::simulate::scenario::ScenarioError;
 use denavit::workflow::{self, Hint, reason};
@@ -26,37 +27,27 @@ pub(crate) enum Failure {
     /// A model is not described in another format; holds the model.
     Export(String, ExportError),
     /// A file of states is wrong; holds the file and why.
-    States(String, String),
+    States(String, StatesError),
     /// A file cannot be read.
     Read { file: String, error: io::Error },
     /// An output is not written.
     Output(OutputFailure),
-    /// Values are missing that the baked flavour needs.
-    Bake(BakeError),
-    /// A model holds numbers that no computer arithmetic holds; holds model and cause.
-    Lower(String, LowerError),
-    /// A default of a model is no number that Rust can hold; holds model and cause.
-    Emit(String, EmitError),
-    /// The model has none of the functions asked for.
-    NoFunction { model: String, asked: Vec<String> },
+    /// A model has no code.
+    Code(CodeError),
+    /// A model has no files of source code.
+    Source(SourceError),
     /// The base parameters are not found; holds the file.
-    Base(String, Box<BaseError>),
-    /// No terms are left in which bodies act by themselves; holds the model.
-    NoMotionTerms(String),
+    Base(String, Box<ProvenBaseError>),
     /// A file is no certificate.
     Certificate { file: String, error: serde_json::Error },
-    /// A model is not decomposed.
-    Decompose(DecomposeError),
-    /// Equations have no regressor.
-    Equations(EquationsError),
-    /// There are no angles to cumulate; holds the model.
-    NoParallelAxes(String),
+    /// There are no f and B.
+    Decompose(DecomposedError),
     /// `--with modelled` was given with other joint parameters.
     ModelledAndMore,
     /// Options that only models have were given for equations; holds their name.
     NotOfEquations(String),
     /// A document would be too long to be read, or set.
-    TooLongToSet { name: String, formulas: usize },
+    TooLongToSet(TooLongToSet),
     /// A scenario file is wrong.
     Scenario(ScenarioError),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
@@ -114,6 +105,54 @@ impl From<Misuse> for Failure {
     }
 }
 
+impl From<MotionError> for Failure {
+    fn from(error: MotionError) -> Self {
+        match error {
+            MotionError::NoFunction(error) => Self::Code(CodeError::NoFunction(error)),
+            MotionError::Effect(model, effect) => Self::Effect(model, effect),
+        }
+    }
+}
+
+impl From<CodeError> for Failure {
+    fn from(error: CodeError) -> Self {
+        Self::Code(error)
+    }
+}
+
+impl From<RobotError> for Failure {
+    fn from(error: RobotError) -> Self {
+        match error {
+            RobotError::Source(error) => error.into(),
+            RobotError::Base(error) => Self::Base(String::new(), Box::new(error)),
+        }
+    }
+}
+
+impl From<ScenarioError> for Failure {
+    fn from(error: ScenarioError) -> Self {
+        Self::Scenario(error)
+    }
+}
+
+impl From<SourceError> for Failure {
+    fn from(error: SourceError) -> Self {
+        Self::Source(error)
+    }
+}
+
+impl From<DecomposedError> for Failure {
+    fn from(error: DecomposedError) -> Self {
+        Self::Decompose(error)
+    }
+}
+
+impl From<TooLongToSet> for Failure {
+    fn from(error: TooLongToSet) -> Self {
+        Self::TooLongToSet(error)
+    }
+}
+
 impl From<workflow::Error> for Failure {
     fn from(error: workflow::Error) -> Self {
         Self::Work(error)
@@ -159,21 +198,9 @@ impl Failure {
             Self::Read { error, .. } if error.kind() == io::ErrorKind::PermissionDenied => {
                 "check the permissions of the file and of its directories".to_owned()
             }
-            Self::NoMotionTerms(_) => {
-                "--terms inertia,gravity; --with friction,rotor adds the parameters of joints"
-                    .to_owned()
-            }
             Self::ModelledAndMore => "the others add those of all joints".to_owned(),
             Self::Effect(..) => "see \"effects\" in docs/reference/model-file.md".to_owned(),
-            Self::Lower(..) | Self::Emit(..) => {
-                "check the exponents of the numbers in the model".to_owned()
-            }
-            Self::NoFunction { asked, .. } => why_no_function(asked),
             Self::NotOfEquations(_) => "write the terms into the equations".to_owned(),
-            Self::TooLongToSet { .. } => {
-                "leave out terms (--terms inertia,gravity), or take --json".to_owned()
-            }
-            Self::NoParallelAxes(_) => "choose the basis fourier or product".to_owned(),
             Self::Certificate { .. } => {
                 "give a file that `denavit base --certificate` wrote".to_owned()
             }
@@ -193,41 +220,14 @@ impl Failure {
             | Self::Misuse(_)
             | Self::Walk(..)
             | Self::Base(..)
-            | Self::Decompose(..)
-            | Self::Equations(_)
+            | Self::Decompose(_)
+            | Self::TooLongToSet(_)
+            | Self::Code(_)
+            | Self::Source(_)
             | Self::Read { .. }
-            | Self::Bake(_)
             | Self::Stdout(_) => return None,
         })
     }
-}
-
-/// Why a model has none of these functions.
-/// Whether a function finds a point of the ground.
-fn is_of_ground(name: &str) -> bool {
-    use FunctionName::{CapturePoint, CartTableZmp, FootRotationIndicator, ZeroMomentPoint};
-    let points = [ZeroMomentPoint, CartTableZmp, FootRotationIndicator, CapturePoint];
-    points.iter().any(|point| point.as_str() == name)
-}
-
-fn why_no_function(asked: &[String]) -> String {
-    let why = |name: &String| match name.as_str() {
-        name if name.contains("contact") => "contacts are declared under \"contacts\"",
-        name if name.starts_with("base_") => {
-            "`denavit base` says why its base parameters are not found"
-        }
-        name if is_of_ground(name) => {
-            "points of the ground are those of robots with a floating base and contact points"
-        }
-        "state_rates" => "it has no effects with states",
-        _ => {
-            "its mass matrix has no inverse (a joint moves no mass, or none of its own), or an \
-             effect depends on what would have to be found"
-        }
-    };
-    let mut reasons: Vec<&str> = asked.iter().map(why).collect();
-    reasons.dedup();
-    reasons.join("; ")
 }
 
 impl fmt::Display for Failure {
@@ -246,31 +246,18 @@ impl Failure {
             // place and hint are part of these
             Self::Model(error) => write!(f, "{error}")?,
             Self::Import(_) | Self::Export(..) | Self::States(..) => self.of_others(f)?,
-            Self::Bake(error) => write!(f, "{error}")?,
+            Self::Code(error) => write!(f, "{error}")?,
+            Self::Source(error) => write!(f, "{error}")?,
+            Self::TooLongToSet(error) => write!(f, "{error}")?,
             Self::Output(error) => write!(f, "{error}")?,
-            Self::Equations(error) => write!(f, "{error}")?,
             Self::Decompose(error) => write!(f, "{error}")?,
             Self::NotOfEquations(name) => write!(
                 f,
                 "{name}: equations have no --with, --terms, --basis, --numeric or --certificate"
             )?,
-            Self::TooLongToSet { name, formulas } => {
-                write!(f, "{name}: {formulas} formulas are too many for a document")?;
-            }
-            Self::NoParallelAxes(model) => {
-                write!(f, "{model}: there are no parallel axes whose angles could be cumulated")?;
-            }
             Self::Read { file, error } => write!(f, "{file}: cannot be read: {}", reason(error))?,
-            Self::NoMotionTerms(model) => {
-                write!(f, "{model}: base parameters need inertia or gravity among the terms")?;
-            }
             Self::ModelledAndMore => write!(f, "--with modelled stands alone")?,
-            Self::Lower(model, error) => write!(f, "{model}: {error}")?,
-            Self::Emit(model, error) => write!(f, "{model}: {error}")?,
-            Self::NoFunction { model, asked } => {
-                write!(f, "{model}: the model has no {}", asked.join(", "))?;
-            }
-            Self::Base(file, error) if matches!(**error, BaseError::Inexact { .. }) => {
+            Self::Base(file, error) if error.is_inexact() => {
                 write!(f, "{file}: {error} (`--numeric`)")?;
             }
             Self::Base(_, error) => write!(f, "{error}")?,
@@ -304,7 +291,7 @@ impl Failure {
             Self::Import(error) => write!(f, "{error}"),
             Self::Export(_, ExportError::Description(error)) => write!(f, "{error}"),
             Self::Export(model, error) => write!(f, "{model}: {error}"),
-            Self::States(file, why) => write!(f, "{file}: these are no states: {why}"),
+            Self::States(file, error) => write!(f, "{file}: {error}"),
             _ => Ok(()),
         }
     }

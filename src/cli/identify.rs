@@ -15,10 +15,8 @@ use super::progress::Progress;
 pub(crate) use arguments::Arguments;
 use arguments::MethodName;
 use denavit::identify::Identification;
-use denavit::report::{
-    TorquePicture, identified_doubts, identified_json, identified_text, motion_picture,
-    torque_picture,
-};
+use denavit::report::answer::{identified_doubts, identified_json, identified_text};
+use denavit::report::{TorquePicture, motion_picture, torque_picture};
 use denavit::workflow::{Conditions, Identified, IdentifyOptions, Logs, identify};
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,5 @@
 //! `denavit inspect`: what a model file says, as denavit understands it.
 
-mod json;
-mod text;
-
 use super::Answer;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
@@ -10,7 +7,9 @@ use super::json::write_json;
 use super::options::{EffectsOption, ModelArgument};
 use super::outputs::{on_stdout, write_whole};
 use clap::Args;
-use denavit::report::{Pose, Values, picture};
+use denavit::program::CodeError;
+use denavit::report::symbolic::{faults_json, model_json, model_text};
+use denavit::report::{Pose, picture};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -44,29 +43,29 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         {
             Ok(robot) => robot,
             Err(Failure::Model(error)) if arguments.json => {
-                write_json(out, &json::faults(&error))?;
+                write_json(out, &faults_json(&error))?;
                 out.flush()?;
                 return Err(Failure::Model(error));
             }
             Err(Failure::Import(error)) if arguments.json => {
-                write_json(out, &json::faults(&error))?;
+                write_json(out, &faults_json(&error))?;
                 out.flush()?;
                 return Err(Failure::Import(error));
             }
             Err(failure) => return Err(failure),
         };
     if let Some(file) = &arguments.svg {
-        let pose = Pose::zero(&robot).map_err(|e| Failure::Lower(robot.name.clone(), e))?;
+        let pose =
+            Pose::zero(&robot).map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
         write_whole(file, picture(&robot, &pose).as_bytes())?;
     }
     if is_answered {
         return Ok(Answer::Done);
     }
-    let mut values = Values::new(&robot);
     if arguments.json {
-        write_json(out, &json::robot(&robot, &mut values))?;
+        write_json(out, &model_json(&robot))?;
     } else {
-        text::write(out, &robot, &mut values)?;
+        write!(out, "{}", model_text(&robot))?;
         if let Some(file) = &arguments.svg {
             writeln!(out, "\nwrote {}", file.display())?;
         }

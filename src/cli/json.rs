@@ -1,7 +1,6 @@
 //! JSON answers.
 
 use super::failure::Failure;
-pub(crate) use denavit::report::Ordered;
 use serde::Serialize;
 use std::io::Write;
 

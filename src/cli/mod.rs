@@ -11,7 +11,6 @@ mod decompose;
 mod demo;
 mod derive;
 mod diagnose;
-mod elimination;
 pub mod embedded;
 mod emit;
 mod evaluate;

@@ -4,8 +4,9 @@ use super::failure::Failure;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use denavit::derive::Flavour;
-use denavit::function::FunctionName;
+use denavit::function::{FunctionName, NoFunction};
 use denavit::model::Terms;
+use denavit::program::CodeError;
 use std::path::PathBuf;
 
 /// The model that a command is about.
@@ -62,10 +63,10 @@ impl FunctionList {
     ) -> Result<(), Failure> {
         let found: Vec<FunctionName> = found.into_iter().collect();
         let missing = self.functions.iter().filter(|name| !found.contains(name));
-        let asked: Vec<String> = missing.map(|name| name.to_string()).collect();
+        let (model, asked) = (model.to_owned(), missing.copied().collect::<Vec<_>>());
         match asked.is_empty() {
             true => Ok(()),
-            false => Err(Failure::NoFunction { model: model.to_owned(), asked }),
+            false => Err(CodeError::NoFunction(NoFunction { model, asked }).into()),
         }
     }
 }

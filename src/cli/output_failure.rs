@@ -18,10 +18,6 @@ pub(crate) enum OutputFailure {
     TwoDocuments,
     /// Two outputs would be one file.
     SameOutput(String),
-    /// C is written to two files, and the output is the name of neither.
-    TwoFilesOfC(String),
-    /// No source can include a header of this name.
-    NotIncluded(String),
     /// What is to be written has no place in the format of the file; why.
     NotOfFormat { file: String, cause: String },
 }
@@ -44,11 +40,6 @@ impl OutputFailure {
             Self::Overwrites(_) => "choose another file for the output",
             Self::TwoDocuments => "give all but one of them a file",
             Self::SameOutput(_) => "give each a file of its own",
-            Self::TwoFilesOfC(_) => {
-                "give one of them, as `-o robot.c`, and robot.h is written beside it; \
-                 `--language cpp` is one file"
-            }
-            Self::NotIncluded(_) => "give a name without quotation marks, backslashes and `?`",
             Self::NotOfFormat { .. } => "a name that does not end in .mcap is written as CSV",
         })
     }
@@ -68,12 +59,6 @@ impl fmt::Display for OutputFailure {
             }
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
-            Self::TwoFilesOfC(file) => {
-                write!(f, "{file}: C is a source and a header, whose names end in .c and .h")?;
-            }
-            Self::NotIncluded(file) => {
-                write!(f, "{file}: a source cannot include a header of this name")?;
-            }
             Self::NotOfFormat { file, cause } => write!(f, "{file}: {cause}")?,
         }
         match self.hint() {

@@ -7,7 +7,7 @@ use super::json::write_json;
 use super::logs::run_file;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::{Args, ValueEnum};
-use denavit::report::{drawn_run, run_json, run_text};
+use denavit::report::answer::{drawn_run, run_json, run_text};
 use denavit::simulate::scenario::RunScheme;
 use denavit::simulate::{Log, Stop};
 use std::io::Write;

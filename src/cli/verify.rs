@@ -6,8 +6,8 @@ use super::files::{read_file, read_robot};
 use super::json::write_json;
 use super::options::EffectsOption;
 use clap::Args;
-use denavit::regressor::{Certificate, ParameterGroup, Verdict};
-use serde::Serialize;
+use denavit::regressor::Certificate;
+use denavit::report::symbolic::{verdict_json, verdict_text};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -34,20 +34,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What a check found.
-#[derive(Serialize)]
-struct VerdictJson<'a> {
-    model: &'a str,
-    verified: bool,
-    /// The number of base parameters.
-    rank: Option<usize>,
-    /// Whether each relation was also written out in every torque.
-    multiplied_out: bool,
-    /// What it is about: bodies, friction, ..
-    about: Vec<&'static str>,
-    verdict: String,
-}
-
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let bytes = read_file(&arguments.certificate)?;
     let certificate: Certificate = serde_json::from_slice(&bytes).map_err(|error| {
@@ -56,18 +42,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let model = read_robot(&arguments.model, arguments.effects.effects.as_deref())?;
     let robot = model.apart.robot;
     let verdict = certificate.verify(&robot);
-    let about: Vec<&str> = certificate.about().into_iter().map(ParameterGroup::as_str).collect();
     if arguments.json {
-        let (rank, multiplied_out) = match verdict {
-            Verdict::Verified { rank, multiplied_out } => (Some(rank), multiplied_out),
-            _ => (None, false),
-        };
-        let (verified, model) = (verdict.is_verified(), robot.name.as_str());
-        let verdict = verdict.to_string();
-        write_json(out, &VerdictJson { model, verified, rank, multiplied_out, about, verdict })?;
+        write_json(out, &verdict_json(&robot.name, &certificate, &verdict))?;
     } else {
-        writeln!(out, "{}: {verdict}", robot.name)?;
-        writeln!(out, "about: {}", about.join(", "))?;
+        write!(out, "{}", verdict_text(&robot.name, &certificate, &verdict))?;
     }
     Ok(if verdict.is_verified() { Answer::Done } else { Answer::Negative })
 }

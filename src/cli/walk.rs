@@ -13,7 +13,7 @@ mod robustness;
 use super::Answer;
 use super::failure::Failure;
 use clap::{Args, Subcommand};
-use denavit::report::BalanceCriterion;
+use denavit::report::answer::BalanceCriterion;
 use std::io::Write;
 
 /// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots

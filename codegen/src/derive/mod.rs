@@ -1,4 +1,10 @@
 //! The driver: from a checked robot to the functions asked for, one line per stage.
+//!
+//! [`MotionEquations`] are what a person reads: D, C, G and what goes with them, in any method.
+
+mod equations;
+
+pub use equations::{EquationOptions, EquationPart, MotionEquations, MotionError};
 
 use crate::dynamics::portfolio::Portfolio;
 use crate::expr::{Dag, Operations};

@@ -5,6 +5,8 @@
 //! - [`fuse`]: products and the sums that they go into as one operation, where that is wanted
 //! - [`verify`]: each slot defined once and before its use; called after each pass, in all profiles
 //! - [`counts`]: what a call costs
+//! - [`Lowered`]: a robot's functions as code, in one call, with what each costs
+//! - [`States`]: the functions of a robot as numbers, in given states
 //! - [`Evaluator`]: the reference interpreter; [`BatchEvaluator`]: many samples at once
 //! - [`Evaluate`], [`EvaluateBatch`]: what they and compiled code have in common
 //!
@@ -17,10 +19,12 @@ mod evaluate;
 mod fuse;
 mod interpret;
 mod lower;
+mod lowered;
 mod passes;
 mod renumber;
 mod schedule;
 mod sign;
+mod states;
 mod tape;
 mod verify;
 
@@ -31,7 +35,9 @@ pub use evaluate::{Evaluate, EvaluateBatch, ShapeMismatch};
 pub use fuse::fuse;
 pub use interpret::{Evaluator, parameter_defaults, prelude_values};
 pub use lower::{LowerError, constant_values, lower};
+pub use lowered::{CodeError, CodeOptions, FunctionCount, Lowered};
 pub use schedule::{peak_live, schedule};
+pub use states::{CalledFunction, Evaluated, NumberArray, States, StatesError};
 pub use verify::{Fault, verify};
 
 use crate::arena::{Handle, PrimaryMap};

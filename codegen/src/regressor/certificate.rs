@@ -235,6 +235,13 @@ impl Certificate {
         }
     }
 
+    /// The text of a certificate file.
+    pub fn to_text(&self) -> String {
+        let text =
+            serde_json::to_string_pretty(self).expect("a certificate is strings and numbers");
+        text + "\n"
+    }
+
     /// Checks the certificate against `robot`, by means that share nothing with its making but the
     /// regressor itself.
     pub fn verify(&self, robot: &Robot) -> Verdict {

@@ -12,9 +12,11 @@
 //! - [`BaseParameters`]: which combinations of parameters the torques depend on, as [`Part`]s
 //! - [`joint_basis()`]: the same on the joint axes, as the emitted regressor has them
 //! - [`Certificate`]: a proof of all that, and its verification by other means
+//! - [`ProvenBase`], [`EquationsBase`]: base parameters with that proof, in one call
 //! - [`functions`]: the regressor functions for emission
 //! - [`equations`]: given equations, not of a model (`denavit-equations/1`)
 //! - [`decompose_robot`]: f and B of a model's regressor
+//! - [`Decomposed`]: the same of a model or of given equations, in one call
 //! - [`Theta`]: theta from B_E, the thesis's way
 
 mod about;
@@ -25,6 +27,7 @@ pub mod certificate;
 mod coincidence;
 mod column;
 mod decompose;
+mod decomposed;
 mod dependence;
 mod eliminate;
 pub mod equations;
@@ -37,6 +40,8 @@ mod joint_basis;
 mod link_frames;
 mod matter;
 mod monomial;
+mod proven;
+mod proven_equations;
 mod pull;
 mod rank;
 mod settle;
@@ -49,9 +54,12 @@ pub use base::{BaseError, BaseParameter, BaseParameters, Dependent, base_paramet
 pub use certificate::{Certificate, Verdict};
 pub use column::{Column, Regressor, RegressorError, RegressorOptions, Unknowns};
 pub use decompose::{DecomposeError, RobotDecomposition, decompose_robot};
+pub use decomposed::{Decomposed, DecomposedError, DecomposedSubject};
 pub use formula::{Part, signed};
 pub use inexact::InexactEntry;
 pub use joint_basis::{JointParameter, joint_basis};
+pub use proven::{BaseOptions, ProvenBase, ProvenBaseError};
+pub use proven_equations::EquationsBase;
 pub use pull::{
     Equation, MatterRegressor, MotionTerms, TorsoMotion, fixed_base_regressor, torso_regressor,
 };

@@ -1,8 +1,9 @@
 //! A diagnosis as a page of HTML.
 
 use super::Arguments;
+use denavit::report::DiagnosisPage;
+use denavit::report::answer::DiagnosisFolder;
 use denavit::report::html::{Fact, Page};
-use denavit::report::{DiagnosisFolder, DiagnosisPage};
 use denavit::workflow::Diagnosed;
 use std::path::PathBuf;
 

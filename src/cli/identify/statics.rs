@@ -6,7 +6,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::read_file;
 use crate::cli::json::write_json;
 use crate::cli::progress::Progress;
-use denavit::report::{statics_json, statics_text};
+use denavit::report::answer::{statics_json, statics_text};
 use denavit::workflow::identify_statics;
 use std::io::Write;
 use std::path::Path;

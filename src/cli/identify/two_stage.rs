@@ -5,9 +5,8 @@ use crate::cli::Answer;
 use crate::cli::failure::{Failure, Misuse};
 use crate::cli::json::write_json;
 use crate::cli::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use denavit::report::{
-    TorquePicture, TwoStagePage, torque_picture, two_stage_json, two_stage_text,
-};
+use denavit::report::answer::{two_stage_json, two_stage_text};
+use denavit::report::{TorquePicture, TwoStagePage, torque_picture};
 use denavit::workflow::{Logs, TwoStageFound, identify_two_stage};
 use std::io::Write;
 

@@ -6,7 +6,7 @@ use super::super::files::{FILES, read_model_with_effects};
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::Args;
-use denavit::report::{
+use denavit::report::answer::{
     BalanceCriterion, balance_events, balance_json, balance_picture, balance_series, balance_text,
 };
 use denavit::workflow::{JudgeOptions, Judged, judge_log, judge_run};

@@ -7,7 +7,7 @@ use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::number::within;
 use clap::Args;
-use denavit::report::{
+use denavit::report::answer::{
     CapturabilityAnswer, capturability_json, capturability_picture, capturability_text,
 };
 use denavit::walk::capturability::{Capturability, StepLimits};

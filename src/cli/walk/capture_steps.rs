@@ -7,7 +7,7 @@ use super::super::json::write_json;
 use super::super::progress::Progress;
 use super::number::{impulse, within};
 use clap::Args;
-use denavit::report::{capture_steps_json, capture_steps_text};
+use denavit::report::answer::{capture_steps_json, capture_steps_text};
 use denavit::simulate::scenario::Scenario;
 use denavit::walk::capturability::Capturability;
 use denavit::walk::capture_step::{law_of, step_limits};

@@ -7,7 +7,7 @@ use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::progress::Progress;
 use clap::Args;
-use denavit::report::{comparison_json, comparison_page, comparison_text};
+use denavit::report::answer::{comparison_json, comparison_page, comparison_text};
 use denavit::walk::comparison::{CASES, Compared, compare};
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -6,7 +6,7 @@ use super::super::files::FILES;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::Args;
-use denavit::report::{designed_json, designed_picture, designed_text};
+use denavit::report::answer::{designed_json, designed_picture, designed_text};
 use denavit::workflow::design_gait;
 use std::io::Write;
 use std::path::PathBuf;

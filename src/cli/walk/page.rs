@@ -6,7 +6,7 @@ use super::super::files::FILES;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::balance::period;
 use clap::Args;
-use denavit::report::gait_page;
+use denavit::report::answer::gait_page;
 use denavit::walk::balance::course_of_scenario;
 use denavit::walk::poincare::{PoincareOptions, analyse};
 use std::io::Write;

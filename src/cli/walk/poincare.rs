@@ -6,7 +6,9 @@ use super::super::files::FILES;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use clap::Args;
-use denavit::report::{cycle_json, cycle_text, is_stable, multipliers_picture, returns_picture};
+use denavit::report::answer::{
+    cycle_json, cycle_text, is_stable, multipliers_picture, returns_picture,
+};
 use denavit::walk::poincare::{PoincareOptions, WantedSection, analyse};
 use std::io::Write;
 use std::path::PathBuf;

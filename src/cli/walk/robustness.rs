@@ -9,7 +9,7 @@ use super::super::progress::Progress;
 use super::number::within;
 use clap::Args;
 use denavit::plants::{PlantModel, PointModel};
-use denavit::report::{
+use denavit::report::answer::{
     BasinAnswer, PushAnswer, basin_json, basin_log, basin_picture, basin_text, push_json,
     push_picture, push_text,
 };

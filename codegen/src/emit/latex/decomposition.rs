@@ -11,13 +11,55 @@ use crate::fundamental::{Basis, Decomposition};
 use crate::model::Robot;
 use crate::model::equations::Equations;
 use crate::regressor::equations::EquationsRegressor;
-use crate::regressor::{RobotDecomposition, Theta};
+use crate::regressor::{Decomposed, DecomposedSubject, RobotDecomposition, Theta};
+use std::fmt;
 
 /// A matrix of at most so many rows and columns is set as one.
 const MATRIX: [usize; 2] = [30, 12];
 
 /// Only what is longer than a line is named.
 const EXTENT: Extent = Extent { shared: u32::MAX, longest: LINE - 100 };
+
+/// More functions and entries than this are not set: a hundred of them fill a page.
+const MOST_FORMULAS: usize = 20_000;
+
+/// A document would be too long to be read, or set.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TooLongToSet {
+    name: String,
+    formulas: usize,
+}
+
+impl fmt::Display for TooLongToSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: {} formulas are too many for a document\n  hint: leave out terms (--terms \
+             inertia,gravity), or take --json",
+            self.name, self.formulas
+        )
+    }
+}
+
+impl std::error::Error for TooLongToSet {}
+
+/// f and B of whatever was decomposed, and theta if B was eliminated.
+pub fn decomposition_document(found: &Decomposed) -> Result<String, TooLongToSet> {
+    let Decomposed { subject, decomposition, theta } = found;
+    let formulas = decomposition.functions.len() + decomposition.nonzeros();
+    if formulas > MOST_FORMULAS {
+        return Err(TooLongToSet { name: found.name().to_owned(), formulas });
+    }
+    let document = match subject {
+        DecomposedSubject::Model(robot, found) => {
+            robot_decomposition(robot, found, decomposition, theta.as_ref())
+        }
+        DecomposedSubject::Equations(equations, found) => {
+            equations_decomposition(equations, found, theta.as_ref())
+        }
+    };
+    Ok(document.expect("our template has a place for each value"))
+}
 
 /// A robot's f and B, in one of the bases of `found`.
 pub fn robot_decomposition(

@@ -3,9 +3,10 @@
 use super::expression::{Extent, Written, width, write_expression, write_expressions};
 use super::nomenclature;
 use super::notation::{Notation, escape, with_subscript};
+use crate::derive::MotionEquations;
 use crate::emit::layout::{TemplateError, fill};
 use crate::expr::{Dag, ExprId};
-use crate::function::{Function, FunctionName, Output};
+use crate::function::{Form, Function, FunctionName, Output};
 use crate::fundamental::written_out;
 use crate::model::Robot;
 
@@ -21,6 +22,33 @@ pub(super) const LINE: u32 = 960;
 /// What is wider than a third of a line, or shared and wider than half a dozen digits, is named:
 /// then each definition fits on its line, and few are needed.
 const NAMED: Extent = Extent { shared: 60, longest: LINE / 3 };
+
+/// D, C, G and W of equations of motion, however they were derived, and functions for walking.
+pub fn motion_document(
+    robot: &Robot,
+    equations: &MotionEquations,
+) -> Result<String, TemplateError> {
+    let mut functions: Vec<Function> = Vec::new();
+    for part in equations.parts.iter().filter(|part| part.symbol != "tau") {
+        let Some(name) = part.function else { continue };
+        let output = Output {
+            name: part.output,
+            shape: part.shape.clone(),
+            entries: part.entries.clone(),
+            doc: part.doc.clone(),
+            details: Vec::new(),
+        };
+        let link = part.link.clone();
+        match functions.last_mut().filter(|last| last.name == name && last.link == link) {
+            Some(same) => same.outputs.push(output),
+            None => {
+                let (arguments, outputs, form) = (Vec::new(), vec![output], Form::Plain);
+                functions.push(Function { name, link, arguments, outputs, form });
+            }
+        }
+    }
+    document(robot, &equations.dag, &functions)
+}
 
 /// The equations of `functions`, all of `robot` and in `dag`, as a document. Small equations are
 /// written in full; of large ones the intermediates are named first.

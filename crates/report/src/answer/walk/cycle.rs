@@ -1,7 +1,6 @@
 //! The cycle of a gait and its Floquet multipliers, as text, JSON and pictures.
 
-use crate::answer::json::Ordered;
-use crate::{Align, ReturnMapPicture, Table, UnitCircle, short};
+use crate::{Align, Ordered, ReturnMapPicture, Table, UnitCircle, short};
 use denavit_simulate::scenario::Scenario;
 use denavit_walk::poincare::{
     Convergence, Fate, Multiplier, PoincareAnalysis, Section, Share, shares,

@@ -1,7 +1,6 @@
 //! A gait that was designed, as text, JSON and a picture.
 
-use crate::answer::json::Ordered;
-use crate::{Align, GaitCurve, GaitPicture, Table};
+use crate::{Align, GaitCurve, GaitPicture, Ordered, Table};
 use denavit_walk::gait_plan::Knot;
 use denavit_workflow::Designed;
 use serde_json::{Map, Value, json as value};

@@ -1,20 +1,20 @@
 //! Base parameters as Markdown.
 
-use super::Found;
-use denavit::number::Residue;
+use super::BaseReport;
+use denavit_codegen::number::Residue;
 
 /// A table, and lists of what is alone, without effect, or a sum of others.
-pub(super) fn document(found: &Found<'_>) -> String {
-    let base = found.base;
+pub(super) fn document(found: &BaseReport<'_>) -> String {
+    let base = found.base();
     let columns = base.regressor.columns.len();
     let mut text = format!(
         "# Base parameters of {}\n\n{} base parameters of {columns} columns{}. Names `m`, `mx`, \
          `my`, `mz`, `Ixx` to `Iyz` are about the origin of the link frame.\n\n",
-        escaped(&found.robot.name),
+        escaped(&found.found.robot.name),
         base.rank(),
         found.place()
     );
-    let head = if found.joints.is_some() { "name" } else { "kept" };
+    let head = found.head();
     let values = found.shown_values();
     text.push_str(&match values.is_empty() {
         true => format!("| | {head} | unit | base parameter |\n|---:|---|---|---|\n"),
@@ -45,7 +45,7 @@ pub(super) fn document(found: &Found<'_>) -> String {
             text.push_str(&format!("- `{name} = {}`\n", base.sum_text(sum)));
         }
     }
-    let verdict = if found.verified { "verified" } else { "not verified" };
+    let verdict = if found.found.verified { "verified" } else { "not verified" };
     text.push_str(&format!(
         "\nThe certificate is {verdict}: exact relations, rank modulo {}.\n",
         Residue::MODULUS

@@ -1,9 +1,9 @@
-//! JSON whose keys keep their order.
+//! Objects of JSON in an order of ours.
 
 use serde::{Serialize, Serializer};
 
 /// An object whose keys keep their order.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ordered<V>(pub Vec<(String, V)>);
 
 impl<V: Serialize> Serialize for Ordered<V> {

@@ -1,21 +1,21 @@
 //! The functions that `build.rs` generated, behind slices.
 
 /// Generated functions of one robot, with the parameters of its model.
-pub(crate) struct Compiled {
+pub struct Compiled {
     /// The model's name.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// tau of q, qd, qdd.
-    pub(crate) inverse_dynamics: fn([&[f64]; 3]) -> Vec<f64>,
+    pub(super) inverse_dynamics: fn([&[f64]; 3]) -> Vec<f64>,
     /// qdd of q, qd, tau.
-    pub(crate) forward_dynamics: fn([&[f64]; 3]) -> Vec<f64>,
+    pub(super) forward_dynamics: fn([&[f64]; 3]) -> Vec<f64>,
     /// D, row-major, of q.
-    pub(crate) mass_matrix: fn(&[f64]) -> Vec<f64>,
+    pub(super) mass_matrix: fn(&[f64]) -> Vec<f64>,
     /// C, row-major, of q, qd.
-    pub(crate) coriolis_matrix: fn([&[f64]; 2]) -> Vec<f64>,
+    pub(super) coriolis_matrix: fn([&[f64]; 2]) -> Vec<f64>,
     /// G of q.
-    pub(crate) gravity_vector: fn(&[f64]) -> Vec<f64>,
+    pub(super) gravity_vector: fn(&[f64]) -> Vec<f64>,
     /// Kinetic energy of q, qd.
-    pub(crate) kinetic_energy: fn([&[f64]; 2]) -> f64,
+    pub(super) kinetic_energy: fn([&[f64]; 2]) -> f64,
 }
 
 macro_rules! compiled {
@@ -57,4 +57,4 @@ macro_rules! compiled {
 }
 
 /// The robots of the demo.
-pub(crate) static ROBOTS: [Compiled; 2] = compiled![tulip, puma560];
+pub static ROBOTS: [Compiled; 2] = compiled![tulip, puma560];

@@ -1,30 +1,10 @@
-//! The robot, or what is wrong with its file, as JSON.
+//! The robot as JSON.
 
 use super::text::{kind_name, row_entries, term_names, total_mass};
-use denavit::expr::ExprId;
-use denavit::model::{
-    Base, Contact, Convention, Explained, FallBody, FileError, Link, Robot, Side,
-};
-use denavit::report::Values;
+use crate::Values;
+use denavit_codegen::expr::ExprId;
+use denavit_codegen::model::{Base, Contact, Convention, FallBody, Link, Robot, Side};
 use serde_json::{Value, json};
-
-/// What is wrong with a file.
-pub(super) fn faults<C: Explained>(error: &FileError<C>) -> Value {
-    let faults: Vec<Value> = error
-        .faults
-        .iter()
-        .map(|fault| {
-            json!({
-                "pointer": fault.pointer,
-                "line": fault.line,
-                "column": fault.column,
-                "cause": fault.cause.to_string(),
-                "hint": fault.hint(),
-            })
-        })
-        .collect();
-    json!({ "file": error.file, "faults": faults, "omitted": error.omitted })
-}
 
 /// A robot. Values are numbers; a value that the file does not give is null.
 pub(super) fn robot(robot: &Robot, values: &mut Values) -> Value {

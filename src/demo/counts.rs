@@ -1,11 +1,9 @@
 //! Operation counts of the demo, beside those to compare with.
 
-use crate::cli::count::function_counts;
-use crate::cli::failure::Failure;
 use denavit::derive::Flavour;
 use denavit::function::FunctionName;
 use denavit::model::{Robot, Terms};
-use denavit::program::{Counts, Program, counts};
+use denavit::program::{CodeError, CodeOptions, Counts, FunctionCount, Lowered, Program, counts};
 use denavit::report::{Align, Table};
 use serde::Serialize;
 
@@ -58,7 +56,7 @@ const REFERENCES: [(&str, FunctionName, usize, usize); 12] = [
 pub(super) fn compare(
     robot: &Robot,
     program: &Program,
-) -> Result<Vec<(String, Comparison)>, Failure> {
+) -> Result<Vec<(String, Comparison)>, CodeError> {
     let routines: Vec<_> =
         program.routines.iter().filter(|routine| routine.link.is_none()).collect();
     let wanted: Vec<FunctionName> = routines.iter().map(|routine| routine.name).collect();
@@ -84,6 +82,16 @@ pub(super) fn compare(
         (routine.full_name(), comparison)
     });
     Ok(rows.collect())
+}
+
+fn function_counts(
+    robot: &Robot,
+    flavour: Flavour,
+    wanted: &[FunctionName],
+) -> Result<Vec<FunctionCount>, CodeError> {
+    let functions = wanted.to_vec();
+    let options = CodeOptions { flavour, functions, ..CodeOptions::default() };
+    Ok(Lowered::new(robot, &options)?.counts())
 }
 
 /// The comparison as a table.

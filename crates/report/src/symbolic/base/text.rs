@@ -1,18 +1,21 @@
 //! Base parameters for people at a terminal.
 
-use super::Found;
-use crate::cli::failure::Failure;
-use denavit::number::Residue;
-use denavit::report::{Align, Table, paragraph};
-use std::io::Write;
+use super::BaseReport;
+use crate::{Align, Table, paragraph};
+use denavit_codegen::number::Residue;
+use std::fmt::{self, Display, Write};
 
-pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failure> {
-    let base = found.base;
+pub(super) fn write(
+    out: &mut dyn Write,
+    found: &BaseReport<'_>,
+    effects: &[impl Display],
+) -> fmt::Result {
+    let base = found.base();
     let columns = base.regressor.columns.len();
-    let (name, rank, place) = (&found.robot.name, base.rank(), found.place());
+    let (name, rank, place) = (&found.found.robot.name, base.rank(), found.place());
     writeln!(out, "{name}: {rank} base parameters of {columns} columns{place}\n")?;
     writeln!(out, "{}", table(found))?;
-    for effect in &found.effects {
+    for effect in effects {
         writeln!(out, "{}\n", paragraph("", "  ", &effect.to_string()))?;
     }
     for (title, names) in [
@@ -35,14 +38,13 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
         }
         writeln!(out)?;
     }
-    let verdict = if found.verified { "verified" } else { "NOT verified" };
-    Ok(writeln!(out, "certificate {verdict} (exact; rank modulo {})", Residue::MODULUS)?)
+    let verdict = if found.found.verified { "verified" } else { "NOT verified" };
+    writeln!(out, "certificate {verdict} (exact; rank modulo {})", Residue::MODULUS)
 }
 
-fn table(found: &Found<'_>) -> Table {
-    let head = if found.joints.is_some() { "name" } else { "kept" };
+fn table(found: &BaseReport<'_>) -> Table {
     let mut table = Table::new(&[
-        (head, Align::Left),
+        (found.head(), Align::Left),
         ("unit", Align::Left),
         ("value", Align::Right),
         ("base parameter", Align::Left),
@@ -53,7 +55,7 @@ fn table(found: &Found<'_>) -> Table {
             parameter.name.to_owned(),
             parameter.unit.to_owned(),
             values.get(row).cloned().unwrap_or_default(),
-            found.base.sum_text(parameter.parts),
+            found.base().sum_text(parameter.parts),
         ]);
     }
     table.without_empty_columns()

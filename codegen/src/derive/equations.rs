@@ -1,55 +1,92 @@
 //! The equations of motion, whichever way they were derived.
 
-use denavit::derive::{Flavour, derive};
-use denavit::dynamics::methods::{self, Method, MethodResult};
-use denavit::emit::latex::document;
-use denavit::expr::{Dag, ExprId};
-use denavit::function::{Form, Function, FunctionName, Output};
-use denavit::fundamental::written_out;
-use denavit::model::Robot;
-use std::time::Instant;
+use super::{Flavour, derive};
+use crate::dynamics::methods::{self, Method, MethodResult};
+use crate::expr::{Dag, ExprId};
+use crate::function::{Form, FunctionName, NoFunction};
+use crate::fundamental::written_out;
+use crate::model::Robot;
+use std::fmt;
+use std::time::{Duration, Instant};
 
-/// One term of the equations: a matrix or a vector.
-pub(super) struct Part {
-    /// What it is called in JSON.
-    pub(super) key: String,
-    /// The function, where it is one of the compiler's.
-    function: Option<FunctionName>,
-    /// Of which link, where there is one for each.
-    link: Option<String>,
-    /// The name of the array.
-    output: &'static str,
-    /// What it is called in formulas.
-    pub(super) symbol: &'static str,
-    /// Its dimensions.
-    pub(super) shape: Vec<usize>,
-    /// Its entries, row-major.
-    pub(super) entries: Vec<ExprId>,
-    /// What the entries are.
-    doc: String,
-    /// The formulation, if there is a choice.
-    pub(super) form: &'static str,
-    /// How long it took \[s\], if it was derived by itself.
-    pub(super) time: Option<f64>,
+/// How equations of motion are derived.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct EquationOptions {
+    /// One of the thesis's four ways; none for the recursions that emitted code uses.
+    pub method: Option<Method>,
+    /// Functions for walking that the recursions derive, too.
+    pub functions: Vec<FunctionName>,
 }
 
-impl Part {
+/// Why a robot has not the equations asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MotionError {
+    /// It has none of these functions.
+    NoFunction(NoFunction),
+    /// It has an effect, for which the method has no place; holds model and effect.
+    Effect(String, String),
+}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoFunction(error) => write!(f, "{error}"),
+            Self::Effect(model, effect) => {
+                write!(f, "{model}: this has no place for the effect `{effect}`")
+            }
+        }
+    }
+}
+
+impl std::error::Error for MotionError {}
+
+/// A matrix or a vector of the equations of motion.
+#[derive(Clone, Debug)]
+pub struct EquationPart {
+    /// What it is called in JSON.
+    pub key: String,
+    /// The function, where it is one of the compiler's.
+    pub function: Option<FunctionName>,
+    /// Of which link, where there is one for each.
+    pub link: Option<String>,
+    /// The name of the array.
+    pub output: &'static str,
+    /// What it is called in formulas.
+    pub symbol: &'static str,
+    /// Its dimensions.
+    pub shape: Vec<usize>,
+    /// Its entries, row-major.
+    pub entries: Vec<ExprId>,
+    /// What the entries are.
+    pub doc: String,
+    /// The formulation, if there is a choice.
+    pub form: &'static str,
+    /// How long it took, if it was derived by itself.
+    pub time: Option<Duration>,
+}
+
+impl EquationPart {
     /// Whether it is a term of the equations, and not what they add up to or a constraint.
-    pub(super) fn is_term(&self) -> bool {
+    pub fn is_term(&self) -> bool {
         ["D", "C", "G", "tau_drive"].contains(&self.symbol)
     }
 }
 
 /// The equations of motion of a robot.
-pub(super) struct Equations {
-    pub(super) model: String,
-    pub(super) method: &'static str,
+#[derive(Clone, Debug)]
+pub struct MotionEquations {
+    /// The model's name.
+    pub model: String,
+    /// The method's name.
+    pub method: &'static str,
     /// The moving links, in the order of q.
-    pub(super) joints: Vec<String>,
-    pub(super) dag: Dag,
-    pub(super) parts: Vec<Part>,
-    /// How long it took altogether \[s\], if the parts were derived together.
-    pub(super) time: Option<f64>,
+    pub joints: Vec<String>,
+    /// Holds all expressions.
+    pub dag: Dag,
+    /// D, C, G and what goes with them.
+    pub parts: Vec<EquationPart>,
+    /// How long it took altogether, if the parts were derived together.
+    pub time: Option<Duration>,
 }
 
 /// What is derived by recursion, with its letters.
@@ -61,9 +98,28 @@ const RECURSIVE: [(FunctionName, &str); 5] = [
     (FunctionName::ContactJacobian, "W^T"),
 ];
 
-impl Equations {
+impl MotionEquations {
+    /// The equations of a robot. Functions that were asked for and that it cannot have are an
+    /// error; so are effects, if one of the four methods is asked for.
+    pub fn derive(robot: &Robot, options: &EquationOptions) -> Result<Self, MotionError> {
+        if let (Some(law), Some(_)) = (robot.laws.first(), options.method) {
+            return Err(MotionError::Effect(robot.name.clone(), law.effect.clone()));
+        }
+        let equations = match options.method {
+            None => Self::recursive(robot, &options.functions),
+            Some(method) => Self::by_method(robot, method),
+        };
+        let has =
+            |name: &FunctionName| equations.parts.iter().any(|part| part.function == Some(*name));
+        let asked: Vec<_> = options.functions.iter().copied().filter(|name| !has(name)).collect();
+        match asked.is_empty() {
+            true => Ok(equations),
+            false => Err(MotionError::NoFunction(NoFunction { model: robot.name.clone(), asked })),
+        }
+    }
+
     /// By the recursions that emitted code uses; functions for walking where they are asked for.
-    pub(super) fn recursive(robot: &Robot, walking: &[FunctionName]) -> Self {
+    fn recursive(robot: &Robot, walking: &[FunctionName]) -> Self {
         let also = FunctionName::WALKING.into_iter().filter(|name| walking.contains(name));
         let wanted: Vec<FunctionName> =
             RECURSIVE.iter().map(|(name, _)| *name).chain(also).collect();
@@ -75,7 +131,7 @@ impl Equations {
             let stage = derivation.report.iter().find(|stage| stage.stage == name);
             let letter = RECURSIVE.iter().find(|(own, _)| *own == function.name);
             let single = function.outputs.len() == 1;
-            parts.extend(function.outputs.iter().map(|output| Part {
+            parts.extend(function.outputs.iter().map(|output| EquationPart {
                 key: if single { function.full_name() } else { output.name.to_owned() },
                 function: Some(function.name),
                 link: function.link.clone(),
@@ -85,7 +141,7 @@ impl Equations {
                 entries: output.entries.clone(),
                 doc: output.doc.clone(),
                 form: form_name(function.form),
-                time: stage.map(|stage| stage.time.as_secs_f64()),
+                time: stage.map(|stage| stage.time),
             }));
         }
         Self {
@@ -99,7 +155,7 @@ impl Equations {
     }
 
     /// In one of the thesis's four ways.
-    pub(super) fn by_method(robot: &Robot, method: Method) -> Self {
+    fn by_method(robot: &Robot, method: Method) -> Self {
         let started = Instant::now();
         let mut dag = robot.dag.clone();
         let MethodResult {
@@ -110,21 +166,20 @@ impl Equations {
             drive_torque,
             inverse_dynamics,
         } = methods::derive(&mut dag, robot, method);
-        let time = Some(started.elapsed().as_secs_f64());
+        let time = Some(started.elapsed());
         let n = gravity.len();
-        let part =
-            |name: &'static str, symbol, shape: &[usize], entries: Vec<ExprId>, doc: &str| Part {
-                key: name.to_owned(),
-                function: FunctionName::parse(name),
-                link: None,
-                output: name,
-                symbol,
-                shape: shape.to_vec(),
-                entries,
-                doc: format!("By the method {method}. {doc}"),
-                form: "",
-                time: None,
-            };
+        let part = |name: &'static str, symbol, shape: &[usize], entries, doc: &str| EquationPart {
+            key: name.to_owned(),
+            function: FunctionName::parse(name),
+            link: None,
+            output: name,
+            symbol,
+            shape: shape.to_vec(),
+            entries,
+            doc: format!("By the method {method}. {doc}"),
+            form: "",
+            time: None,
+        };
         let parts = vec![
             part("mass_matrix", "D", &[n, n], mass_matrix.concat(), "D(q), rotors included."),
             part("coriolis_matrix", "C", &[n, n], coriolis_matrix.concat(), "C(q, qd)."),
@@ -136,58 +191,29 @@ impl Equations {
         Self { model, method: method.as_str(), joints, dag, parts, time }
     }
 
-    /// Whether a function is among the parts.
-    pub(super) fn has(&self, function: FunctionName) -> bool {
-        self.parts.iter().any(|part| part.function == Some(function))
-    }
-
     /// What holds between the parts.
-    pub(super) fn law(&self) -> &'static str {
+    pub fn law(&self) -> &'static str {
         match self.time {
             None => "tau = D qdd + C qd + G + the joints' own torques",
             Some(_) => "tau = D qdd + C qd + G + tau_drive",
         }
     }
 
-    /// D, C, G and W as a LaTeX document.
-    pub(super) fn latex(&self, robot: &Robot) -> String {
-        let mut functions: Vec<Function> = Vec::new();
-        for part in self.parts.iter().filter(|part| part.symbol != "tau") {
-            let Some(name) = part.function else { continue };
-            let output = Output {
-                name: part.output,
-                shape: part.shape.clone(),
-                entries: part.entries.clone(),
-                doc: part.doc.clone(),
-                details: Vec::new(),
-            };
-            let link = part.link.clone();
-            match functions.last_mut().filter(|last| last.name == name && last.link == link) {
-                Some(same) => same.outputs.push(output),
-                None => {
-                    let (arguments, outputs, form) = (Vec::new(), vec![output], Form::Plain);
-                    functions.push(Function { name, link, arguments, outputs, form });
-                }
-            }
-        }
-        document(robot, &self.dag, &functions).expect("our template has a place for each value")
-    }
-
-    /// The equations with their terms (`is_term`) written out as people do; none if that takes more
-    /// than `limit` terms.
-    pub(super) fn written_out(&mut self, limit: usize) -> Option<Vec<ExprId>> {
+    /// The terms ([`EquationPart::is_term`]) written out as people do; none if that takes more than
+    /// `limit` summands.
+    pub fn written_out(&mut self, limit: usize) -> Option<Vec<ExprId>> {
         let entries = self.entries_of_terms();
         written_out(&mut self.dag, &entries, limit)
     }
 
     /// The entries of the terms, in order.
-    pub(super) fn entries_of_terms(&self) -> Vec<ExprId> {
+    pub fn entries_of_terms(&self) -> Vec<ExprId> {
         let terms = self.parts.iter().filter(|part| part.is_term());
         terms.flat_map(|part| part.entries.iter().copied()).collect()
     }
 
     /// Number of nodes of the terms, each shared one counted once.
-    pub(super) fn nodes(&self) -> usize {
+    pub fn nodes(&self) -> usize {
         self.dag.topological(&self.entries_of_terms()).len()
     }
 }

@@ -2,13 +2,12 @@
 
 use super::compiled::Compiled;
 use super::states::State;
-use crate::cli::failure::Failure;
 use denavit::dynamics::methods::{self, Method};
 use denavit::expr::{Dag, ExprId};
 use denavit::function::{Argument, Form, Function, FunctionName, Output};
 use denavit::model::Robot;
 use denavit::numerics::Random;
-use denavit::program::{Evaluator, lower, parameter_defaults, prelude_values};
+use denavit::program::{CodeError, Evaluator, lower, parameter_defaults, prelude_values};
 use denavit::report::{Align, Table};
 use serde::Serialize;
 
@@ -51,7 +50,7 @@ impl Check {
 
 /// Compares at random states: with the equations of motion of the thesis's four methods, which are
 /// derived now and interpreted, and the generated functions with each other.
-pub(super) fn run(robot: &Robot, compiled: &Compiled, seed: u64) -> Result<Vec<Check>, Failure> {
+pub(super) fn run(robot: &Robot, compiled: &Compiled, seed: u64) -> Result<Vec<Check>, CodeError> {
     let mut methods = Vec::new();
     for method in Method::ALL {
         let what = format!("inverse_dynamics = {method}, derived now and interpreted");
@@ -104,7 +103,7 @@ struct Independent {
 }
 
 impl Independent {
-    fn new(robot: &Robot, method: Method) -> Result<Self, Failure> {
+    fn new(robot: &Robot, method: Method) -> Result<Self, CodeError> {
         let mut dag = robot.dag.clone();
         let derived = methods::derive(&mut dag, robot, method);
         let joints = robot.degrees_of_freedom();
@@ -131,9 +130,9 @@ impl Independent {
     }
 }
 
-fn evaluator(dag: &Dag, robot: &Robot, function: Function) -> Result<Evaluator<f64>, Failure> {
+fn evaluator(dag: &Dag, robot: &Robot, function: Function) -> Result<Evaluator<f64>, CodeError> {
     let program =
-        lower(dag, &[function]).map_err(|error| Failure::Lower(robot.name.clone(), error))?;
+        lower(dag, &[function]).map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
     let defaults = parameter_defaults(&program, robot);
     // shipped models give every value; a hole would show as a failed check
     let parameters: Vec<f64> =

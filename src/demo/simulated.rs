@@ -1,17 +1,13 @@
 //! Robots in motion: TUlip's step of the thesis, and a walking biped by both schemes.
 
-use super::super::failure::Failure;
-use super::super::files::load_beside;
-use super::{Written, write};
-use denavit::report::drawn_run;
+use super::{Written, referred};
 use denavit::report::{Align, Table};
 use denavit::shipped;
-use denavit::simulate::Stop;
-use denavit::simulate::scenario::RunScheme;
+use denavit::simulate::scenario::{RunScheme, Scenario, ScenarioError};
+use denavit::simulate::{Run, Stop};
 use denavit::walk;
 use serde::Serialize;
-use std::io::Write;
-use std::path::Path;
+use std::fmt;
 use std::time::Instant;
 
 /// Scenario, scheme, and how much of it is run \[s\].
@@ -21,9 +17,19 @@ const RUNS: [(&str, RunScheme, f64); 3] = [
     ("planar_biped_limit_cycle_gait", RunScheme::Event, 2.7),
 ];
 
+/// A run of the demo.
+pub struct DemoRun {
+    /// What was run.
+    pub scenario: Scenario,
+    /// How it went.
+    pub run: Run,
+    name: &'static str,
+    seconds: f64,
+}
+
 /// What became of a run.
-#[derive(Serialize)]
-pub(super) struct Simulated {
+#[derive(Debug, Serialize)]
+pub struct Simulated {
     scenario: &'static str,
     scheme: &'static str,
     stop: &'static str,
@@ -40,34 +46,36 @@ pub(super) struct Simulated {
     files: Vec<Written>,
 }
 
-impl Simulated {
-    /// Makes all runs, with the log and the picture of each.
-    pub(super) fn all(directory: &Path) -> Result<Vec<Self>, Failure> {
-        RUNS.iter().map(|run| Self::new(run, directory)).collect()
+impl DemoRun {
+    /// Makes all runs. `finished` takes each with a name for its files.
+    pub fn all<E: From<ScenarioError>>(
+        mut finished: impl FnMut(&mut Self, &str) -> Result<Vec<Written>, E>,
+    ) -> Result<Vec<Simulated>, E> {
+        let one = |&(name, scheme, duration_s): &(&'static str, RunScheme, f64)| {
+            let mut run = Self::new(name, scheme, duration_s)?;
+            let files = finished(&mut run, &format!("{name}_{}", scheme.word()))?;
+            Ok(run.outcome(files))
+        };
+        RUNS.iter().map(one).collect()
     }
 
-    fn new(
-        &(name, scheme, duration_s): &(&'static str, RunScheme, f64),
-        directory: &Path,
-    ) -> Result<Self, Failure> {
+    fn new(name: &'static str, scheme: RunScheme, duration_s: f64) -> Result<Self, ScenarioError> {
         let shipped = shipped::find_scenario(name).expect("it is shipped");
-        let load = |model: &str| load_beside(Path::new(""), model);
-        let read = walk::read_scenario(name, shipped.text.as_bytes(), &load);
-        let mut scenario = read.map_err(Failure::Scenario)?;
+        let mut scenario = walk::read_scenario(name, shipped.text.as_bytes(), &referred)?;
         scenario.scheme = scheme;
         scenario.simulation.end_s = scenario.initial.t_s + duration_s;
         let started = Instant::now();
-        let run = scenario.run().map_err(Failure::Scenario)?;
+        let run = scenario.run()?;
         let seconds = started.elapsed().as_secs_f64();
-        let broken = scenario.broken(&run).into_iter().map(|(law, _, _)| law).collect();
-        let file = |ending: &str| format!("{name}_{}.{ending}", scheme.word());
-        let csv = write(directory, &file("csv"), &run.log.to_csv(), "log of the run".to_owned())?;
-        let drawn = drawn_run(&mut scenario, &run, None);
-        let svg = write(directory, &file("svg"), &drawn, "picture of the run".to_owned())?;
+        Ok(Self { scenario, run, name, seconds })
+    }
+
+    fn outcome(self, files: Vec<Written>) -> Simulated {
+        let Self { scenario, run, name, seconds } = self;
         let audit = &run.audit;
-        Ok(Self {
+        Simulated {
             scenario: name,
-            scheme: scheme.word(),
+            scheme: scenario.scheme.word(),
             stop: run.stop.word(),
             simulated_s: run.end.t_s - scenario.initial.t_s,
             seconds,
@@ -77,19 +85,35 @@ impl Simulated {
             zmp_m: audit.zmp_m,
             friction_total: audit.friction_total,
             largest_torque: audit.torque,
-            broken,
-            files: vec![csv, svg],
-        })
+            broken: scenario.broken(&run).into_iter().map(|(law, _, _)| law).collect(),
+            files,
+        }
     }
+}
 
+impl Simulated {
     /// Whether it reached its end within all tolerances.
-    pub(super) fn passed(&self) -> bool {
+    pub fn passed(&self) -> bool {
         self.stop == Stop::End.word() && self.broken.is_empty()
     }
 }
 
 /// The runs and their audits as a table, and the files.
-pub(super) fn write_all(runs: &[Simulated], out: &mut dyn Write) -> Result<(), Failure> {
+pub struct SimulatedRuns<'a>(pub &'a [Simulated]);
+
+impl fmt::Display for SimulatedRuns<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let table = table(self.0);
+        writeln!(
+            f,
+            "\nsimulations, audited: what energy, contacts and the zero moment point are off by, \
+             friction\ndemand of all contacts, largest torque\n{table}"
+        )?;
+        self.0.iter().flat_map(|run| &run.files).try_for_each(|file| writeln!(f, "{file}"))
+    }
+}
+
+fn table(runs: &[Simulated]) -> Table {
     use Align::{Left, Right};
     let mut table = Table::new(&[
         ("", Left),
@@ -117,13 +141,5 @@ pub(super) fn write_all(runs: &[Simulated], out: &mut dyn Write) -> Result<(), F
             format!("{:.0}", run.largest_torque),
         ]);
     }
-    writeln!(
-        out,
-        "\nsimulations, audited: what energy, contacts and the zero moment point are off by, \
-         friction\ndemand of all contacts, largest torque\n{table}"
-    )?;
-    for file in runs.iter().flat_map(|run| &run.files) {
-        writeln!(out, "wrote {} ({} kB): {}", file.file, file.bytes.div_ceil(1000), file.what)?;
-    }
-    Ok(())
+    table
 }

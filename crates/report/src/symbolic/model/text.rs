@@ -1,16 +1,13 @@
 //! The robot as tables.
 
-use crate::cli::failure::Failure;
-use denavit::expr::ExprId;
-use denavit::model::{About, Base, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms};
-use denavit::report::{Align, Table, Values, paragraph};
-use std::io::Write;
+use crate::{Align, Table, Values, paragraph, short};
+use denavit_codegen::expr::ExprId;
+use denavit_codegen::model::{
+    About, Base, Convention, Joint, JointKind, Link, LinkId, Robot, Side, Terms,
+};
+use std::fmt::{self, Write};
 
-pub(super) fn write(
-    out: &mut dyn Write,
-    robot: &Robot,
-    values: &mut Values,
-) -> Result<(), Failure> {
+pub(super) fn write(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> fmt::Result {
     head(out, robot, values)?;
     writeln!(out, "\n{}", link_table(robot, values))?;
     totals(out, robot, values)?;
@@ -38,7 +35,7 @@ pub(super) fn write(
     Ok(())
 }
 
-fn head(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(), Failure> {
+fn head(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> fmt::Result {
     writeln!(out, "{}, hash {:016x}", robot.name, robot.hash)?;
     for (label, text) in [("", &robot.description), ("source: ", &robot.source)] {
         if !text.is_empty() {
@@ -76,7 +73,7 @@ pub(super) fn term_names(terms: Terms) -> Vec<&'static str> {
     all.into_iter().filter(|(has, _)| *has).map(|(_, name)| name).collect()
 }
 
-fn totals(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(), Failure> {
+fn totals(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> fmt::Result {
     let joints: Vec<_> = robot.joints().map(|(link, _)| &robot.links[link]).collect();
     let of_base = match robot.base {
         Base::Fixed => 0,
@@ -94,7 +91,7 @@ fn totals(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> Result<(),
         )?,
     }
     match total_mass(robot, values) {
-        Some(mass) => writeln!(out, "total mass: {} kg", denavit::report::short(mass))?,
+        Some(mass) => writeln!(out, "total mass: {} kg", short(mass))?,
         None => writeln!(out, "total mass: not known, some masses have no value")?,
     }
     let known = robot.parameters.values().filter(|parameter| parameter.known).count();

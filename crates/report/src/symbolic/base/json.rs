@@ -1,17 +1,13 @@
 //! Base parameters as JSON.
 
-use super::{CertificateJson, Found};
-use crate::cli::failure::Failure;
-use crate::cli::json::{Ordered, write_json};
-use denavit::emit::latex::{base_notation, base_sum};
-use denavit::expr::ExprId;
-use denavit::number::Residue;
-use denavit::workflow::EffectUse;
+use super::{BaseReport, CertificateJson};
+use crate::Ordered;
+use denavit_codegen::emit::latex::{base_notation, base_sum};
+use denavit_codegen::expr::ExprId;
 use serde::Serialize;
-use std::io::Write;
 
 #[derive(Serialize)]
-struct BaseJson<'a> {
+struct BaseJson<'a, E: Serialize> {
     model: &'a str,
     basis: &'static str,
     columns: Vec<&'a str>,
@@ -22,7 +18,7 @@ struct BaseJson<'a> {
     alone: Vec<&'a str>,
     parameters: Vec<ParameterJson<'a>>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    effects: &'a [EffectUse],
+    effects: &'a [E],
     certificate: CertificateJson,
 }
 
@@ -46,9 +42,13 @@ struct ParameterJson<'a> {
     value: Option<f64>,
 }
 
-pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failure> {
-    let base = found.base;
-    let notation = base_notation(found.robot, base);
+pub(super) fn document<'a, E: Serialize>(
+    found: &BaseReport<'a>,
+    effects: &'a [E],
+) -> impl Serialize + use<'a, E> {
+    let base = found.base();
+    let robot = &found.found.robot;
+    let notation = base_notation(robot, base);
     let listed = found.listed();
     let parameters = listed.iter().zip(&found.values).map(|(parameter, &value)| {
         let factors = |members: &[(usize, ExprId)], column: &dyn Fn(usize) -> usize| {
@@ -72,17 +72,16 @@ pub(super) fn write(out: &mut dyn Write, found: &Found<'_>) -> Result<(), Failur
     let dependent = found.sums();
     let dependent =
         dependent.map(|(name, sum)| DependentJson { name, relation: base.sum_text(sum) });
-    let json = BaseJson {
-        model: &found.robot.name,
-        basis: if found.joints.is_some() { "joints" } else { "kept" },
+    BaseJson {
+        model: &robot.name,
+        basis: if found.found.joints.is_some() { "joints" } else { "kept" },
         columns: base.regressor.columns.iter().map(|column| column.name.as_str()).collect(),
         rank: base.rank(),
         zero: found.names(base.zero()),
         dependent: dependent.collect(),
         alone: found.names(base.alone()),
         parameters: parameters.collect(),
-        effects: &found.effects,
-        certificate: CertificateJson { verified: found.verified, prime: Residue::MODULUS },
-    };
-    write_json(out, &json)
+        effects,
+        certificate: CertificateJson::new(found.found.verified),
+    }
 }

@@ -1,43 +1,41 @@
 //! theta = B_E theta0 as text and JSON.
 
-use super::failure::Failure;
-use super::json::Ordered;
-use denavit::emit::latex::{Notation, write_expression};
-use denavit::expr::text::print;
-use denavit::expr::{Dag, ExprId};
-use denavit::regressor::Theta;
-use denavit::report::{Align, Table};
+use crate::{Align, Ordered, Table};
+use denavit_codegen::emit::latex::{Notation, write_expression};
+use denavit_codegen::expr::text::print;
+use denavit_codegen::expr::{Dag, ExprId};
+use denavit_codegen::regressor::Theta;
 use serde::Serialize;
-use std::io::Write;
+use std::fmt::{self, Write};
 
 /// A column of R0 by the text of its parameter.
-pub(crate) struct Named {
-    pub(crate) name: String,
+pub(super) struct Named {
+    pub(super) name: String,
     unit: String,
 }
 
 /// The columns of theta0, with their units.
-pub(crate) fn columns(dag: &Dag, parameters: &[ExprId], units: Vec<String>) -> Vec<Named> {
+pub(super) fn columns(dag: &Dag, parameters: &[ExprId], units: Vec<String>) -> Vec<Named> {
     let names = parameters.iter().map(|&parameter| print(dag, parameter));
     names.zip(units).map(|(name, unit)| Named { name, unit }).collect()
 }
 
 /// What elimination leaves, in the keys of `denavit base`.
-#[derive(Serialize)]
-pub(crate) struct Elimination {
+#[derive(Debug, Serialize)]
+pub(super) struct Elimination {
     rank: usize,
     zero: Vec<String>,
     dependent: Vec<Dependent>,
     parameters: Vec<Parameter>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct Dependent {
     name: String,
     relation: String,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct Parameter {
     name: String,
     expression: String,
@@ -49,7 +47,7 @@ struct Parameter {
 
 impl Elimination {
     /// Of columns in the order of `theta`.
-    pub(crate) fn new(dag: &mut Dag, theta: &Theta, columns: &[Named]) -> Self {
+    pub(super) fn new(dag: &mut Dag, theta: &Theta, columns: &[Named]) -> Self {
         let (mut zero, mut dependent, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
         for column in theta.dependent() {
             let name = columns[column].name.clone();
@@ -79,12 +77,12 @@ impl Elimination {
         Self { rank: theta.rank(), zero, dependent, parameters }
     }
 
-    pub(crate) fn rank(&self) -> usize {
+    pub(super) fn rank(&self) -> usize {
         self.rank
     }
 
     /// As tables and lists in Markdown.
-    pub(crate) fn markdown(&self) -> String {
+    pub(super) fn markdown(&self) -> String {
         let mut text = String::from("| | kept | unit | base parameter |\n|---:|---|---|---|\n");
         for (row, Parameter { name, expression, unit, .. }) in self.parameters.iter().enumerate() {
             text.push_str(&format!("| {} | `{name}` | {unit} | `{expression}` |\n", row + 1));
@@ -103,7 +101,7 @@ impl Elimination {
     }
 
     /// For people.
-    pub(crate) fn write(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn write(&self, out: &mut dyn Write) -> fmt::Result {
         let mut table = Table::new(&[
             ("kept", Align::Left),
             ("unit", Align::Left),

@@ -50,3 +50,8 @@ pub use denavit_workflow as workflow;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/guide/controller-code.md")]
 pub struct GuideExamples;
+
+/// The examples of the guide to the library, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/guide/library.md")]
+pub struct LibraryExamples;

@@ -73,7 +73,7 @@ pub use law::{Law, Motion, Response};
 pub use leftover::Leftover;
 pub use nominal::{Nominal, Phi, Spring, Uncertain, Uncertainty};
 pub use problem::{Fitted, Problem};
-pub use regime::{Part, Regime, Where, where_left};
+pub use regime::{Part, Regime, Where};
 pub use rows::PerJoint;
 pub use search::{SearchOptions, Step};
 pub use signals::{Filters, Signals};

@@ -108,7 +108,7 @@ impl Where {
 
 /// What each joint leaves, the one that leaves most first. `filter_s` is the time that the filter
 /// of torques spreads an event over.
-pub fn where_left(
+pub(super) fn where_left(
     data: &Data<'_>,
     residual: &[f64],
     torques: &[ModelTorques],

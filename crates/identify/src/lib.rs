@@ -39,7 +39,7 @@ pub use known_effects::{take_out, undo_logged_torques, undo_readings};
 pub use model_text::{
     EffectValues, NewEffect, NewPlace, NewValue, updated as updated_text, with_effects,
 };
-pub use model_values::{model_values, with_effect};
+pub use model_values::model_values;
 pub use noisy_logs::{Added, NoisyLog};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
 pub use updated_model::{UpdateError, UpdatedModel, updated_model};

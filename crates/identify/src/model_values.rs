@@ -58,7 +58,7 @@ fn direct(
 }
 
 /// Which numbers of the file any base parameter depends on, near given values of all of them.
-pub fn with_effect(model: &RegressionModel, values: &[f64]) -> Vec<bool> {
+pub(crate) fn with_effect(model: &RegressionModel, values: &[f64]) -> Vec<bool> {
     let of = |values: &[f64]| model.axes_of_standard(&model.standard_values(values));
     let here = of(values);
     let mut moved = values.to_vec();

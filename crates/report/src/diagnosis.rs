@@ -2,7 +2,8 @@
 
 use super::effects::formulas;
 use super::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section, mathml};
-use super::{diagnosis_picture, percent, short};
+use super::run::diagnosis_picture;
+use super::{percent, short};
 use denavit_codegen::effect::{Effect, Law};
 use denavit_diagnose::{
     Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Verdict,

@@ -1,7 +1,8 @@
 //! What was identified, as a page.
 
 use super::html::{Cell, Fact, FormulaError, Heading, HtmlTable, Page, Part, Row, Section};
-use super::{TorquePicture, convergence_picture, motion_picture, short, torque_picture};
+use super::run::convergence_picture;
+use super::{TorquePicture, motion_picture, short, torque_picture};
 use denavit_identify::Identification;
 use denavit_identify::estimate::{IdentifiedParameter, JointResidual, Status, Validation};
 use denavit_identify::forward::{Compared, Forward, ForwardJoint};

@@ -4,18 +4,13 @@
 //! - [`Values`]: the numbers behind a model's expressions
 //! - [`Pose`], [`picture`]: a robot drawn with the frames of its links
 //! - [`excitation_picture`]: a trajectory with its limits, and how it was found
-//! - [`run_picture`]: a run: stick figures, joints and their references, contact forces
 //! - [`effects_page`]: the catalogue of effects
 //! - [`html`]: reports as one page that needs nothing from elsewhere
 //! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
-//!   [`convergence_picture`]: how an
-//!   estimate came about; [`IdentificationPage`]: all of it
-//! - [`DiagnosisPage`]: what a model lacks, with [`diagnosis_picture`] of torques before and after
-//! - [`BalancePicture`]: points of balance and support polygon over time
+//!   [`IdentificationPage`]: all of an estimate
+//! - [`DiagnosisPage`]: what a model lacks, with torques before and after
 //! - [`symbolic`]: what the compiler finds, as text, JSON, Markdown and LaTeX
 //! - [`answer`]: what use cases answer, as text, JSON, pictures and pages
-//! - [`GaitPicture`]: joint angles of a planned gait with its postures marked
-//! - [`UnitCircle`], [`HeatMap`]: Floquet multipliers of a gait, and what disturbances do to it
 //!
 //! Nothing here prints; text is handed to whoever does.
 
@@ -51,11 +46,8 @@ pub use paragraph::paragraph;
 pub use picture::picture;
 pub use pose::Pose;
 pub use run::{
-    BalanceCurve, BalancePicture, ExcitationPicture, GaitCurve, GaitPicture, RunPicture,
-    TorquePicture, convergence_picture, diagnosis_picture, excitation_picture, motion_picture,
-    run_picture, torque_picture,
+    ExcitationPicture, TorquePicture, excitation_picture, motion_picture, torque_picture,
 };
 pub use table::{Align, Table};
 pub use two_stage::TwoStagePage;
 pub use values::Values;
-pub use walk::{CaptureReach, HeatMap, ReturnMapPicture, UnitCircle};

@@ -50,7 +50,6 @@ pub use log_fault::{LogError, LogFault, LogFaults};
 pub use log_file::LogFile;
 pub use log_origin::model_of_header;
 pub use measure::Measurement;
-pub use measured_log::measured_log;
 pub use planner::{JointPlan, Planning, PlanningLaw, ReferencePlanner, Sensed};
 pub use push::{LinkWrench, Push, Shove};
 pub use run::{Event, EventKind, Run, simulate, simulate_believing, simulate_varied};

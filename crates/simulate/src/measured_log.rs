@@ -14,7 +14,7 @@ use denavit_numerics::Random;
 /// before it: an instrument reads their mean. Either one alone is half a period early or late,
 /// which an estimate takes for viscous friction. `seed` is of the noise; the controller has its
 /// own.
-pub fn measured_log(
+pub(crate) fn measured_log(
     log: &Log,
     measurement: &Measurement,
     (torque_noise, is_sampled): (f64, bool),

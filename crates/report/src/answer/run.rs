@@ -1,7 +1,7 @@
 //! A run as text, as JSON and as a picture.
 
 use super::run_joints;
-use crate::{RunPicture, run_picture};
+use crate::run::{RunPicture, run_picture};
 use denavit_simulate::Run;
 use denavit_simulate::scenario::{RunScheme, Scenario};
 use serde_json::json as value;

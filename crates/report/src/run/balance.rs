@@ -5,38 +5,38 @@ use crate::svg::Svg;
 
 /// A curve of a picture of balance.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BalanceCurve {
+pub(crate) struct BalanceCurve {
     /// Its name.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Its colour, as SVG says it.
-    pub colour: &'static str,
+    pub(crate) colour: &'static str,
     /// A value at each time; what is not finite is a gap.
-    pub values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
 }
 
 /// Points of balance over time.
 #[derive(Clone, Debug)]
-pub struct BalancePicture<'a> {
+pub(crate) struct BalancePicture<'a> {
     /// What it is of.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// What is to be read from it.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// What is drawn upwards, with its unit.
-    pub unit: &'a str,
+    pub(crate) unit: &'a str,
     /// \[s\].
-    pub times: &'a [f64],
+    pub(crate) times: &'a [f64],
     /// What is drawn.
-    pub curves: &'a [BalanceCurve],
+    pub(crate) curves: &'a [BalanceCurve],
     /// The lower and the upper edge of what carries the robot: a band that may shrink to a line,
     /// or to nothing.
-    pub band: Option<[Vec<f64>; 2]>,
+    pub(crate) band: Option<[Vec<f64>; 2]>,
 }
 
 const SIZE: [f64; 2] = [860.0, 420.0];
 
 impl BalancePicture<'_> {
     /// The picture, as SVG.
-    pub fn draw(&self) -> String {
+    pub(crate) fn draw(&self) -> String {
         let mut svg = Svg::new(SIZE, self.title);
         svg.label([24.0, 34.0], "start", "font-size=\"18\" fill=\"#222\"", self.title);
         svg.label([24.0, 56.0], "start", "font-size=\"12\" fill=\"#666\"", self.subtitle);

@@ -14,7 +14,7 @@ const WINDOW_S: f64 = 4.0;
 
 /// SVG of a joint each: measured torque with what the nominal model and the model with effects
 /// compute, and below what they leave, where the nominal model leaves most.
-pub fn diagnosis_picture(title: &str, shown: &[(&str, &Curve)]) -> String {
+pub(crate) fn diagnosis_picture(title: &str, shown: &[(&str, &Curve)]) -> String {
     let top = 54.0;
     let height = top + shown.len() as f64 * BLOCK + 12.0;
     let mut svg = Svg::new([WIDTH, height], title);

@@ -11,7 +11,7 @@ const TALL: f64 = 180.0;
 const SHOWN: f64 = 20.0;
 
 /// SVG of how the parameters came about. The same estimate gives the same bytes.
-pub fn convergence_picture(
+pub(crate) fn convergence_picture(
     title: &str,
     parameters: &[IdentifiedParameter],
     points: &[Convergence],

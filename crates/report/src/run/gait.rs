@@ -6,26 +6,26 @@ use crate::svg::Svg;
 
 /// What a joint does.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GaitCurve {
+pub(crate) struct GaitCurve {
     /// The joint.
-    pub name: String,
+    pub(crate) name: String,
     /// A position at each time [rad, m].
-    pub values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
 }
 
 /// Joint angles of a planned gait.
 #[derive(Clone, Debug)]
-pub struct GaitPicture<'a> {
+pub(crate) struct GaitPicture<'a> {
     /// What it is of.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// What is to be read from it.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// \[s\].
-    pub times_s: &'a [f64],
+    pub(crate) times_s: &'a [f64],
     /// What joints do; those of a leg are drawn together, by their names `right_..` and `left_..`.
-    pub curves: &'a [GaitCurve],
+    pub(crate) curves: &'a [GaitCurve],
     /// Postures: where in `times_s` each is.
-    pub postures: &'a [usize],
+    pub(crate) postures: &'a [usize],
 }
 
 const WIDTH: f64 = 860.0;
@@ -36,7 +36,7 @@ const SIDES: [(&str, &str); 2] = [("right_", "right leg"), ("left_", "left leg")
 
 impl GaitPicture<'_> {
     /// The picture, as SVG.
-    pub fn draw(&self) -> String {
+    pub(crate) fn draw(&self) -> String {
         let groups = self.groups();
         let height = 84.0 + BLOCK * groups.len() as f64;
         let mut svg = Svg::new([WIDTH, height], self.title);

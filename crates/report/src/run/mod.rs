@@ -10,10 +10,10 @@ mod figures;
 mod gait;
 mod torques;
 
-pub use balance::{BalanceCurve, BalancePicture};
-pub use compared::diagnosis_picture;
-pub use convergence::convergence_picture;
-pub use gait::{GaitCurve, GaitPicture};
+pub(crate) use balance::{BalanceCurve, BalancePicture};
+pub(crate) use compared::diagnosis_picture;
+pub(crate) use convergence::convergence_picture;
+pub(crate) use gait::{GaitCurve, GaitPicture};
 pub use torques::{TorquePicture, motion_picture, torque_picture};
 
 pub use excitation::{ExcitationPicture, excitation_picture};
@@ -26,15 +26,15 @@ use figures::{Strip, feet};
 
 /// What a picture of a run is about.
 #[derive(Clone, Copy, Debug)]
-pub struct RunPicture<'a> {
+pub(crate) struct RunPicture<'a> {
     /// First line.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// Second line, smaller.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// The run.
-    pub log: &'a Log,
+    pub(crate) log: &'a Log,
     /// The part of it that is shown, all of it if none \[s\].
-    pub window_s: Option<[f64; 2]>,
+    pub(crate) window_s: Option<[f64; 2]>,
 }
 
 const WIDTH: f64 = 1000.0;
@@ -55,7 +55,7 @@ const COLOURS: [&str; 6] = ["#1f5fd0", "#d62728", "#2a9134", "#d9730d", "#7a4fb3
 const HEADING: &str = "font-size=\"13\" font-weight=\"bold\" fill=\"#222\"";
 
 /// SVG of a run of this plant. The same run gives the same bytes.
-pub fn run_picture(plant: &mut dyn Plant, picture: &RunPicture<'_>) -> String {
+pub(crate) fn run_picture(plant: &mut dyn Plant, picture: &RunPicture<'_>) -> String {
     let log = Windowed::new(picture);
     let model = plant.model().clone();
     let joints = shown_joints(&model, &log);

@@ -4,19 +4,19 @@ use crate::svg::Svg;
 
 /// Reaches to be drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct CaptureReach<'a> {
+pub(crate) struct CaptureReach<'a> {
     /// What it is of.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// What is to be read from it.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// The sole, forward from the ankle \[m\].
-    pub sole_m: [f64; 2],
+    pub(crate) sole_m: [f64; 2],
     /// For 0, 1, .. steps the reach backward and forward \[m\].
-    pub reach_m: &'a [[f64; 2]],
+    pub(crate) reach_m: &'a [[f64; 2]],
     /// That of any number of steps \[m\].
-    pub limit_m: [f64; 2],
+    pub(crate) limit_m: [f64; 2],
     /// Places of a capture point, each with a word \[m\].
-    pub marks: &'a [(f64, String)],
+    pub(crate) marks: &'a [(f64, String)],
 }
 
 /// Size of the picture, without its rows, and of a row [px].
@@ -32,7 +32,7 @@ const COLOURS: [&str; 5] = ["#2b7a4b", "#5a9e4b", "#9bb84a", "#d9a441", "#d9773f
 
 impl CaptureReach<'_> {
     /// The picture, as SVG.
-    pub fn draw(&self) -> String {
+    pub(crate) fn draw(&self) -> String {
         let rows = self.reach_m.len() as f64 + 1.0;
         let height = TOP + rows * ROW + BOTTOM;
         let mut svg = Svg::new([WIDTH, height], self.title);

@@ -4,18 +4,18 @@ use crate::svg::Svg;
 
 /// Cells with their scales.
 #[derive(Clone, Debug)]
-pub struct HeatMap<'a> {
+pub(crate) struct HeatMap<'a> {
     /// What it is of.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// What is to be read from it.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// Names of the axes, to the right and upwards, each with the values of its cells.
-    pub axes: [(&'a str, &'a [f64]); 2],
+    pub(crate) axes: [(&'a str, &'a [f64]); 2],
     /// Row after row from below, left to right: a share from 0 to 1 of the colours, with what is
     /// written into the cell. None is a cell without an answer.
-    pub cells: &'a [(Option<f64>, String)],
+    pub(crate) cells: &'a [(Option<f64>, String)],
     /// What the colours mean: of 0 and of 1.
-    pub meaning: [&'a str; 2],
+    pub(crate) meaning: [&'a str; 2],
 }
 
 const SIZE: [f64; 2] = [760.0, 560.0];
@@ -29,7 +29,7 @@ const MARKS: usize = 12;
 
 impl HeatMap<'_> {
     /// The picture, as SVG.
-    pub fn draw(&self) -> String {
+    pub(crate) fn draw(&self) -> String {
         let mut svg = Svg::new(SIZE, self.title);
         svg.label([24.0, 34.0], "start", "font-size=\"18\" fill=\"#222\"", self.title);
         svg.label([24.0, 56.0], "start", "font-size=\"12\" fill=\"#666\"", self.subtitle);

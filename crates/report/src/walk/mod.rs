@@ -5,7 +5,7 @@ mod heat_map;
 mod return_map;
 mod unit_circle;
 
-pub use capture_reach::CaptureReach;
-pub use heat_map::HeatMap;
-pub use return_map::ReturnMapPicture;
-pub use unit_circle::UnitCircle;
+pub(crate) use capture_reach::CaptureReach;
+pub(crate) use heat_map::HeatMap;
+pub(crate) use return_map::ReturnMapPicture;
+pub(crate) use unit_circle::UnitCircle;

@@ -4,15 +4,15 @@ use crate::svg::Svg;
 
 /// Returns to be drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct ReturnMapPicture<'a> {
+pub(crate) struct ReturnMapPicture<'a> {
     /// What it is of.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// What is to be read from it.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// What is to the right and upwards, with units.
-    pub axes: [&'a str; 2],
+    pub(crate) axes: [&'a str; 2],
     /// Deviations from the fixed point: at the start, and after each cycle.
-    pub points: &'a [[f64; 2]],
+    pub(crate) points: &'a [[f64; 2]],
 }
 
 /// Size of the picture, and place of the fixed point [px].
@@ -25,7 +25,7 @@ const ROOM: f64 = 14.0;
 
 impl ReturnMapPicture<'_> {
     /// The picture, as SVG.
-    pub fn draw(&self) -> String {
+    pub(crate) fn draw(&self) -> String {
         let mut svg = Svg::new(SIZE, self.title);
         svg.label([24.0, 34.0], "start", "font-size=\"18\" fill=\"#222\"", self.title);
         svg.label([24.0, 56.0], "start", "font-size=\"12\" fill=\"#666\"", self.subtitle);

@@ -4,13 +4,13 @@ use crate::svg::Svg;
 
 /// Multipliers to be drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct UnitCircle<'a> {
+pub(crate) struct UnitCircle<'a> {
     /// What it is of.
-    pub title: &'a str,
+    pub(crate) title: &'a str,
     /// What is to be read from it.
-    pub subtitle: &'a str,
+    pub(crate) subtitle: &'a str,
     /// Real and imaginary parts.
-    pub multipliers: &'a [[f64; 2]],
+    pub(crate) multipliers: &'a [[f64; 2]],
 }
 
 /// Size of the picture, and place of the plane's origin [px].
@@ -21,7 +21,7 @@ const HALF: f64 = 215.0;
 
 impl UnitCircle<'_> {
     /// The picture, as SVG.
-    pub fn draw(&self) -> String {
+    pub(crate) fn draw(&self) -> String {
         let mut svg = Svg::new(SIZE, self.title);
         svg.label([24.0, 34.0], "start", "font-size=\"18\" fill=\"#222\"", self.title);
         svg.label([24.0, 56.0], "start", "font-size=\"12\" fill=\"#666\"", self.subtitle);

@@ -1,7 +1,8 @@
 //! Balance along a run or a log, as text, JSON and a picture.
 
 use super::balance_log::turning_bodies;
-use crate::{Align, BalanceCurve, BalancePicture, Table, percent};
+use crate::run::{BalanceCurve, BalancePicture};
+use crate::{Align, Table, percent};
 use denavit_walk::balance::{Course, Criterion, Instant, Margins};
 use denavit_workflow::Judged;
 use serde_json::{Map, Value, json as value};

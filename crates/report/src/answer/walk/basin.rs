@@ -1,7 +1,8 @@
 //! Starts around the cycle of a gait, as text, JSON, rows and a map.
 
 use super::write_what_is_no_fall;
-use crate::{Align, HeatMap, Table};
+use crate::walk::HeatMap;
+use crate::{Align, Table};
 use denavit_plants::PlantModel;
 use denavit_simulate::Log;
 use denavit_walk::robustness::BasinStart;

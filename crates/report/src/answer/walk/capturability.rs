@@ -1,6 +1,7 @@
 //! In how many steps a robot can come to rest, as text, JSON and a picture.
 
-use crate::{Align, CaptureReach, Table};
+use crate::walk::CaptureReach;
+use crate::{Align, Table};
 use denavit_walk::capturability::{Capturability, CaptureRegion, Steps};
 use serde_json::{Value, json as value};
 use std::fmt::{self, Write};

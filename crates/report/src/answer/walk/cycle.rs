@@ -1,6 +1,7 @@
 //! The cycle of a gait and its Floquet multipliers, as text, JSON and pictures.
 
-use crate::{Align, Ordered, ReturnMapPicture, Table, UnitCircle, short};
+use crate::walk::{ReturnMapPicture, UnitCircle};
+use crate::{Align, Ordered, Table, short};
 use denavit_simulate::scenario::Scenario;
 use denavit_walk::poincare::{
     Convergence, Fate, Multiplier, PoincareAnalysis, Section, Share, shares,

@@ -1,6 +1,7 @@
 //! A gait that was designed, as text, JSON and a picture.
 
-use crate::{Align, GaitCurve, GaitPicture, Ordered, Table};
+use crate::run::{GaitCurve, GaitPicture};
+use crate::{Align, Ordered, Table};
 use denavit_walk::gait_plan::Knot;
 use denavit_workflow::Designed;
 use serde_json::{Map, Value, json as value};

@@ -1,7 +1,8 @@
 //! The least pushes that fell a robot, as text, JSON and a map.
 
 use super::write_what_is_no_fall;
-use crate::{Align, HeatMap, Table};
+use crate::walk::HeatMap;
+use crate::{Align, Table};
 use denavit_plants::PlantModel;
 use denavit_walk::robustness::{LeastPush, PushOptions};
 use serde_json::json as value;

@@ -53,7 +53,9 @@ pub use measure::Measurement;
 pub use measured_log::measured_log;
 pub use planner::{JointPlan, Planning, PlanningLaw, ReferencePlanner, Sensed};
 pub use push::{LinkWrench, Push, Shove};
-pub use run::{Event, EventKind, Run, simulate, simulate_believing, simulate_varied};
+pub use run::{
+    Event, EventKind, Run, Told, simulate, simulate_believing, simulate_told, simulate_varied,
+};
 pub use settle::{Scuffing, Touching};
 pub use simulation::Simulation;
 pub use start::StartError;

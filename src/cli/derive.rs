@@ -6,7 +6,7 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::{Ordered, write_json};
-use super::options::{EffectsOption, ModelArgument, walking_names};
+use super::options::{EffectsOption, ModelArgument, function_names};
 use super::outputs::{on_stdout, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
@@ -57,12 +57,13 @@ pub(crate) struct Arguments {
     /// How: by the recursions that emitted code uses, or in one of the thesis's four ways
     #[arg(long, value_enum, value_name = "METHOD", default_value = "recursive")]
     method: MethodName,
-    /// Derive these functions for walking, too, separated by commas
+    /// What goes into the answer and the document, separated by commas; if nothing is named, the
+    /// equations: mass_matrix, coriolis_matrix, gravity_vector, inverse_dynamics, contact_jacobian
     #[arg(
         long,
         value_name = "LIST",
         value_delimiter = ',',
-        value_parser = walking_names(),
+        value_parser = function_names(),
         conflicts_with = "method"
     )]
     functions: Vec<FunctionName>,
@@ -252,15 +253,15 @@ fn write_effects(out: &mut dyn Write, robot: &Robot) -> Result<(), Failure> {
     Ok(())
 }
 
-/// D, C, G and the drives' torque; tau is what they add up to. `entries` are those of the terms;
-/// longer ones than `threshold` nodes are written with intermediates.
+/// D, C, G and the drives' torque, of which tau is the sum, or what was named. `entries` are those
+/// of them; longer ones than `threshold` nodes are written with intermediates.
 fn write_in_full(
     out: &mut dyn Write,
     equations: &Equations,
     entries: &[ExprId],
     threshold: u64,
 ) -> Result<(), Failure> {
-    let terms: Vec<&Part> = equations.parts.iter().filter(|part| part.is_term()).collect();
+    let terms: Vec<&Part> = equations.written().collect();
     let zero = equations.dag.zero();
     let printed = print_with_intermediates(&equations.dag, entries, threshold);
     let mut texts = printed.outputs.iter();
@@ -268,7 +269,7 @@ fn write_in_full(
         let own: Vec<&String> = texts.by_ref().take(part.entries.len()).collect();
         writeln!(out)?;
         if part.entries.iter().all(|&entry| entry == zero) {
-            writeln!(out, "{} = 0", part.symbol)?;
+            writeln!(out, "{} = 0", part.label())?;
             continue;
         }
         for (index, text) in own.iter().enumerate() {
@@ -288,7 +289,7 @@ fn write_in_full(
 
 /// The name of an entry; of equal ones across the diagonal of D both names, none for the second.
 fn left_side(part: &Part, texts: &[&String], index: usize) -> Option<String> {
-    let symbol = part.symbol;
+    let symbol = part.label();
     let [_, columns] = part.shape[..] else {
         return Some(format!("{symbol}[{}]", index + 1));
     };
@@ -315,7 +316,8 @@ fn write_summary(out: &mut dyn Write, equations: &Equations) -> Result<(), Failu
     for part in &equations.parts {
         let Operations { mul, add, sincos, .. } = Operations::count(&equations.dag, &part.entries);
         let nodes = equations.dag.topological(&part.entries).len();
-        let mut row = vec![format!("{} {}", part.symbol, part.key), part.form.to_owned()];
+        let name = format!("{} {}", part.symbol, part.key);
+        let mut row = vec![name.trim_start().to_owned(), part.form.to_owned()];
         row.extend([mul, add, sincos, nodes].map(|count| count.to_string()));
         row.push(part.time.map_or(String::new(), |time| format!("{:.1} ms", 1e3 * time)));
         table.push(row);

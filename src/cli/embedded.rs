@@ -7,8 +7,8 @@
 use super::failure::Failure;
 use super::printed::Printed;
 use super::remarks::print_remarks;
+use super::said::{Loudness, set_loudness};
 use super::{Answer, Cli, Command, files};
-use clap::Parser;
 use denavit::effect::{self, Effect};
 use denavit::import::nothing_included;
 use denavit::model::Robot;
@@ -117,9 +117,12 @@ pub(super) fn is_embedded() -> bool {
 /// # Errors
 /// What would end the command with exit code 2.
 pub fn answer(arguments: &[OsString], observer: Arc<dyn Observer>) -> Result<Answered, Unanswered> {
-    let command = parsed(arguments)?;
+    let Cli { command, loudness } = parsed(arguments)?;
     let mut out = Printed::new(Vec::new());
-    let ran = observed_run(command.name(), observer, || command.run(&mut out));
+    let ran = observed_run(command.name(), observer, || {
+        set_loudness(loudness);
+        command.run(&mut out)
+    });
     ran.map(|answer| Answered { output: out.into_inner(), is_good: answer == Answer::Done })
 }
 
@@ -131,13 +134,15 @@ pub fn simulate(
     arguments: &[OsString],
     observer: Arc<dyn Observer>,
 ) -> Result<(Answered, Log), Unanswered> {
-    let command = parsed(arguments)?;
+    let Cli { command, loudness } = parsed(arguments)?;
     let Command::Simulate(options) = &command else {
         return Err(Unanswered::Internal(format!("{} is no simulation", command.name())));
     };
     let mut out = Printed::new(Vec::new());
-    let ran =
-        observed_run(command.name(), observer, || super::simulate::run_kept(options, &mut out));
+    let ran = observed_run(command.name(), observer, || {
+        set_loudness(loudness);
+        super::simulate::run_kept(options, &mut out)
+    });
     ran.map(|(answer, log)| {
         (Answered { output: out.into_inner(), is_good: answer == Answer::Done }, log)
     })
@@ -193,10 +198,9 @@ fn opened(name: &str, bytes: Vec<u8>, own: &[Effect]) -> Result<OpenedModel, Fai
     Ok(OpenedModel { robot, source: String::from_utf8_lossy(&bytes).into_owned() })
 }
 
-fn parsed(arguments: &[OsString]) -> Result<Command, Unanswered> {
+fn parsed(arguments: &[OsString]) -> Result<Cli, Unanswered> {
     let whole = [OsString::from("denavit")].into_iter().chain(arguments.iter().cloned());
-    let cli = Cli::try_parse_from(whole);
-    cli.map(|cli| cli.command).map_err(|error| Unanswered::Usage(error.render().to_string()))
+    Cli::of(whole).map_err(|error| Unanswered::Usage(error.render().to_string()))
 }
 
 /// Runs something with an observer, which may stop it.
@@ -210,6 +214,7 @@ fn observed_run<T>(
     OBSERVED.set(Some(Observed { observer, thread: thread::current().id() }));
     let ran = catch_unwind(AssertUnwindSafe(run));
     OBSERVED.set(None);
+    set_loudness(Loudness::default());
     match ran {
         Ok(Ok(answer)) => Ok(answer),
         Ok(Err(failure)) => Err(Unanswered::Input(command, wrongs(&failure.to_string()))),

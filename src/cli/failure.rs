@@ -1,6 +1,7 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
 use super::identify::IdentifyFailure;
+use super::mistaken::Mistaken;
 use super::output_failure::OutputFailure;
 use denavit::diagnose::DiagnosisError;
 use denavit::emit::EmitError;
@@ -79,8 +80,8 @@ pub(crate) enum Failure {
         nearest: Option<&'static str>,
         all: &'static [ShippedModel],
     },
-    /// A model stands where a scenario should; holds its name.
-    ModelForScenario(String),
+    /// Something good stands where something else should.
+    Mistaken(Mistaken),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
     Window([f64; 2]),
     /// No trajectory can be looked for.
@@ -120,6 +121,12 @@ impl Failure {
 impl From<IdentifyFailure> for Failure {
     fn from(failure: IdentifyFailure) -> Self {
         Self::Identify(failure)
+    }
+}
+
+impl From<Mistaken> for Failure {
+    fn from(mistaken: Mistaken) -> Self {
+        Self::Mistaken(mistaken)
     }
 }
 
@@ -184,7 +191,6 @@ impl Failure {
                 let names: Vec<_> = all.iter().map(|one| one.name).collect();
                 format!("give the path of a {kind} file, or one of {}", names.join(", "))
             }
-            Self::ModelForScenario(name) => smallest_scenario(name),
             Self::Window(_) => "choose two times of the run".to_owned(),
             Self::Model(_)
             | Self::Import(_)
@@ -203,23 +209,12 @@ impl Failure {
             | Self::Equations(_)
             | Self::Read { .. }
             | Self::Bake(_)
+            | Self::Mistaken(_)
             | Self::Stdout(_) => return None,
         })
     }
 }
 
-/// What to write where a model alone was given.
-fn smallest_scenario(model: &str) -> String {
-    let model = serde_json::Value::from(model);
-    format!(
-        "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
-         \"duration_s\": 1}} lets it go from rest; docs/reference/scenario.md has the rest, \
-         `denavit schema scenario` all keys",
-        denavit::simulate::scenario::FORMAT
-    )
-}
-
-/// Why a model has none of these functions.
 /// Whether a function finds a point of the ground.
 fn is_of_ground(name: &str) -> bool {
     use FunctionName::{CapturePoint, CartTableZmp, FootRotationIndicator, ZeroMomentPoint};
@@ -227,6 +222,7 @@ fn is_of_ground(name: &str) -> bool {
     points.iter().any(|point| point.as_str() == name)
 }
 
+/// Why a model has none of these functions.
 fn why_no_function(asked: &[String]) -> String {
     let why = |name: &String| match name.as_str() {
         name if name.contains("contact") => "contacts are declared under \"contacts\"",
@@ -317,9 +313,7 @@ impl Failure {
             Self::NoShipped { kind, name, .. } => {
                 write!(f, "{name}: there is no such file, and no shipped {kind} of that name")?;
             }
-            Self::ModelForScenario(name) => {
-                write!(f, "{name}: this is a model, where a scenario is simulated")?;
-            }
+            Self::Mistaken(mistaken) => write!(f, "{mistaken}")?,
             Self::Window([from, to]) => write!(f, "--window: the run is from {from} to {to} s")?,
             Self::Stdout(error) => {
                 write!(f, "standard output: cannot be written: {}", reason(error))?;

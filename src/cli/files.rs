@@ -1,9 +1,10 @@
 //! Files in: models by path or by name, logs, what other files refer to.
 
 use super::failure::{Failure, reason};
+use super::mistaken::{Mistaken, Wanted};
 use super::model_effects::ModelApart;
 use super::remarks::print_remarks;
-use super::say_error;
+use super::said::say_note;
 use denavit::effect::{self, Effect};
 use denavit::import;
 use denavit::model::Robot;
@@ -16,7 +17,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 
 /// More is not read: the limit of [`model::read`], which refuses what has more.
-const MAX_MODEL_BYTES: u64 = 16 << 20;
+pub(super) const MAX_MODEL_BYTES: u64 = 16 << 20;
 
 /// Nor is more of what another file refers to: a log of an hour has less.
 const MAX_LOG_BYTES: u64 = 256 << 20;
@@ -115,10 +116,15 @@ pub(crate) fn read_model_bytes_as_they_are(place: &Path) -> Result<(String, Vec<
 
 /// Name and content of a path, of a file of one of these lists, or of standard input: the model
 /// file of what URDF or MJCF describes.
-fn read_named(place: &Path, shipped: &[&[ShippedModel]]) -> Result<(String, Vec<u8>), Failure> {
-    let (name, bytes) = read_any(place, shipped)?;
+fn read_named(place: &Path, lists: &[&[ShippedModel]]) -> Result<(String, Vec<u8>), Failure> {
+    let (name, bytes) = read_any(place, lists)?;
     let bytes = described(&name, bytes, &mut |file| read_below(place, file))?;
-    Ok((name, bytes))
+    let takes_equations = lists.contains(&shipped::EQUATIONS);
+    match Mistaken::file(&name, &bytes, Wanted::Model) {
+        Some(_) if takes_equations && equations::is_equations_file(&bytes) => Ok((name, bytes)),
+        Some(mistaken) => Err(mistaken.into()),
+        None => Ok((name, bytes)),
+    }
 }
 
 /// The model file of what URDF or MJCF describes, and any other file as it is.
@@ -133,7 +139,7 @@ pub(crate) fn described(
     let options = import::Options::default();
     let imported = import::import(name, &bytes, &options, include).map_err(Failure::Import)?;
     for note in &imported.notes {
-        say_error(&format_args!("note: {name}: {note}"));
+        say_note(&format_args!("note: {name}: {note}"));
     }
     Ok(imported.model.into_bytes())
 }
@@ -210,17 +216,19 @@ fn read_once(path: &Path) -> Result<Vec<u8>, Failure> {
     read_all(&name, &mut file)
 }
 
-/// The bytes of a file, or of the shipped one of a kind that has this name.
+/// The bytes of a file, or of the shipped one of a kind that has this name; refuses what is
+/// something else.
 pub(crate) fn read_or_shipped(
     path: &Path,
     (kind, all): (&'static str, &'static [ShippedModel]),
+    wanted: Wanted,
 ) -> Result<Vec<u8>, Failure> {
     let name = path.display().to_string();
     let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
     if let Some(shipped) = all.iter().find(|one| one.name == name && !is_file) {
         return Ok(shipped.text.as_bytes().to_vec());
     }
-    read_file(path).map_err(|failure| match failure {
+    read_wanted(path, wanted).map_err(|failure| match failure {
         Failure::Read { error, .. } if error.kind() == io::ErrorKind::NotFound => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             let nearest = denavit::expr::text::nearest(&stem, all.iter().map(|one| one.name));
@@ -228,6 +236,24 @@ pub(crate) fn read_or_shipped(
         }
         failure => failure,
     })
+}
+
+/// The bytes of a file; refuses what is something else, and the name of what is.
+pub(crate) fn read_wanted(path: &Path, wanted: Wanted) -> Result<Vec<u8>, Failure> {
+    let name = path.display().to_string();
+    let bytes = read_file(path).map_err(|failure| match failure {
+        Failure::Read { error, .. } if error.kind() == io::ErrorKind::NotFound => {
+            match Mistaken::name(&name, wanted) {
+                Some(mistaken) => mistaken.into(),
+                None => Failure::Read { file: name.clone(), error },
+            }
+        }
+        failure => failure,
+    })?;
+    match Mistaken::file(&name, &bytes, wanted) {
+        Some(mistaken) => Err(mistaken.into()),
+        None => Ok(bytes),
+    }
 }
 
 /// A run begins: what others read in this process is no input of it.
@@ -264,6 +290,9 @@ fn read_all(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Failure> {
 }
 
 fn no_model(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Failure {
+    if let Some(mistaken) = Mistaken::name(name, Wanted::Model) {
+        return mistaken.into();
+    }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let names = shipped.iter().copied().flatten().map(|model| model.name);
     let nearest = denavit::expr::text::nearest(&stem, names);

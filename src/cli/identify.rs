@@ -16,8 +16,8 @@ use super::failure::Failure;
 use super::model_effects::{EffectUse, ModelApart};
 use super::options::EffectsOption;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::printed::standard_error;
 use super::progress::Progress;
+use super::said::say_note;
 use clap::{Args, ValueEnum};
 use denavit::identify::estimate::{Errors, Loss, Method, Options, PriorRow, SlowRows};
 use denavit::identify::{Identification, UpdateError, UpdatedModel};
@@ -391,6 +391,16 @@ pub(crate) fn of_log(
     Ok((answered.found, page))
 }
 
+/// Says on standard error what speaks against an answer that went into a document.
+fn say_doubts(shown: &Shown<'_>) -> Result<(), Failure> {
+    let mut doubts = Vec::new();
+    text::write_doubts(&mut doubts, shown)?;
+    if !doubts.is_empty() {
+        say_note(&String::from_utf8_lossy(&doubts).trim_end_matches('\n'));
+    }
+    Ok(())
+}
+
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     if !arguments.instruments.is_empty() && arguments.method != MethodName::Iv {
         return Err(IdentifyFailure::UnusedInstruments.into());
@@ -440,11 +450,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     match (is_answered, arguments.json) {
         // the document has no place for it
-        (true, _) => {
-            let mut errors = standard_error();
-            text::write_doubts(&mut errors, &shown)?;
-            errors.flush()?;
-        }
+        (true, _) => say_doubts(&shown)?,
         (_, true) => json::write(out, &shown)?,
         (_, false) => {
             text::write(out, &shown)?;

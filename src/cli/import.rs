@@ -3,8 +3,9 @@
 use super::Answer;
 use super::failure::Failure;
 use super::files::{read_below, read_model_bytes_as_they_are};
+use super::mistaken::{Mistaken, Wanted};
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::say_error;
+use super::said::say_note;
 use clap::{Args, ValueEnum};
 use denavit::import::{BaseChoice, Mimic, Options, import};
 use std::io::Write;
@@ -66,6 +67,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     on_stdout(&outputs, false)?;
     check_outputs(&outputs)?;
     let (name, bytes) = read_model_bytes_as_they_are(&arguments.robot)?;
+    if let Some(mistaken) = Mistaken::file(&name, &bytes, Wanted::Description) {
+        return Err(mistaken.into());
+    }
     let options = Options {
         base: match arguments.base {
             None => BaseChoice::AsDescribed,
@@ -83,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut include = |file: &str| read_below(&arguments.robot, file);
     let imported = import(&name, &bytes, &options, &mut include).map_err(Failure::Import)?;
     for note in &imported.notes {
-        say_error(&format_args!("note: {note}"));
+        say_note(&format_args!("note: {note}"));
     }
     write_whole(&arguments.out, imported.model.as_bytes())?;
     if arguments.out.as_os_str() != "-" {

@@ -1,12 +1,14 @@
 //! Logs of any format in, runs out.
 
 use super::failure::Failure;
-use super::files::open;
+use super::files::{MAX_MODEL_BYTES, open};
 use super::identify::IdentifyFailure;
+use super::mistaken::{Mistaken, Wanted};
 use super::output_failure::OutputFailure;
 use denavit::logs::{self, Opening};
 use denavit::measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
 use denavit::simulate::Log;
+use std::fs;
 use std::path::Path;
 
 /// A log of a robot, of any format. Of one that is cut, the whole part if that is accepted.
@@ -20,14 +22,28 @@ pub(crate) fn measured_log(
     let opened = match path.is_dir() {
         true => None,
         false => {
-            let failed = |error| Failure::Read { file: file.clone(), error };
+            let failed = |error| match Mistaken::name(&file, Wanted::Log) {
+                Some(mistaken) => mistaken.into(),
+                None => Failure::Read { file: file.clone(), error },
+            };
             Some(open(path).map_err(failed)?)
         }
     };
     let how = Opening { accepts_cut, named: mapping.beginnings() };
-    let log = logs::open(path, opened, &how)
-        .map_err(|faults| IdentifyFailure::from(of_file(&file, faults)))?;
-    Ok(read_opened(&file, log, robot, mapping).map_err(IdentifyFailure::from)?)
+    let log = logs::open(path, opened, &how).map_err(|faults| of_file(&file, faults));
+    let read = log.and_then(|log| read_opened(&file, log, robot, mapping));
+    read.map_err(|faults| match other_file(path, &file) {
+        Some(mistaken) => mistaken.into(),
+        None => IdentifyFailure::from(faults).into(),
+    })
+}
+
+/// What a file is that is no log, if that is known.
+fn other_file(path: &Path, name: &str) -> Option<Mistaken> {
+    let metadata = path.metadata().ok()?;
+    let is_read = metadata.is_file() && metadata.len() <= MAX_MODEL_BYTES;
+    let bytes = is_read.then(|| fs::read(path).ok()).flatten()?;
+    Mistaken::file(name, &bytes, Wanted::Log)
 }
 
 /// A run as the file of a name: MCAP if it ends so, otherwise CSV.

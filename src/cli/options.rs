@@ -70,23 +70,14 @@ impl FunctionList {
     }
 }
 
-fn every_function() -> impl Iterator<Item = FunctionName> {
+/// Every function, in the order of listings.
+pub(crate) fn every_function() -> impl Iterator<Item = FunctionName> {
     FunctionName::ALL.into_iter().chain(FunctionName::WALKING).chain(FunctionName::REGRESSORS)
 }
 
-fn function_names() -> impl TypedValueParser<Value = FunctionName> {
-    names_of(every_function())
-}
-
-/// The functions for walking, by name.
-pub(crate) fn walking_names() -> impl TypedValueParser<Value = FunctionName> {
-    names_of(FunctionName::WALKING.into_iter())
-}
-
-fn names_of(
-    functions: impl Iterator<Item = FunctionName>,
-) -> impl TypedValueParser<Value = FunctionName> {
-    PossibleValuesParser::new(functions.map(FunctionName::as_str)).try_map(|name| {
+/// A function, by name.
+pub(crate) fn function_names() -> impl TypedValueParser<Value = FunctionName> {
+    PossibleValuesParser::new(every_function().map(FunctionName::as_str)).try_map(|name| {
         FunctionName::parse(&name).ok_or_else(|| format!("`{name}` is not a function"))
     })
 }

@@ -1,6 +1,6 @@
 //! What is said of a model that is read as it stands: faults that pass, and work that is large.
 
-use super::say_error;
+use super::said::say_note;
 use denavit::model::{Robot, remarks};
 
 /// From so many joints on, functions whose size grows with the cube of that number take seconds:
@@ -10,7 +10,7 @@ const MANY_JOINTS: usize = 55;
 /// Writes the remarks on a model, read from `source`, to standard error.
 pub(crate) fn print_remarks(file: &str, robot: &Robot, source: &[u8]) {
     for remark in remarks(robot, source) {
-        say_error(&format_args!("remark: {}", remark.message(file)));
+        say_note(&format_args!("remark: {}", remark.message(file)));
     }
 }
 
@@ -18,7 +18,7 @@ pub(crate) fn print_remarks(file: &str, robot: &Robot, source: &[u8]) {
 pub(crate) fn print_size(robot: &Robot, has_derivatives: bool) {
     let joints = robot.joints().count();
     if joints >= MANY_JOINTS && has_derivatives {
-        say_error(&format_args!(
+        say_note(&format_args!(
             "remark: {}: forward_dynamics_derivatives grows with the cube of {joints} joints\n  \
              hint: `--functions` chooses others",
             robot.name

@@ -7,9 +7,10 @@ use super::failure::Failure;
 use super::files::{load_beside, read_or_shipped};
 use super::json::write_json;
 use super::logs::run_file;
+use super::mistaken::Wanted;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::model::json::{self, Value};
 use denavit::report::{RunPicture, run_picture};
 use denavit::shipped;
 use denavit::simulate::scenario::{RunScheme, Scenario};
@@ -109,7 +110,7 @@ pub(super) fn run_kept(
     }
     check_outputs(&outputs)?;
     let started = Instant::now();
-    let run = scenario.run().map_err(Failure::Scenario)?;
+    let run = run_shown(&mut scenario)?;
     let took = started.elapsed();
     let broken = scenario.broken(&run);
     if let Some(path) = &arguments.output {
@@ -131,6 +132,24 @@ pub(super) fn run_kept(
     }
     let good = run.stop == Stop::End && broken.is_empty();
     Ok((if good { Answer::Done } else { Answer::Negative }, run.log))
+}
+
+/// A step is this share of a run before anybody hears of it: most are shorter than a look.
+const HEARD_SHARE: f64 = 0.002;
+
+/// Runs a scenario, and shows how far it is.
+fn run_shown(scenario: &mut Scenario) -> Result<Run, Failure> {
+    let progress = Progress::new();
+    let stage = format!("simulating {}", scenario.name);
+    progress.show_share(&stage, 0.0);
+    let mut heard = 0.0;
+    let mut told = |share: f64| {
+        if share - heard >= HEARD_SHARE {
+            heard = share;
+            progress.show_share(&stage, share);
+        }
+    };
+    scenario.run_told(&mut told).map_err(Failure::Scenario)
 }
 
 /// The picture of a run.
@@ -160,25 +179,9 @@ fn shown(path: &Path) -> String {
 
 pub(super) fn open(path: &Path) -> Result<Scenario, Failure> {
     let name = shown(path);
-    let bytes = match read_or_shipped(path, ("scenario", shipped::SCENARIOS)) {
-        Err(Failure::NoShipped { .. }) if shipped::find_referred(&name).is_some() => {
-            return Err(Failure::ModelForScenario(name));
-        }
-        read => read?,
-    };
-    if is_model(&bytes) {
-        return Err(Failure::ModelForScenario(name));
-    }
+    let bytes = read_or_shipped(path, ("scenario", shipped::SCENARIOS), Wanted::Scenario)?;
     let load = |model: &str| load_beside(path, model);
     walk::read_scenario(&name, &bytes, &load).map_err(Failure::Scenario)
-}
-
-/// Whether a file says of itself that it is a model.
-fn is_model(bytes: &[u8]) -> bool {
-    let root = json::parse(bytes).ok();
-    let tag = root.as_ref().and_then(|root| root.entries().iter().find(|(key, _)| key == "format"));
-    let text = tag.map(|(_, tag)| &tag.value);
-    matches!(text, Some(Value::Text(tag)) if tag.starts_with("denavit-model/"))
 }
 
 fn summary(

@@ -2,8 +2,9 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::read_file;
+use super::files::read_wanted;
 use super::json::write_json;
+use super::mistaken::Wanted;
 use super::model_effects::ModelApart;
 use super::options::EffectsOption;
 use clap::Args;
@@ -50,7 +51,7 @@ struct VerdictJson<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let bytes = read_file(&arguments.certificate)?;
+    let bytes = read_wanted(&arguments.certificate, Wanted::Certificate)?;
     let certificate: Certificate = serde_json::from_slice(&bytes).map_err(|error| {
         Failure::Certificate { file: arguments.certificate.display().to_string(), error }
     })?;

@@ -1,5 +1,6 @@
 //! The equations of motion, whichever way they were derived.
 
+use crate::cli::options::every_function;
 use denavit::derive::{Flavour, derive};
 use denavit::dynamics::methods::{self, Method, MethodResult};
 use denavit::emit::latex::document;
@@ -35,8 +36,13 @@ pub(super) struct Part {
 
 impl Part {
     /// Whether it is a term of the equations, and not what they add up to or a constraint.
-    pub(super) fn is_term(&self) -> bool {
+    fn is_term(&self) -> bool {
         ["D", "C", "G", "tau_drive"].contains(&self.symbol)
+    }
+
+    /// Its letter, or its name if it has none.
+    pub(super) fn label(&self) -> &str {
+        if self.symbol.is_empty() { &self.key } else { self.symbol }
     }
 }
 
@@ -48,6 +54,8 @@ pub(super) struct Equations {
     pub(super) joints: Vec<String>,
     pub(super) dag: Dag,
     pub(super) parts: Vec<Part>,
+    /// Whether the parts were named, so that all of them are wanted.
+    is_named: bool,
     /// How long it took altogether \[s\], if the parts were derived together.
     pub(super) time: Option<f64>,
 }
@@ -62,11 +70,12 @@ const RECURSIVE: [(FunctionName, &str); 5] = [
 ];
 
 impl Equations {
-    /// By the recursions that emitted code uses; functions for walking where they are asked for.
-    pub(super) fn recursive(robot: &Robot, walking: &[FunctionName]) -> Self {
-        let also = FunctionName::WALKING.into_iter().filter(|name| walking.contains(name));
-        let wanted: Vec<FunctionName> =
-            RECURSIVE.iter().map(|(name, _)| *name).chain(also).collect();
+    /// By the recursions that emitted code uses; what is named, each once, or the equations.
+    pub(super) fn recursive(robot: &Robot, named: &[FunctionName]) -> Self {
+        let wanted: Vec<FunctionName> = match named.is_empty() {
+            true => RECURSIVE.iter().map(|(name, _)| *name).collect(),
+            false => every_function().filter(|name| named.contains(name)).collect(),
+        };
         let derivation =
             derive(robot, Flavour::Tunable, &wanted).expect("only baking asks for values");
         let mut parts = Vec::new();
@@ -94,6 +103,7 @@ impl Equations {
             joints: joints(robot),
             dag: derivation.dag,
             parts,
+            is_named: !named.is_empty(),
             time: None,
         }
     }
@@ -133,7 +143,7 @@ impl Equations {
             part("inverse_dynamics", "tau", &[n], inverse_dynamics, "Joint torques."),
         ];
         let (model, joints) = (robot.name.clone(), joints(robot));
-        Self { model, method: method.as_str(), joints, dag, parts, time }
+        Self { model, method: method.as_str(), joints, dag, parts, is_named: false, time }
     }
 
     /// Whether a function is among the parts.
@@ -149,10 +159,15 @@ impl Equations {
         }
     }
 
-    /// D, C, G and W as a LaTeX document.
+    /// What is written out: the terms, or all that was named.
+    pub(super) fn written(&self) -> impl Iterator<Item = &Part> {
+        self.parts.iter().filter(|part| self.is_named || part.is_term())
+    }
+
+    /// D, C, G and W, or what was named, as a LaTeX document.
     pub(super) fn latex(&self, robot: &Robot) -> String {
         let mut functions: Vec<Function> = Vec::new();
-        for part in self.parts.iter().filter(|part| part.symbol != "tau") {
+        for part in self.parts.iter().filter(|part| self.is_named || part.symbol != "tau") {
             let Some(name) = part.function else { continue };
             let output = Output {
                 name: part.output,
@@ -173,20 +188,19 @@ impl Equations {
         document(robot, &self.dag, &functions).expect("our template has a place for each value")
     }
 
-    /// The equations with their terms (`is_term`) written out as people do; none if that takes more
-    /// than `limit` terms.
+    /// The equations with what is `written` of them written out as people do; none if that takes
+    /// more than `limit` terms.
     pub(super) fn written_out(&mut self, limit: usize) -> Option<Vec<ExprId>> {
         let entries = self.entries_of_terms();
         written_out(&mut self.dag, &entries, limit)
     }
 
-    /// The entries of the terms, in order.
+    /// The entries of what is written, in order.
     pub(super) fn entries_of_terms(&self) -> Vec<ExprId> {
-        let terms = self.parts.iter().filter(|part| part.is_term());
-        terms.flat_map(|part| part.entries.iter().copied()).collect()
+        self.written().flat_map(|part| part.entries.iter().copied()).collect()
     }
 
-    /// Number of nodes of the terms, each shared one counted once.
+    /// Number of nodes of what is written, each shared one counted once.
     pub(super) fn nodes(&self) -> usize {
         self.dag.topological(&self.entries_of_terms()).len()
     }

@@ -4,6 +4,7 @@ use super::logs::Read;
 use super::{Arguments, IdentifyFailure};
 use crate::cli::failure::Failure;
 use crate::cli::files::{load_beside, read_or_shipped};
+use crate::cli::mistaken::Wanted;
 use denavit::identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
@@ -26,7 +27,8 @@ pub(super) struct Controlled {
 impl Controlled {
     pub(super) fn read(path: &Path, robot: &Robot) -> Result<Self, Failure> {
         let name = path.display().to_string();
-        let bytes = read_or_shipped(path, ("controller", shipped::CONTROLLERS))?;
+        let all = ("controller", shipped::CONTROLLERS);
+        let bytes = read_or_shipped(path, all, Wanted::Controller)?;
         let plant = plant_of(robot, &[])
             .map_err(|error| IdentifyFailure::Plant(robot.name.clone(), error))?;
         let load = |file: &str| load_beside(path, file);

@@ -4,8 +4,9 @@ use super::{Answered, Arguments, IdentifyFailure};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
 use crate::cli::failure::Failure;
-use crate::cli::files::read_file;
+use crate::cli::files::read_wanted;
 use crate::cli::json::write_json;
+use crate::cli::mistaken::Wanted;
 use crate::cli::progress::Progress;
 use denavit::identify::knowledge::{Consequences, Determined, Knowledge};
 use denavit::identify::read_statics;
@@ -26,7 +27,8 @@ pub(super) fn run(
     let model = RegressionModel::new(&robot, options, &arguments.keep)
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
     let file = path.display().to_string();
-    let measured = read_statics(&file, &read_file(path)?, &model).map_err(Failure::Scenario)?;
+    let measured = read_statics(&file, &read_wanted(path, Wanted::Statics)?, &model)
+        .map_err(Failure::Scenario)?;
     let suspicious = suspicious_units(&model, &measured);
     if !(suspicious.is_empty() || arguments.accept_suspicious) {
         return Err(IdentifyFailure::Statics(file, suspicious).into());

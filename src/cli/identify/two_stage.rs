@@ -3,6 +3,7 @@
 mod json;
 mod loads;
 
+use super::super::progress::Progress;
 use super::{Arguments, IdentifyFailure, logs, page, text};
 use crate::cli::Answer;
 use crate::cli::base::regressor_options;
@@ -52,8 +53,12 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut model = RegressionModel::new(&robot, options, &arguments.keep)
         .map_err(|error| IdentifyFailure::Regression(Box::new(error)))?;
     model.law = arguments.friction;
+    let progress = Progress::new();
+    progress.show("reading the log");
     let log = logs::measured(arguments, &robot, &model, path)?;
+    progress.show("estimating springs, then the load");
     let found = Found::new(arguments, &robot, &model, &log)?;
+    progress.clear();
     if let Some(path) = &arguments.output {
         write_whole(path, found.updated(&robot, &source)?.as_bytes())?;
     }

@@ -5,6 +5,7 @@ use super::super::failure::Failure;
 use super::super::files::{read_log, read_model_with_effects};
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use super::super::simulate::open;
 use super::balance_log::{events, series, turning_bodies};
 use clap::Args;
@@ -114,8 +115,11 @@ fn judge(arguments: &Arguments) -> Result<Judged, Failure> {
     }
     let mut scenario = open(&arguments.input)?;
     let grid = arguments.period.map_or(Grid::From(PERIOD_S), Grid::Every);
+    let progress = Progress::new();
+    progress.show(&format!("simulating {}", scenario.name));
     let course = course_on_grid(&mut scenario, grid, arguments.whole)
         .map_err(|error| Failure::Walk(name, error.to_string()))?;
+    drop(progress);
     let mut notes = Vec::new();
     if scenario.scheme == RunScheme::TimeStepping {
         notes.push("judged from event to event, though the scenario is one of steps".to_owned());

@@ -4,7 +4,9 @@ use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::{load_beside, read_file, read_or_shipped};
 use super::super::json::{Ordered, write_json};
+use super::super::mistaken::Wanted;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use super::super::simulate::open;
 use clap::Args;
 use denavit::effect;
@@ -100,13 +102,16 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         [arguments.output.as_ref(), arguments.trajectory.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let name = arguments.gait.display().to_string();
-    let bytes = read_or_shipped(&arguments.gait, ("gait", shipped::GAITS))?;
+    let bytes = read_or_shipped(&arguments.gait, ("gait", shipped::GAITS), Wanted::Gait)?;
     let gait = read_gait(&name, &bytes).map_err(Failure::Scenario)?;
     if arguments.trajectory.is_some() && matches!(gait.kind, GaitKind::LimitCycle(_)) {
         return Err(refused(&name, NO_TRAJECTORY));
     }
     check_outputs(&outputs)?;
+    let progress = Progress::new();
+    progress.show(&format!("designing {name}"));
     let designed = designed((&arguments.gait, arguments.output.as_deref()), &name, &gait)?;
+    progress.clear();
     if let Some(path) = &arguments.output {
         write_whole(path, designed.scenario.as_bytes())?;
     }
@@ -158,9 +163,12 @@ pub(super) fn open_or_design(path: &Path) -> Result<Scenario, Failure> {
         return open(path);
     }
     let name = path.display().to_string();
-    let bytes = read_or_shipped(path, ("gait", shipped::GAITS))?;
+    let bytes = read_or_shipped(path, ("gait", shipped::GAITS), Wanted::Gait)?;
     let gait = read_gait(&name, &bytes).map_err(Failure::Scenario)?;
+    let progress = Progress::new();
+    progress.show(&format!("designing {name}"));
     let designed = designed((path, None), &name, &gait)?;
+    drop(progress);
     let load = |model: &str| load_beside(path, model);
     read_scenario(&name, designed.scenario.as_bytes(), &load).map_err(Failure::Scenario)
 }

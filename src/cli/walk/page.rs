@@ -3,6 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use super::super::simulate::draw as draw_run;
 use super::balance::{Judged, What, draw as draw_balance, margin_cells, period};
 use super::design::open_or_design;
@@ -42,12 +43,16 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut scenario = open_or_design(&arguments.scenario)?;
     check_outputs(&outputs)?;
     let name = arguments.scenario.display().to_string();
+    let progress = Progress::new();
+    progress.show("simulating");
     let course = course_of_scenario(&mut scenario, arguments.period, false)
         .map_err(|error| Failure::Walk(name, error.to_string()))?;
     let options =
         PoincareOptions { checks: false, returns: (0.1, 12), ..PoincareOptions::default() };
     // a gait without a cycle has a page, too: it says why there is none
+    progress.show("following the cycle");
     let cycle = analyse(&mut scenario, &options);
+    progress.clear();
     let page = page(&mut scenario, course, cycle.map_err(|error| error.to_string()));
     write_whole(&arguments.output, page.render().as_bytes())?;
     if !is_answered {

@@ -4,6 +4,7 @@ use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::json::{Ordered, write_json};
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use super::design::open_or_design;
 use clap::Args;
 use denavit::report::{Align, ReturnMapPicture, Table, UnitCircle, short};
@@ -96,6 +97,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         returns: (arguments.off, arguments.returns as usize),
         ..PoincareOptions::default()
     };
+    let progress = Progress::new();
+    progress.show("following the cycle");
     let found = analyse(&mut scenario, &options).map_err(|error| {
         let hint = match options.section {
             WantedSection::Strike => "\n  hint: leave out --section: the clock says when to look",
@@ -103,6 +106,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         };
         Failure::Walk(scenario.name.clone(), format!("{error}{hint}"))
     })?;
+    progress.clear();
     if let Some(path) = &arguments.svg {
         write_whole(path, picture(&scenario, &found).as_bytes())?;
     }

@@ -79,6 +79,11 @@ pub enum FunctionName {
 }
 
 impl FunctionName {
+    /// Every function, in the order of listings.
+    pub fn every() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().chain(Self::WALKING).chain(Self::REGRESSORS)
+    }
+
     /// Every function of run-time use, in the order of listings.
     pub const ALL: [Self; 21] = [
         Self::InverseDynamics,

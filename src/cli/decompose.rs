@@ -88,7 +88,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut effects = Vec::new();
     let progress = Progress::new();
     let mut show = |at: Expanded| {
-        progress.show(&format!("writing out: {} of {}, {} terms", at.done, at.total, at.terms));
+        let share = at.done as f64 / at.total.max(1) as f64;
+        progress.show_part("writing out", Some(share), &format!("{} terms", at.terms));
     };
     let memory_bytes = arguments.memory.saturating_mul(1 << 20);
     let mut expansion = Expansion { memory_bytes, progress: &mut show };

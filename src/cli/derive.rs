@@ -4,7 +4,7 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::read_model_with_effects;
 use super::json::write_json;
-use super::options::{EffectsOption, ModelArgument, walking_names};
+use super::options::{EffectsOption, ModelArgument, function_names};
 use super::outputs::{on_stdout, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
@@ -35,12 +35,13 @@ pub(crate) struct Arguments {
     /// How: by the recursions that emitted code uses, or in one of the thesis's four ways
     #[arg(long, value_enum, value_name = "METHOD", default_value = "recursive")]
     method: MethodName,
-    /// Derive these functions for walking, too, separated by commas
+    /// What goes into the answer and the document, separated by commas; if nothing is named, the
+    /// equations: mass_matrix, coriolis_matrix, gravity_vector, inverse_dynamics, contact_jacobian
     #[arg(
         long,
         value_name = "LIST",
         value_delimiter = ',',
-        value_parser = walking_names(),
+        value_parser = function_names(),
         conflicts_with = "method"
     )]
     functions: Vec<FunctionName>,

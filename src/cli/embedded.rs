@@ -7,8 +7,8 @@
 use super::failure::Failure;
 use super::files::{FILES, say_notes};
 use super::printed::Printed;
+use super::said::{Loudness, set_loudness};
 use super::{Answer, Cli, Command};
-use clap::Parser;
 use denavit::import::nothing_included;
 use denavit::model::Robot;
 use denavit::simulate::Log;
@@ -117,9 +117,12 @@ pub(super) fn is_embedded() -> bool {
 /// # Errors
 /// What would end the command with exit code 2.
 pub fn answer(arguments: &[OsString], observer: Arc<dyn Observer>) -> Result<Answered, Unanswered> {
-    let command = parsed(arguments)?;
+    let Cli { command, loudness } = parsed(arguments)?;
     let mut out = Printed::new(Vec::new());
-    let ran = observed_run(command.name(), observer, || command.run(&mut out));
+    let ran = observed_run(command.name(), observer, || {
+        set_loudness(loudness);
+        command.run(&mut out)
+    });
     ran.map(|answer| Answered { output: out.into_inner(), is_good: answer == Answer::Done })
 }
 
@@ -131,13 +134,15 @@ pub fn simulate(
     arguments: &[OsString],
     observer: Arc<dyn Observer>,
 ) -> Result<(Answered, Log), Unanswered> {
-    let command = parsed(arguments)?;
+    let Cli { command, loudness } = parsed(arguments)?;
     let Command::Simulate(options) = &command else {
         return Err(Unanswered::Internal(format!("{} is no simulation", command.name())));
     };
     let mut out = Printed::new(Vec::new());
-    let ran =
-        observed_run(command.name(), observer, || super::simulate::run_kept(options, &mut out));
+    let ran = observed_run(command.name(), observer, || {
+        set_loudness(loudness);
+        super::simulate::run_kept(options, &mut out)
+    });
     ran.map(|(answer, log)| {
         (Answered { output: out.into_inner(), is_good: answer == Answer::Done }, log)
     })
@@ -188,10 +193,9 @@ fn opened(read: WholeRobot) -> OpenedModel {
     OpenedModel { robot: read.robot, source: read.source }
 }
 
-fn parsed(arguments: &[OsString]) -> Result<Command, Unanswered> {
+fn parsed(arguments: &[OsString]) -> Result<Cli, Unanswered> {
     let whole = [OsString::from("denavit")].into_iter().chain(arguments.iter().cloned());
-    let cli = Cli::try_parse_from(whole);
-    cli.map(|cli| cli.command).map_err(|error| Unanswered::Usage(error.render().to_string()))
+    Cli::of(whole).map_err(|error| Unanswered::Usage(error.render().to_string()))
 }
 
 /// Runs something with an observer, which may stop it.
@@ -205,6 +209,7 @@ fn observed_run<T>(
     OBSERVED.set(Some(Observed { observer, thread: thread::current().id() }));
     let ran = catch_unwind(AssertUnwindSafe(run));
     OBSERVED.set(None);
+    set_loudness(Loudness::default());
     match ran {
         Ok(Ok(answer)) => Ok(answer),
         Ok(Err(failure)) => Err(Unanswered::Input(command, wrongs(&failure.to_string()))),

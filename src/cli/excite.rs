@@ -3,7 +3,7 @@
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{load_beside, read_file, read_robot};
+use super::files::{FILES, load_beside, read_robot};
 use super::json::write_json;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
@@ -15,9 +15,10 @@ use denavit::model::Robot;
 use denavit::report::answer::{ExcitationAnswer, excited_json, excited_text};
 use denavit::report::{ExcitationPicture, excitation_picture};
 use denavit::simulate::scenario::read_trajectory;
-use denavit::workflow::EffectUse;
+use denavit::workflow::{EffectUse, FileKind};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Find a trajectory that excites what is to be identified
 ///
@@ -242,12 +243,17 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return checked(arguments, (&robot, &effects), &options, path, out);
     }
     let progress = Progress::new();
+    // starts go on side by side: the share is that of all evaluations that may be made
+    let evaluated: Vec<AtomicUsize> = (0..options.starts).map(|_| AtomicUsize::new(0)).collect();
+    let most = options.evaluations.saturating_mul(options.starts).max(1);
     let tell = |at: &denavit::excite::Progress| {
-        let (start, count) = (at.start + 1, options.starts);
-        let (evaluations, condition) = (at.evaluations, at.iterate.condition);
-        progress.show(&format!(
-            "start {start} of {count}: {evaluations} evaluations, condition {condition:.4e}"
-        ));
+        if let Some(own) = evaluated.get(at.start) {
+            own.store(at.evaluations, Ordering::Relaxed);
+        }
+        let done: usize = evaluated.iter().map(|own| own.load(Ordering::Relaxed)).sum();
+        let (start, count, condition) = (at.start + 1, options.starts, at.iterate.condition);
+        let detail = format!("start {start} of {count} has condition {condition:.4e}");
+        progress.show_part("searching", Some(done as f64 / most as f64), &detail);
     };
     let found = excite(&robot, &options, &tell).map_err(Failure::Excite)?;
     progress.clear();
@@ -293,7 +299,7 @@ fn checked(
 ) -> Result<Answer, Failure> {
     let name = path.display().to_string();
     let load = |log: &str| load_beside(path, log);
-    let bytes = read_file(path)?;
+    let bytes = FILES.wanted(path, FileKind::Trajectory)?;
     let trajectory = read_trajectory(&name, &bytes, &load).map_err(Failure::Scenario)?;
     let (check, stack) = check_trajectory(robot, options, &trajectory).map_err(Failure::Excite)?;
     let shown = ExcitationAnswer { robot, effects, stack: &stack, check: &check, excited: None };

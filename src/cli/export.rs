@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::files::{read_file, read_model_with_effects};
 use super::options::{EffectsOption, ModelArgument};
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::say_error;
+use super::said::say_note;
 use clap::{Args, ValueEnum};
 use denavit::import::{Format, export, export_into};
 use std::io::Write;
@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     };
     let exported = exported.map_err(|error| Failure::Export(robot.name.clone(), error))?;
     for note in &exported.notes {
-        say_error(&format_args!("note: {note}"));
+        say_note(&format_args!("note: {note}"));
     }
     write_whole(&arguments.out, exported.text.as_bytes())?;
     if arguments.out.as_os_str() != "-" {

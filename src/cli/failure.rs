@@ -1,5 +1,6 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
+use super::mistaken::other_command;
 use super::output_failure::OutputFailure;
 use denavit::demo::RobotError;
 use denavit::derive::MotionError;
@@ -167,6 +168,7 @@ fn by_option(hint: &Hint) -> String {
             "--instruments LOG.., or --controller FILE to simulate them".to_owned()
         }
         Hint::SimulateInstruments => "--controller FILE simulates instruments".to_owned(),
+        Hint::OtherWork(mistaken) => other_command(mistaken),
         hint => hint.to_string(),
     }
 }

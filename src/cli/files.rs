@@ -1,7 +1,7 @@
 //! Files in, through the library's [`Files`]; what it notes of them goes to standard error.
 
 use super::failure::Failure;
-use super::say_error;
+use super::said::say_note;
 use denavit::measure::log::ColumnMapping;
 use denavit::model::Robot;
 pub(crate) use denavit::workflow::effects_folder;
@@ -13,7 +13,7 @@ pub(crate) static FILES: Files = Files::new();
 
 /// What was noted of a file.
 pub(crate) fn say_notes(notes: &[String]) {
-    notes.iter().for_each(say_error);
+    notes.iter().for_each(say_note);
 }
 
 /// The robot of a path with the effects that its file names: those of `folder`, or of the folder

@@ -10,8 +10,8 @@ use super::failure::{Failure, Misuse};
 use super::files::read_robot;
 use super::json::write_json;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::printed::standard_error;
 use super::progress::Progress;
+use super::said::say_note;
 pub(crate) use arguments::Arguments;
 use arguments::MethodName;
 use denavit::identify::Identification;
@@ -63,11 +63,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     write_files(arguments, &logs, &identified)?;
     match (is_answered, arguments.json) {
         // the document has no place for it
-        (true, _) => {
-            let mut errors = standard_error();
-            write!(errors, "{}", identified_doubts(&identified))?;
-            errors.flush()?;
-        }
+        (true, _) => say_doubts(&identified),
         (_, true) => write_json(out, &identified_json(&identified))?,
         (_, false) => {
             write!(out, "{}", identified_text(&identified))?;
@@ -76,6 +72,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     }
     let is_good = identified.is_good(arguments.accept_suspicious);
     Ok(if is_good { Answer::Done } else { Answer::Negative })
+}
+
+/// Says on standard error what speaks against an answer that went into a document.
+fn say_doubts(identified: &Identified) {
+    let doubts = identified_doubts(identified);
+    if !doubts.is_empty() {
+        say_note(&doubts.trim_end_matches('\n'));
+    }
 }
 
 /// Writes what was asked for beside the answer.

@@ -4,7 +4,7 @@ use super::Answer;
 use super::failure::Failure;
 use super::files::FILES;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
-use super::say_error;
+use super::said::say_note;
 use clap::{Args, ValueEnum};
 use denavit::import::{BaseChoice, Mimic, Options, import};
 use std::io::Write;
@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let outputs = [Some(&arguments.out)];
     on_stdout(&outputs, false)?;
     check_outputs(&outputs)?;
-    let (name, bytes) = FILES.as_it_is(&arguments.robot)?;
+    let (name, bytes) = FILES.description(&arguments.robot)?;
     let options = Options {
         base: match arguments.base {
             None => BaseChoice::AsDescribed,
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let mut include = |file: &str| FILES.below(&arguments.robot, file);
     let imported = import(&name, &bytes, &options, &mut include).map_err(Failure::Import)?;
     for note in &imported.notes {
-        say_error(&format_args!("note: {note}"));
+        say_note(&format_args!("note: {note}"));
     }
     write_whole(&arguments.out, imported.model.as_bytes())?;
     if arguments.out.as_os_str() != "-" {

@@ -1,11 +1,13 @@
 //! The command: one file for each subcommand; what they share stands here, in `files`,
 //! `outputs` and `printed`.
 //!
-//! Answers go to standard output, progress to standard error where that is a terminal, failures to
-//! standard error. Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or usage.
+//! Answers go to standard output; failures, notes and the progress of long work to standard error
+//! (`said`, `progress`). Exit codes: 0 done; 1 done, and the answer is negative; 2 bad input or
+//! usage.
 //! [`embedded`] is the command inside another program.
 
 mod base;
+mod completions;
 mod count;
 mod decompose;
 mod demo;
@@ -24,31 +26,38 @@ mod inspect;
 mod json;
 mod list;
 mod logs;
+mod man;
+mod mistaken;
 mod options;
 mod output_failure;
 mod outputs;
 mod printed;
 mod progress;
 mod remarks;
+mod said;
 mod schema;
 mod simulate;
 mod unfinished;
 mod verify;
 mod walk;
 
-use clap::{Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
-use printed::{Printed, shown, standard_error};
+use printed::{Printed, shown};
+use said::{Loudness, say_error, say_note, say_time, set_loudness};
 use std::env;
 use std::ffi::OsString;
-use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Symbolic robot dynamics: from a Denavit-Hartenberg table to exact equations and optimised Rust.
 #[derive(Debug, Parser)]
 #[command(name = "denavit", version, after_help = EXAMPLE, subcommand_required = true)]
 struct Cli {
+    #[command(flatten)]
+    loudness: Loudness,
     #[command(subcommand)]
     command: Command,
 }
@@ -81,6 +90,8 @@ enum Command {
     Excite(excite::Arguments),
     Identify(identify::Arguments),
     Diagnose(diagnose::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
 
 /// What a command that ran to its end says.
@@ -94,16 +105,23 @@ enum Answer {
 
 /// Runs the command line of the process.
 pub fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let started = Instant::now();
+    let cli = match Cli::of(env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
             say_usage(&error);
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
+    let Cli { command, loudness } = cli;
+    set_loudness(loudness);
     let mut out = Printed::new(io::BufWriter::new(io::stdout().lock()));
-    let answer = cli.command.run(&mut out);
-    match answer.and_then(|answer| Ok(out.flush().map(|()| answer)?)) {
+    let answer = command.run(&mut out);
+    let answer = answer.and_then(|answer| Ok(out.flush().map(|()| answer)?));
+    if loudness.is_verbose() {
+        say_time("altogether", started.elapsed());
+    }
+    match answer {
         Ok(Answer::Done) => ExitCode::SUCCESS,
         Ok(Answer::Negative) => ExitCode::from(1),
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
@@ -112,15 +130,6 @@ pub fn run() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-/// Says on standard error what nobody may see.
-fn say_error(said: &impl Display) {
-    if let Some(observed) = embedded::observed() {
-        return observed.note(&said.to_string());
-    }
-    let mut errors = standard_error();
-    let _ = writeln!(errors, "{said}").and_then(|()| errors.flush());
 }
 
 /// Prints help, or what is wrong with the usage: in colours, unless an argument brings control
@@ -135,6 +144,19 @@ fn say_usage(error: &clap::Error) {
         let _ = error.print();
     } else {
         say_error(&error.render().to_string().trim_end());
+    }
+}
+
+impl Cli {
+    /// Of a whole command line.
+    fn of(line: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let cli = Self::try_parse_from(line)?;
+        // said here: one may stand before the subcommand, the other after it, which clap lets pass
+        if cli.loudness.contradicts_itself() {
+            let fault = "the argument '--quiet' cannot be used with '--verbose'";
+            return Err(Self::command().error(ErrorKind::ArgumentConflict, fault));
+        }
+        Ok(cli)
     }
 }
 
@@ -173,13 +195,15 @@ impl Command {
             Self::Excite(_) => "excite",
             Self::Identify(_) => "identify",
             Self::Diagnose(_) => "diagnose",
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
         }
     }
 
     fn run(&self, out: &mut dyn Write) -> Result<Answer, Failure> {
         if let (true, Err(unsupported)) = (self.computes(), denavit::plants::native_code()) {
             let note = "note: models are interpreted, which takes three to five times as long";
-            say_error(&format!("{note}: {unsupported}"));
+            say_note(&format!("{note}: {unsupported}"));
         }
         match self {
             Self::Demo(arguments) => demo::run(arguments, out),
@@ -200,6 +224,8 @@ impl Command {
             Self::Excite(arguments) => excite::run(arguments, out),
             Self::Identify(arguments) => identify::run(arguments, out),
             Self::Diagnose(arguments) => diagnose::run(arguments, out),
+            Self::Completions(arguments) => completions::run(arguments, out),
+            Self::Man(arguments) => man::run(arguments, out),
         }
     }
 }

@@ -43,7 +43,7 @@ impl FunctionList {
     pub(crate) fn wanted(&self) -> Vec<FunctionName> {
         match self.functions.is_empty() {
             true => FunctionName::ALL.to_vec(),
-            false => every_function().filter(|name| self.functions.contains(name)).collect(),
+            false => FunctionName::every().filter(|name| self.functions.contains(name)).collect(),
         }
     }
 
@@ -71,23 +71,9 @@ impl FunctionList {
     }
 }
 
-fn every_function() -> impl Iterator<Item = FunctionName> {
-    FunctionName::ALL.into_iter().chain(FunctionName::WALKING).chain(FunctionName::REGRESSORS)
-}
-
-fn function_names() -> impl TypedValueParser<Value = FunctionName> {
-    names_of(every_function())
-}
-
-/// The functions for walking, by name.
-pub(crate) fn walking_names() -> impl TypedValueParser<Value = FunctionName> {
-    names_of(FunctionName::WALKING.into_iter())
-}
-
-fn names_of(
-    functions: impl Iterator<Item = FunctionName>,
-) -> impl TypedValueParser<Value = FunctionName> {
-    PossibleValuesParser::new(functions.map(FunctionName::as_str)).try_map(|name| {
+/// A function, by name.
+pub(crate) fn function_names() -> impl TypedValueParser<Value = FunctionName> {
+    PossibleValuesParser::new(FunctionName::every().map(FunctionName::as_str)).try_map(|name| {
         FunctionName::parse(&name).ok_or_else(|| format!("`{name}` is not a function"))
     })
 }

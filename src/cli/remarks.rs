@@ -1,6 +1,6 @@
 //! What is said of work that is large.
 
-use super::say_error;
+use super::said::say_note;
 use denavit::model::Robot;
 
 /// From so many joints on, functions whose size grows with the cube of that number take seconds:
@@ -11,7 +11,7 @@ const MANY_JOINTS: usize = 55;
 pub(crate) fn print_size(robot: &Robot, has_derivatives: bool) {
     let joints = robot.joints().count();
     if joints >= MANY_JOINTS && has_derivatives {
-        say_error(&format_args!(
+        say_note(&format_args!(
             "remark: {}: forward_dynamics_derivatives grows with the cube of {joints} joints\n  \
              hint: `--functions` chooses others",
             robot.name

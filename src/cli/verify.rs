@@ -2,12 +2,13 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{read_file, read_robot};
+use super::files::{FILES, read_robot};
 use super::json::write_json;
 use super::options::EffectsOption;
 use clap::Args;
 use denavit::regressor::Certificate;
 use denavit::report::symbolic::{verdict_json, verdict_text};
+use denavit::workflow::FileKind;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -35,7 +36,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let bytes = read_file(&arguments.certificate)?;
+    let bytes = FILES.wanted(&arguments.certificate, FileKind::Certificate)?;
     let certificate: Certificate = serde_json::from_slice(&bytes).map_err(|error| {
         Failure::Certificate { file: arguments.certificate.display().to_string(), error }
     })?;

@@ -33,6 +33,7 @@ mod readme;
 mod real_data;
 #[cfg(feature = "mcap")]
 mod ros_logs;
+mod shell;
 mod simulate;
 mod simulate_summary;
 mod simulated_again;
@@ -61,11 +62,14 @@ fn command(directory: &Path) -> Command {
 }
 
 impl Run {
+    /// Without lines of progress: how many there are is a matter of how busy the machine is.
     fn of(output: Output) -> Self {
+        let said = String::from_utf8(output.stderr).expect("UTF-8");
+        let is_kept = |line: &&str| !line.starts_with("progress: ");
         Self {
             code: output.status.code(),
             stdout: String::from_utf8(output.stdout).expect("UTF-8"),
-            stderr: String::from_utf8(output.stderr).expect("UTF-8"),
+            stderr: said.split_inclusive('\n').filter(is_kept).collect(),
         }
     }
 }

@@ -14,7 +14,8 @@ use std::time::{Duration, Instant};
 pub struct EquationOptions {
     /// One of the thesis's four ways; none for the recursions that emitted code uses.
     pub method: Option<Method>,
-    /// Functions for walking that the recursions derive, too.
+    /// What the recursions derive, each once; D, C, G, tau and the contact Jacobian if nothing is
+    /// named.
     pub functions: Vec<FunctionName>,
 }
 
@@ -67,8 +68,13 @@ pub struct EquationPart {
 
 impl EquationPart {
     /// Whether it is a term of the equations, and not what they add up to or a constraint.
-    pub fn is_term(&self) -> bool {
+    fn is_term(&self) -> bool {
         ["D", "C", "G", "tau_drive"].contains(&self.symbol)
+    }
+
+    /// Its letter, or its name if it has none.
+    pub fn label(&self) -> &str {
+        if self.symbol.is_empty() { &self.key } else { self.symbol }
     }
 }
 
@@ -85,6 +91,8 @@ pub struct MotionEquations {
     pub dag: Dag,
     /// D, C, G and what goes with them.
     pub parts: Vec<EquationPart>,
+    /// Whether the parts were named, so that all of them are wanted.
+    pub is_named: bool,
     /// How long it took altogether, if the parts were derived together.
     pub time: Option<Duration>,
 }
@@ -118,11 +126,12 @@ impl MotionEquations {
         }
     }
 
-    /// By the recursions that emitted code uses; functions for walking where they are asked for.
-    fn recursive(robot: &Robot, walking: &[FunctionName]) -> Self {
-        let also = FunctionName::WALKING.into_iter().filter(|name| walking.contains(name));
-        let wanted: Vec<FunctionName> =
-            RECURSIVE.iter().map(|(name, _)| *name).chain(also).collect();
+    /// By the recursions that emitted code uses; what is named, each once, or the equations.
+    fn recursive(robot: &Robot, named: &[FunctionName]) -> Self {
+        let wanted: Vec<FunctionName> = match named.is_empty() {
+            true => RECURSIVE.iter().map(|(name, _)| *name).collect(),
+            false => FunctionName::every().filter(|name| named.contains(name)).collect(),
+        };
         let derivation =
             derive(robot, Flavour::Tunable, &wanted).expect("only baking asks for values");
         let mut parts = Vec::new();
@@ -150,6 +159,7 @@ impl MotionEquations {
             joints: joints(robot),
             dag: derivation.dag,
             parts,
+            is_named: !named.is_empty(),
             time: None,
         }
     }
@@ -188,7 +198,7 @@ impl MotionEquations {
             part("inverse_dynamics", "tau", &[n], inverse_dynamics, "Joint torques."),
         ];
         let (model, joints) = (robot.name.clone(), joints(robot));
-        Self { model, method: method.as_str(), joints, dag, parts, time }
+        Self { model, method: method.as_str(), joints, dag, parts, is_named: false, time }
     }
 
     /// What holds between the parts.
@@ -199,20 +209,24 @@ impl MotionEquations {
         }
     }
 
-    /// The terms ([`EquationPart::is_term`]) written out as people do; none if that takes more than
-    /// `limit` summands.
+    /// What is written out: the terms D, C, G and tau_drive, or all that was named.
+    pub fn written(&self) -> impl Iterator<Item = &EquationPart> {
+        self.parts.iter().filter(|part| self.is_named || part.is_term())
+    }
+
+    /// What is written ([`Self::written`]), multiplied out as people do; none if that takes more
+    /// than `limit` summands.
     pub fn written_out(&mut self, limit: usize) -> Option<Vec<ExprId>> {
         let entries = self.entries_of_terms();
         written_out(&mut self.dag, &entries, limit)
     }
 
-    /// The entries of the terms, in order.
+    /// The entries of what is written, in order.
     pub fn entries_of_terms(&self) -> Vec<ExprId> {
-        let terms = self.parts.iter().filter(|part| part.is_term());
-        terms.flat_map(|part| part.entries.iter().copied()).collect()
+        self.written().flat_map(|part| part.entries.iter().copied()).collect()
     }
 
-    /// Number of nodes of the terms, each shared one counted once.
+    /// Number of nodes of what is written, each shared one counted once.
     pub fn nodes(&self) -> usize {
         self.dag.topological(&self.entries_of_terms()).len()
     }

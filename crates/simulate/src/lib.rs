@@ -52,7 +52,9 @@ pub use log_origin::model_of_header;
 pub use measure::Measurement;
 pub use planner::{JointPlan, Planning, PlanningLaw, ReferencePlanner, Sensed};
 pub use push::{LinkWrench, Push, Shove};
-pub use run::{Event, EventKind, Run, simulate, simulate_believing, simulate_varied};
+pub use run::{
+    Event, EventKind, Run, Told, simulate, simulate_believing, simulate_told, simulate_varied,
+};
 pub use settle::{Scuffing, Touching};
 pub use simulation::Simulation;
 pub use start::StartError;

@@ -86,6 +86,9 @@ pub struct Run {
 /// Contacts this near the ground are closed at the start \[m\].
 const START_TOUCH_M: f64 = 1e-6;
 
+/// Hears the share of a run's time that is simulated, after each step, from 0 to 1.
+pub type Told<'a> = dyn FnMut(f64) + 'a;
+
 /// Runs a plant under control from a state; deterministic.
 pub fn simulate(
     plant: &mut dyn Plant,
@@ -94,6 +97,21 @@ pub fn simulate(
     simulation: &Simulation,
 ) -> Result<Run, StartError> {
     simulate_believing(plant, None, control, initial, simulation)
+}
+
+/// As [`simulate`], heard by somebody.
+///
+/// # Errors
+/// As of [`simulate`].
+pub fn simulate_told(
+    plant: &mut dyn Plant,
+    control: &Control,
+    initial: &State,
+    simulation: &Simulation,
+    told: &mut Told<'_>,
+) -> Result<Run, StartError> {
+    let (motion, t_s, y) = prepare(plant, control, initial, simulation)?;
+    Ok(Runner::begin(motion, simulation, (t_s, y), None)?.told(told).go().0)
 }
 
 /// As [`simulate`], with a controller that compensates by a model of its own, `believed`, which has

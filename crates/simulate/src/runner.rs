@@ -10,7 +10,7 @@ use super::motion::Motion;
 use super::planner::{Looks, Sensed};
 use super::push::Shove;
 use super::record::Recorder;
-use super::run::{Event, EventKind, Run, stand};
+use super::run::{Event, EventKind, Run, Told, stand};
 use super::settle::{Onset, Scuffing, Settled, Settler};
 use super::simulation::Simulation;
 use super::start::StartError;
@@ -53,6 +53,8 @@ pub(super) struct Runner<'a> {
     /// Time and state.
     t_s: f64,
     y: Vec<f64>,
+    /// Who hears how far the run is.
+    told: Option<&'a mut Told<'a>>,
 }
 
 impl<'a> Runner<'a> {
@@ -86,6 +88,7 @@ impl<'a> Runner<'a> {
             simulation,
             motion,
             y,
+            told: None,
         };
         runner.plan(start_s);
         runner.sample_control(start_s);
@@ -94,6 +97,11 @@ impl<'a> Runner<'a> {
             happened.map_err(StartError::Breakdown)?;
         }
         Ok(runner)
+    }
+
+    /// The same, heard by somebody.
+    pub(super) fn told(self, told: &'a mut Told<'a>) -> Self {
+        Self { told: Some(told), ..self }
     }
 
     /// To the end, whichever that is.
@@ -151,6 +159,9 @@ impl<'a> Runner<'a> {
             }
             self.y.copy_from_slice(self.stepper.state());
             self.t_s = self.stepper.time();
+            if let Some(told) = &mut self.told {
+                told((self.t_s - self.start_s) / (self.simulation.end_s - self.start_s));
+            }
             if let Some(variation) = &mut self.variation {
                 variation.follow(&mut self.motion, &mut self.stepper, self.t_s)?;
             }

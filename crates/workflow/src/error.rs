@@ -1,6 +1,7 @@
 //! Why work has no answer.
 
 use crate::files::reason;
+use crate::mistaken::Mistaken;
 use denavit_codegen::model::ModelError;
 use denavit_diagnose::DiagnosisError;
 use denavit_identify::UpdateError;
@@ -55,6 +56,8 @@ pub enum Hint {
     GiveInstruments,
     /// A controller simulates instruments.
     SimulateInstruments,
+    /// A file is for other work.
+    OtherWork(Mistaken),
 }
 
 impl fmt::Display for Hint {
@@ -66,6 +69,7 @@ impl fmt::Display for Hint {
                 write!(f, "give logs as `instruments`, or a `controller` to simulate them")
             }
             Self::SimulateInstruments => write!(f, "a `controller` simulates instruments"),
+            Self::OtherWork(one) => write!(f, "`{}` is for other work", one.name),
         }
     }
 }
@@ -135,8 +139,8 @@ pub(crate) enum Cause {
     SameLogs([String; 2]),
     /// A gait has no answer; holds the scenario and why.
     Walk(String, String),
-    /// A model stands where a scenario should; holds its name.
-    ModelForScenario(String),
+    /// Something good stands where something else should.
+    Mistaken(Mistaken),
     /// Nothing is diagnosed.
     Diagnosis(DiagnosisError),
     /// Stopped before there was anything.
@@ -211,7 +215,7 @@ impl Error {
                  must have one"
                     .to_owned(),
             ),
-            Cause::ModelForScenario(name) => advice(smallest_scenario(name)),
+            Cause::Mistaken(mistaken) => vec![Hint::OtherWork(mistaken.clone())],
             Cause::SameLogs(_) => advice("name each log once".to_owned()),
             _ => Vec::new(),
         }
@@ -243,17 +247,6 @@ impl Error {
 fn listed(all: &[ShippedModel]) -> String {
     let names: Vec<_> = all.iter().map(|one| one.name).collect();
     names.join(", ")
-}
-
-/// What to write where a model alone was given.
-fn smallest_scenario(model: &str) -> String {
-    let model = serde_json::Value::from(model);
-    format!(
-        "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
-         \"duration_s\": 1}} lets it go from rest; docs/reference/scenario.md has the rest, \
-         `denavit schema scenario` all keys",
-        denavit_simulate::scenario::FORMAT
-    )
 }
 
 impl From<Cause> for Error {
@@ -321,9 +314,7 @@ impl fmt::Display for Cause {
                 write!(f, "{other} says the same as {one}: measured once, it counts once")
             }
             Self::Walk(scenario, why) => write!(f, "{scenario}: {why}"),
-            Self::ModelForScenario(name) => {
-                write!(f, "{name}: this is a model, where a scenario is simulated")
-            }
+            Self::Mistaken(mistaken) => write!(f, "{mistaken}"),
             Self::Diagnosis(error) => write!(f, "{error}"),
             Self::Stopped => write!(f, "stopped before there was an answer"),
         }

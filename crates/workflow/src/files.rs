@@ -1,6 +1,7 @@
 //! Files in: models by path or by name, and what other files refer to.
 
 use crate::error::{Cause, Error};
+use crate::mistaken::{FileKind, Mistaken};
 use crate::robot_file::{RobotFile, WholeRobot};
 use denavit_codegen::effect::{self, Effect};
 use denavit_codegen::model::equations::{self, Equations};
@@ -14,7 +15,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 
 /// More is not read: the limit of `model::read`, which refuses what has more.
-const MAX_MODEL_BYTES: u64 = 16 << 20;
+pub(crate) const MAX_MODEL_BYTES: u64 = 16 << 20;
 
 /// Nor is more of what another file refers to: a log of an hour has less.
 const MAX_LOG_BYTES: u64 = 256 << 20;
@@ -111,12 +112,16 @@ impl Files {
         self.named(place, &[shipped::MODELS])
     }
 
-    /// The same, where a URDF or MJCF stays one.
+    /// Name and text of a URDF or MJCF.
     ///
     /// # Errors
-    /// Why it is not read.
-    pub fn as_it_is(&self, place: &Path) -> Result<(String, Vec<u8>), Error> {
-        self.any(place, &[shipped::MODELS])
+    /// Why it is not read, or that it is something else.
+    pub fn description(&self, place: &Path) -> Result<(String, Vec<u8>), Error> {
+        let (name, bytes) = self.any(place, &[shipped::MODELS])?;
+        match Mistaken::file(&name, &bytes, FileKind::Description) {
+            Some(mistaken) => Err(Cause::Mistaken(mistaken).into()),
+            None => Ok((name, bytes)),
+        }
     }
 
     /// The model or the equations of a path, told apart by their format.
@@ -197,9 +202,17 @@ impl Files {
     }
 
     /// Name and text of a path, of a file of one of these lists, or of standard input.
-    fn named(&self, place: &Path, shipped: &[&[ShippedModel]]) -> Result<ModelText, Error> {
-        let (name, bytes) = self.any(place, shipped)?;
-        described(name, bytes, &mut |file| self.below(place, file))
+    fn named(&self, place: &Path, lists: &[&[ShippedModel]]) -> Result<ModelText, Error> {
+        let (name, bytes) = self.any(place, lists)?;
+        let read = described(name, bytes, &mut |file| self.below(place, file))?;
+        let takes_equations = lists.contains(&shipped::EQUATIONS);
+        if takes_equations && equations::is_equations_file(&read.text) {
+            return Ok(read);
+        }
+        match Mistaken::file(&read.name, &read.text, FileKind::Model) {
+            Some(mistaken) => Err(Cause::Mistaken(mistaken).into()),
+            None => Ok(read),
+        }
     }
 
     /// A file that another one includes: from its folder and below, from nowhere else.
@@ -283,6 +296,22 @@ impl Files {
         whole(&name, &mut file)
     }
 
+    /// The bytes of a file; refuses what is something else, and the name of what is.
+    ///
+    /// # Errors
+    /// Why they are not read.
+    pub fn wanted(&self, path: &Path, wanted: FileKind) -> Result<Vec<u8>, Error> {
+        let name = path.display().to_string();
+        let bytes = self.bytes(path).map_err(|error| {
+            let mistaken = error.is_not_found().then(|| Mistaken::name(&name, wanted)).flatten();
+            mistaken.map_or(error, |mistaken| Cause::Mistaken(mistaken).into())
+        })?;
+        match Mistaken::file(&name, &bytes, wanted) {
+            Some(mistaken) => Err(Cause::Mistaken(mistaken).into()),
+            None => Ok(bytes),
+        }
+    }
+
     /// The bytes of a file, or of the shipped one of a kind that has this name.
     ///
     /// # Errors
@@ -291,13 +320,14 @@ impl Files {
         &self,
         path: &Path,
         (kind, all): (&'static str, &'static [ShippedModel]),
+        wanted: FileKind,
     ) -> Result<Vec<u8>, Error> {
         let name = path.display().to_string();
         let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
         if let Some(shipped) = all.iter().find(|one| one.name == name && !is_file) {
             return Ok(shipped.text.as_bytes().to_vec());
         }
-        self.bytes(path).map_err(|error| match error.is_not_found() {
+        self.wanted(path, wanted).map_err(|error| match error.is_not_found() {
             true => {
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();
                 let names = all.iter().map(|one| one.name);
@@ -379,6 +409,9 @@ fn whole(name: &str, file: &mut dyn Read) -> Result<Vec<u8>, Error> {
 }
 
 fn no_model(path: &Path, name: &str, shipped: &[&[ShippedModel]]) -> Error {
+    if let Some(mistaken) = Mistaken::name(name, FileKind::Model) {
+        return Cause::Mistaken(mistaken).into();
+    }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let names = shipped.iter().copied().flatten().map(|model| model.name);
     let nearest = denavit_codegen::expr::text::nearest(&stem, names);

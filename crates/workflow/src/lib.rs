@@ -16,6 +16,7 @@ mod error;
 mod files;
 mod identify;
 mod logs;
+mod mistaken;
 mod observer;
 mod robot_file;
 mod scenario;
@@ -29,6 +30,7 @@ pub use identify::{
     StaticsFound, TwoStageFound, identify, identify_statics, identify_two_stage,
 };
 pub use logs::Logs;
+pub use mistaken::{FileKind, Mistaken};
 pub use observer::{Observer, Progress, Silent, Stage};
 pub use robot_file::{EffectUse, RobotFile, WholeRobot};
 pub use walk::{

@@ -1,11 +1,13 @@
 //! Which logs, and how they are read.
 
 use crate::error::{Cause, Error};
+use crate::files::MAX_MODEL_BYTES;
+use crate::mistaken::{FileKind, Mistaken};
 use denavit_codegen::model::Robot;
 use denavit_logs::{self as logs, Opening};
 use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
 use denavit_plants::regression::RegressionModel;
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 /// Files of logs, of any format, and how they are read.
@@ -56,12 +58,26 @@ impl Logs {
         // a folder is opened by its metadata
         let opened = match path.is_dir() {
             true => None,
-            false => Some(File::open(path).map_err(|error| Error::read(path, error))?),
+            false => Some(File::open(path).map_err(|error| {
+                let mistaken = Mistaken::name(&file, FileKind::Log);
+                mistaken.map_or_else(|| Error::read(path, error), |one| Cause::Mistaken(one).into())
+            })?),
         };
         let how = Opening { accepts_cut: self.accepts_cut, named: self.columns.beginnings() };
-        let log = logs::open(path, opened, &how)
-            .map_err(|faults| Cause::Logs(vec![of_file(&file, faults)]))?;
-        let read = read_opened(&file, log, robot, &self.columns);
-        Ok(read.map_err(|faults| Cause::Logs(vec![faults]))?)
+        let log = logs::open(path, opened, &how).map_err(|faults| of_file(&file, faults));
+        let read = log.and_then(|log| read_opened(&file, log, robot, &self.columns));
+        let failed = |faults| match other_file(path, &file) {
+            Some(mistaken) => Cause::Mistaken(mistaken),
+            None => Cause::Logs(vec![faults]),
+        };
+        Ok(read.map_err(failed)?)
     }
+}
+
+/// What a file is that is no log, if that is known.
+fn other_file(path: &Path, name: &str) -> Option<Mistaken> {
+    let metadata = path.metadata().ok()?;
+    let is_read = metadata.is_file() && metadata.len() <= MAX_MODEL_BYTES;
+    let bytes = is_read.then(|| fs::read(path).ok()).flatten()?;
+    Mistaken::file(name, &bytes, FileKind::Log)
 }

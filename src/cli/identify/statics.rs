@@ -3,11 +3,11 @@
 use super::Arguments;
 use crate::cli::Answer;
 use crate::cli::failure::Failure;
-use crate::cli::files::read_file;
+use crate::cli::files::FILES;
 use crate::cli::json::write_json;
 use crate::cli::progress::Progress;
 use denavit::report::answer::{statics_json, statics_text};
-use denavit::workflow::identify_statics;
+use denavit::workflow::{FileKind, identify_statics};
 use std::io::Write;
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(super) fn run(
 ) -> Result<Answer, Failure> {
     let robot = arguments.robot()?;
     let (logs, options) = (arguments.logs()?, arguments.options(&robot)?);
-    let (name, bytes) = (path.display().to_string(), read_file(path)?);
+    let (name, bytes) = (path.display().to_string(), FILES.wanted(path, FileKind::Statics)?);
     let progress = Progress::new();
     let found =
         identify_statics(&robot, (&name, &bytes), (&logs, &options), &mut progress.observer())?;

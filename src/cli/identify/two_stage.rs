@@ -5,6 +5,7 @@ use crate::cli::Answer;
 use crate::cli::failure::{Failure, Misuse};
 use crate::cli::json::write_json;
 use crate::cli::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use crate::cli::progress::Progress;
 use denavit::report::answer::{two_stage_json, two_stage_text};
 use denavit::report::{TorquePicture, TwoStagePage, torque_picture};
 use denavit::workflow::{Logs, TwoStageFound, identify_two_stage};
@@ -16,7 +17,9 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     check_outputs(&outputs)?;
     let robot = arguments.robot()?;
     let (logs, options) = (arguments.logs()?, arguments.options(&robot)?);
-    let found = identify_two_stage(robot, &logs, &options)?;
+    let progress = Progress::new();
+    let found = identify_two_stage(robot, &logs, &options, &mut progress.observer())?;
+    progress.clear();
     if let Some(path) = &arguments.output {
         write_whole(path, found.updated()?.as_bytes())?;
     }

@@ -5,6 +5,7 @@ use super::super::failure::Failure;
 use super::super::files::{FILES, read_model_with_effects};
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{
     BalanceCriterion, balance_events, balance_json, balance_picture, balance_series, balance_text,
@@ -89,5 +90,9 @@ fn judge(arguments: &Arguments) -> Result<Judged, Failure> {
     }
     let mut scenario = FILES.scenario(&arguments.input)?;
     let options = JudgeOptions { period_s: arguments.period, whole: arguments.whole };
-    Ok(judge_run(&mut scenario, &options)?)
+    let progress = Progress::new();
+    progress.show(&format!("simulating {}", scenario.name));
+    let judged = judge_run(&mut scenario, &options)?;
+    drop(progress);
+    Ok(judged)
 }

@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         &|| FILES.scenario(&arguments.scenario).ok(),
         &found,
         &options,
-        &|done, all| progress.show(&format!("{done} of {all} pushes")),
+        &|done, all| progress.show_count("pushes", done, all),
     );
     progress.clear();
     match arguments.json {

@@ -54,7 +54,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let progress = Progress::new();
     let mut all = Vec::new();
     for (index, path) in scenarios.iter().enumerate() {
-        progress.show(&format!("{} of {}: {}", index + 1, scenarios.len(), path.display()));
+        let share = index as f64 / scenarios.len() as f64;
+        progress.show_part("comparing", Some(share), &path.display().to_string());
         all.push(compared(path, arguments.period)?);
     }
     progress.clear();

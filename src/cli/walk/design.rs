@@ -5,6 +5,7 @@ use super::super::failure::Failure;
 use super::super::files::FILES;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{designed_json, designed_picture, designed_text};
 use denavit::workflow::design_gait;
@@ -52,7 +53,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return Err(refused());
     }
     check_outputs(&outputs)?;
+    let progress = Progress::new();
+    progress.show(&format!("designing {}", arguments.gait.display()));
     let designed = design_gait(&FILES, &gait, (&arguments.gait, arguments.output.as_deref()))?;
+    progress.clear();
     if let Some(path) = &arguments.output {
         write_whole(path, designed.scenario.as_bytes())?;
     }

@@ -4,6 +4,7 @@ use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use super::balance::period;
 use clap::Args;
 use denavit::report::answer::gait_page;
@@ -35,15 +36,20 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [Some(&arguments.output)];
     let is_answered = on_stdout(&outputs, false)?;
+    let progress = Progress::new();
+    progress.show("reading, and designing a gait");
     let mut scenario = FILES.scenario_or_gait(&arguments.scenario)?;
     check_outputs(&outputs)?;
     let name = arguments.scenario.display().to_string();
+    progress.show("simulating");
     let course = course_of_scenario(&mut scenario, arguments.period, false)
         .map_err(|error| Failure::Walk(name, error.to_string()))?;
     let options =
         PoincareOptions { checks: false, returns: (0.1, 12), ..PoincareOptions::default() };
     // a gait without a cycle has a page, too: it says why there is none
+    progress.show("following the cycle");
     let cycle = analyse(&mut scenario, &options);
+    progress.clear();
     let page = gait_page(&mut scenario, course, cycle.map_err(|error| error.to_string()));
     write_whole(&arguments.output, page.render().as_bytes())?;
     if !is_answered {

@@ -5,6 +5,7 @@ use super::super::failure::Failure;
 use super::super::files::FILES;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{
     cycle_json, cycle_text, is_stable, multipliers_picture, returns_picture,
@@ -84,6 +85,8 @@ fn section(text: &str) -> Result<WantedSection, String> {
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.svg.as_ref(), arguments.map.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
+    let progress = Progress::new();
+    progress.show("reading, and designing a gait");
     let mut scenario = FILES.scenario_or_gait(&arguments.scenario)?;
     check_outputs(&outputs)?;
     let options = PoincareOptions {
@@ -93,6 +96,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         returns: (arguments.off, arguments.returns as usize),
         ..PoincareOptions::default()
     };
+    progress.show("following the cycle");
     let found = analyse(&mut scenario, &options).map_err(|error| {
         let hint = match options.section {
             WantedSection::Strike => "\n  hint: leave out --section: the clock says when to look",
@@ -100,6 +104,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         };
         Failure::Walk(scenario.name.clone(), format!("{error}{hint}"))
     })?;
+    progress.clear();
     if let Some(path) = &arguments.svg {
         write_whole(path, multipliers_picture(&scenario, &found).as_bytes())?;
     }

@@ -212,14 +212,15 @@ pub(crate) fn run_basin(
         }
     };
     check_outputs(&outputs)?;
-    let found = cycle(&mut scenario).map_err(|why| Failure::Walk(name.clone(), why))?;
     let progress = Progress::new();
+    progress.show("following the cycle");
+    let found = cycle(&mut scenario).map_err(|why| Failure::Walk(name.clone(), why))?;
     let starts = basin(
         &|| disturbed(&arguments.scenario).ok(),
         &found.cycle,
         &deviations,
         &BasinOptions { cycles: arguments.steps as usize },
-        &|done, all| progress.show(&format!("{done} of {all} starts")),
+        &|done, all| progress.show_count("starts", done, all),
     );
     progress.clear();
     let (cycles, starts) = (arguments.steps, &starts[..]);
@@ -278,7 +279,7 @@ pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result
     let progress = Progress::new();
     let found =
         least_pushes(&|| pushable(&arguments.scenario).ok(), &start, &options, &|done, all| {
-            progress.show(&format!("{done} of {all} pushes"));
+            progress.show_count("pushes", done, all);
         });
     progress.clear();
     let answer = PushAnswer { name: &name, model: &model, options: &options, found: &found };

@@ -3,9 +3,8 @@
 use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
-/// certificate,
-/// `import` a URDF.
-const COMMANDS: [&str; 17] = [
+/// certificate, `import` a URDF.
+const COMMANDS: [&str; 19] = [
     "demo",
     "export",
     "import",
@@ -23,6 +22,8 @@ const COMMANDS: [&str; 17] = [
     "excite",
     "identify",
     "diagnose",
+    "completions",
+    "man",
 ];
 
 /// The commands of `walk`.

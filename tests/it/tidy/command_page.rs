@@ -4,7 +4,7 @@ use super::root;
 use std::fs;
 use std::process::Command;
 
-const COMMANDS: [&str; 30] = [
+const COMMANDS: [&str; 32] = [
     "demo",
     "list",
     "inspect",
@@ -35,6 +35,8 @@ const COMMANDS: [&str; 30] = [
     "walk capture-steps",
     "walk compare",
     "walk page",
+    "completions",
+    "man",
 ];
 
 fn help(command: &str) -> String {

@@ -77,6 +77,7 @@ fn documents_that_are_named_exist() {
     let others = [
         ".ci/run",
         ".ci/long",
+        ".ci/release",
         "CHANGELOG.md",
         "Cargo.toml",
         "README.md",

@@ -29,7 +29,7 @@ pub fn motion_document(
     equations: &MotionEquations,
 ) -> Result<String, TemplateError> {
     let mut functions: Vec<Function> = Vec::new();
-    for part in equations.parts.iter().filter(|part| part.symbol != "tau") {
+    for part in equations.parts.iter().filter(|part| equations.is_named || part.symbol != "tau") {
         let Some(name) = part.function else { continue };
         let output = Output {
             name: part.output,

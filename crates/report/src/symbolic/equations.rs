@@ -78,7 +78,7 @@ fn write_in_full(
     entries: &[ExprId],
     threshold: u64,
 ) -> fmt::Result {
-    let terms: Vec<&EquationPart> = equations.parts.iter().filter(|part| part.is_term()).collect();
+    let terms: Vec<&EquationPart> = equations.written().collect();
     let zero = equations.dag.zero();
     let printed = print_with_intermediates(&equations.dag, entries, threshold);
     let mut texts = printed.outputs.iter();
@@ -86,7 +86,7 @@ fn write_in_full(
         let own: Vec<&String> = texts.by_ref().take(part.entries.len()).collect();
         writeln!(out)?;
         if part.entries.iter().all(|&entry| entry == zero) {
-            writeln!(out, "{} = 0", part.symbol)?;
+            writeln!(out, "{} = 0", part.label())?;
             continue;
         }
         for (index, text) in own.iter().enumerate() {
@@ -106,7 +106,7 @@ fn write_in_full(
 
 /// The name of an entry; of equal ones across the diagonal of D both names, none for the second.
 fn left_side(part: &EquationPart, texts: &[&String], index: usize) -> Option<String> {
-    let symbol = part.symbol;
+    let symbol = part.label();
     let [_, columns] = part.shape[..] else {
         return Some(format!("{symbol}[{}]", index + 1));
     };
@@ -133,7 +133,8 @@ fn write_summary(out: &mut dyn Write, equations: &MotionEquations) -> fmt::Resul
     for part in &equations.parts {
         let Operations { mul, add, sincos, .. } = Operations::count(&equations.dag, &part.entries);
         let nodes = equations.dag.topological(&part.entries).len();
-        let mut row = vec![format!("{} {}", part.symbol, part.key), part.form.to_owned()];
+        let name = format!("{} {}", part.symbol, part.key);
+        let mut row = vec![name.trim_start().to_owned(), part.form.to_owned()];
         row.extend([mul, add, sincos, nodes].map(|count| count.to_string()));
         row.push(
             part.time.map_or(String::new(), |time| format!("{:.1} ms", 1e3 * time.as_secs_f64())),

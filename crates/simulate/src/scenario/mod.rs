@@ -31,10 +31,10 @@ use super::breakdown::{Breakdown, Stop};
 use super::control::Control;
 use super::log_origin::{MODEL_HASH, PARAMETERS, hash_text, parameters_text};
 use super::measured_log::measured_log;
-use super::run::{EventKind, Run, simulate};
+use super::run::{EventKind, Run, Told, simulate_told};
 use super::simulation::Simulation;
 use super::state::State;
-use super::time_stepping::{Scheme, StepSolver, Stepping, simulate_by_steps};
+use super::time_stepping::{Scheme, StepSolver, Stepping, simulate_by_steps_told};
 use denavit_plants::{Override, Plant};
 use start::Origin;
 
@@ -104,12 +104,21 @@ pub struct Scenario {
 impl Scenario {
     /// Runs it by its scheme; the log's header says what it was made of.
     pub fn run(&mut self) -> Result<Run, ScenarioError> {
+        self.run_told(&mut |_| {})
+    }
+
+    /// As [`run`](Self::run), heard by somebody.
+    ///
+    /// # Errors
+    /// As of [`run`](Self::run).
+    pub fn run_told(&mut self, told: &mut Told<'_>) -> Result<Run, ScenarioError> {
         let plant = self.plant.as_mut();
         let (control, initial, simulation) = (&self.control, &self.initial, &self.simulation);
         let run = match self.scheme {
-            RunScheme::Event => simulate(plant, control, initial, simulation),
+            RunScheme::Event => simulate_told(plant, control, initial, simulation, told),
             RunScheme::TimeStepping => {
-                simulate_by_steps(plant, control, initial, simulation, &self.stepping)
+                let scheme = (simulation, &self.stepping);
+                simulate_by_steps_told(plant, control, initial, scheme, told)
             }
         };
         let mut run = run.map_err(|error| self.origin.place(error))?;

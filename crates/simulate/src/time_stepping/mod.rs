@@ -22,7 +22,7 @@ mod run;
 mod stepper;
 
 pub use plant::ControlledPlant;
-pub use run::simulate_by_steps;
+pub use run::{simulate_by_steps, simulate_by_steps_told};
 pub use stepper::TimeStepper;
 
 use super::contact::Space;

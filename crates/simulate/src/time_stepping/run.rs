@@ -10,7 +10,7 @@ use crate::drive::Drives;
 use crate::ground::Ground;
 use crate::integrate::Statistics;
 use crate::measure::Instrument;
-use crate::run::Run;
+use crate::run::{Run, Told};
 use crate::settle::Scuffing;
 use crate::simulation::Simulation;
 use crate::start::{StartError, check, check_gaps, check_steps, quarter_turn_left};
@@ -28,6 +28,20 @@ pub fn simulate_by_steps(
     initial: &State,
     simulation: &Simulation,
     stepping: &Stepping,
+) -> Result<Run, StartError> {
+    simulate_by_steps_told(plant, control, initial, (simulation, stepping), &mut |_| {})
+}
+
+/// As [`simulate_by_steps`], heard by somebody.
+///
+/// # Errors
+/// As of [`simulate_by_steps`].
+pub fn simulate_by_steps_told(
+    plant: &mut dyn Plant,
+    control: &Control,
+    initial: &State,
+    (simulation, stepping): (&Simulation, &Stepping),
+    told: &mut Told<'_>,
 ) -> Result<Run, StartError> {
     let mut state = initial.clone();
     let drives = Drives::new(plant.model(), simulation.drives);
@@ -76,7 +90,7 @@ pub fn simulate_by_steps(
         q,
         qd,
     };
-    let stop = runner.go();
+    let stop = runner.go(told);
     Ok(runner.finish(stop))
 }
 
@@ -126,7 +140,7 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    fn go(&mut self) -> Stop {
+    fn go(&mut self, told: &mut Told<'_>) -> Stop {
         loop {
             self.sample_control();
             if self.due(self.row, self.simulation.log_period_s) {
@@ -151,6 +165,7 @@ impl Runner<'_> {
                 if let Some(stop) = self.step(end_s) {
                     return stop;
                 }
+                told((self.t_s - self.start_s) / (self.simulation.end_s - self.start_s));
             }
         }
     }

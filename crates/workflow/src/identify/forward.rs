@@ -4,6 +4,7 @@ use super::conditions::Conditions;
 use super::logs::Read;
 use crate::error::{Cause, Error};
 use crate::files::Files;
+use crate::mistaken::FileKind;
 use denavit_codegen::model::Robot;
 use denavit_identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
@@ -30,7 +31,11 @@ impl Controlled {
     /// All that is wrong with it, or why it is not read.
     pub fn read(files: &Files, path: &Path, robot: &Robot) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let bytes = files.bytes_or_shipped(path, ("controller", shipped::CONTROLLERS))?;
+        let bytes = files.bytes_or_shipped(
+            path,
+            ("controller", shipped::CONTROLLERS),
+            FileKind::Controller,
+        )?;
         let plant =
             plant_of(robot, &[]).map_err(|error| Cause::Plant(robot.name.clone(), error))?;
         let load = |file: &str| files.beside(path, file);

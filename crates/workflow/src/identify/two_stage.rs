@@ -4,6 +4,7 @@ use super::loads::conditioned;
 use super::{IdentifyOptions, regression};
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
+use crate::observer::{Observer, Stage, Watched};
 use crate::robot_file::RobotFile;
 use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::RegressorOptions;
@@ -53,7 +54,9 @@ pub fn identify_two_stage(
     file: RobotFile,
     logs: &Logs,
     options: &IdentifyOptions,
+    observer: &mut dyn Observer,
 ) -> Result<TwoStageFound, Error> {
+    let mut watched = Watched::new(observer);
     let [path] = &logs.train[..] else { return Err(Cause::OneLog.into()) };
     let robot = file.whole.clone();
     let (_, source) = file.without_laws()?;
@@ -62,7 +65,11 @@ pub fn identify_two_stage(
     let columns = RegressorOptions { rotor: false, ..asked };
     let options = IdentifyOptions { regressor: Some(columns), ..options.clone() };
     let model = regression(&robot, &options)?;
+    let goes_on = watched.begins(Stage::ReadingLogs);
     let log = logs.measured(path, (&robot, &model))?;
+    if !(goes_on && watched.begins(Stage::Estimating)) {
+        return Err(Cause::Stopped.into());
+    }
     let plant = plant_of(&robot, &[]).map_err(|error| Cause::Plant(robot.name.clone(), error))?;
     let plant = plant.model();
     let conditions = |log: &MeasuredLog| options.conditions.of(log.step_s, log.samples(), 0);

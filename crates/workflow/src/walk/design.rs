@@ -2,6 +2,7 @@
 
 use crate::error::{Cause, Error};
 use crate::files::Files;
+use crate::mistaken::FileKind;
 use denavit_codegen::effect;
 use denavit_codegen::model::json as file;
 use denavit_plants::trajectory::Reference;
@@ -37,7 +38,7 @@ impl Files {
     /// All that is wrong with it, or why it is not read.
     pub fn gait(&self, path: &Path) -> Result<Gait, Error> {
         let name = path.display().to_string();
-        let bytes = self.bytes_or_shipped(path, ("gait", shipped::GAITS))?;
+        let bytes = self.bytes_or_shipped(path, ("gait", shipped::GAITS), FileKind::Gait)?;
         let file = read_gait(&name, &bytes).map_err(Cause::Scenario)?;
         Ok(Gait { name, file })
     }

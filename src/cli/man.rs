@@ -26,7 +26,10 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let mut command = Cli::command();
+    // there is no page of `help`
+    let mut command = Cli::command()
+        .disable_help_subcommand(true)
+        .mut_subcommands(|command| command.disable_help_subcommand(true));
     // names of subcommands are then those of the whole command line
     command.build();
     let Some(folder) = &arguments.out else {
@@ -44,10 +47,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     Ok(Answer::Done)
 }
 
-/// A command with its subcommands and theirs, but those that print help.
+/// A command with its subcommands and theirs.
 fn all(command: &clap::Command) -> Vec<&clap::Command> {
-    let own = command.get_subcommands().filter(|sub| sub.get_name() != "help");
-    [command].into_iter().chain(own.flat_map(all)).collect()
+    [command].into_iter().chain(command.get_subcommands().flat_map(all)).collect()
 }
 
 /// The name of a page.
@@ -60,7 +62,9 @@ fn name(command: &clap::Command) -> &str {
 fn page(command: &clap::Command) -> io::Result<Vec<u8>> {
     let below = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let mut page = Vec::new();
-    Man::new(command.clone().after_help(Resettable::Reset)).render(&mut page)?;
+    Man::new(command.clone().after_help(Resettable::Reset))
+        .source(concat!("denavit ", env!("CARGO_PKG_VERSION")))
+        .render(&mut page)?;
     let (notes, examples) = below.split_at(below.find("Example").unwrap_or(below.len()));
     let mut roff = Roff::new();
     if !notes.trim().is_empty() {

@@ -75,7 +75,8 @@ fn every_subcommand_has_a_manual_page() {
     for file in &expected {
         let page = fs::read_to_string(there.path.join(file)).expect("a page");
         assert!(page.contains(".SH NAME") && page.contains(".SH SYNOPSIS"), "{file}");
-        assert!(page.contains("denavit "), "{file} has no example");
+        assert!(page.contains(".SH EXAMPLES\n.nf\n  denavit "), "{file} has no example");
+        assert!(page.contains("denavit 0.") && !page.contains("help(1)"), "{file}");
         assert!(run.stdout.contains(&format!("wrote man/{file}\n")), "{file}: {}", run.stdout);
     }
     let whole = fs::read_to_string(there.path.join("denavit.1")).expect("a page");

@@ -10,6 +10,7 @@ use clap::Args;
 use denavit::program::CodeError;
 use denavit::report::symbolic::{faults_json, model_json, model_text};
 use denavit::report::{Pose, picture};
+use denavit::workflow::RobotFaults;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -38,22 +39,20 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[arguments.svg.as_ref()], arguments.json)?;
+    let effects = arguments.effects.effects.as_deref();
     let robot =
-        match read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())
-        {
-            Ok(robot) => robot,
-            Err(Failure::Model(error)) if arguments.json => {
-                write_json(out, &faults_json(&error))?;
-                out.flush()?;
-                return Err(Failure::Model(error));
+        read_model_with_effects(&arguments.model.model, effects).inspect_err(|failure| {
+            let Failure::Work(error) = failure else { return };
+            let faults =
+                error.robot_faults().filter(|_| arguments.json).map(|faults| match faults {
+                    RobotFaults::Model(error) => faults_json(error),
+                    RobotFaults::Description(error) => faults_json(error),
+                });
+            if let Some(faults) = faults {
+                // where nobody reads them, the failure says them, too
+                let _ = write_json(out, &faults).and_then(|()| Ok(out.flush()?));
             }
-            Err(Failure::Import(error)) if arguments.json => {
-                write_json(out, &faults_json(&error))?;
-                out.flush()?;
-                return Err(Failure::Import(error));
-            }
-            Err(failure) => return Err(failure),
-        };
+        })?;
     if let Some(file) = &arguments.svg {
         let pose =
             Pose::zero(&robot).map_err(|error| CodeError::Lower(robot.name.clone(), error))?;

@@ -74,6 +74,15 @@ impl fmt::Display for Hint {
     }
 }
 
+/// All that is wrong with a file that describes a robot.
+#[derive(Clone, Copy, Debug)]
+pub enum RobotFaults<'a> {
+    /// With a model file.
+    Model(&'a ModelError),
+    /// With a URDF or MJCF.
+    Description(&'a ImportError),
+}
+
 /// What is wrong.
 #[derive(Debug)]
 pub(crate) enum Cause {
@@ -171,6 +180,16 @@ impl Error {
             | Cause::Misread(_) => ErrorKind::Wrong,
             Cause::Stopped => ErrorKind::Stopped,
             _ => ErrorKind::Unsuitable,
+        }
+    }
+
+    /// The faults of a file that describes a robot, each with its place; none where it is not such
+    /// a file that is wrong.
+    pub fn robot_faults(&self) -> Option<RobotFaults<'_>> {
+        match &*self.0 {
+            Cause::Model(error) => Some(RobotFaults::Model(error)),
+            Cause::Import(error) => Some(RobotFaults::Description(error)),
+            _ => None,
         }
     }
 

@@ -23,7 +23,7 @@ mod scenario;
 mod walk;
 
 pub use diagnose::{Completed, DiagnoseOptions, Diagnosed, NamedEffect, diagnose};
-pub use error::{Error, ErrorKind, Hint};
+pub use error::{Error, ErrorKind, Hint, RobotFaults};
 pub use files::{Files, Input, ModelText, described, effects_folder, reason};
 pub use identify::{
     Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, NotMoved, SimulationGap,

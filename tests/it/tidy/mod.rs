@@ -4,6 +4,7 @@ mod circles;
 mod command_page;
 mod documents;
 mod errata;
+mod exports;
 mod ignored;
 mod markdown;
 mod policy;

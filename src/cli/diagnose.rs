@@ -5,6 +5,7 @@ mod page;
 use super::Answer;
 use super::failure::Failure;
 use super::files::{FILES, effects_folder, mapping, read_file, read_robot};
+use super::flags::by_flag;
 use super::json::write_json;
 use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
@@ -170,7 +171,11 @@ fn write_folder(
         }
     }
     let page = page::of(arguments, shown, &written).render();
-    files.extend(written.contents(shown, page)?);
+    let contents = written.contents(shown, page)?;
+    files.extend(contents.into_iter().map(|(path, bytes)| {
+        let text = by_flag(&String::from_utf8_lossy(&bytes)).into_owned();
+        (path, text.into_bytes())
+    }));
     write_together(&files)?;
     Ok(written)
 }

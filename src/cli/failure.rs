@@ -1,5 +1,6 @@
 //! Why a command stops: always the input's or the system's fault, with the way out.
 
+use super::flags::by_flag;
 use super::mistaken::other_command;
 use super::output_failure::OutputFailure;
 use denavit::demo::RobotError;
@@ -232,13 +233,22 @@ impl Failure {
     }
 }
 
-impl fmt::Display for Failure {
+/// A failure in the words of the library.
+struct AsToldBelow<'a>(&'a Failure);
+
+impl fmt::Display for AsToldBelow<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.cause(f)?;
-        match self.hint() {
+        self.0.cause(f)?;
+        match self.0.hint() {
             Some(hint) => write!(f, "\n  hint: {hint}"),
             None => Ok(()),
         }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&by_flag(&AsToldBelow(self).to_string()))
     }
 }
 

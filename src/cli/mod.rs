@@ -20,6 +20,7 @@ mod excite;
 mod export;
 mod failure;
 mod files;
+mod flags;
 mod identify;
 mod import;
 mod inspect;

@@ -2,6 +2,7 @@
 //! Colours are for terminals; elsewhere the bytes are those of the text.
 
 use super::embedded;
+use super::flags::by_flag;
 use super::printed::{shown, standard_error};
 use super::progress;
 use anstream::{AutoStream, ColorChoice};
@@ -81,6 +82,7 @@ pub(super) fn say_time(what: &str, took: Duration) {
 }
 
 fn say(said: &str, colour: AnsiColor) {
+    let said = &*by_flag(said);
     if let Some(observed) = embedded::observed() {
         return observed.note(said);
     }

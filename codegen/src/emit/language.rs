@@ -44,8 +44,8 @@ impl fmt::Display for FileNameError {
             Self::TwoFilesOfC(file) => write!(
                 f,
                 "{file}: C is a source and a header, whose names end in .c and .h\n  hint: give \
-                 one of them, as `-o robot.c`, and robot.h is written beside it; `--language cpp` \
-                 is one file"
+                 one of them, as robot.c, and robot.h is written beside it; C++ \
+                 (`options.language=cpp`) is one file"
             ),
             Self::NotIncluded(file) => write!(
                 f,

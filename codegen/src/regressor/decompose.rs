@@ -38,13 +38,14 @@ impl fmt::Display for DecomposeError {
             Self::TorsoTerms(model) => write!(
                 f,
                 "{model}: a floating base is written in the motion of its torso, which takes the \
-                 terms of inertia\n  hint: --terms inertia,gravity has the relations of all terms"
+                 terms of inertia\n  hint: `options.terms=inertia,gravity` has the relations of \
+                 all terms"
             ),
             Self::Fourier(model, error) => write!(f, "{model}: {error}"),
             Self::NoColumn(model, name) => write!(
                 f,
-                "{model}: there is no parameter {name} to keep\n  hint: `denavit decompose \
-                 {model} --json` lists the columns"
+                "{model}: there is no parameter {name} to keep\n  hint: `denavit decompose {model}` \
+                 lists the columns"
             ),
             Self::Echelon(model, error) => write!(f, "{model}: {error}"),
         }

@@ -45,8 +45,9 @@ impl fmt::Display for ProvenBaseError {
         match self {
             Self::NoMotionTerms(model) => write!(
                 f,
-                "{model}: base parameters need inertia or gravity among the terms\n  hint: --terms \
-                 inertia,gravity; --with friction,rotor adds the parameters of joints"
+                "{model}: base parameters need inertia or gravity among the terms\n  hint: \
+                 `options.terms=inertia,gravity`; `options.with=friction,rotor` adds the \
+                 parameters of joints"
             ),
             Self::Bake(error) => write!(f, "{error}"),
             Self::Base(error) => write!(f, "{error}"),

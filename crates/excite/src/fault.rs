@@ -128,7 +128,7 @@ impl fmt::Display for ExciteFault {
                 write!(f, "a duration of {duration} s is not from {least} s to {most} s")
             }
             Self::Reach(reach) => {
-                write!(f, "--reach: starts cannot use {reach} of a limit")
+                write!(f, "`options.reach`: starts cannot use {reach} of a limit")
             }
             Self::Weight { joint, weight } => {
                 write!(f, "the weight {weight} of `{joint}` is negative or no finite number")
@@ -151,32 +151,33 @@ impl ExciteFault {
         Some(match self {
             Self::MissingLimit { joint, limit } => format!(
                 "add `\"limits\": {{\"{}\": {}}}` to the link `{joint}` of the model, or hold it: \
-                 --hold {joint}=0",
+                 `options.hold={joint}=0`",
                 limit.key(),
                 limit.example()
             ),
             Self::NoRoom { joint, limit: LimitKind::Position | LimitKind::Torque } => format!(
-                "the first number must be below the second; or hold the joint: --hold {joint}=0"
+                "the first number must be below the second; or hold the joint: \
+                 `options.hold={joint}=0`"
             ),
             Self::NoRoom { joint, .. } => {
-                format!("the limit must be positive; or hold the joint: --hold {joint}=0")
+                format!("the limit must be positive; or hold the joint: `options.hold={joint}=0`")
             }
             Self::UnknownJoint { nearest: Some(nearest), .. } => {
                 format!("`{nearest}` is meant, perhaps")
             }
             Self::UnknownJoint { .. } => "`denavit inspect MODEL` lists the joints".to_owned(),
             Self::HeldOutside { .. } => "hold it between its limits".to_owned(),
-            Self::Duration(_) => "--duration-s 10".to_owned(),
-            Self::Reach(_) => "--reach 1".to_owned(),
+            Self::Duration(_) => "`options.duration_s=10`".to_owned(),
+            Self::Reach(_) => "`options.reach=1`".to_owned(),
             Self::Weight { .. } => "give 1 over the noise of the joint's torque".to_owned(),
             Self::TooFewFunctions => {
                 "give more harmonics, a higher degree or more samples".to_owned()
             }
             Self::NothingMoves => "do not hold every joint".to_owned(),
             Self::NothingExcited => {
-                "give links a `body`, or add joint parameters with --with".to_owned()
+                "give links a `body`, or add joint parameters with `options.with`".to_owned()
             }
-            Self::NoObjective => "--objective condition".to_owned(),
+            Self::NoObjective => "`options.objective=condition`".to_owned(),
             Self::TooMany(..) | Self::TooFewOf(..) => return None,
             Self::Regression(_) | Self::Bake(_) | Self::Lower(_) => return None,
         })

@@ -187,7 +187,7 @@ pub fn check_trajectory(
     let joints: Vec<&String> = robot.joints().map(|(link, _)| &robot.links[link].name).collect();
     let unknown = |(name, _): &(String, Reference)| {
         let nearest = denavit_codegen::expr::text::nearest(name, joints.iter().map(|j| j.as_str()));
-        let (option, nearest) = ("--check", nearest.map(str::to_owned));
+        let (option, nearest) = ("the trajectory", nearest.map(str::to_owned));
         let is_unknown = !joints.contains(&name);
         is_unknown.then(|| ExciteFault::UnknownJoint { option, name: name.clone(), nearest })
     };

@@ -178,7 +178,9 @@ impl ExciteOptions {
 
     fn check_names(&self, regression: &RegressionModel, faults: &mut Vec<ExciteFault>) {
         let names: Vec<&str> = regression.joints.iter().map(|joint| joint.name.as_str()).collect();
-        for (option, given) in [("--hold", &self.hold), ("--weights", &self.weights)] {
+        for (option, given) in
+            [("`options.hold`", &self.hold), ("`options.weights`", &self.weights)]
+        {
             for (name, _) in given.iter().filter(|(name, _)| !names.contains(&name.as_str())) {
                 let nearest = nearest(name, names.iter().copied()).map(str::to_owned);
                 faults.push(ExciteFault::UnknownJoint { option, name: name.clone(), nearest });

@@ -107,7 +107,8 @@ impl Identification {
             return Some(format!(
                 "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
                  parameters. How far they are off cannot be told, nor whether columns are other \
-                 ones than they are taken for. A filter with a lower cutoff (--filter) has less \
+                 ones than they are taken for. A filter with a lower cutoff (`options.filter`) \
+                 has less \
                  of it; so has a longer or faster motion, or one of all joints at once.",
                 100.0 * self.estimate.noise_share
             ));
@@ -119,8 +120,9 @@ impl Identification {
         biased.map(|biased| {
             format!(
                 "Noise of the positions biases parameters, in standard errors: {biased}. Their \
-                 intervals hold less often than they say. A filter with a lower cutoff (--filter) \
-                 has less of it, or --method iv none."
+                 intervals hold less often than they say. A filter with a lower cutoff \
+                 (`options.filter`) \
+                 has less of it, or `options.method=iv` none."
             )
         })
     }
@@ -141,8 +143,9 @@ impl Identification {
                 "Parameters change with half the cutoff of the filter by more than chance. That is \
                  in their errors, which are wider than chance alone makes them, so many times: \
                  {wider}. A loop closed over the encoder of the log makes such a change, since its \
-                 motion answers the noise (--method iv is for that), and so may what the model \
-                 lacks. --filter with a lower cutoff has less of it."
+                 motion answers the noise (`options.method=iv` is for that), and so may what the \
+                 model \
+                 lacks. `options.filter` with a lower cutoff has less of it."
             )
         })
     }
@@ -153,7 +156,7 @@ impl Identification {
         Some(format!(
             "The filter by itself makes an error of {:.1} % of the torque of {joint}: the motion \
              is too fast for it, or has too few samples a second. Parameters are biased, and their \
-             intervals too narrow. --filter with a higher cutoff makes less of it.",
+             intervals too narrow. `options.filter` with a higher cutoff makes less of it.",
             100.0 * share
         ))
     }
@@ -173,7 +176,7 @@ impl Identification {
         (!listed.is_empty()).then(|| {
             format!(
                 "Left out of the estimate, since the joint turns round or is slow there, where \
-                 friction is not the sign of its rate: {} (--skip-slow off keeps them). What is \
+                 friction is not the sign of its rate: {} (`options.slow=off` keeps them). What is \
                  left of torques above is that of all samples; in brackets, that of the others.",
                 listed.join(", ")
             )
@@ -191,7 +194,8 @@ impl Identification {
             format!(
                 "Coulomb friction of {joint} is uncertain, by more than its error says: {:.0} % of \
                  samples are within the filter's time of a reversal, or as slow, and count. \
-                 --skip-slow leaves them out, as far as other samples are there; --friction tanh \
+                 `options.slow` leaves them out, as far as other samples are there; \
+                 `options.friction=tanh` \
                  has another law there.",
                 100.0 * share
             )

@@ -9,7 +9,7 @@ pub(crate) fn cut(tree: &mut Tree, tip: &str, at: usize, faults: &mut Faults) {
     let has_name = |link: &crate::tree::TreeLink| link.name.as_deref() == Some(tip);
     let Some(mut link) = tree.links.iter().position(has_name) else {
         let names = tree.links.iter().filter_map(|link| link.name.as_deref());
-        let said = format!("--tip: no link is called `{}`", clip(tip));
+        let said = format!("`options.tip`: no link is called `{}`", clip(tip));
         let cause = match nearest(tip, names) {
             Some(name) => Cause::with_hint(said, format!("did you mean `{name}`?")),
             None => Cause::new(said),

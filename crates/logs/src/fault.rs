@@ -88,7 +88,9 @@ fn damaged(f: &mut fmt::Formatter<'_>, (at, whole): (Place, usize), cause: &str)
     write!(f, "{cause}")?;
     match whole {
         0 => write!(f, "\n  hint: no {what} are whole"),
-        _ => write!(f, "\n  hint: {whole} {what} before are whole: --accept-cut reads them"),
+        _ => {
+            write!(f, "\n  hint: {whole} {what} before are whole: `options.accepts_cut` reads them")
+        }
     }
 }
 
@@ -146,7 +148,7 @@ impl fmt::Display for FileFault {
             Self::Pause { topic, longest_s, .. } => write!(
                 f,
                 "`{topic}` pauses for {longest_s:.3} s: more than can be interpolated\n  hint: cut \
-                 the log there, or leave its columns out: null in --columns MAP.json"
+                 the log there, or leave its columns out: null in `options.columns`"
             ),
             Self::Apart { topics, rows } => write!(
                 f,

@@ -89,7 +89,7 @@ impl fmt::Display for RegressionError {
             Self::NothingUnknown(model) => write!(
                 f,
                 "{model}: the torques depend on nothing unknown\n  hint: give links a `body`, or \
-                 add joint parameters with --with"
+                 add joint parameters with `options.with`"
             ),
             Self::NoValue { model, parameters } => write!(
                 f,

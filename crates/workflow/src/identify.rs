@@ -34,7 +34,7 @@ pub use two_stage::{TwoStageFound, identify_two_stage};
 pub struct IdentifyOptions {
     /// Which parameters of joints are found beside those of bodies; those that the model has if
     /// nothing is said.
-    pub regressor: Option<RegressorOptions>,
+    pub with: Option<RegressorOptions>,
     /// Parameters that are kept before others, where relations leave a choice.
     pub keep: Vec<String>,
     /// How parameters are estimated.
@@ -62,7 +62,7 @@ pub struct IdentifyOptions {
 impl Default for IdentifyOptions {
     fn default() -> Self {
         Self {
-            regressor: None,
+            with: None,
             keep: Vec::new(),
             method: Method::Weighted,
             errors: Errors::default(),
@@ -167,7 +167,7 @@ pub fn identify(
 
 /// Base parameters and their columns.
 fn regression(robot: &Robot, options: &IdentifyOptions) -> Result<RegressionModel, Error> {
-    let columns = options.regressor.unwrap_or_else(|| modelled(robot));
+    let columns = options.with.unwrap_or_else(|| modelled(robot));
     let model = RegressionModel::new(robot, columns, &options.keep);
     let mut model = model.map_err(|error| Cause::Regression(Box::new(error)))?;
     model.law = options.friction;

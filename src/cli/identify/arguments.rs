@@ -292,7 +292,7 @@ impl Arguments {
         let controller =
             controller.map(|path| Controlled::read(&FILES, path, &robot.whole)).transpose()?;
         Ok(IdentifyOptions {
-            regressor: Some(regressor_options(&robot.apart.robot, &self.with)?),
+            with: Some(regressor_options(&robot.apart.robot, &self.with)?),
             keep: self.keep.clone(),
             method,
             errors,

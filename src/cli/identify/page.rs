@@ -2,6 +2,7 @@
 
 use super::arguments::{Arguments, ErrorsName, MethodName};
 use crate::cli::failure::{Failure, Misuse};
+use crate::cli::flags::by_flag;
 use clap::ValueEnum;
 use denavit::model::Robot;
 use denavit::report::html::Fact;
@@ -54,7 +55,7 @@ pub(super) fn of(facts: &[Fact], identified: &Identified) -> Result<String, Fail
         reasons,
     });
     let page = IdentificationPage { model: &robot.name, facts, remarks: &notes, found, simulation };
-    Ok(page.page().map_err(Misuse::Formula)?.render())
+    Ok(by_flag(&page.page().map_err(Misuse::Formula)?.render()).into_owned())
 }
 
 /// The word by which an option's value is given.

@@ -3,6 +3,7 @@
 use super::{Arguments, page};
 use crate::cli::Answer;
 use crate::cli::failure::{Failure, Misuse};
+use crate::cli::flags::by_flag;
 use crate::cli::json::write_json;
 use crate::cli::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use crate::cli::progress::Progress;
@@ -63,5 +64,5 @@ fn html(arguments: &Arguments, logs: &Logs, found: &TwoStageFound) -> Result<Str
         validate: found.validate.as_ref(),
         distance: found.bodies.distance,
     };
-    Ok(page.page().map_err(Misuse::Formula)?.render())
+    Ok(by_flag(&page.page().map_err(Misuse::Formula)?.render()).into_owned())
 }

@@ -5,6 +5,7 @@ mod command_page;
 mod documents;
 mod errata;
 mod exports;
+mod flags;
 mod ignored;
 mod markdown;
 mod policy;

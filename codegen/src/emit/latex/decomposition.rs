@@ -34,8 +34,8 @@ impl fmt::Display for TooLongToSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}: {} formulas are too many for a document\n  hint: leave out terms (--terms \
-             inertia,gravity), or take --json",
+            "{}: {} formulas are too many for a document\n  hint: leave out terms \
+             (`options.terms=inertia,gravity`), or take JSON",
             self.name, self.formulas
         )
     }

@@ -167,7 +167,7 @@ fn all_faults_are_found_at_once() {
     for fault in [
         ExciteFault::Duration(0.0),
         ExciteFault::UnknownJoint {
-            option: "--hold",
+            option: "`options.hold`",
             name: "link3".to_owned(),
             nearest: Some("link1".to_owned()),
         },

@@ -91,8 +91,8 @@ impl fmt::Display for EstimateError {
             Self::NoTorque => write!(f, "no torque was measured"),
             Self::NothingLeft => write!(
                 f,
-                "no joint is ever as fast as --skip-slow says: nothing is left of the logs\n  \
-                 hint: a lower rate, or --skip-slow biasing, which is the default"
+                "no joint is ever as fast as `options.slow` says: nothing is left of the logs\n  \
+                 hint: a lower rate, or `options.slow=biasing`, which is the default"
             ),
             Self::TooFewRows(rows, parameters) => {
                 write!(f, "{rows} rows are too few for {parameters} parameters")
@@ -101,7 +101,8 @@ impl fmt::Display for EstimateError {
                 f,
                 "the logs are too short: all torques have about {independent} samples that are \
                  independent of each other after the filter, and {parameters} parameters need \
-                 {}\n  hint: more of the motion, or a higher cutoff (--filter) if the log has \
+                 {}\n  hint: more of the motion, or a higher cutoff (`options.filter`) if the log \
+                 has \
                  little noise",
                 ROWS_OF_ONE * parameters
             ),

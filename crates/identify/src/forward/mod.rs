@@ -338,7 +338,7 @@ impl fmt::Display for ForwardError {
             Self::BadReference(joint) => write!(f, "`ref_{joint}` is no motion to follow"),
             Self::NoTorque(joint) => write!(
                 f,
-                "the torque of `{joint}` was not measured\n  hint: --controller FILE simulates \
+                "the torque of `{joint}` was not measured\n  hint: `options.controller` simulates \
                  without"
             ),
             Self::TooShort(length_s) => {

@@ -81,7 +81,7 @@ pub(crate) fn tree<'s>(
         chain::cut(&mut tree, tip, root.at(), faults);
     }
     if !options.contacts.is_empty() {
-        let said = "--contacts is for URDF: an MJCF has no collision shapes apart";
+        let said = "`options.contacts` is for URDF: an MJCF has no collision shapes apart";
         faults.push(root.at(), Cause::with_hint(said, "write \"contacts\" into the model file"));
     }
     if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
@@ -129,9 +129,10 @@ fn floating<'s>(
     };
     let Some((body, scope)) = single else {
         if reader.base == BaseChoice::Floating {
-            reader
-                .faults
-                .push(root.at(), Cause::new("--base floating: no single body stands on the world"));
+            reader.faults.push(
+                root.at(),
+                Cause::new("`options.base=floating`: no single body stands on the world"),
+            );
         }
         return None;
     };
@@ -146,7 +147,7 @@ fn floating<'s>(
         [one] if is_free(one, reader) => Some((*body, scope.clone())),
         [] if reader.base == BaseChoice::Floating => Some((*body, scope.clone())),
         _ if reader.base == BaseChoice::Floating => {
-            let said = "--base floating: the first body has joints of its own";
+            let said = "`options.base=floating`: the first body has joints of its own";
             reader.faults.push(body.at(), Cause::new(said));
             None
         }

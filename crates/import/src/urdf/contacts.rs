@@ -24,7 +24,8 @@ pub(crate) fn find(
     for wanted in &options.contacts {
         let link = raw.links.iter().find(|link| link.name.text == wanted);
         let (Some(link), Some(&place)) = (link, places.get(wanted.as_str())) else {
-            let said = format!("--contacts: no link of the model is called `{}`", clip(wanted));
+            let said =
+                format!("`options.contacts`: no link of the model is called `{}`", clip(wanted));
             faults.push(0, Cause::new(said));
             continue;
         };

@@ -65,7 +65,7 @@ pub(crate) fn tree(
         chain::cut(&mut tree, tip, robot.at(), faults);
     }
     if tree.links.len() == 1 && !tree.floats {
-        let hint = "`--base floating` makes a model of it: the base moves";
+        let hint = "`options.base=floating` makes a model of it: the base moves";
         faults
             .push(robot.at(), Cause::with_hint("the robot has one link, and nothing moves", hint));
     }

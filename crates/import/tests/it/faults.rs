@@ -49,7 +49,7 @@ fn trees_are_trees() {
         ),
         (robot(&(joint("j", "a", "b") + &joint("j", "b", "c"))), "two joints are called `j`"),
         ("<robot name=\"r\"/>".to_owned(), "the robot has no link"),
-        ("<robot name=\"r\"><link name=\"a\"/></robot>".to_owned(), "--base floating"),
+        ("<robot name=\"r\"><link name=\"a\"/></robot>".to_owned(), "options.base=floating"),
         ("<sdf/>".to_owned(), "neither <robot>"),
     ];
     for (text, part) in cases {

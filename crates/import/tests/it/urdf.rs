@@ -99,7 +99,10 @@ fn joints_that_follow_are_refused_locked_or_free() {
     );
     let refused = import("g.urdf", text.as_bytes(), &Options::default(), &mut nothing_included);
     let said = refused.expect_err("it follows").to_string();
-    assert!(said.contains("joint `ankle` follows `swing`") && said.contains("--mimic"), "{said}");
+    assert!(
+        said.contains("joint `ankle` follows `swing`") && said.contains("options.mimic"),
+        "{said}"
+    );
     let locked = imported(&text, &Options { mimic: Mimic::Lock, ..Options::default() });
     assert_eq!(locked.degrees_of_freedom(), 2);
     let free = imported(&text, &Options { mimic: Mimic::Free, ..Options::default() });

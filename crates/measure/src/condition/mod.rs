@@ -143,7 +143,8 @@ impl fmt::Display for ConditionError {
             Self::TooShort { samples, needed } => write!(
                 f,
                 "{samples} rows: this filter cuts the edges off, and at least {needed} rows are \
-                 needed\n  hint: --filter with a higher cutoff, or a lower --decimate, needs fewer"
+                 needed\n  hint: `options.filter` with a higher cutoff, or a lower \
+                 `options.decimation`, needs fewer"
             ),
             Self::NoRates(joint) => {
                 write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
@@ -172,13 +173,14 @@ impl fmt::Display for ConditionError {
             Self::NotTheDerivative { column, factor, late_s } => write!(
                 f,
                 "`{column}` is not the derivative of the position: it is {factor:.3} times that, \
-                 {late_s:.4} s late\n  hint: --columns scales columns; --rates differences takes \
+                 {late_s:.4} s late\n  hint: `options.columns` scales columns; \
+                 `options.derivatives=differences` takes \
                  the derivatives of the positions"
             ),
             Self::NothingMoves => write!(
                 f,
                 "no joint moves further than its noise\n  hint: noise is that of the steps of its \
-                 encoder: --resolution in rad or m, if it was given"
+                 encoder: `options.resolution` in rad or m, if it was given"
             ),
             Self::NoPeriod => {
                 write!(f, "the motion does not repeat\n  hint: give its period, or do not average")

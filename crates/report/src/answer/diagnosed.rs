@@ -21,7 +21,7 @@ fn write(out: &mut String, shown: &Diagnosed, folder: Option<&DiagnosisFolder>) 
     for [log, searched] in shown.searched_again() {
         let said = format!(
             "{log} says the same as {searched}, which was searched: nothing is judged \
-                            by it. Give --validate a log of another motion."
+                            by it. Judge by a log of another motion."
         );
         writeln!(out, "{}", paragraph("", "", &said))?;
     }

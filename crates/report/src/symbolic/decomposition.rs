@@ -125,10 +125,7 @@ impl<E: Display> DecompositionTexts<E> {
             writeln!(out, "{effect}")?;
         }
         if self.functions.len() > READABLE_FUNCTIONS {
-            writeln!(
-                out,
-                "too many to be read here: --json lists f and B, --latex FILE sets them"
-            )?;
+            writeln!(out, "too many to be read here: JSON lists f and B, LaTeX sets them")?;
         } else {
             self.write_in_full(out)?;
         }

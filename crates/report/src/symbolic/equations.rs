@@ -145,5 +145,5 @@ fn write_summary(out: &mut dyn Write, equations: &MotionEquations) -> fmt::Resul
     if let Some(total) = equations.time {
         writeln!(out, "derived in {:.1} ms", 1e3 * total.as_secs_f64())?;
     }
-    writeln!(out, "too large to be read here: --latex FILE sets them, --json has every entry")
+    writeln!(out, "too large to be read here: LaTeX sets them, JSON has every entry")
 }

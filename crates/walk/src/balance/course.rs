@@ -65,7 +65,7 @@ impl fmt::Display for BalanceError {
             Self::TooMany(count) => write!(
                 f,
                 "{count:.0} instants, where at most {MOST_INSTANTS} are kept\n  hint: a longer \
-                 period: --period SECONDS"
+                 period: `options.period_s`"
             ),
             Self::NotWalking => {
                 write!(f, "only robots with a floating base and contact points can fall")

@@ -192,7 +192,7 @@ fn more_instants_than_are_kept_are_refused() {
     let asked = course_on_grid(&mut scenario, Grid::Every(5e-4), true);
     let error = asked.unwrap_err();
     assert_eq!(error, BalanceError::TooMany(2e6));
-    assert!(error.to_string().contains("--period"), "{error}");
+    assert!(error.to_string().contains("options.period_s"), "{error}");
     scenario.simulation.end_s = 0.2;
     let few = course_on_grid(&mut scenario, Grid::From(1e-2), true).unwrap();
     assert_eq!(few.period_s, Some(1e-2));

@@ -61,9 +61,9 @@ pub fn identify_two_stage(
     let robot = file.whole.clone();
     let (_, source) = file.without_laws()?;
     // inertias of rotors are known here (thesis 3.3.1)
-    let asked = options.regressor.unwrap_or_else(|| modelled(&robot));
+    let asked = options.with.unwrap_or_else(|| modelled(&robot));
     let columns = RegressorOptions { rotor: false, ..asked };
-    let options = IdentifyOptions { regressor: Some(columns), ..options.clone() };
+    let options = IdentifyOptions { with: Some(columns), ..options.clone() };
     let model = regression(&robot, &options)?;
     let goes_on = watched.begins(Stage::ReadingLogs);
     let log = logs.measured(path, (&robot, &model))?;

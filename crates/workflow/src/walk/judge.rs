@@ -49,7 +49,10 @@ pub fn judge_run(scenario: &mut Scenario, options: &JudgeOptions) -> Result<Judg
     let chosen =
         course.period_s.filter(|period_s| grid == Grid::From(PERIOD_S) && *period_s > PERIOD_S);
     notes.extend(chosen.map(|period_s| {
-        format!("the run is long: an instant every {period_s} s; --period {PERIOD_S} takes more")
+        format!(
+            "the run is long: an instant every {period_s} s; `options.period_s={PERIOD_S}` \
+                 takes more"
+        )
     }));
     let model = scenario.plant.model().clone();
     Ok(Judged { name: scenario.name.clone(), model, course, notes })

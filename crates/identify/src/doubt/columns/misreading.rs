@@ -195,7 +195,7 @@ impl Misreading {
     /// How to mend it, beside what is mapped already.
     pub(super) fn hint(self, joints: &[RegressionJoint], given: &ColumnMapping) -> String {
         let mends = |column: &str, what: &str, number: String| {
-            format!("--columns with {{\"{column}\": {{\"{what}\": {number}}}}} mends that")
+            format!("`options.columns` with {{\"{column}\": {{\"{what}\": {number}}}}} mends that")
         };
         let scale = |column: &str, factor: f64| {
             let (prefix, is_of_all) = match column.strip_suffix("JOINT") {
@@ -246,9 +246,9 @@ impl Misreading {
             }
             Self::TorqueOffset(joint, by) => {
                 let column = of(Signal::Torque, joint);
-                "--with friction,offset estimates it; ".to_owned() + &offset(&column, by)
+                "`options.with=friction,offset` estimates it; ".to_owned() + &offset(&column, by)
             }
-            Self::Exchanged(..) => "--columns can name them the other way round".to_owned(),
+            Self::Exchanged(..) => "`options.columns` can name them the other way round".to_owned(),
             Self::Late(_) | Self::LateTorque(..) | Self::LatePosition(..) => {
                 "shift them against the others; friction that the model lacks may look alike"
                     .to_owned()

@@ -29,7 +29,7 @@ pub(super) fn write(
     let on_axes: Vec<_> = found.in_kept();
     let (title, sums) = match on_axes.is_empty() {
         true => ("columns that are sums of kept columns", found.sums().collect()),
-        false => ("in the base parameters of kept columns (without --basis)", on_axes),
+        false => ("in the base parameters of kept columns (the other basis)", on_axes),
     };
     if !sums.is_empty() {
         writeln!(out, "{title}:")?;

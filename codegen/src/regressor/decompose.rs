@@ -44,8 +44,8 @@ impl fmt::Display for DecomposeError {
             Self::Fourier(model, error) => write!(f, "{model}: {error}"),
             Self::NoColumn(model, name) => write!(
                 f,
-                "{model}: there is no parameter {name} to keep\n  hint: `denavit decompose {model}` \
-                 lists the columns"
+                "{model}: there is no parameter {name} to keep\n  hint: \
+                 `denavit decompose {model} --json` lists the columns"
             ),
             Self::Echelon(model, error) => write!(f, "{model}: {error}"),
         }

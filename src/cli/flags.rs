@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 /// Options whose flags are called otherwise.
-const OTHERWISE: [(&str, &str); 7] = [
+const OTHERWISE: [(&str, &str); 8] = [
     ("accepts_cut", "accept-cut"),
     ("accepts_suspicious", "accept-suspicious"),
     ("decimation", "decimate"),
@@ -12,6 +12,7 @@ const OTHERWISE: [(&str, &str); 7] = [
     ("period_s", "period"),
     ("slow", "skip-slow"),
     ("step_s", "step"),
+    ("uses_prior", "prior"),
 ];
 
 const OPTION: &str = "`options.";

@@ -12,7 +12,7 @@ use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_diagnose::{
     BeforeSprings, Candidate, Diagnosis, ExactAliases, Experiment, ExperimentOptions, Filters,
-    Moved, Request, SearchOptions, Uncertainty, Verdict, before_springs, candidates,
+    Moved, Request, SearchOptions, SeriesSpring, Uncertainty, Verdict, before_springs, candidates,
     given_candidates, spring_candidates,
 };
 use denavit_identify::Ground;
@@ -78,20 +78,10 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     observer: &mut dyn Observer,
 ) -> Result<Diagnosed, Error> {
-    let model_effects = file.uses(ESTIMATED);
-    let ApartEffects { robot, laws, .. } = &file.apart;
-    let model = regression(robot)?;
     let mut watched = Watched::new(observer);
     let mut remarks = Vec::new();
-    let [mut train, mut held_out] = read(logs, (robot, &model), &mut remarks)?;
-    let before = before_springs(robot, &model.joints, &mut [&mut train, &mut held_out]);
-    let (robot, model, springs) = match before {
-        Some(BeforeSprings { robot, springs }) => {
-            let model = regression(&robot)?;
-            (robot, model, springs)
-        }
-        None => (robot.clone(), model, Vec::new()),
-    };
+    let Subject { robot, model, springs, train, held_out } = subject(file, logs, &mut remarks)?;
+    let laws = &file.apart.laws;
     let effects = with_own(&file.own);
     let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
     let numbers: Vec<usize> = kept.map(|law| law.number).collect();
@@ -136,7 +126,7 @@ pub fn diagnose(
         watched.progress(&Progress { stage, share, best: &best })
     });
     let found = found.map_err(Cause::Diagnosis)?;
-    let source = file.source.clone();
+    let (model_effects, source) = (file.uses(ESTIMATED), file.source.clone());
     Ok(Diagnosed {
         robot,
         model,
@@ -148,6 +138,35 @@ pub fn diagnose(
         numbers,
         source,
     })
+}
+
+/// What is diagnosed, by what.
+struct Subject {
+    robot: Robot,
+    model: RegressionModel,
+    springs: Vec<SeriesSpring>,
+    train: Vec<MeasuredLog>,
+    held_out: Vec<MeasuredLog>,
+}
+
+/// The robot and its logs; before the springs of its drives, where the logs have their motors.
+fn subject(
+    file: &RobotFile,
+    logs: &Logs,
+    remarks: &mut Vec<(String, LogRemark)>,
+) -> Result<Subject, Error> {
+    let ApartEffects { robot, .. } = &file.apart;
+    let model = regression(robot)?;
+    let [mut train, mut held_out] = read(logs, (robot, &model), remarks)?;
+    let before = before_springs(robot, &model.joints, &mut [&mut train, &mut held_out]);
+    let (robot, model, springs) = match before {
+        Some(BeforeSprings { robot, springs }) => {
+            let model = regression(&robot)?;
+            (robot, model, springs)
+        }
+        None => (robot.clone(), model, Vec::new()),
+    };
+    Ok(Subject { robot, model, springs, train, held_out })
 }
 
 impl Diagnosed {

@@ -311,7 +311,7 @@ impl fmt::Display for Cause {
             Self::Misread(all) => lines(f, all),
             Self::Update(error) => write!(f, "{error}"),
             Self::Forward(file, error) => write!(f, "{file}: {error}"),
-            Self::OneLog => write!(f, "springs and load are found from one log"),
+            Self::OneLog => write!(f, "`identify_two_stage` takes one log for training"),
             Self::TwoStage(file, error) => write!(f, "{file}: {error}"),
             Self::Statics(file, faults) => {
                 let all: Vec<String> =
@@ -326,8 +326,8 @@ impl fmt::Display for Cause {
             ),
             Self::NoPrior(model) => write!(
                 f,
-                "{model}: no base parameter is known by the standard deviations that the model \
-                 states"
+                "{model}: `options.uses_prior`, and no base parameter is known by the standard \
+                 deviations that the model states"
             ),
             Self::SameLogs([one, other]) => {
                 write!(f, "{other} says the same as {one}: measured once, it counts once")

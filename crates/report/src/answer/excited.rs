@@ -22,7 +22,7 @@ pub struct ExcitationAnswer<'a> {
     pub excited: Option<&'a Excited>,
 }
 
-/// An excitation as JSON (docs/reference/excitation.md).
+/// An excitation as JSON.
 pub fn excited_json(found: &ExcitationAnswer<'_>) -> Value {
     let check = found.check;
     let mut answer = json!({

@@ -82,6 +82,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let _made = arguments.out.as_deref().map(NewDirectory::make).transpose()?;
+    arguments.train.iter().chain(&arguments.validate).for_each(|path| FILES.note(path));
     if let Some(folder) = &arguments.out {
         let files = DIAGNOSIS_FILES.map(|name| folder.join(name));
         check_outputs(&files.each_ref().map(Some))?;
@@ -93,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let folder = folder.map(|folder| write_folder(arguments, folder, &shown)).transpose()?;
     match arguments.json {
         true => write_json(out, &diagnosed_json(&shown, folder.as_ref()))?,
-        false => write!(out, "{}", diagnosed_text(&shown, folder.as_ref()))?,
+        false => write!(out, "{}", by_flag(&diagnosed_text(&shown, folder.as_ref())))?,
     }
     Ok(if shown.is_good() { Answer::Done } else { Answer::Negative })
 }
@@ -130,7 +131,6 @@ pub(super) fn of_motions(
 /// Reads model and logs, and diagnoses.
 fn of_logs(arguments: &Arguments, progress: &Progress) -> Result<Diagnosed, Failure> {
     let robot = read_robot(&arguments.model, arguments.effects.as_deref())?;
-    arguments.train.iter().chain(&arguments.validate).for_each(|path| FILES.note(path));
     let logs = Logs {
         train: arguments.train.clone(),
         held_out: arguments.validate.clone(),
@@ -171,11 +171,7 @@ fn write_folder(
         }
     }
     let page = page::of(arguments, shown, &written).render();
-    let contents = written.contents(shown, page)?;
-    files.extend(contents.into_iter().map(|(path, bytes)| {
-        let text = by_flag(&String::from_utf8_lossy(&bytes)).into_owned();
-        (path, text.into_bytes())
-    }));
+    files.extend(written.contents(shown, page)?);
     write_together(&files)?;
     Ok(written)
 }

@@ -1,46 +1,60 @@
-//! Options of the library by their flags: its texts name them as `options.filter`, or with a value
-//! as `options.method=iv`.
+//! Options of the library by their flags: its texts name them as `options.seed`, or with a value as
+//! `options.method=iv`.
 
 use std::borrow::Cow;
 
-/// Options whose flags are called otherwise.
-const OTHERWISE: [(&str, &str); 8] = [
+/// Options whose flags are called otherwise, or take what a word says.
+const OTHERWISE: [(&str, &str); 12] = [
     ("accepts_cut", "accept-cut"),
     ("accepts_suspicious", "accept-suspicious"),
+    ("columns", "columns MAP.json"),
+    ("controller", "controller FILE"),
     ("decimation", "decimate"),
     ("derivatives", "rates"),
+    ("parameters", "with"),
     ("period_s", "period"),
     ("slow", "skip-slow"),
     ("step_s", "step"),
+    ("terms", "terms"),
     ("uses_prior", "prior"),
 ];
 
-const OPTION: &str = "`options.";
+/// Whose options they are.
+const OWNERS: [&str; 5] = ["options", "logs", "conditions", "scenario", "robot"];
 
 /// A call of the library that is a flag of the command.
-const CALL: (&str, &str) = ("`identify_two_stage`", "--two-stage");
+const CALL: (&str, &str) = ("identify_two_stage", "--two-stage");
 
-/// A text of the library, with flags in place of its options.
+/// A sentence of the library, with flags in place of its options. It is for what people read: files
+/// and JSON keep their texts.
 pub(crate) fn by_flag(text: &str) -> Cow<'_, str> {
-    if !(text.contains(OPTION) || text.contains(CALL.0)) {
-        return Cow::Borrowed(text);
-    }
-    let text = text.replace(CALL.0, CALL.1);
-    let mut parts = text.split(OPTION);
+    let mut parts = text.split('`');
     let mut named = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        match part.split_once('`').filter(|(option, _)| is_option(option)) {
-            Some((option, rest)) => {
-                named += &flag(option);
-                named += rest;
+    let mut is_quoted = true;
+    while let Some(part) = parts.next() {
+        match flag_of(part).filter(|_| is_quoted) {
+            Some(flag) => {
+                named += &flag;
+                named += parts.next().unwrap_or_default();
+                continue;
             }
             None => {
-                named += OPTION;
+                named.push('`');
                 named += part;
             }
         }
+        is_quoted = !is_quoted;
     }
-    Cow::Owned(named)
+    if named == text { Cow::Borrowed(text) } else { Cow::Owned(named) }
+}
+
+/// The flag of a quoted name, if it is one of an option.
+fn flag_of(name: &str) -> Option<String> {
+    if name == CALL.0 {
+        return Some(CALL.1.to_owned());
+    }
+    let (owner, option) = name.split_once('.')?;
+    (OWNERS.contains(&owner) && is_option(option)).then(|| flag(option))
 }
 
 fn is_option(text: &str) -> bool {
@@ -65,8 +79,10 @@ mod tests {
 
     #[test]
     fn options_become_flags() {
-        let text = "a (`options.filter`), or `options.method=iv`; `options.accepts_suspicious`";
-        assert_eq!(by_flag(text), "a (--filter), or --method iv; --accept-suspicious");
+        let text =
+            "a (`conditions.filter`), or `options.method=iv`; `logs.accepts_suspicious`, `x`";
+        assert_eq!(by_flag(text), "a (--filter), or --method iv; --accept-suspicious, `x`");
+        assert_eq!(by_flag("`a`, `logs.columns` and `b`"), "`a`, --columns MAP.json and `b`");
         assert_eq!(by_flag("`identify_two_stage` finds"), "--two-stage finds");
         assert_eq!(by_flag("`options.hold=hip_z=0`"), "--hold hip_z=0");
         assert_eq!(by_flag("`options.duration_s=10`"), "--duration-s 10");
@@ -74,7 +90,8 @@ mod tests {
 
     #[test]
     fn all_else_stays() {
-        for text in ["`options`", "`options.", "`options.A`", "`options.a b`", "options.a", ""] {
+        for text in ["`options`", "`options.A`", "`options.a b`", "options.a", "`other.a`", "`", ""]
+        {
             assert_eq!(by_flag(text), text);
         }
     }

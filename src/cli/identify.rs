@@ -8,6 +8,7 @@ mod two_stage;
 use super::Answer;
 use super::failure::{Failure, Misuse};
 use super::files::read_robot;
+use super::flags::by_flag;
 use super::json::write_json;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
@@ -58,6 +59,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let progress = Progress::new();
     let robot = arguments.robot()?;
     let (logs, options) = (arguments.logs()?, arguments.options(&robot)?);
+    // now that all inputs are known
+    check_outputs(&outputs)?;
     let identified = identify(&robot, &logs, &options, &mut progress.observer())?;
     progress.clear();
     write_files(arguments, &logs, &identified)?;
@@ -66,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         (true, _) => say_doubts(&identified),
         (_, true) => write_json(out, &identified_json(&identified))?,
         (_, false) => {
-            write!(out, "{}", identified_text(&identified))?;
+            write!(out, "{}", by_flag(&identified_text(&identified)))?;
             say_written(out, &outputs)?;
         }
     }
@@ -82,12 +85,14 @@ fn say_doubts(identified: &Identified) {
     }
 }
 
-/// Writes what was asked for beside the answer.
+/// Writes what was asked for beside the answer; nothing, if one of the files cannot be made.
 fn write_files(arguments: &Arguments, logs: &Logs, identified: &Identified) -> Result<(), Failure> {
     let Identified { model, found, updated, simulated, .. } = identified;
+    let title = model.model.replace('_', " ");
+    let mut files = Vec::new();
     if let Some(path) = &arguments.svg {
         let picture = TorquePicture {
-            title: &model.model.replace('_', " "),
+            title: &title,
             subtitle: if found.validate.is_some() {
                 "torques of the logs for validation"
             } else {
@@ -95,21 +100,20 @@ fn write_files(arguments: &Arguments, logs: &Logs, identified: &Identified) -> R
             },
             validation: found.validate.as_ref().unwrap_or(&found.train),
         };
-        write_whole(path, torque_picture(&picture).as_bytes())?;
+        files.push((path, torque_picture(&picture)));
     }
     if let Some(path) = &arguments.output {
         let updated = updated.as_ref().map_err(|error| Misuse::NoModel(error.clone()))?;
-        write_whole(path, updated.text.as_bytes())?;
+        files.push((path, updated.text.clone()));
     }
     if let Some(path) = &arguments.motion_svg {
-        let title = model.model.replace('_', " ");
         let moved = simulated.as_ref().and_then(|gap| Some((gap, gap.after.as_ref().ok()?)));
         let (gap, forward) = moved.ok_or(Misuse::NotSimulated)?;
-        write_whole(path, motion_picture(&title, &gap.method(), forward).as_bytes())?;
+        files.push((path, motion_picture(&title, &gap.method(), forward)));
     }
     if let Some(path) = &arguments.html {
         let facts = page::facts(&identified.robot, logs, page::words(arguments));
-        write_whole(path, page::of(&facts, identified)?.as_bytes())?;
+        files.push((path, page::of(&facts, identified)?));
     }
-    Ok(())
+    files.iter().try_for_each(|(path, text)| write_whole(path, text.as_bytes()))
 }

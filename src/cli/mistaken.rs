@@ -41,11 +41,13 @@ pub(crate) fn other_command(mistaken: &Mistaken) -> String {
 
 /// What to write where a model alone was given.
 fn smallest_scenario(model: &str) -> String {
-    let model = serde_json::Value::from(model);
+    // a stream has no name by which a scenario could refer to it
+    let is_stream = model == "standard input" || model.starts_with("/dev/");
+    let model = serde_json::Value::from(if is_stream { "MODEL.json" } else { model });
     format!(
-        "a scenario says what a model does: {{\"format\": \"{}\", \"model\": {model}, \
-         \"duration_s\": 1}} lets it go from rest; docs/reference/scenario.md has the rest, \
-         `denavit schema scenario` all keys",
+        "a scenario says what a model does: {{\"format\": \"{}\", \"name\": \"run\", \"model\": \
+         {model}, \"duration_s\": 1}} lets it go from rest, an arm at least; \
+         docs/reference/scenario.md has the rest, `denavit schema scenario` all keys",
         denavit::simulate::scenario::FORMAT
     )
 }

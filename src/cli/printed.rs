@@ -1,7 +1,6 @@
 //! What the command prints: control characters that a file or a flag brought along are shown, and
-//! reach no terminal. Options of the library are named by their flags.
+//! reach no terminal.
 
-use super::flags::by_flag;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Stderr, StderrLock, Write};
@@ -60,7 +59,7 @@ impl<W: Write> Write for Printed<W> {
 
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
         for chunk in bytes.utf8_chunks() {
-            self.0.write_all(shown(&by_flag(chunk.valid())).as_bytes())?;
+            self.0.write_all(shown(chunk.valid()).as_bytes())?;
             // no text of ours: whoever writes bytes means them
             self.0.write_all(chunk.invalid())?;
         }

@@ -38,7 +38,7 @@ impl fmt::Display for DecomposeError {
             Self::TorsoTerms(model) => write!(
                 f,
                 "{model}: a floating base is written in the motion of its torso, which takes the \
-                 terms of inertia\n  hint: `options.terms=inertia,gravity` has the relations of \
+                 terms of inertia\n  hint: `robot.terms=inertia,gravity` has the relations of \
                  all terms"
             ),
             Self::Fourier(model, error) => write!(f, "{model}: {error}"),

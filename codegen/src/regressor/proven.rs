@@ -46,7 +46,7 @@ impl fmt::Display for ProvenBaseError {
             Self::NoMotionTerms(model) => write!(
                 f,
                 "{model}: base parameters need inertia or gravity among the terms\n  hint: \
-                 `options.terms=inertia,gravity`; `options.with=friction,rotor` adds the \
+                 `robot.terms=inertia,gravity`; `options.parameters=friction,rotor` adds the \
                  parameters of joints"
             ),
             Self::Bake(error) => write!(f, "{error}"),

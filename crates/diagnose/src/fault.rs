@@ -42,7 +42,7 @@ impl fmt::Display for DiagnosisError {
             Self::NoTorque(file) => write!(
                 f,
                 "{file}: no joint has a torque\n  hint: give columns `tau_JOINT`, or name them \
-                 with `options.columns`"
+                 with `logs.columns`"
             ),
             Self::Condition { file, error: ConditionError::TooShort { samples, needed } } => {
                 write!(

@@ -107,7 +107,7 @@ impl Identification {
             return Some(format!(
                 "{short}Noise of the positions makes up to {:.0} % of what the motion shows of the \
                  parameters. How far they are off cannot be told, nor whether columns are other \
-                 ones than they are taken for. A filter with a lower cutoff (`options.filter`) \
+                 ones than they are taken for. A filter with a lower cutoff (`conditions.filter`) \
                  has less \
                  of it; so has a longer or faster motion, or one of all joints at once.",
                 100.0 * self.estimate.noise_share
@@ -121,7 +121,7 @@ impl Identification {
             format!(
                 "Noise of the positions biases parameters, in standard errors: {biased}. Their \
                  intervals hold less often than they say. A filter with a lower cutoff \
-                 (`options.filter`) \
+                 (`conditions.filter`) \
                  has less of it, or `options.method=iv` none."
             )
         })
@@ -145,7 +145,7 @@ impl Identification {
                  {wider}. A loop closed over the encoder of the log makes such a change, since its \
                  motion answers the noise (`options.method=iv` is for that), and so may what the \
                  model \
-                 lacks. `options.filter` with a lower cutoff has less of it."
+                 lacks. `conditions.filter` with a lower cutoff has less of it."
             )
         })
     }
@@ -156,7 +156,7 @@ impl Identification {
         Some(format!(
             "The filter by itself makes an error of {:.1} % of the torque of {joint}: the motion \
              is too fast for it, or has too few samples a second. Parameters are biased, and their \
-             intervals too narrow. `options.filter` with a higher cutoff makes less of it.",
+             intervals too narrow. `conditions.filter` with a higher cutoff makes less of it.",
             100.0 * share
         ))
     }

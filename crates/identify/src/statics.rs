@@ -92,7 +92,7 @@ impl fmt::Display for StaticFault {
             Self::Unit(at, mass, expected) => write!(
                 f,
                 "measurement {}: {mass} kg, and the model says {expected} kg: is it in {}?\n  \
-                 hint: `options.accepts_suspicious` takes it as it is",
+                 hint: `logs.accepts_suspicious` takes it as it is",
                 at + 1,
                 if mass > expected { "grams" } else { "tonnes" }
             ),
@@ -137,7 +137,7 @@ impl fmt::Display for MisreadPostures {
             f,
             "{what} of the postures seem {how}: the model's own values leave {:.0} % of the \
              torques, and {:.0} % with {factor} times the {what}\n  hint: \
-             `options.accepts_suspicious` \
+             `logs.accepts_suspicious` \
              takes them as they are",
             100.0 * before,
             100.0 * after

@@ -89,7 +89,7 @@ fn damaged(f: &mut fmt::Formatter<'_>, (at, whole): (Place, usize), cause: &str)
     match whole {
         0 => write!(f, "\n  hint: no {what} are whole"),
         _ => {
-            write!(f, "\n  hint: {whole} {what} before are whole: `options.accepts_cut` reads them")
+            write!(f, "\n  hint: {whole} {what} before are whole: `logs.accepts_cut` reads them")
         }
     }
 }
@@ -148,7 +148,7 @@ impl fmt::Display for FileFault {
             Self::Pause { topic, longest_s, .. } => write!(
                 f,
                 "`{topic}` pauses for {longest_s:.3} s: more than can be interpolated\n  hint: cut \
-                 the log there, or leave its columns out: null in `options.columns`"
+                 the log there, or leave its columns out: null in `logs.columns`"
             ),
             Self::Apart { topics, rows } => write!(
                 f,

@@ -68,7 +68,7 @@ const ESTIMATED: (&str, &str) = ("estimated", "estimated again within its stated
 /// evidence of the logs for training, and those held out judge.
 ///
 /// Work that the observer stops returns the best so far, whose verdict says that the rest was not
-/// compared.
+/// compared; before logs are read there is none.
 ///
 /// # Errors
 /// All that is wrong with the logs, or why they do not suit the robot.
@@ -80,6 +80,9 @@ pub fn diagnose(
 ) -> Result<Diagnosed, Error> {
     let mut watched = Watched::new(observer);
     let mut remarks = Vec::new();
+    if !watched.begins(Stage::ReadingLogs) {
+        return Err(Cause::Stopped.into());
+    }
     let Subject { robot, model, springs, train, held_out } = subject(file, logs, &mut remarks)?;
     let laws = &file.apart.laws;
     let effects = with_own(&file.own);

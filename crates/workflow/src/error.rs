@@ -24,7 +24,7 @@ use std::io;
 use std::path::Path;
 
 /// Why work has no answer. It is printed with the file, the place and the cause of all that is
-/// wrong; [`Error::hints`] are apart.
+/// wrong; faults of a file have their hints below them. [`Error::hints`] has those of the whole.
 #[derive(Debug)]
 pub struct Error(Box<Cause>);
 
@@ -318,7 +318,7 @@ impl fmt::Display for Cause {
                     faults.iter().map(|fault| format!("{file}: {fault}")).collect();
                 lines(f, &all)
             }
-            Self::NoInstruments => write!(f, "instrumental variables need instruments"),
+            Self::NoInstruments => write!(f, "`options.method=iv` needs instruments"),
             Self::OwnInstruments(file) => write!(
                 f,
                 "{file}: a log for training as instrument has its own noise in it, and would say \

@@ -73,7 +73,7 @@ impl Files {
         Ok(file)
     }
 
-    /// Takes a file as one that is read.
+    /// Takes a file, or all files of a folder, as read.
     pub fn note(&self, path: &Path) {
         if let (Ok(path), Ok(mut read)) = (path.canonicalize(), self.read.lock()) {
             read.push(path);
@@ -82,7 +82,8 @@ impl Files {
 
     /// Whether the file of this path, which has no links in it, was read.
     pub fn has_read(&self, path: &PathBuf) -> bool {
-        self.read.lock().is_ok_and(|read| read.contains(path))
+        let is_it = |one: &PathBuf| one == path || one.is_dir() && path.starts_with(one);
+        self.read.lock().is_ok_and(|read| read.iter().any(is_it))
     }
 
     /// The robot of a path, of a shipped model's name, or of standard input (`-`); its own effects

@@ -136,6 +136,7 @@ pub fn identify(
     let work = Work { logs, options, robot, laws, model: &model };
     let estimation = Estimation { work, own: &file.own, source: &file.source };
     let mut read = estimation.read(&[])?;
+    let same = read.same();
     let how = options.estimate(&model, read.position_noise.clone())?;
     if how.method == Method::Instrumental && read.instruments.is_empty() {
         let controller = options.controller.as_ref().ok_or(Cause::NoInstruments)?;
@@ -159,7 +160,9 @@ pub fn identify(
     if let (Some(gap), true) = (&simulated, options.controller.is_some()) {
         gap.check()?;
     }
-    let (remarks, effects) = (read.into_remarks(), file.uses(TAKEN_OUT));
+    let (mut remarks, effects) = (read.into_remarks(), file.uses(TAKEN_OUT));
+    let is_new = |one: &(String, LogRemark)| !remarks.contains(one);
+    remarks.extend(same.into_iter().filter(is_new).collect::<Vec<_>>());
     let is_stopped = watched.is_stopped;
     let robot = robot.clone();
     Ok(Identified { robot, model, found, updated, remarks, effects, simulated, is_stopped })

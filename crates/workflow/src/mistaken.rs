@@ -51,9 +51,8 @@ const FORMATS: [(&str, FileKind); 9] = [
 ];
 
 /// What is shipped; a name that stands twice is what stands first.
-const SHIPPED: [(&[ShippedModel], FileKind); 7] = [
+const SHIPPED: [(&[ShippedModel], FileKind); 6] = [
     (shipped::MODELS, FileKind::Model),
-    (shipped::BODIES, FileKind::Model),
     (shipped::EQUATIONS, FileKind::Equations),
     (shipped::SCENARIOS, FileKind::Scenario),
     (shipped::GAITS, FileKind::Gait),

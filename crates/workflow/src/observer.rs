@@ -30,15 +30,18 @@ impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ReadingLogs => write!(f, "reading logs"),
+            Self::ReadingLogsAgain(1) => write!(f, "reading logs, filter halved once"),
             Self::ReadingLogsAgain(times) => write!(f, "reading logs, filter halved {times} times"),
             Self::ReadingHeldOutAgain => {
                 write!(f, "reading logs for validation, filter halved")
             }
             Self::Estimating => write!(f, "estimating"),
+            Self::EstimatingAgain(1) => write!(f, "estimating, filter halved once"),
             Self::EstimatingAgain(times) => write!(f, "estimating, filter halved {times} times"),
             Self::SimulatingInstruments => write!(f, "simulating instruments"),
             Self::SimulatingLogs => write!(f, "simulating the logs again"),
             Self::EvaluatingEffects => write!(f, "effects evaluated"),
+            Self::EffectsFound(1) => write!(f, "one effect found"),
             Self::EffectsFound(count) => write!(f, "{count} effects found"),
         }
     }
@@ -49,7 +52,8 @@ impl fmt::Display for Stage {
 pub struct Progress<'a> {
     /// What is being done.
     pub stage: Stage,
-    /// The share of the stage that is done, from 0 to 1, where that is known.
+    /// The share of the stage that is done, from 0 to 1, where that is known: where effects are
+    /// evaluated.
     pub share: Option<f64>,
     /// The best answer so far: effects that are missing, each with its place.
     pub best: &'a [[String; 2]],
@@ -57,8 +61,8 @@ pub struct Progress<'a> {
 
 /// Who watches. A closure is one.
 pub trait Observer {
-    /// Work has come so far. Answers whether to go on; work that is not to go on returns what it
-    /// has.
+    /// Work has come so far. Answers whether to go on. Work that is not to go on returns what it
+    /// has; where that is nothing, an error of [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
     fn progress(&mut self, progress: &Progress<'_>) -> bool;
 }
 

@@ -2,7 +2,6 @@
 
 use super::arguments::{Arguments, ErrorsName, MethodName};
 use crate::cli::failure::{Failure, Misuse};
-use crate::cli::flags::by_flag;
 use clap::ValueEnum;
 use denavit::model::Robot;
 use denavit::report::html::Fact;
@@ -55,7 +54,7 @@ pub(super) fn of(facts: &[Fact], identified: &Identified) -> Result<String, Fail
         reasons,
     });
     let page = IdentificationPage { model: &robot.name, facts, remarks: &notes, found, simulation };
-    Ok(by_flag(&page.page().map_err(Misuse::Formula)?.render()).into_owned())
+    Ok(page.page().map_err(Misuse::Formula)?.render())
 }
 
 /// The word by which an option's value is given.

@@ -4,6 +4,7 @@ use super::Arguments;
 use crate::cli::Answer;
 use crate::cli::failure::Failure;
 use crate::cli::files::FILES;
+use crate::cli::flags::by_flag;
 use crate::cli::json::write_json;
 use crate::cli::progress::Progress;
 use denavit::report::answer::{statics_json, statics_text};
@@ -25,7 +26,7 @@ pub(super) fn run(
     progress.clear();
     match arguments.json {
         true => write_json(out, &statics_json(&found))?,
-        false => write!(out, "{}", statics_text(&found))?,
+        false => write!(out, "{}", by_flag(&statics_text(&found)))?,
     }
     Ok(if found.is_good() { Answer::Done } else { Answer::Negative })
 }

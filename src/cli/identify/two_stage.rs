@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         (true, _) => {}
         (_, true) => write_json(out, &two_stage_json(&found))?,
         (_, false) => {
-            write!(out, "{}", two_stage_text(&found))?;
+            write!(out, "{}", by_flag(&two_stage_text(&found)))?;
             say_written(out, &outputs)?;
         }
     }
@@ -64,5 +64,5 @@ fn html(arguments: &Arguments, logs: &Logs, found: &TwoStageFound) -> Result<Str
         validate: found.validate.as_ref(),
         distance: found.bodies.distance,
     };
-    Ok(by_flag(&page.page().map_err(Misuse::Formula)?.render()).into_owned())
+    Ok(page.page().map_err(Misuse::Formula)?.render())
 }

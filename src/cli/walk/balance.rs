@@ -3,6 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::{FILES, read_model_with_effects};
+use super::super::flags::by_flag;
 use super::super::json::write_json;
 use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::progress::Progress;
@@ -69,7 +70,7 @@ pub(crate) fn run(
         (true, _) => {}
         (_, true) => write_json(out, &balance_json(what, &judged))?,
         (_, false) => {
-            write!(out, "{}", balance_text(what, &judged))?;
+            write!(out, "{}", by_flag(&balance_text(what, &judged)))?;
             say_written(out, &outputs)?;
         }
     }

@@ -48,7 +48,7 @@ fn what_c_cannot_be_written_to_is_refused() {
     let directory = Directory::new("emit_c_refused");
     for output in ["-", "scara", "scara.rs"] {
         let message = refused(&directory, &["emit", "scara", "--language", "c", "-o", output]);
-        assert_says(&message, &[output, "a source and a header", "hint: ", "-o robot.c"]);
+        assert_says(&message, &[output, "a source and a header", "hint: ", "robot.c"]);
     }
     let message = refused(&directory, &["emit", "scara", "-o", "a\"b.c"]);
     assert_says(&message, &["cannot include", "hint: "]);

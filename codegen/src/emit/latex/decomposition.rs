@@ -35,7 +35,7 @@ impl fmt::Display for TooLongToSet {
         write!(
             f,
             "{}: {} formulas are too many for a document\n  hint: leave out terms \
-             (`options.terms=inertia,gravity`), or take JSON",
+             (`robot.terms=inertia,gravity`), or take JSON",
             self.name, self.formulas
         )
     }

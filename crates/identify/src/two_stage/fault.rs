@@ -70,7 +70,7 @@ impl fmt::Display for TwoStageError {
                 match scale {
                     Some((scale, why)) => write!(
                         f,
-                        "\n  hint: {why}? `options.columns` with {{\"motor_{joint}\": {{\"scale\": \
+                        "\n  hint: {why}? `logs.columns` with {{\"motor_{joint}\": {{\"scale\": \
                          {scale}}}}} mends that"
                     ),
                     None => write!(
@@ -83,7 +83,7 @@ impl fmt::Display for TwoStageError {
             Self::MotorTorque { joint, ratio, scale: (scale, why) } => write!(
                 f,
                 "`tau_cmd_{joint}` is {ratio:.4} times what the inertia of the motor and the \
-                 spring of the model need\n  hint: {why}? `options.columns` with \
+                 spring of the model need\n  hint: {why}? `logs.columns` with \
                  {{\"tau_cmd_{joint}\": \
                  {{\"scale\": {scale}}}}} mends that; or write a stiffness \
                  near the true one into the model"

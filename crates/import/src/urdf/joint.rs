@@ -33,7 +33,8 @@ pub(crate) fn push(
         (_, Some(mimic), Mimic::Refuse) => {
             let leader = mimic.get("joint").map_or("another one", |leader| leader.text);
             let said = format!("joint `{}` follows `{}`", clip(joint.name.text), clip(leader));
-            let hint = "`options.mimic=lock` fixes it where it is at 0, `options.mimic=free` \
+            let hint = "an import with `options.mimic=lock` fixes it where it is at 0, with \
+                    `options.mimic=free` \
                         makes it a joint of its own";
             faults.push(mimic.at(), Cause::with_hint(said, hint));
         }

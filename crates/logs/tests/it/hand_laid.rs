@@ -33,7 +33,7 @@ fn a_message_is_read_from_its_bytes() {
     let faults = opened(&file.plain(), &Opening::default()).unwrap_err();
     let text = faults[0].to_string();
     assert!(text.contains("1 numbers in `effort`, and 2 joints"), "{text}");
-    assert!(text.contains("4 messages before are whole: `options.accepts_cut`"), "{text}");
+    assert!(text.contains("4 messages before are whole: `logs.accepts_cut`"), "{text}");
 }
 
 #[test]

@@ -143,8 +143,8 @@ impl fmt::Display for ConditionError {
             Self::TooShort { samples, needed } => write!(
                 f,
                 "{samples} rows: this filter cuts the edges off, and at least {needed} rows are \
-                 needed\n  hint: `options.filter` with a higher cutoff, or a lower \
-                 `options.decimation`, needs fewer"
+                 needed\n  hint: `conditions.filter` with a higher cutoff, or a lower \
+                 `conditions.decimation`, needs fewer"
             ),
             Self::NoRates(joint) => {
                 write!(f, "`qd_{joint}` and `qdd_{joint}` are not both in the log")
@@ -173,8 +173,8 @@ impl fmt::Display for ConditionError {
             Self::NotTheDerivative { column, factor, late_s } => write!(
                 f,
                 "`{column}` is not the derivative of the position: it is {factor:.3} times that, \
-                 {late_s:.4} s late\n  hint: `options.columns` scales columns; \
-                 `options.derivatives=differences` takes \
+                 {late_s:.4} s late\n  hint: `logs.columns` scales columns; \
+                 `conditions.derivatives=differences` takes \
                  the derivatives of the positions"
             ),
             Self::NothingMoves => write!(

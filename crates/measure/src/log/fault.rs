@@ -159,7 +159,7 @@ impl LogFault {
 
 fn meant(f: &mut fmt::Formatter<'_>, nearest: &Option<String>, other: &str) -> fmt::Result {
     match nearest {
-        Some(name) => write!(f, "\n  hint: the log has `{name}`; `options.columns` can name it"),
+        Some(name) => write!(f, "\n  hint: the log has `{name}`; `logs.columns` can name it"),
         None => write!(f, "\n  hint: {other}"),
     }
 }
@@ -170,7 +170,7 @@ fn missing_torque(
     nearest: &Option<String>,
 ) -> fmt::Result {
     write!(f, "there is no column `{column}`, and other joints have torques")?;
-    meant(f, nearest, "`options.columns` says which column of the log it is")?;
+    meant(f, nearest, "`logs.columns` says which column of the log it is")?;
     write!(f, "; {{\"{column}\": null}} there leaves it out")
 }
 
@@ -182,7 +182,7 @@ fn missing_forces(f: &mut fmt::Formatter<'_>, columns: &[String]) -> fmt::Result
     }
     write!(
         f,
-        ", and the base floats: its weight would rest on nothing\n  hint: `options.columns` says \
+        ", and the base floats: its weight would rest on nothing\n  hint: `logs.columns` says \
          which column of the log it is; {{\"{first}\": null}} there is for what never touches"
     )
 }
@@ -191,7 +191,7 @@ fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> f
     let ours: Vec<String> = ours.iter().map(|one| format!("`{one}`")).collect();
     write!(
         f,
-        "column `{column}` is taken for {}\n  hint: `options.columns` gives each its own; null \
+        "column `{column}` is taken for {}\n  hint: `logs.columns` gives each its own; null \
          leaves one out",
         ours.join(" and ")
     )
@@ -203,7 +203,7 @@ impl fmt::Display for LogFault {
             Self::File(fault) => write!(f, "{fault}"),
             Self::MissingColumn { column, nearest } => {
                 write!(f, "there is no column `{column}`")?;
-                meant(f, nearest, "`options.columns` says which column of the log it is")
+                meant(f, nearest, "`logs.columns` says which column of the log it is")
             }
             Self::MissingTorque { column, nearest } => missing_torque(f, column, nearest),
             Self::MissingForces { columns } => missing_forces(f, columns),
@@ -212,7 +212,7 @@ impl fmt::Display for LogFault {
                 let several: Vec<String> = several.iter().map(|one| format!("`{one}`")).collect();
                 write!(
                     f,
-                    "`{column}` may be {}\n  hint: `options.columns` says which it is",
+                    "`{column}` may be {}\n  hint: `logs.columns` says which it is",
                     several.join(" or ")
                 )
             }
@@ -220,7 +220,7 @@ impl fmt::Display for LogFault {
                 write!(f, "{value:e} in column `{column}`: nothing of a robot is so large")
             }
             Self::UnknownName { name, nearest } => {
-                write!(f, "`options.columns` maps `{name}`, which is no column of this model")?;
+                write!(f, "`logs.columns` maps `{name}`, which is no column of this model")?;
                 match nearest {
                     Some(name) => write!(f, "\n  hint: did you mean `{name}`?"),
                     None => Ok(()),
@@ -294,7 +294,7 @@ impl fmt::Display for Suspicion {
             Self::RateScale { column, ratio } => write!(
                 f,
                 "`{column}` is {ratio:.4} times the derivative of its position\n  hint: time, \
-                 position or rate is in another unit; `options.columns` can scale each"
+                 position or rate is in another unit; `logs.columns` can scale each"
             )?,
             Self::NotTheRate { column, correlation } => write!(
                 f,
@@ -304,7 +304,7 @@ impl fmt::Display for Suspicion {
             Self::Swapped { joint, other } => write!(
                 f,
                 "the position of `{joint}` fits the rate of `{other}`: are the two swapped?\n  \
-                 hint: `options.columns` can name them the other way round"
+                 hint: `logs.columns` can name them the other way round"
             )?,
             Self::ConstantTorque { column } => {
                 write!(f, "`{column}` never changes while its joint moves")?;
@@ -336,7 +336,7 @@ impl fmt::Display for Suspicion {
                 "`{column}` goes to {value:.4}, and the model's limits are {low:.4} to {high:.4}"
             )?,
         }
-        write!(f, "\n  hint: `options.accepts_suspicious` takes the log as it is")
+        write!(f, "\n  hint: `logs.accepts_suspicious` takes the log as it is")
     }
 }
 
@@ -405,7 +405,7 @@ impl fmt::Display for LogRemark {
             Self::LoweredFilter { cutoff_hz } => write!(
                 f,
                 "noise of positions would bias parameters or residuals: filtered below {} Hz \
-                 (`options.filter` says otherwise)",
+                 (`conditions.filter` says otherwise)",
                 short(*cutoff_hz)
             ),
             Self::NoSuchLink { link } => {

@@ -1,4 +1,4 @@
-//! Which column of a foreign log is which of ours (`--columns MAP.json`).
+//! Which column of a foreign log is which of ours.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;

@@ -37,7 +37,7 @@ fn sum(model: &RegressionModel, one: &Determined) -> String {
 }
 
 fn write(out: &mut String, all: &StaticsFound) -> fmt::Result {
-    let StaticsFound { model, knowledge, found, remarks } = all;
+    let StaticsFound { model, knowledge, found, remarks, .. } = all;
     for remark in remarks {
         writeln!(out, "{}\n", paragraph("", "", remark))?;
     }
@@ -90,7 +90,7 @@ fn write(out: &mut String, all: &StaticsFound) -> fmt::Result {
 
 /// What follows from measurements at rest, as JSON (docs/reference/identification.md).
 pub fn statics_json(all: &StaticsFound) -> serde_json::Value {
-    let StaticsFound { model, knowledge, found, remarks } = all;
+    let StaticsFound { model, knowledge, found, remarks, .. } = all;
     let parameters = model.standard.iter().zip(&found.parameters);
     let parameters = parameters.map(|(one, follows)| {
         json!({

@@ -162,9 +162,9 @@ impl Scenario {
         Some(match self.scheme {
             RunScheme::Event => "a higher accuracy (`relative`, `absolute` in `integrator`)",
             RunScheme::TimeStepping if self.stepping.corrections == 0 => {
-                "shorter steps (`options.step_s`), or `\"corrections\": 1` in `time_stepping`"
+                "shorter steps (`scenario.step_s`), or `\"corrections\": 1` in `time_stepping`"
             }
-            RunScheme::TimeStepping => "shorter steps (`options.step_s`)",
+            RunScheme::TimeStepping => "shorter steps (`scenario.step_s`)",
         })
     }
 

@@ -90,6 +90,13 @@ impl Read {
         Ok(())
     }
 
+    /// Which logs for validation say the same as one of the estimate: seen behind one filter for
+    /// all.
+    pub(super) fn same(&self) -> Vec<(String, LogRemark)> {
+        let all = self.remarks[1].iter();
+        all.filter(|(_, remark)| matches!(remark, LogRemark::SameAs { .. })).cloned().collect()
+    }
+
     /// The logs for the estimate and for validation.
     pub(super) fn logs(&self) -> Vec<&Conditioned> {
         self.train.iter().chain(&self.validate).collect()

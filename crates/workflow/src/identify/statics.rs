@@ -21,6 +21,8 @@ pub struct StaticsFound {
     pub found: Consequences,
     /// What was noticed.
     pub remarks: Vec<String>,
+    /// Whether the observer stopped the work on the logs, as [`Identified::is_stopped`] says.
+    pub is_stopped: bool,
 }
 
 impl StaticsFound {
@@ -53,15 +55,17 @@ pub fn identify_statics(
     let mut knowledge = static_knowledge(&model, &measured)
         .map_err(|faults| Cause::Statics(name.to_owned(), faults))?;
     let mut remarks = Vec::new();
+    let mut is_stopped = false;
     if !logs.train.is_empty() {
         let identified = identify(robot, logs, options, observer)?;
+        is_stopped = identified.is_stopped;
         remarks.extend(identified.remarks.iter().map(|(file, one)| format!("{file}: {one}")));
         remarks.extend(identified.found.warnings());
         remarks.extend(join(&model, &identified, &mut knowledge).map(str::to_owned));
     }
     let found = knowledge.consequences();
     remarks.extend(nothing_follows(&knowledge, &found).map(str::to_owned));
-    Ok(StaticsFound { model, knowledge, found, remarks })
+    Ok(StaticsFound { model, knowledge, found, remarks, is_stopped })
 }
 
 /// Why nothing follows, if nothing does.

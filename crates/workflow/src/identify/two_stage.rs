@@ -65,11 +65,10 @@ pub fn identify_two_stage(
     let columns = RegressorOptions { rotor: false, ..asked };
     let options = IdentifyOptions { with: Some(columns), ..options.clone() };
     let model = regression(&robot, &options)?;
-    let goes_on = watched.begins(Stage::ReadingLogs);
+    let stopped = || Error::from(Cause::Stopped);
+    watched.begins(Stage::ReadingLogs).then_some(()).ok_or_else(stopped)?;
     let log = logs.measured(path, (&robot, &model))?;
-    if !(goes_on && watched.begins(Stage::Estimating)) {
-        return Err(Cause::Stopped.into());
-    }
+    watched.begins(Stage::Estimating).then_some(()).ok_or_else(stopped)?;
     let plant = plant_of(&robot, &[]).map_err(|error| Cause::Plant(robot.name.clone(), error))?;
     let plant = plant.model();
     let conditions = |log: &MeasuredLog| options.conditions.of(log.step_s, log.samples(), 0);

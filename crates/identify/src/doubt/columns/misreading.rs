@@ -195,7 +195,7 @@ impl Misreading {
     /// How to mend it, beside what is mapped already.
     pub(super) fn hint(self, joints: &[RegressionJoint], given: &ColumnMapping) -> String {
         let mends = |column: &str, what: &str, number: String| {
-            format!("`options.columns` with {{\"{column}\": {{\"{what}\": {number}}}}} mends that")
+            format!("`logs.columns` with {{\"{column}\": {{\"{what}\": {number}}}}} mends that")
         };
         let scale = |column: &str, factor: f64| {
             let (prefix, is_of_all) = match column.strip_suffix("JOINT") {
@@ -248,7 +248,7 @@ impl Misreading {
                 let column = of(Signal::Torque, joint);
                 "`options.with=friction,offset` estimates it; ".to_owned() + &offset(&column, by)
             }
-            Self::Exchanged(..) => "`options.columns` can name them the other way round".to_owned(),
+            Self::Exchanged(..) => "`logs.columns` can name them the other way round".to_owned(),
             Self::Late(_) | Self::LateTorque(..) | Self::LatePosition(..) => {
                 "shift them against the others; friction that the model lacks may look alike"
                     .to_owned()

@@ -23,7 +23,7 @@ fn kinds_of_errors_are_told_apart() {
 fn a_file_for_other_work_is_named() {
     let folder = Folder::new("other_work");
     let log = folder.write("log.csv", "t,q_a\n0,1\n1,2\n");
-    let error = Files::new().scenario(&log).unwrap_err();
+    let error = Files::new().scenario(&log).err().unwrap();
     let [Hint::OtherWork(mistaken)] = &error.hints()[..] else { panic!("{error:?}") };
     assert_eq!((mistaken.found, mistaken.wanted), (FileKind::Log, FileKind::Scenario));
     assert!(error.to_string().ends_with("this is a log, where a scenario is simulated"), "{error}");

@@ -82,7 +82,8 @@ impl Files {
 
     /// Whether the file of this path, which has no links in it, was read.
     pub fn has_read(&self, path: &PathBuf) -> bool {
-        let is_it = |one: &PathBuf| one == path || one.is_dir() && path.starts_with(one);
+        // a folder that was read is a bag: its files are in it, and not below
+        let is_it = |one: &PathBuf| one == path || one.is_dir() && path.parent() == Some(one);
         self.read.lock().is_ok_and(|read| read.iter().any(is_it))
     }
 

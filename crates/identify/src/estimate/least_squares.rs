@@ -102,9 +102,7 @@ impl fmt::Display for EstimateError {
                 "the logs are too short: all torques have about {independent} samples that are \
                  independent of each other after the filter, and {parameters} parameters need \
                  {}\n  hint: more of the motion, or a higher cutoff (`conditions.filter`) if the \
-                 log \
-                 has \
-                 little noise",
+                 log has little noise",
                 ROWS_OF_ONE * parameters
             ),
             Self::Instruments => write!(

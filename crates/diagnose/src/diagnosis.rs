@@ -195,7 +195,7 @@ pub fn diagnose(
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
     let told = Told { setting: &setting, filters, found, before, after };
     let mut diagnosis = told.diagnosis(effects, visible, leftovers);
-    judge(&mut diagnosis, &setting, (&told.found, &misread));
+    judge(&mut diagnosis, &setting, &told.found, &told.after, &misread);
     Ok(diagnosis)
 }
 

@@ -172,11 +172,15 @@ pub(crate) mod simulated {
 
 /// `standstill.rs`: Where a drive rests between two motions.
 pub(crate) mod standstill {
-    /// Steps that a drive moves in the time of its rest, before and after it: a parabola moves by
-    /// 8.
+    /// Steps that a drive may creep by while it rests: its encoder turns between two readings, and
+    /// friction gives way before it slides.
+    pub(crate) const CREEPS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+
+    /// What a drive moves in the time of its rest, before and after it, over what it creeps by: a
+    /// parabola moves by 8.
     pub(crate) const LEAVES: f64 = 30.0;
 
-    /// What two readings of one place may differ by, in steps.
+    /// What is one step of readings, for rounding.
     pub(crate) const SAME: f64 = 1.01;
 
     /// The deviation of what friction is at rest from what balances the torques by the model, over
@@ -221,6 +225,12 @@ pub(crate) mod turning {
 
     /// The deviation of what is anywhere between two values, over their distance.
     pub(crate) const BETWEEN: f64 = 0.288_675_134_594_812_9;
+}
+
+/// `verdict.rs`: The answer in one word, and why.
+pub(crate) mod verdict {
+    /// The share of squares that are left which counts, below which most of it tells nothing.
+    pub(crate) const UNTOLD: f64 = 0.5;
 }
 
 /// `worth.rs`: How large an effect is: whether that is worth a name.

@@ -35,12 +35,14 @@ pub(super) struct ReadingLaw {
 
 impl ReadingLaw {
     /// The law of a joint.
-    pub(super) fn new(law: EffectLaw, joint: usize) -> Self {
+    pub(super) fn new(mut law: EffectLaw, joint: usize) -> Self {
         let has_gap = law.is_read_at_drive() && {
             let starts = law.parameters.iter().map(|one| one.start.first().copied().unwrap_or(1.0));
             let under = deflections(&law, &starts.collect::<Vec<f64>>(), &[1.0, 2.0]);
             (under[1] - 2.0 * under[0]).abs() > f64::EPSILON * under[1].abs()
         };
+        // How long a joint falls through a gap is not in proportion to the gap.
+        law.parameters.iter_mut().for_each(|one| one.linear &= !has_gap);
         Self { law, joint, has_gap }
     }
 

@@ -3,7 +3,7 @@
 
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
-use super::weighing::{Placed, Weighing, subtract};
+use super::weighing::{Placed, Weighing, add};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::{Glance, Terms, policy};
 use std::cmp::Ordering;
@@ -161,7 +161,7 @@ impl<'a> Search<'a> {
         let base = &self.weighing.base;
         let mut left = base.left(&hypothesis.weighed.own);
         for place in 0..hypothesis.parts.len() {
-            subtract(&mut left, &hypothesis.torque(place));
+            add(&mut left, &hypothesis.torque(place), -1.0);
         }
         (0..left.len()).map(|channel| self.weighing.spectra.share(&left, channel)).collect()
     }

@@ -191,13 +191,9 @@ impl Signals {
         let (drive, step) = motor.as_ref().map_or((&q, step), |motor| (motor, motor_step));
         // The time of the first sample of the log, in whose cell the motion begins.
         let start_s = self.t[within / 2] - h * kept.start as f64;
-        let mut rests =
-            step.map_or_else(Vec::new, |step| standstill::rests(drive, step, [start_s, h]));
+        let rests = step.map_or_else(Vec::new, |step| standstill::rests(drive, step, [start_s, h]));
         let whole_s = self.t[0]..self.t[self.t.len() - 1];
-        rests.retain(|Rest { time_s: Range { start, end }, .. }| {
-            whole_s.contains(start) && whole_s.contains(end)
-        });
-        self.rests.push(rests);
+        self.rests.push(rests.into_iter().filter_map(|rest| rest.within(&whole_s)).collect());
         wide.zero_phase(&mut q);
         let fine = |signal: Vec<f64>| between(&signal, within);
         let rates = |q: &[f64]| fine(kept.clone().map(|k| rate(q, k) / h).collect());

@@ -10,7 +10,7 @@
 //! Åström, Lischinsky 1995).
 
 use super::signals::Signals;
-use crate::policy::standstill::{EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE};
+use crate::policy::standstill::{CREEPS, EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE};
 use std::ops::Range;
 
 /// Samples of the shortest rest.
@@ -34,25 +34,29 @@ pub(super) struct Rest {
 }
 
 impl Rest {
-    /// A rest that readings are the same in so many samples of, by the steps that the drive moves
-    /// in as long before and after it, and how far from its rest the first and the last of them
-    /// are.
-    fn new(
-        samples: Range<usize>,
-        [moves, off]: [[f64; 2]; 2],
-        step: f64,
-        [start_s, step_s]: [f64; 2],
-    ) -> Self {
+    fn new(still: Still, step: f64, [start_s, step_s]: [f64; 2]) -> Self {
+        let Still { samples, moves, off } = still;
         let count = samples.len() as f64;
-        let [before, after] = moves.map(f64::abs);
         let [came, left] = off.map(|off| off.abs() + UNSEEN);
-        let start = samples.start as f64 + count * (came / before).sqrt();
-        let end = (samples.end - 1) as f64 - count * (left / after).powf(1.0 / POWER);
+        let edge = |off: f64, moved: Option<f64>, power: f64| {
+            moved.map_or(0.0, |moved| count * (off / moved.abs()).powf(1.0 / power))
+        };
+        let start = samples.start as f64 + edge(came, moves[0], 2.0);
+        let end = (samples.end - 1) as f64 - edge(left, moves[1], POWER);
         let time_s = start_s + step_s * start..start_s + step_s * end.max(start + 1.0);
         let creep = step / (time_s.end - time_s.start);
-        let directions = moves.map(f64::signum);
+        let beside = moves[0].or(moves[1]).unwrap_or(1.0);
+        let directions = moves.map(|moved| moved.unwrap_or(beside).signum());
         let (leaves_s, sides) = (time_s.start, directions.to_vec());
         Self { time_s, directions, sides, leaves_s, creep, edge_s: EDGE * step_s }
+    }
+
+    /// What of it is within times \[s\]; none if that is nothing.
+    pub(super) fn within(mut self, times_s: &Range<f64>) -> Option<Self> {
+        let Range { start, end } = self.time_s;
+        self.time_s = start.max(times_s.start)..end.min(times_s.end);
+        self.leaves_s = self.time_s.start;
+        (self.time_s.start < self.time_s.end).then_some(self)
     }
 
     /// Tells on which side friction is, over what it is while the drive slides, at equal distances
@@ -91,28 +95,68 @@ impl Rest {
     }
 }
 
+/// Readings that stay where they are.
+struct Still {
+    samples: Range<usize>,
+    /// The steps by which the drive moves as long before and after it; none where the log ends.
+    moves: [Option<f64>; 2],
+    /// How far its first and its last reading are from its middle, in steps.
+    off: [f64; 2],
+}
+
+impl Still {
+    /// Readings from one on that are within so many steps of it.
+    fn new(positions: &[f64], first: usize, step: f64, within: f64) -> Self {
+        let is_near = |q: &&f64| (**q - positions[first]).abs() <= SAME * within * step;
+        let count = positions[first..].iter().take_while(is_near).count();
+        let (last, end) = (first + count - 1, positions.len() - 1);
+        let before = (first > 0).then(|| positions[first.saturating_sub(count)]);
+        let after = (last < end).then(|| positions[(last + count).min(end)]);
+        let by = |from: f64, to: f64| (to - from) / step;
+        let middle = positions[first + count / 2];
+        Self {
+            samples: first..last + 1,
+            moves: [
+                before.map(|before| by(before, positions[first])),
+                after.map(|after| by(positions[last], after)),
+            ],
+            off: [positions[first], positions[last]].map(|q| by(middle, q)),
+        }
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        self.samples.start < other.samples.end && other.samples.start < self.samples.end
+    }
+
+    /// Whether the drive stops and leaves rather than turns around.
+    fn is_rest(&self, within: f64) -> bool {
+        let leaves = |by: &Option<f64>| by.is_none_or(|by| by.abs() > LEAVES * within);
+        let has_moved = self.moves.iter().any(Option::is_some);
+        self.samples.len() >= LEAST && has_moved && self.moves.iter().all(leaves)
+    }
+}
+
 /// The rests in positions as an encoder of a step gives them, the first at a time, and the others
 /// at equal distances \[s\].
 pub(super) fn rests(positions: &[f64], step: f64, times: [f64; 2]) -> Vec<Rest> {
-    let mut found = Vec::new();
-    let mut first = 0;
-    while first < positions.len() {
-        let is_same = |q: &&f64| (**q - positions[first]).abs() <= SAME * step;
-        let count = positions[first..].iter().take_while(is_same).count();
-        let end = first + count;
-        let beside = first.checked_sub(count).zip(positions.get(end - 1 + count));
-        if let (true, Some((before, after))) = (count >= LEAST, beside) {
-            let moves = [positions[first] - positions[before], after - positions[end - 1]];
-            let rest = positions[first + count / 2];
-            let off = [positions[first] - rest, positions[end - 1] - rest];
-            let [moves, off] = [moves, off].map(|both| both.map(|by| by / step));
-            if moves.iter().all(|by| by.abs() > LEAVES) {
-                found.push(Rest::new(first..end, [moves, off], step, times));
+    let mut found: Vec<Still> = Vec::new();
+    for within in CREEPS {
+        let mut first = 0;
+        while first < positions.len() {
+            let still = Still::new(positions, first, step, within);
+            let is_new = found.iter().all(|other| !still.overlaps(other));
+            if is_new && still.is_rest(within) {
+                first = still.samples.end;
+                found.push(still);
+            } else {
+                // A drive that comes slowly may rest from its next reading on.
+                let is_same = |q: &&f64| (**q - positions[first]).abs() < 0.5 * step;
+                first += positions[first..].iter().take_while(is_same).count();
             }
         }
-        first = if count >= LEAST { end } else { first + 1 };
     }
-    found
+    found.sort_by_key(|still| still.samples.start);
+    found.into_iter().map(|still| Rest::new(still, step, times)).collect()
 }
 
 impl Signals {
@@ -206,6 +250,26 @@ mod tests {
         assert_eq!(rest.directions, [1.0, -1.0]);
         assert_eq!(rests(&read(|t| 4.0 * (t - 0.4).powi(2)), STEP, [0.0, 0.002]), []);
         assert_eq!(rests(&read(|_| 0.2), STEP, [0.0, 0.002]), [], "it never moved");
+    }
+
+    #[test]
+    fn a_drive_rests_where_it_creeps_and_where_its_log_begins_and_ends() {
+        let creeps = |t: f64| back(t) - 4.0 * STEP * ((t - 0.3) / 0.1).clamp(0.0, 1.0);
+        let [rest] = &rests(&read(creeps), STEP, [0.0, 0.002])[..] else { panic!("one rest") };
+        assert!((rest.time_s.start - 0.3).abs() < 0.02 && (rest.time_s.end - 0.4).abs() < 0.02);
+
+        let begins = |t: f64| 3.0 * (t - 0.4).max(0.0).powf(2.5);
+        let [rest] = &rests(&read(begins), STEP, [0.0, 0.002])[..] else { panic!("one rest") };
+        assert!(rest.time_s.start == 0.0 && (rest.time_s.end - 0.4).abs() < 0.003, "{rest:?}");
+        let rest = rest.clone().within(&(0.1..0.3)).expect("it rests there");
+        assert_eq!((rest.time_s.clone(), rest.leaves_s), (0.1..0.3, 0.1));
+        assert_eq!(rest.within(&(0.4..0.5)), None);
+        let [rest] = &rests(&read(|t| begins(0.8 - t)), STEP, [0.0, 0.002])[..] else {
+            panic!("one rest")
+        };
+        assert!((rest.time_s.start - 0.4).abs() < 0.005 && rest.time_s.end == 0.798, "{rest:?}");
+        // slowly from reading to reading is no rest
+        assert_eq!(rests(&read(|t| 1e-3 * t), STEP, [0.0, 0.002]), []);
     }
 
     /// A mass with friction that a controller moves back and forth, and that needs more than what

@@ -7,7 +7,8 @@ use super::excitation::unseen;
 use super::leftover::{Leftover, name};
 use super::rounds::Found;
 use super::signals::Signals;
-use super::state::Setting;
+use super::state::{Setting, State};
+use crate::policy::verdict::UNTOLD;
 use denavit_evidence::policy;
 use denavit_identify::doubt::MisreadColumns;
 
@@ -43,7 +44,9 @@ impl Verdict {
 pub(super) fn judge(
     diagnosis: &mut Diagnosis,
     setting: &Setting<'_>,
-    (found, misread): (&Found, &[MisreadColumns]),
+    found: &Found,
+    after: &State,
+    misread: &[MisreadColumns],
 ) {
     // Of a model that is nothing like the logs, nothing has a name.
     let is_alike = left_open(diagnosis) <= policy::NOTHING_LIKE;
@@ -53,6 +56,7 @@ pub(super) fn judge(
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
+    reasons.extend(untold(setting.held_out, &after.held_out_residual));
     (diagnosis.verdict, diagnosis.reasons) = (verdict, reasons);
     if found.is_stopped {
         diagnosis.verdict = Verdict::CannotTell;
@@ -205,4 +209,27 @@ fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<St
         ));
     }
     reasons
+}
+
+/// What held-out logs leave where rows hardly count: it is neither explained nor against the model.
+fn untold(data: &Data<'_>, residual: &[f64]) -> Vec<String> {
+    let of = |equation: usize| {
+        let own = data.stretches.iter().filter(|stretch| stretch.equation == equation);
+        let [mut left, mut told, mut torque] = [0.0; 3];
+        for row in own.flat_map(|stretch| stretch.first..stretch.first + stretch.rows) {
+            left += residual[row].powi(2);
+            told += (data.weights[row] * residual[row]).powi(2);
+            torque += data.torque[row].powi(2);
+        }
+        let share = (left / torque).sqrt();
+        (share > policy::LEFT && told < UNTOLD * left).then(|| {
+            format!(
+                "{:.1} % of the torque of {} is left in held-out logs, most of it where the drive \
+                 turns around or rests: friction is not known there",
+                100.0 * share,
+                data.nominal.equation_name(equation)
+            )
+        })
+    };
+    (0..data.nominal.equations()).filter_map(of).collect()
 }

@@ -51,7 +51,8 @@ impl<'a> Weighing<'a> {
         let logs = sets.iter().flat_map(|data| &data.signals);
         let driven_hz = logs.map(super::signals::Signals::driven_hz).fold(0.0, f64::max);
         let torques = sets.iter().map(|data| data.model_torques(z)).collect();
-        let rows: Vec<&[f64]> = sets.iter().map(|data| data.residual.as_slice()).collect();
+        let left: Vec<Vec<f64>> = sets.iter().map(|data| data.residual_of(z)).collect();
+        let rows: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
         let mut residual = spectra.of_rows(&sets, &rows, f64::INFINITY);
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
@@ -63,10 +64,14 @@ impl<'a> Weighing<'a> {
             driven_hz,
         };
         let mut own = weighing.own();
+        // What z does is known at all frequencies, and how much of it up to some.
+        for (column, factor) in own.iter().zip(z) {
+            add(&mut residual, column, *factor);
+        }
         for taken in given {
             let law = weighing.candidates[taken.candidate].law.as_ref();
             let (torque, gradient) = weighing.spectrum(taken);
-            subtract(&mut residual, &torque);
+            add(&mut residual, &torque, -1.0);
             for (mut column, belief) in gradient.into_iter().zip(law.beliefs()) {
                 column.iter_mut().flatten().for_each(|entry| *entry *= belief.std);
                 own.push(column);
@@ -275,10 +280,10 @@ fn follows_accelerations(nominal: &Nominal<'_>, place: usize) -> bool {
     }
 }
 
-/// Takes a spectrum away from another.
-pub(super) fn subtract(from: &mut Spectrum, other: &Spectrum) {
-    for (from, other) in from.iter_mut().zip(other) {
-        from.iter_mut().zip(other).for_each(|(sum, entry)| *sum -= entry);
+/// Adds so much of a spectrum to another.
+pub(super) fn add(to: &mut Spectrum, other: &Spectrum, factor: f64) {
+    for (to, other) in to.iter_mut().zip(other) {
+        to.iter_mut().zip(other).for_each(|(sum, entry)| *sum += factor * entry);
     }
 }
 

@@ -11,13 +11,8 @@ use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::model::{
     JointLaw, JointVariables, LinkId, Robot, SpringLaw, SpringSide, Terms,
 };
-use denavit_codegen::number::ratio;
 use denavit_codegen::program::{Evaluate, lower};
 use rustc_hash::FxHashMap;
-
-/// Below this rate a jump of a law at rate 0 is a steep line, as that of Coulomb friction is:
-/// 1/100 [rad/s, m/s].
-const STICTION_RATE: (i64, i64) = (1, 100);
 
 /// What laws depend on.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +29,9 @@ pub struct LawMoment<'a> {
     pub drives: DriveMoment<'a>,
     /// The laws' states.
     pub states: &'a [f64],
+    /// Below this rate a jump of a law at rate 0 is a steep line, as that of Coulomb friction is
+    /// [rad/s, m/s].
+    pub stiction_rate: f64,
 }
 
 /// What the drives before series springs do, on the side of their joints: one entry for each joint
@@ -120,7 +118,9 @@ impl Laws {
         };
         let mut dag = robot.dag.clone();
         let loads = loads(robot, own, &mut dag, &row)?;
-        let steep = steep_signs(robot, springs, &mut dag);
+        // No file can name this symbol: it is no identifier.
+        let slope = dag.symbol("slope of signs", SymbolClass::Time);
+        let steep = steep_signs(robot, springs, slope, &mut dag);
         let drives = Drives::new(robot, &mut dag);
         let variables: Vec<JointVariables> = robot.joints().map(|(_, joint)| *joint).collect();
         let mut parts = Parts::new(&mut dag, rows.len(), drives.links.len());
@@ -154,13 +154,14 @@ impl Laws {
             parts.passed[spring] = dag.add(parts.passed[spring], passed);
             parts.add_states(&mut dag, law, &mut followed);
         }
-        Self::compiled(dag, &variables, drives, parts)
+        Self::compiled(dag, &variables, drives, slope, parts)
     }
 
     fn compiled(
         mut dag: Dag,
         variables: &[JointVariables],
         drives: Drives,
+        slope: ExprId,
         parts: Parts,
     ) -> Result<Self, PlantError> {
         let Parts { torques, passed, states, rates, initial } = parts;
@@ -183,7 +184,8 @@ impl Laws {
             Argument { name: "drive_qd", symbols: drives.rates },
             Argument { name: "drive_qdd", symbols: drives.accelerations },
             Argument { name: "deflection", symbols: drives.deflections },
-            Argument { name: "t", symbols: vec![time] },
+            // one argument: compiled functions have few
+            Argument { name: "t_and_slope", symbols: vec![time, slope] },
             Argument { name: "states", symbols: states.clone() },
         ];
         let outputs = vec![0.0; entries.len()];
@@ -203,14 +205,14 @@ impl Laws {
         let mut states = vec![0.0; self.states];
         let unknown = states.clone();
         let moment = LawMoment { states: &unknown, ..*moment };
-        let time = [moment.t_s];
+        let time = time_and_slope(&moment);
         let arguments = arguments(&moment, &time);
         self.initial.evaluate(&arguments, &mut states).expect("the caller's slices fit");
         states
     }
 
     pub(super) fn respond(&mut self, moment: &LawMoment<'_>, response: &mut LawResponse) {
-        let time = [moment.t_s];
+        let time = time_and_slope(moment);
         let arguments = arguments(moment, &time);
         self.evaluator.evaluate(&arguments, &mut self.outputs).expect("the caller's slices fit");
         let (torque, rest) = self.outputs.split_at(self.joints);
@@ -233,6 +235,10 @@ impl Laws {
     pub(super) fn is_accelerated(&self) -> bool {
         self.is_accelerated
     }
+}
+
+fn time_and_slope(moment: &LawMoment<'_>) -> [f64; 2] {
+    [moment.t_s, moment.stiction_rate.recip()]
 }
 
 /// What the programs are evaluated on.
@@ -348,10 +354,13 @@ fn loads(
     Ok(replaced)
 }
 
-/// Steep lines in place of the signs of rates.
-fn steep_signs(robot: &Robot, springs: &[SpringLaw], dag: &mut Dag) -> FxHashMap<ExprId, ExprId> {
-    let (numerator, denominator) = STICTION_RATE;
-    let slope = dag.constant(ratio(denominator, numerator));
+/// Lines of a slope in place of the signs of rates.
+fn steep_signs(
+    robot: &Robot,
+    springs: &[SpringLaw],
+    slope: ExprId,
+    dag: &mut Dag,
+) -> FxHashMap<ExprId, ExprId> {
     let mut steep = FxHashMap::default();
     let rates = robot.joints().map(|(_, joint)| joint.qd);
     for rate in rates.chain(springs.iter().map(|own| own.rate)) {

@@ -30,6 +30,8 @@ pub(super) struct LawForces {
     /// On the joint's side: rates, accelerations and deflections of the drives before springs.
     drives: [Vec<f64>; 3],
     rest: Vec<f64>,
+    /// The rate below which signs of rates are lines [rad/s, m/s].
+    pub(super) stiction_rate: f64,
     response: LawResponse,
     /// What each coordinate needs besides, motors on the side of their joints [N m, N].
     pub(super) torque: Vec<f64>,
@@ -46,7 +48,8 @@ impl LawForces {
         let of = |joint| Sprung { joint, motor: drives.motor_of(model, joint) };
         let sprung: Vec<Sprung> = model.sprung_joints().map(of).collect();
         let joints = model.joints.len();
-        Self { joints, sprung, rest: vec![0.0; joints], ..Self::default() }
+        let stiction_rate = drives.stiction_rate;
+        Self { joints, sprung, rest: vec![0.0; joints], stiction_rate, ..Self::default() }
     }
 
     /// The states that laws begin with.
@@ -89,6 +92,7 @@ impl LawForces {
             qdd: accelerations.map_or(&self.rest, |all| all[0]),
             drives,
             states,
+            stiction_rate: self.stiction_rate,
         }
     }
 

@@ -99,6 +99,7 @@ impl<'a> ControlledPlant<'a> {
     /// Below this rate Coulomb friction is a steep line through 0 [rad/s, m/s].
     pub(super) fn set_stiction_rate(&mut self, rate: f64) {
         self.drives.stiction_rate = rate;
+        self.step.laws.stiction_rate = rate;
     }
 
     /// The plant.

@@ -50,8 +50,9 @@ impl Estimation<'_> {
 
     fn judged(&self, read: &Read, options: &Options, estimated: Estimated) -> Found {
         let found = estimated.judged(self.request(read, options));
-        let both = (&found.consistent, &found.parameters[..]);
-        let updated = updated_model(self.work.robot, self.work.model, both, self.source);
+        let Work { robot, model, .. } = self.work;
+        let (bodies, listed) = (&found.consistent, &found.parameters);
+        let updated = updated_model(robot, model, bodies, listed, self.source);
         let updated = updated.and_then(|updated| with_all_effects(updated, self.own));
         (found, updated)
     }

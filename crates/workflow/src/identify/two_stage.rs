@@ -157,8 +157,8 @@ impl TwoStageFound {
     /// If what was found makes no model.
     pub fn updated(&self) -> Result<String, Error> {
         let Self { robot, model, source, .. } = self;
-        let both = (&self.bodies, &self.parameters[..]);
-        let updated = updated_model(robot, model, both, source).map_err(Cause::Update)?;
+        let (bodies, listed) = (&self.bodies, &self.parameters);
+        let updated = updated_model(robot, model, bodies, listed, source).map_err(Cause::Update)?;
         let mut named = Vec::new();
         for spring in &self.stages.springs {
             let values = [("k", spring.stiffness), ("fv", spring.viscous), ("fc", spring.coulomb)];

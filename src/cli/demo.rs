@@ -72,7 +72,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         let robot = read_model_with_effects(Path::new(compiled.name), None)?;
         let show = |doing: &str| progress.show(doing);
         let mut write = |document| write(directory, document);
-        let outcome = RobotOutcome::new((&robot, compiled, seed), &show, &mut write)?;
+        let outcome = RobotOutcome::new(&robot, compiled, seed, &show, &mut write)?;
         if !json {
             progress.clear();
             write!(out, "{outcome}")?;
@@ -133,8 +133,8 @@ fn identified(
     let log = Experiment::log(seed).map_err(Failure::Scenario)?;
     let path = directory.join(&log.name);
     let log = write(directory, log)?;
-    let how = (path, Experiment::CUTOFF_HZ);
-    let (found, page) = identify::of_log(Experiment::MODEL, how, progress)?;
+    let (model, cutoff_hz) = (Experiment::MODEL, Experiment::CUTOFF_HZ);
+    let (found, page) = identify::of_log(model, path, cutoff_hz, progress)?;
     let page = write(directory, Experiment::page(page))?;
     Ok(IdentifiedOutcome::new(&found, vec![log, page]))
 }

@@ -240,7 +240,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let (effects, robot) = (model.left_out(), model.apart.robot);
     let options = arguments.options(&robot)?;
     if let Some(path) = &arguments.check {
-        return checked(arguments, (&robot, &effects), &options, path, out);
+        return checked(arguments, &robot, &effects, &options, path, out);
     }
     let progress = Progress::new();
     // starts go on side by side: the share is that of all evaluations that may be made
@@ -292,7 +292,8 @@ fn verdict(check: &Check) -> Answer {
 
 fn checked(
     arguments: &Arguments,
-    (robot, effects): (&Robot, &[EffectUse]),
+    robot: &Robot,
+    effects: &[EffectUse],
     options: &ExciteOptions,
     path: &Path,
     out: &mut dyn Write,

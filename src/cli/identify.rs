@@ -25,7 +25,8 @@ use std::path::{Path, PathBuf};
 /// What is found in one log below a frequency \[Hz\], and its page.
 pub(crate) fn of_log(
     model: &str,
-    (log, cutoff_hz): (PathBuf, f64),
+    log: PathBuf,
+    cutoff_hz: f64,
     progress: &Progress,
 ) -> Result<(Identification, String), Failure> {
     let robot = read_robot(Path::new(model), None)?;

@@ -124,7 +124,8 @@ impl Hidden {
     /// it names, and its gaps of held-out torques before, after and of noise.
     pub fn revealed(
         self,
-        (verdict, told): (&'static str, String),
+        verdict: &'static str,
+        told: String,
         answer: Vec<NamedEffect>,
         gap: [f64; 3],
         files: Vec<Written>,

@@ -74,7 +74,9 @@ impl RobotOutcome {
     /// Of a robot and the functions that were generated of it. `show` hears what is being done,
     /// `write` takes documents to files; the seed draws states for the checks.
     pub fn new<E: From<RobotError>>(
-        (robot, compiled, seed): (&Robot, &Compiled, u64),
+        robot: &Robot,
+        compiled: &Compiled,
+        seed: u64,
         show: &dyn Fn(&str),
         write: &mut dyn FnMut(Document) -> Result<Written, E>,
     ) -> Result<Self, E> {

@@ -112,7 +112,7 @@ impl EvaluateBatch for CompiledBatch {
         inputs: &[&[f64]],
         outputs: &mut [&mut [f64]],
     ) -> Result<(), ShapeMismatch> {
-        let samples = ShapeMismatch::check_columns((self.inputs, inputs), (self.outputs, outputs))?;
+        let samples = ShapeMismatch::check_columns(self.inputs, inputs, self.outputs, outputs)?;
         let pairs = samples / 2;
         if pairs > 0 {
             let from: Vec<*const f64> = inputs.iter().map(|column| column.as_ptr()).collect();

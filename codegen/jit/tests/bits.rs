@@ -117,7 +117,7 @@ fn every_operation_has_the_bits_of_the_interpreter() {
         outputs.push(dag.binary(function, a, b));
     }
     for relation in [Relation::Less, Relation::LessEqual, Relation::Equal] {
-        outputs.push(dag.select(relation, (a, b), c, a));
+        outputs.push(dag.select(relation, a, b, c, a));
     }
     let (product, sum, difference) = (dag.mul(a, b), dag.add(a, b), dag.sub(a, c));
     let (quotient, negative) = (dag.div(a, b), dag.neg(c));

@@ -174,9 +174,10 @@ fn torque_derivatives(
     let n = frames.len();
     let symbols = forces(dag, candidate.robot);
     let (forces, _) = symbols.as_chunks::<3>();
+    let points = Points { columns, places, forces };
     let mut turned = vec![zero(dag); n];
     for foot in feet(candidate) {
-        add_turned(dag, (frames, motion), &foot, (columns, places, forces), &mut turned);
+        add_turned(dag, frames, motion, &foot, &points, &mut turned);
     }
     let mut torques = vec![vec![dag.zero(); n]; n];
     for far in 0..n {
@@ -201,17 +202,29 @@ fn feet(candidate: &Candidate<'_>) -> Vec<Foot> {
     feet
 }
 
+/// The contact points, each at its number.
+struct Points<'a> {
+    /// The columns of its Jacobian.
+    columns: &'a [Columns],
+    /// Where the point is.
+    places: &'a [Vector],
+    /// The force on it.
+    forces: &'a [Vector],
+}
+
 /// Adds sum (J_j x f) over the points of a foot, for each joint j.
 ///
 /// From three points on the forces are summed first: with c the first point, F the sum of the
 /// forces and A = sum (p - c) f^T, it is J_j(c) x F + (A - tr A) z.
 fn add_turned(
     dag: &mut Dag,
-    (frames, motion): (&Frames, &WorldMotion),
+    frames: &Frames,
+    motion: &WorldMotion,
     foot: &Foot,
-    (columns, places, forces): (&[Columns], &[Vector], &[Vector]),
+    points: &Points<'_>,
     turned: &mut [Vector],
 ) {
+    let Points { columns, places, forces } = *points;
     let first = foot.points[0];
     if foot.points.len() < 3 {
         for &point in &foot.points {

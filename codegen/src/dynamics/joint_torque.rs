@@ -117,17 +117,17 @@ pub(crate) fn spring_torque(dag: &mut Dag, robot: &Robot, id: LinkId) -> (ExprId
     let (mut torque, mut energy) = (dag.zero(), dag.zero());
     if let Some(spring) = joint.spring.filter(|_| robot.terms.spring) {
         let stretch = dag.sub(variables.q, spring.angle);
-        (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, stretch);
+        (torque, energy) = add_spring(dag, torque, energy, spring.stiffness, stretch);
     }
     if let Some(spring) = drive.return_spring.filter(|_| robot.terms.spring) {
         let zero = dag.zero();
         let stretch = dag.sub(variables.q, spring.angle);
-        let sides = match spring.side {
+        let (left, right) = match spring.side {
             Side::Above => (spring.angle, variables.q),
             Side::Below => (variables.q, spring.angle),
         };
-        let active = dag.select(Relation::Less, sides, stretch, zero);
-        (torque, energy) = add_spring(dag, (torque, energy), spring.stiffness, active);
+        let active = dag.select(Relation::Less, left, right, stretch, zero);
+        (torque, energy) = add_spring(dag, torque, energy, spring.stiffness, active);
     }
     (torque, energy)
 }
@@ -140,7 +140,8 @@ fn add_product(dag: &mut Dag, sum: ExprId, a: ExprId, b: ExprId) -> ExprId {
 /// Torque k x and energy k x^2 / 2 (thesis 2.8) of a linear spring.
 fn add_spring(
     dag: &mut Dag,
-    (torque, energy): (ExprId, ExprId),
+    torque: ExprId,
+    energy: ExprId,
     stiffness: ExprId,
     stretch: ExprId,
 ) -> (ExprId, ExprId) {

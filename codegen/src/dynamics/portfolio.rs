@@ -54,7 +54,7 @@ impl<'a> Portfolio<'a> {
                 let build = |dag: &mut Dag, candidate: &Candidate<'_>, route| {
                     outputs::outputs(dag, candidate, name, route)
                 };
-                vec![self.cheapest(dag, (name, None), &build)]
+                vec![self.cheapest(dag, name, None, &build)]
             }
         }
     }
@@ -70,7 +70,7 @@ impl<'a> Portfolio<'a> {
         let make = |link: LinkId| {
             let build =
                 |dag: &mut Dag, candidate: &Candidate<'_>, _| vec![output(dag, candidate, link)];
-            self.cheapest(dag, (name, Some(self.robot.links[link].name.clone())), &build)
+            self.cheapest(dag, name, Some(self.robot.links[link].name.clone()), &build)
         };
         links.into_iter().map(make).collect()
     }
@@ -132,7 +132,8 @@ impl<'a> Portfolio<'a> {
     fn cheapest(
         &self,
         dag: &mut Dag,
-        (name, link): (FunctionName, Option<String>),
+        name: FunctionName,
+        link: Option<String>,
         build: &dyn Fn(&mut Dag, &Candidate<'_>, Route) -> Vec<Output>,
     ) -> Function {
         let mut best: Option<(usize, Form, Vec<Output>)> = None;

@@ -77,7 +77,7 @@ pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Ve
         Some(&link) => format!("_{}_{}", effect.name, robot.links[link].name),
         None => format!("_{}", effect.name),
     };
-    if let Some(taken) = taken_name(robot, effect, (&links, &suffix)) {
+    if let Some(taken) = taken_name(robot, effect, &links, &suffix) {
         return Err(vec![Cause::DuplicateName(taken, "another quantity")]);
     }
     let attaching = Attaching { effect, links, suffix, place };
@@ -87,11 +87,7 @@ pub fn attach(robot: &mut Robot, effect: &Effect, place: usize) -> Result<(), Ve
 }
 
 /// A name that the effect would give to a quantity of its own, and that has another one already.
-fn taken_name(
-    robot: &Robot,
-    effect: &Effect,
-    (links, suffix): (&[LinkId], &str),
-) -> Option<String> {
+fn taken_name(robot: &Robot, effect: &Effect, links: &[LinkId], suffix: &str) -> Option<String> {
     let parameters = effect.parameters.iter().map(|parameter| &parameter.name);
     let states = effect.states.iter().map(|state| &state.name);
     let mut own = parameters.chain(states).map(|name| format!("{name}{suffix}"));

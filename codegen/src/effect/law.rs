@@ -195,7 +195,8 @@ impl LawReader {
     pub(super) fn on_second(
         &mut self,
         fields: &Fields<'_>,
-        (kind, at): (EffectKind, EffectSite),
+        kind: EffectKind,
+        at: EffectSite,
         report: &mut Report,
     ) -> Option<ExprId> {
         let node = fields.get("torque_2")?;

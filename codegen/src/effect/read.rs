@@ -99,7 +99,7 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
     let states = reading.states(&fields);
     let law = LawFile::read(&fields, kind, reading.report);
     let law = law.and_then(|law| reading.law.law(&law, reading.report));
-    let torque_2 = reading.law.on_second(&fields, (kind, at), reading.report);
+    let torque_2 = reading.law.on_second(&fields, kind, at, reading.report);
     let confused_with = reading.confused_with(&fields);
     let texts = ["title", "description", "source"]
         .map(|key| fields.required_name(key, reading.report).text.into_owned());
@@ -107,8 +107,8 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
     let law = law?;
     let mut exprs = law.expressions();
     exprs.extend(torque_2);
-    note_linear(&mut dag, &mut parameters, (&states, &law), &exprs);
-    if !vanishes(&mut dag, &parameters, (&law, &exprs)) {
+    note_linear(&mut dag, &mut parameters, &states, &law, &exprs);
+    if !vanishes(&mut dag, &parameters, &law, &exprs) {
         report.push(fields.at(), Cause::NeverVanishes);
     }
     let [title, description, source] = texts;
@@ -134,28 +134,25 @@ fn read_root(root: Node<'_>, joint: JointKind, report: &mut Report) -> Option<Ef
 fn note_linear(
     dag: &mut Dag,
     parameters: &mut [EffectParameter],
-    (states, kind): (&[EffectState], &Law),
-    law: &[ExprId],
+    states: &[EffectState],
+    law: &Law,
+    exprs: &[ExprId],
 ) {
     let symbols: Vec<ExprId> = parameters.iter().map(|parameter| parameter.symbol).collect();
     // a state answers to its parameters in a way that no expression says
     let mut hidden: Vec<ExprId> =
         states.iter().flat_map(|state| [state.rate, state.initial]).collect();
-    if let Law::Measured(Measured { transmission: Some(one), .. }) = kind {
+    if let Law::Measured(Measured { transmission: Some(one), .. }) = law {
         hidden.extend([one.swing_s, one.damping, one.play]);
     }
-    let is_linear = linear(dag, law, &symbols);
+    let is_linear = linear(dag, exprs, &symbols);
     for (parameter, is_linear) in parameters.iter_mut().zip(is_linear) {
         parameter.linear = is_linear && !depends(dag, &hidden, parameter.symbol);
     }
 }
 
 /// Whether nothing is left of the law where the parameters have their nominal values.
-fn vanishes(
-    dag: &mut Dag,
-    parameters: &[EffectParameter],
-    (law, exprs): (&Law, &[ExprId]),
-) -> bool {
+fn vanishes(dag: &mut Dag, parameters: &[EffectParameter], law: &Law, exprs: &[ExprId]) -> bool {
     let mut nominal: FxHashMap<ExprId, ExprId> = FxHashMap::default();
     for parameter in parameters {
         if let Some(value) = &parameter.nominal {

@@ -64,7 +64,7 @@ fn node_rate(
         Node::Unary(..) => zero,
         Node::Binary(function, a, b) => binary_rate(dag, function, [a, b], [rate(a), rate(b)]),
         Node::Select { relation, left, right, then, otherwise } => {
-            dag.select(relation, (left, right), rate(then), rate(otherwise))
+            dag.select(relation, left, right, rate(then), rate(otherwise))
         }
     }
 }
@@ -104,8 +104,8 @@ fn binary_rate(
     [rate_a, rate_b]: [ExprId; 2],
 ) -> ExprId {
     match function {
-        BinaryFunction::Min => dag.select(Relation::Less, (a, b), rate_a, rate_b),
-        BinaryFunction::Max => dag.select(Relation::Less, (a, b), rate_b, rate_a),
+        BinaryFunction::Min => dag.select(Relation::Less, a, b, rate_a, rate_b),
+        BinaryFunction::Max => dag.select(Relation::Less, a, b, rate_b, rate_a),
         // atan2(y, x)' = (x y' - y x') / (x^2 + y^2)
         BinaryFunction::Atan2 => {
             let (left, right) = (dag.mul(b, rate_a), dag.mul(a, rate_b));

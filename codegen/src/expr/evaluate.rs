@@ -71,21 +71,24 @@ pub trait Ring {
     fn unary(
         &mut self,
         function: UnaryFunction,
-        argument: (&Dag, ExprId),
+        dag: &Dag,
+        argument: ExprId,
         values: &[Option<Self::Value>],
     ) -> Result<Self::Value, EvaluateError>;
     /// A function of two arguments, as expressions and by their values.
     fn binary(
         &mut self,
         function: BinaryFunction,
-        arguments: (&Dag, [ExprId; 2]),
+        dag: &Dag,
+        arguments: [ExprId; 2],
         values: [&Self::Value; 2],
     ) -> Result<Self::Value, EvaluateError>;
     /// `then` where `left relation right`, else `otherwise`; the sides as those of `binary`.
     fn select(
         &mut self,
         relation: Relation,
-        sides: (&Dag, [ExprId; 2]),
+        dag: &Dag,
+        sides: [ExprId; 2],
         values: [&Self::Value; 2],
         then: &Self::Value,
         otherwise: &Self::Value,
@@ -112,13 +115,13 @@ pub fn evaluate<R: Ring>(
                 Node::Mul(a, b) => ring.mul(of(a), of(b)),
                 Node::Div(a, b) => ring.div(of(a), of(b))?,
                 Node::Pow(a, n) => power(ring, of(a), n),
-                Node::Unary(function, a) => ring.unary(function, (dag, a), &values)?,
+                Node::Unary(function, a) => ring.unary(function, dag, a, &values)?,
                 Node::Binary(function, a, b) => {
-                    ring.binary(function, (dag, [a, b]), [of(a), of(b)])?
+                    ring.binary(function, dag, [a, b], [of(a), of(b)])?
                 }
                 Node::Select { relation, left, right, then, otherwise } => {
-                    let sides = [of(left), of(right)];
-                    ring.select(relation, (dag, [left, right]), sides, of(then), of(otherwise))
+                    let (sides, values) = ([left, right], [of(left), of(right)]);
+                    ring.select(relation, dag, sides, values, of(then), of(otherwise))
                 }
             }
         };

@@ -28,7 +28,7 @@ impl Dag {
             Node::Unary(function, a) => self.unary(function, a),
             Node::Binary(function, a, b) => self.binary(function, a, b),
             Node::Select { relation, left, right, then, otherwise } => {
-                self.select(relation, (left, right), then, otherwise)
+                self.select(relation, left, right, then, otherwise)
             }
         }
     }

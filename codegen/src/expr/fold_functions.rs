@@ -192,7 +192,8 @@ impl Dag {
     pub fn select(
         &mut self,
         relation: Relation,
-        (left, right): (ExprId, ExprId),
+        left: ExprId,
+        right: ExprId,
         then: ExprId,
         otherwise: ExprId,
     ) -> ExprId {

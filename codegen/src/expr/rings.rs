@@ -54,7 +54,8 @@ impl<F: Fn(&str) -> Option<f64>> Ring for Floats<F> {
     fn unary(
         &mut self,
         function: UnaryFunction,
-        (_, argument): (&Dag, ExprId),
+        _: &Dag,
+        argument: ExprId,
         values: &[Option<f64>],
     ) -> Result<f64, EvaluateError> {
         let x = values[argument.index()].expect("operands come first");
@@ -74,7 +75,8 @@ impl<F: Fn(&str) -> Option<f64>> Ring for Floats<F> {
     fn binary(
         &mut self,
         function: BinaryFunction,
-        _: (&Dag, [ExprId; 2]),
+        _: &Dag,
+        _: [ExprId; 2],
         [a, b]: [&f64; 2],
     ) -> Result<f64, EvaluateError> {
         Ok(match function {
@@ -86,7 +88,8 @@ impl<F: Fn(&str) -> Option<f64>> Ring for Floats<F> {
     fn select(
         &mut self,
         relation: Relation,
-        _: (&Dag, [ExprId; 2]),
+        _: &Dag,
+        _: [ExprId; 2],
         [left, right]: [&f64; 2],
         then: &f64,
         otherwise: &f64,
@@ -138,7 +141,8 @@ impl<F: Fn(&str) -> Option<Rational>> Ring for Rationals<F> {
     fn unary(
         &mut self,
         function: UnaryFunction,
-        (_, argument): (&Dag, ExprId),
+        _: &Dag,
+        argument: ExprId,
         values: &[Option<Rational>],
     ) -> Result<Rational, EvaluateError> {
         let x = values[argument.index()].clone().expect("operands come first");
@@ -150,7 +154,8 @@ impl<F: Fn(&str) -> Option<Rational>> Ring for Rationals<F> {
     fn binary(
         &mut self,
         function: BinaryFunction,
-        _: (&Dag, [ExprId; 2]),
+        _: &Dag,
+        _: [ExprId; 2],
         [a, b]: [&Rational; 2],
     ) -> Result<Rational, EvaluateError> {
         Ok(match function {
@@ -163,7 +168,8 @@ impl<F: Fn(&str) -> Option<Rational>> Ring for Rationals<F> {
     fn select(
         &mut self,
         relation: Relation,
-        _: (&Dag, [ExprId; 2]),
+        _: &Dag,
+        _: [ExprId; 2],
         [left, right]: [&Rational; 2],
         then: &Rational,
         otherwise: &Rational,
@@ -331,7 +337,8 @@ impl Ring for Residues {
     fn unary(
         &mut self,
         function: UnaryFunction,
-        (dag, argument): (&Dag, ExprId),
+        dag: &Dag,
+        argument: ExprId,
         values: &[Option<Residue>],
     ) -> Result<Residue, EvaluateError> {
         match function {
@@ -362,7 +369,8 @@ impl Ring for Residues {
     fn binary(
         &mut self,
         function: BinaryFunction,
-        arguments: (&Dag, [ExprId; 2]),
+        dag: &Dag,
+        arguments: [ExprId; 2],
         [a, b]: [&Residue; 2],
     ) -> Result<Residue, EvaluateError> {
         // Min and max do not know the order of their arguments.
@@ -370,20 +378,21 @@ impl Ring for Residues {
             BinaryFunction::Atan2 => (a, b),
             BinaryFunction::Min | BinaryFunction::Max => (a.min(b), a.max(b)),
         };
-        let seed = self.seed_of(arguments.0, &arguments.1);
+        let seed = self.seed_of(dag, &arguments);
         Ok(self.opaque(seed, &format!("{function:?}"), &[*a, *b]))
     }
     fn select(
         &mut self,
         relation: Relation,
-        sides: (&Dag, [ExprId; 2]),
+        dag: &Dag,
+        sides: [ExprId; 2],
         values: [&Residue; 2],
         then: &Residue,
         otherwise: &Residue,
     ) -> Residue {
         // The sides decide as a coin would, so that a selection keeps what holds of both branches:
         // it is linear in them, and its square is the selection of the squares.
-        let seed = self.seed_of(sides.0, &sides.1);
+        let seed = self.seed_of(dag, &sides);
         let coin = self.opaque(seed, &format!("{relation:?}"), &values.map(|value| *value));
         if coin.value().is_multiple_of(2) { *then } else { *otherwise }
     }

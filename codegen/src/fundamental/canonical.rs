@@ -248,7 +248,7 @@ impl Expansion<'_> {
             if rest.is_zero() {
                 continue;
             }
-            let unit = self.unit_of(&rest, (monomial, is_pi))?;
+            let unit = self.unit_of(&rest, monomial, is_pi)?;
             let times = (&rest / &unit).to_integer().to_i32();
             let times = times.filter(|times| times.abs() <= MAX_MULTIPLE);
             let times = times.ok_or(CanonicalError::Angle)?;
@@ -267,7 +267,8 @@ impl Expansion<'_> {
     fn unit_of(
         &self,
         rest: &Rational,
-        (monomial, is_pi): (&Monomial, bool),
+        monomial: &Monomial,
+        is_pi: bool,
     ) -> Result<Rational, CanonicalError> {
         if is_pi || monomial.is_one() {
             // An angle of 1 rad has no canonical sine: neither has a third of pi.

@@ -208,7 +208,7 @@ impl Job<'_> {
         dag: &mut Dag,
         expansion: &mut Expansion<'_>,
     ) -> Result<Vec<Decomposition>, Stop> {
-        let series = expand::<N, C>(dag, (self.nodes, self.outputs), self.layout, expansion)?;
+        let series = expand::<N, C>(dag, self.nodes, self.outputs, self.layout, expansion)?;
         let limit = expansion.allowed_terms::<N, C>();
         let chains: Vec<Vec<usize>> = self
             .matrix
@@ -220,7 +220,7 @@ impl Job<'_> {
         let mut result = Vec::new();
         for &basis in self.bases {
             if basis != Basis::Cumulated || !chains.is_empty() {
-                let tables = self.tables(&series, (basis, &chains), limit);
+                let tables = self.tables(&series, basis, &chains, limit);
                 let tables = tables.map_err(|error| match error {
                     SeriesError::Overflow => Stop::Overflow,
                     SeriesError::TooManyTerms => {
@@ -236,7 +236,8 @@ impl Job<'_> {
     fn tables<const N: usize, C: Whole>(
         &self,
         series: &FxHashMap<ExprId, Series<N, C>>,
-        (basis, chains): (Basis, &[Vec<usize>]),
+        basis: Basis,
+        chains: &[Vec<usize>],
         limit: usize,
     ) -> Result<Tables<N, C>, SeriesError> {
         let columns = self.matrix.rows.first().map_or(0, Vec::len);

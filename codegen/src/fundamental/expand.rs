@@ -113,7 +113,8 @@ impl From<Overflow> for Stop {
 /// The series of `outputs`, in order. `nodes` are those of the layout.
 pub(super) fn expand<const N: usize, C: Whole>(
     dag: &Dag,
-    (nodes, outputs): (&[ExprId], &[ExprId]),
+    nodes: &[ExprId],
+    outputs: &[ExprId],
     layout: &Layout,
     expansion: &mut Expansion<'_>,
 ) -> Result<FxHashMap<ExprId, Series<N, C>>, Stop> {
@@ -128,7 +129,7 @@ pub(super) fn expand<const N: usize, C: Whole>(
     for (done, &expr) in nodes.iter().enumerate() {
         let too_large = Stop::too_large(expansion, done, nodes.len());
         let limit = allowed.saturating_sub(terms);
-        let series = node(dag, expr, (layout, limit), &values).map_err(|stop| match stop {
+        let series = node(dag, expr, layout, limit, &values).map_err(|stop| match stop {
             NodeStop::Series(SeriesError::Overflow) => Stop::Overflow,
             NodeStop::Series(SeriesError::TooManyTerms) => too_large,
             NodeStop::DivisionByZero => Stop::Error(FourierError::DivisionByZero),
@@ -177,7 +178,8 @@ impl From<Overflow> for NodeStop {
 fn node<const N: usize, C: Whole>(
     dag: &Dag,
     expr: ExprId,
-    (layout, limit): (&Layout, usize),
+    layout: &Layout,
+    limit: usize,
     values: &FxHashMap<ExprId, Series<N, C>>,
 ) -> Result<Series<N, C>, NodeStop> {
     let product = |a: &Series<N, C>, b: &Series<N, C>| a.times(b, layout.angles_end, limit);

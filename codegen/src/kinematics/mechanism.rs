@@ -68,7 +68,7 @@ impl Mechanism {
                 .subtree(id)
                 .iter()
                 .any(|&other| other != id && robot.links[other].joint.variables.is_some());
-            let placement = mechanism.attach(dag, robot.convention, (link, is_tip), carrier);
+            let placement = mechanism.attach(dag, robot.convention, link, is_tip, carrier);
             if let (Some(index), Some(body)) = (placement.body, &link.body) {
                 let central = body.about == About::Com;
                 let own = PseudoInertia::from_body(dag, body.mass, body.com, body.inertia, central);
@@ -87,7 +87,8 @@ impl Mechanism {
         &mut self,
         dag: &mut Dag,
         convention: Convention,
-        (link, is_tip): (&Link, bool),
+        link: &Link,
+        is_tip: bool,
         mut carrier: Placement,
     ) -> Placement {
         let joint = &link.joint;

@@ -63,8 +63,8 @@ impl<S: Transcendental> BatchEvaluator<S> {
         inputs: &[&[S]],
         outputs: &mut [&mut [S]],
     ) -> Result<(), ShapeMismatch> {
-        let columns = (self.tape.outputs.len(), &*outputs);
-        let samples = ShapeMismatch::check_columns((self.columns, inputs), columns)?;
+        let expected = self.tape.outputs.len();
+        let samples = ShapeMismatch::check_columns(self.columns, inputs, expected, outputs)?;
         for start in (0..samples).step_by(LANES) {
             let lanes = LANES.min(samples - start);
             self.load(inputs, start, lanes);

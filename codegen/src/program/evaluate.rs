@@ -23,8 +23,10 @@ impl ShapeMismatch {
     /// The number of samples of input and output columns, each given with the number of columns
     /// that there must be; all of one length.
     pub fn check_columns<S>(
-        (expected_inputs, inputs): (usize, &[&[S]]),
-        (expected_outputs, outputs): (usize, &[&mut [S]]),
+        expected_inputs: usize,
+        inputs: &[&[S]],
+        expected_outputs: usize,
+        outputs: &[&mut [S]],
     ) -> Result<usize, ShapeMismatch> {
         Self::check("input columns", expected_inputs, inputs.len())?;
         Self::check("output columns", expected_outputs, outputs.len())?;

@@ -15,9 +15,10 @@ pub(super) fn axis_shares(
     dag: &mut Dag,
     robot: &Robot,
     mechanism: &Mechanism,
-    followed: (MotionTerms, Route),
+    terms: MotionTerms,
+    route: Route,
 ) -> Vec<LinkShares> {
-    let stops = follow(dag, robot, mechanism, followed);
+    let stops = follow(dag, robot, mechanism, terms, route);
     stops
         .iter()
         .map(|stop| {
@@ -25,8 +26,8 @@ pub(super) fn axis_shares(
             twists
                 .iter()
                 .map(|twist| {
-                    let by_twist = (twist.angular, twist.linear);
-                    (twist.row, power_on_entries(dag, motion, by_twist))
+                    let power = power_on_entries(dag, motion, twist.angular, twist.linear);
+                    (twist.row, power)
                 })
                 .collect()
         })

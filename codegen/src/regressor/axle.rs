@@ -82,7 +82,7 @@ impl Axle {
             let moment = dag.mul(self.point[k], torques[FIRST + k]);
             mass = dag.add(mass, moment);
         }
-        let around = self.around(dag, torques, (second, z));
+        let around = self.around(dag, torques, second, z);
         OnAxis { mass: dag.add(mass, around), first, second }
     }
 
@@ -114,7 +114,8 @@ impl Axle {
         &self,
         dag: &mut Dag,
         torques: &[ExprId; ENTRIES],
-        (second, z): (ExprId, Vector),
+        second: ExprId,
+        z: Vector,
     ) -> ExprId {
         let mut sum = dag.zero();
         for k in 0..3 {
@@ -144,7 +145,8 @@ impl Axle {
         &self,
         dag: &mut Dag,
         shares: &mut LinkShares,
-        (seat, carrier): (&Self, &[(usize, [ExprId; ENTRIES])]),
+        seat: &Self,
+        carrier: &[(usize, [ExprId; ENTRIES])],
         shortcuts: Shortcuts,
     ) {
         let zero = dag.zero();
@@ -173,7 +175,7 @@ impl Axle {
                     rest = dag.add(rest, moment);
                 }
                 let z = [0, 1, 2].map(|k| if k == self.axis { dag.one() } else { zero });
-                let around = self.around(dag, torques, (on_axis.second, z));
+                let around = self.around(dag, torques, on_axis.second, z);
                 let rest = dag.add(rest, around);
                 torques[0] = dag.sub(on_axis.mass, rest);
             }

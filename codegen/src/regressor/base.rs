@@ -260,7 +260,7 @@ pub fn reduce(mut regressor: Regressor, keep: &[String]) -> Result<BaseParameter
         });
     }
     let dependent = dependents(&mut regressor, &reduced);
-    check((&regressor.dag, &regressor.model), &dependent, &ranking)?;
+    check(&regressor.dag, &regressor.model, &dependent, &ranking)?;
     let parameters = ranking
         .pivots
         .iter()
@@ -327,7 +327,8 @@ fn dependents(regressor: &mut Regressor, reduced: &BTreeMap<usize, Reduced>) -> 
 
 /// The exact factors against those found modulo p: two computations that share nothing.
 fn check(
-    (dag, model): (&Dag, &str),
+    dag: &Dag,
+    model: &str,
     dependent: &[Dependent],
     ranking: &Ranking,
 ) -> Result<(), BaseError> {

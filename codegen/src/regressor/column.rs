@@ -177,7 +177,7 @@ impl Regressor {
             .filter_map(|column| column.parameter.filter(|&(_, place)| place == 0))
             .map(|(link, _)| link)
             .collect();
-        let shares = link_shares(&mut dag, robot, &mechanism, terms, (&links, shortcuts));
+        let shares = link_shares(&mut dag, robot, &mechanism, terms, &links, shortcuts);
         for column in &mut columns {
             let Some((link, place)) = column.parameter else { continue };
             let at = links.iter().position(|&other| other == link).expect("it has ten columns");

@@ -96,8 +96,8 @@ pub fn decompose_robot(
     };
     let matter = match robot.base {
         Base::Fixed => fixed_base_regressor(&mut dag, &frames, terms),
-        Base::Floating => torso_regressor(&mut dag, &frames, (5, TorsoMotion::Spatial), terms),
-        Base::PlanarFloating => torso_regressor(&mut dag, &frames, (2, TorsoMotion::Planar), terms),
+        Base::Floating => torso_regressor(&mut dag, &frames, 5, TorsoMotion::Spatial, terms),
+        Base::PlanarFloating => torso_regressor(&mut dag, &frames, 2, TorsoMotion::Planar, terms),
     };
     let mut balance = Balance { robot, scales: Vec::new(), matter };
     balance.scales = row_scales(&mut dag, robot, robot.torque_side);

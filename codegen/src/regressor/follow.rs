@@ -47,7 +47,8 @@ pub(super) fn follow(
     dag: &mut Dag,
     robot: &Robot,
     mechanism: &Mechanism,
-    (terms, route): (MotionTerms, Route),
+    terms: MotionTerms,
+    route: Route,
 ) -> Vec<Stop> {
     let hosts = hosts(robot);
     let mut stops: Vec<Stop> = Vec::new();
@@ -85,7 +86,7 @@ pub(super) fn follow(
         };
         let own_turn = body.angle.map(|angle| Turn::new(dag, Axis::Z, angle));
         let state = seat.turned(dag, own_turn.iter());
-        let mut on_axis = state.jointed(dag, (body.variables, body.is_revolute), (j, terms));
+        let mut on_axis = state.jointed(dag, body.variables, body.is_revolute, j, terms);
         if group.chain.len() > 1 {
             group.take_angular(dag, &mut on_axis, terms);
         }
@@ -199,7 +200,7 @@ impl Group {
         let none = [dag.zero(); 3];
         let at_once = self.seat.moved_then_turned(dag, none, turn.iter());
         let row = state.twists.len();
-        let at_once = at_once.jointed(dag, (variables, true), (row, terms));
+        let at_once = at_once.jointed(dag, variables, true, row, terms);
         let linear = state.motion.linear;
         state.motion = FrameMotion { linear, ..at_once.motion };
         let before = at_once.twists.len() - 1;

@@ -66,7 +66,8 @@ impl Cheapest {
     fn try_other(
         &mut self,
         dag: &mut Dag,
-        (entries, form): (Vec<ExprId>, Form),
+        entries: Vec<ExprId>,
+        form: Form,
         joints: usize,
     ) -> bool {
         let mut other = Self { price: price(dag, &entries), form, entries };
@@ -126,8 +127,7 @@ fn regressor(robot: &mut Robot) -> Option<Made> {
             .expect("shortcuts decide nothing about unknowns");
         let entries = other.entries();
         regressor.dag = other.dag;
-        let way = (entries, form(shortcuts.route));
-        if cheapest.try_other(&mut regressor.dag, way, n) {
+        if cheapest.try_other(&mut regressor.dag, entries, form(shortcuts.route), n) {
             best = shortcuts;
         }
     }
@@ -151,7 +151,7 @@ fn base_regressor(robot: &Robot) -> Option<Made> {
         let entries = axis_entries(&mut regressor, robot, &parameters, route);
         let dag = &mut regressor.dag;
         match &mut cheapest {
-            Some(cheapest) => _ = cheapest.try_other(dag, (entries, form(route)), n),
+            Some(cheapest) => _ = cheapest.try_other(dag, entries, form(route), n),
             None => cheapest = Some(Cheapest::new(dag, entries, n)),
         }
     }
@@ -202,9 +202,9 @@ fn axis_entries(
     parameters: &[JointParameter],
     route: Route,
 ) -> Vec<ExprId> {
-    let followed = (regressor.motion_terms(), route);
+    let terms = regressor.motion_terms();
     let dag = &mut regressor.dag;
-    let shares = axis_shares(dag, robot, &regressor.mechanism, followed);
+    let shares = axis_shares(dag, robot, &regressor.mechanism, terms, route);
     let mut entries = Vec::new();
     for row in 0..regressor.joints.len() {
         for parameter in parameters {

@@ -115,10 +115,10 @@ pub fn joint_basis(
         };
         // The column of a joint's parameter stays what it is, gear ratio and all.
         let scale = own.map(|own| &columns[own][&Place::Feature(feature)]);
-        let (shares, row) = scaled(&field, (shares, row), scale)?;
+        let (shares, row) = scaled(&field, shares, row, scale)?;
         let name = format!("{prefix}_{}", robot.links[links[joint]].name);
         let titled = Titled { link: links[joint], prefix, name, unit };
-        parameters.push(parameter(base, titled, (&shares, &row)));
+        parameters.push(parameter(base, titled, &shares, &row));
     }
     Ok(parameters)
 }
@@ -197,7 +197,8 @@ type Shares = Vec<(usize, Fraction)>;
 /// The shares of a parameter divided, and its column multiplied, by `scale`.
 fn scaled(
     field: &Field,
-    (mut shares, mut row): (Shares, Row),
+    mut shares: Shares,
+    mut row: Row,
     scale: Option<&Fraction>,
 ) -> Result<(Shares, Row), CanonicalError> {
     if let Some(scale) = scale.filter(|scale| !scale.is_one()) {
@@ -223,7 +224,8 @@ struct Titled {
 fn parameter(
     base: &mut BaseParameters,
     Titled { link, prefix, name, unit }: Titled,
-    (shares, row): (&Shares, &Row),
+    shares: &Shares,
+    row: &Row,
 ) -> JointParameter {
     let kept: Vec<usize> = base.parameters.iter().map(|parameter| parameter.column).collect();
     let symbols: Vec<ExprId> =

@@ -35,10 +35,11 @@ pub(super) fn link_shares(
     robot: &Robot,
     mechanism: &Mechanism,
     terms: MotionTerms,
-    (links, shortcuts): (&[LinkId], Shortcuts),
+    links: &[LinkId],
+    shortcuts: Shortcuts,
 ) -> Vec<LinkShares> {
     let hosts = hosts(robot);
-    let stops = follow(dag, robot, mechanism, (terms, shortcuts.route));
+    let stops = follow(dag, robot, mechanism, terms, shortcuts.route);
     let mut of_hosts: Vec<LinkShares> = Vec::new();
     for (j, body) in mechanism.bodies.iter().enumerate() {
         let stop = &stops[j];
@@ -48,7 +49,7 @@ pub(super) fn link_shares(
             let seat = Axle::of_carrier(dag, stop.seat_offset, &stop.seat_turns);
             let axle = Axle::of_body(dag, &mechanism.placements[hosts[j]]);
             if let (Some(seat), Some(axle)) = (seat, axle) {
-                axle.spare(dag, &mut shares, (&seat, carrier), shortcuts);
+                axle.spare(dag, &mut shares, &seat, carrier, shortcuts);
             }
         }
         of_hosts.push(shares);
@@ -72,7 +73,7 @@ fn shares(dag: &mut Dag, state: &State) -> LinkShares {
     twists
         .iter()
         .map(|twist| {
-            let torques = power_on_parameters(dag, motion, (twist.angular, twist.linear));
+            let torques = power_on_parameters(dag, motion, twist.angular, twist.linear);
             (twist.row, torques)
         })
         .collect()

@@ -45,14 +45,15 @@ impl FrameMotion {
 pub(super) fn power_on_entries(
     dag: &mut Dag,
     motion: &FrameMotion,
-    (w, v): (Vector, Vector),
+    w: Vector,
+    v: Vector,
 ) -> [ExprId; ENTRIES] {
     let u = motion.spread(dag);
     let k11 = difference(dag, [w[2], u[1][0]], [w[1], u[2][0]]);
     let k22 = difference(dag, [w[0], u[2][1]], [w[2], u[0][1]]);
     let k33 = difference(dag, [w[1], u[0][2]], [w[0], u[1][2]]);
     let [k12, k13, k23] = off_diagonal(dag, &u, w);
-    let [x, y, z] = power_on_first(dag, motion, &u, (w, v));
+    let [x, y, z] = power_on_first(dag, motion, &u, w, v);
     let mass = dot(dag, v, motion.linear);
     [mass, x, y, z, k11, k22, k33, k12, k13, k23]
 }
@@ -65,7 +66,8 @@ pub(super) fn power_on_entries(
 pub(super) fn power_on_parameters(
     dag: &mut Dag,
     motion: &FrameMotion,
-    (w, v): (Vector, Vector),
+    w: Vector,
+    v: Vector,
 ) -> [ExprId; ENTRIES] {
     let u = motion.spread(dag);
     let [p, q, r] = motion.angular;
@@ -79,7 +81,7 @@ pub(super) fn power_on_parameters(
     });
     let [xx, yy, zz] = diagonal;
     let [xy, xz, yz] = off_diagonal(dag, &u, w).map(|power| dag.neg(power));
-    let [x, y, z] = power_on_first(dag, motion, &u, (w, v));
+    let [x, y, z] = power_on_first(dag, motion, &u, w, v);
     let mass = dot(dag, v, motion.linear);
     [mass, x, y, z, xx, yy, zz, xy, xz, yz]
 }
@@ -107,7 +109,8 @@ fn power_on_first(
     dag: &mut Dag,
     motion: &FrameMotion,
     u: &Matrix,
-    (w, v): (Vector, Vector),
+    w: Vector,
+    v: Vector,
 ) -> [ExprId; 3] {
     let lever = cross(dag, motion.linear, w);
     [0, 1, 2].map(|k| {

@@ -137,8 +137,10 @@ impl State {
     pub(super) fn jointed(
         mut self,
         dag: &mut Dag,
-        (variables, is_revolute): (JointVariables, bool),
-        (row, terms): (usize, MotionTerms),
+        variables: JointVariables,
+        is_revolute: bool,
+        row: usize,
+        terms: MotionTerms,
     ) -> Self {
         let (zero, one) = (dag.zero(), dag.one());
         let qd = if terms.rates { variables.qd } else { zero };
@@ -162,7 +164,7 @@ impl State {
 pub fn fixed_base_regressor(dag: &mut Dag, frames: &Frames, terms: MotionTerms) -> MatterRegressor {
     let base = State::fixed(dag, frames.gravity, terms);
     let equations = (0..frames.len()).map(Equation::Joint).collect();
-    pull(dag, frames, None, &base, (equations, terms))
+    pull(dag, frames, None, &base, equations, terms)
 }
 
 /// How a torso moves.
@@ -179,7 +181,8 @@ pub enum TorsoMotion {
 pub fn torso_regressor(
     dag: &mut Dag,
     frames: &Frames,
-    (torso, motion): (usize, TorsoMotion),
+    torso: usize,
+    motion: TorsoMotion,
     terms: MotionTerms,
 ) -> MatterRegressor {
     let (zero, one) = (dag.zero(), dag.one());
@@ -209,7 +212,7 @@ pub fn torso_regressor(
         twists.push(Twist { row, angular, linear });
     }
     equations.extend((torso + 1..frames.len()).map(Equation::Joint));
-    pull(dag, frames, Some(torso), &State { motion, twists }, (equations, terms))
+    pull(dag, frames, Some(torso), &State { motion, twists }, equations, terms)
 }
 
 fn pull(
@@ -217,7 +220,8 @@ fn pull(
     frames: &Frames,
     torso: Option<usize>,
     base: &State,
-    (equations, terms): (Vec<Equation>, MotionTerms),
+    equations: Vec<Equation>,
+    terms: MotionTerms,
 ) -> MatterRegressor {
     let zero = dag.zero();
     let mut rows = vec![vec![[zero; ENTRIES]; frames.len()]; equations.len()];
@@ -235,12 +239,12 @@ fn pull(
             parent.zip(row).map(|(parent, row)| {
                 let turns = frame.seat.iter().chain(&frame.joint_turn);
                 let seat = parent.moved_then_turned(dag, frame.offset, turns);
-                seat.jointed(dag, (frame.variables, frame.is_revolute), (row, terms))
+                seat.jointed(dag, frame.variables, frame.is_revolute, row, terms)
             })
         };
         if let Some(State { motion, twists }) = &state {
             for twist in twists {
-                rows[twist.row][i] = power_on_entries(dag, motion, (twist.angular, twist.linear));
+                rows[twist.row][i] = power_on_entries(dag, motion, twist.angular, twist.linear);
             }
         }
         states.push(state);

@@ -58,7 +58,7 @@ impl Feasible {
 
     /// The trajectory file; remarks say how it was found.
     pub fn to_json(&self, x: &[f64], name: &str, remarks: &Value) -> Value {
-        trajectory_file(&self.model, &self.space, x, (name, remarks))
+        trajectory_file(&self.model, &self.space, x, name, remarks)
     }
 
     fn search(&self) -> Search<'_> {

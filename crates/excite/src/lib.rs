@@ -235,7 +235,7 @@ impl Excited {
     /// The trajectory file.
     pub fn to_json(&self, name: &str, remarks: &Value) -> Value {
         let coordinates = &self.found().coordinates;
-        trajectory_file(&self.model, &self.space, coordinates, (name, remarks))
+        trajectory_file(&self.model, &self.space, coordinates, name, remarks)
     }
 }
 
@@ -244,7 +244,8 @@ fn trajectory_file(
     model: &ExcitedModel,
     space: &Space,
     coordinates: &[f64],
-    (name, remarks): (&str, &Value),
+    name: &str,
+    remarks: &Value,
 ) -> Value {
     let count = space.coordinates();
     let mut joints = Map::new();

@@ -212,7 +212,7 @@ impl Problem<'_> {
             for (place, &joint) in moving.iter().enumerate() {
                 let at = order * moving.len() + place;
                 let step = self.step(order, joint);
-                let apart = self.apart(evaluators, &motion, &a, (order, joint, step));
+                let apart = self.apart(evaluators, &motion, &a, order, joint, step);
                 objective_pulls[at] = apart.objective;
                 for (pulls, (bound, weights)) in
                     limit_pulls.iter_mut().zip(bounds.iter().zip(&weights))
@@ -244,7 +244,9 @@ impl Problem<'_> {
         evaluators: &mut Evaluators,
         motion: &[Vec<f64>],
         a: &nalgebra::DMatrix<f64>,
-        (order, joint, step): (usize, usize, f64),
+        order: usize,
+        joint: usize,
+        step: f64,
     ) -> Apart {
         let at = order * self.model.joints.len() + joint;
         let moved = |step: f64| -> Vec<f64> { motion[at].iter().map(|v| v + step).collect() };

@@ -3,10 +3,10 @@
 use super::doubt::{GivenValues, MisreadColumns, misread_apart, misread_columns};
 use super::estimate::{
     Consistent, ContradictingLog, Convergence, Estimate, EstimateError, IdentifiedParameter,
-    Judgement, Options, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions,
-    consistent, contradicting_held_out, contradicting_logs, convergence, estimate,
-    exceeding_joints, filter_errors, long_enough, noise_in_torques, parameters, unexplained_joints,
-    validate,
+    Judgement, Options, ShownLogs, SlowRows, Standing, Status, Unexplained, Validation,
+    biased_frictions, consistent, contradicting_held_out, contradicting_logs, convergence,
+    estimate, exceeding_joints, filter_errors, long_enough, noise_in_torques, parameters,
+    unexplained_joints, validate,
 };
 use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
@@ -278,7 +278,7 @@ pub fn estimated(request: Request<'_>) -> Result<Estimated, EstimateError> {
     let left = validate(model, phi, train);
     let listed = parameters(model, &found);
     Ok(Estimated {
-        filter_error: filter_error(model, train, (phi, &left)),
+        filter_error: filter_error(model, train, phi, &left),
         biasing_logs: biasing_logs(model, &listed, &found),
         biased_alone: biased_alone(&found),
         parameters: listed,
@@ -299,7 +299,7 @@ impl Estimated {
     pub fn is_smeared(&self, model: &RegressionModel, log: &Conditioned) -> bool {
         let phi = self.found.solution.phi.as_slice();
         let log = std::slice::from_ref(log);
-        filter_error(model, log, (phi, &validate(model, phi, log))).is_some()
+        filter_error(model, log, phi, &validate(model, phi, log)).is_some()
     }
 
     /// All that there is to say of it and of the logs that it is from.
@@ -318,7 +318,8 @@ impl Estimated {
         let counted: Vec<f64> = noise.zip(torques.iter().copied()).map(share).collect();
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
-        let mut contradicting_logs = contradicting_logs(model, (train, &shown), (&found, options));
+        let train_logs = ShownLogs { logs: train, shown: &shown };
+        let mut contradicting_logs = contradicting_logs(model, train_logs, &found, options);
         let misread = misread(request, &found, &contradicting_logs);
         let (judges, judging) = match held_out.is_empty() {
             true => (train, shown.clone()),
@@ -326,14 +327,11 @@ impl Estimated {
         };
         let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
         let left_together = validate(model, phi, &together);
-        contradicting_logs.extend(contradicting_held_out(
-            model,
-            (train, held_out),
-            (&found, options),
-        ));
-        let exceeding = exceeding_joints(model, held_out, (&found, options, &counted));
+        contradicting_logs.extend(contradicting_held_out(model, train, held_out, &found, options));
+        let exceeding = exceeding_joints(model, held_out, &found, options, &counted);
         let judgement = Judgement { found: &found, left: &left_together, counted: &counted };
-        let mut unexplained = unexplained_joints(model, (judges, &judging), judgement);
+        let judging_logs = ShownLogs { logs: judges, shown: &judging };
+        let mut unexplained = unexplained_joints(model, judging_logs, judgement);
         let is_told = |one: &Unexplained| {
             let contradicts = |log: &ContradictingLog| one.file.as_ref() == Some(&log.file);
             contradicting_logs.iter().any(contradicts)
@@ -345,11 +343,11 @@ impl Estimated {
         Identification {
             unexplained,
             misread,
-            reversals: reversals(model, train, (&found, options)),
-            left_out: left_out(model, train, (&found, &counted)),
+            reversals: reversals(model, train, &found, options),
+            left_out: left_out(model, train, &found, &counted),
             contradicting_logs,
             noisy_logs: noisy_logs(model, train, &found),
-            lacking: lacking(model, (train, &shown), (&found, &torques)),
+            lacking: lacking(model, train_logs, &found, &torques),
             periods: train.iter().map(Conditioned::periods).sum(),
             parameters: listed,
             filter_error,
@@ -393,7 +391,7 @@ fn misread(
     let is_told = |&log: &usize| contradicting.iter().any(|one| one.file == train[log].file);
     let told: Vec<usize> = shown.iter().copied().filter(is_told).collect();
     let asked = if told.is_empty() { &shown } else { &told };
-    let odd = odd_log(model, (asked, &shown), found);
+    let odd = odd_log(model, asked, &shown, found);
     if let (true, Some((log, others))) = (misread.is_empty(), odd) {
         let errors: Vec<f64> = others.factor.row_iter().map(|row| row.norm()).collect();
         let values = GivenValues { phi: others.phi.as_slice(), errors: &errors };
@@ -419,7 +417,8 @@ fn misread(
 fn filter_error(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (phi, left): (&[f64], &Validation),
+    phi: &[f64],
+    left: &Validation,
 ) -> Option<(String, f64)> {
     let names = model.joints.iter().map(|joint| joint.name.clone());
     let is_large = |(name, share): &(String, f64)| {
@@ -434,14 +433,15 @@ fn filter_error(
 fn reversals(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (found, options): (&Estimate, &Options),
+    found: &Estimate,
+    options: &Options,
 ) -> Vec<(String, f64)> {
     if !matches!(options.slow, SlowRows::Biasing | SlowRows::Kept) {
         return Vec::new();
     }
-    let without = left_out(model, logs, (found, &[]));
+    let without = left_out(model, logs, found, &[]);
     let of = |(joint, share): (usize, f64)| (model.joints[joint].name.clone(), share);
-    let biased = biased_frictions(model, logs, (&found.solution.phi, &found.covariance));
+    let biased = biased_frictions(model, logs, &found.solution.phi, &found.covariance);
     let counted = biased.into_iter().map(of);
     counted.filter(|(name, _)| without.iter().all(|one| one.joint != *name)).collect()
 }
@@ -450,7 +450,8 @@ fn reversals(
 fn left_out(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (found, counted): (&Estimate, &[f64]),
+    found: &Estimate,
+    counted: &[f64],
 ) -> Vec<LeftOutRows> {
     let parts = &found.condensed.parts;
     let rows = |joint: usize| parts.iter().map(|part| part[joint].rows()).sum::<usize>();

@@ -74,7 +74,7 @@ pub fn take_out(log: &mut Conditioned, model: &RegressionModel, laws: &[AddedLaw
         for (own, joints) in first.into_iter().chain(second) {
             let Some(torque) = &mut log.torque[joints[0]] else { continue };
             let mut added = moved
-                .with((own, joints), &[], wide.start, |samples| own.torque(samples, &law.values));
+                .with(own, joints, &[], wide.start, |samples| own.torque(samples, &law.values));
             if let Some(filter) = &log.filter {
                 Butterworth::zero_phase(filter, &mut added);
             }
@@ -102,8 +102,7 @@ pub fn undo_logged_torques(log: &mut MotionLog, model: &RegressionModel, laws: &
     let moved = Moved { motion: &motion, loads: &loads, drives, sprung, step_s, start_s };
     undo_torques(&mut log.torque, laws, &moved, &(0..samples));
     let states = |law: &AddedLaw| {
-        let own = (&law.law, law.joints());
-        moved.with(own, &[], 0, |samples| law.law.states(samples, &law.values))
+        moved.with(&law.law, law.joints(), &[], 0, |samples| law.law.states(samples, &law.values))
     };
     // A simulation has states of laws of springs behind those of joints.
     let (springs, joints): (Vec<&AddedLaw>, Vec<&AddedLaw>) = laws
@@ -123,7 +122,7 @@ fn undo_torques(
     for law in laws.iter().rev().filter(|law| law.law.channel() == Some(Channel::Torque)) {
         let Some(torque) = &mut torques[law.joint] else { continue };
         let logged = torque[range.clone()].to_vec();
-        let truth = moved.with((&law.law, law.joints()), &logged, range.start, |samples| {
+        let truth = moved.with(&law.law, law.joints(), &logged, range.start, |samples| {
             law.law.corrected(samples, &law.values)
         });
         torque[range.clone()].copy_from_slice(&truth);
@@ -165,7 +164,8 @@ impl Moved<'_> {
     /// What a law is evaluated on; the first sample is the log's sample `first`.
     fn with<T>(
         &self,
-        (law, [joint, other]): (&EffectLaw, [usize; 2]),
+        law: &EffectLaw,
+        [joint, other]: [usize; 2],
         tau: &[f64],
         first: usize,
         apply: impl FnOnce(&JointSamples<'_>) -> T,

@@ -1,16 +1,16 @@
 //! That what is left of torques is no noise: something is not as the model has it.
 
-use super::estimate::{Estimate, no_noise};
+use super::estimate::{Estimate, ShownLogs, no_noise};
 use crate::policy::lacking::{OTHER, SAID};
-use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 
 /// The joints of whose torques, roots of mean squares [N m, N], something is left that is no noise,
 /// with its share.
 pub(super) fn lacking(
     model: &RegressionModel,
-    logs: (&[Conditioned], &[usize]),
-    (found, torques): (&Estimate, &[f64]),
+    logs: ShownLogs<'_>,
+    found: &Estimate,
+    torques: &[f64],
 ) -> Vec<(String, f64)> {
     let left = no_noise(model, logs, found).into_iter();
     left.filter(|&(joint, left)| left > SAID * torques[joint])

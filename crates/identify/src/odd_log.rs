@@ -7,7 +7,8 @@ use denavit_plants::regression::RegressionModel;
 /// the others say.
 pub(super) fn odd_log(
     model: &RegressionModel,
-    (asked, logs): (&[usize], &[usize]),
+    asked: &[usize],
+    logs: &[usize],
     found: &Estimate,
 ) -> Option<(usize, Solution)> {
     let condensed = &found.condensed;

@@ -253,7 +253,7 @@ pub fn static_knowledge(
                 let mut rows = RegressionRows::default();
                 evaluator.evaluate(&columns, &mut rows).expect("three numbers for each joint");
                 for torque in torques {
-                    hold(model, &rows, (at, torque), &mut knowledge, &mut faults);
+                    hold(model, &rows, at, torque, &mut knowledge, &mut faults);
                 }
             }
         }
@@ -299,7 +299,8 @@ fn masses(
 fn hold(
     model: &RegressionModel,
     rows: &RegressionRows,
-    (at, torque): (usize, &HoldingTorque),
+    at: usize,
+    torque: &HoldingTorque,
     knowledge: &mut Knowledge,
     faults: &mut Vec<StaticFault>,
 ) {

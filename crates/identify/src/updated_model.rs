@@ -45,7 +45,8 @@ impl std::error::Error for UpdateError {}
 pub fn updated_model(
     robot: &Robot,
     model: &RegressionModel,
-    (found, listed): (&Consistent, &[IdentifiedParameter]),
+    found: &Consistent,
+    listed: &[IdentifiedParameter],
     source: &str,
 ) -> Result<UpdatedModel, UpdateError> {
     let is_about_com = |link: &str| {

@@ -50,8 +50,8 @@ pub(crate) fn cut(tree: &mut Tree, tip: &str, at: usize, faults: &mut Faults) {
     for link in &mut tree.links {
         link.parent = link.parent.map(|parent| places[parent]);
     }
-    tree.contacts.retain(|(_, link, _)| kept[*link]);
-    for (_, link, _) in &mut tree.contacts {
-        *link = places[*link];
+    tree.contacts.retain(|point| kept[point.link]);
+    for point in &mut tree.contacts {
+        point.link = places[point.link];
     }
 }

@@ -5,7 +5,7 @@ use crate::fault::{clip, listed};
 use crate::json::Json;
 use crate::layout::{Layout, PlacedRow};
 use crate::names::identifier;
-use crate::tree::{Motion, Tree, TreeBody, TreeDrive, TreeJoint};
+use crate::tree::{Motion, Tree, TreeBody, TreeContact, TreeDrive, TreeJoint};
 use denavit_codegen::model::{FORMAT, Unphysical};
 use denavit_codegen::number::Rational;
 use num_traits::{Signed, Zero};
@@ -177,11 +177,11 @@ fn drive(tree: &Tree, row: &PlacedRow) -> Option<(String, Json)> {
     Some((row.name.clone(), Json::Object(given.collect())))
 }
 
-fn contact(layout: &Layout, (name, link, at): &(String, usize, [Rational; 3])) -> Json {
-    let frame = layout.frames[*link].as_deref().unwrap_or("base");
+fn contact(layout: &Layout, point: &TreeContact) -> Json {
+    let frame = layout.frames[point.link].as_deref().unwrap_or("base");
     Json::Object(vec![
-        ("name", Json::text(name)),
+        ("name", Json::text(&point.name)),
         ("link", Json::text(frame)),
-        ("position", numbers(at)),
+        ("position", numbers(&point.at)),
     ])
 }

@@ -23,8 +23,18 @@ pub(crate) struct Tree {
     pub(crate) links: Vec<TreeLink>,
     /// What its author should know.
     pub(crate) notes: Vec<String>,
-    /// Points that may touch the ground: a name, the link, the place in its frame.
-    pub(crate) contacts: Vec<(String, usize, Vector)>,
+    /// Points that may touch the ground.
+    pub(crate) contacts: Vec<TreeContact>,
+}
+
+/// A point that may touch the ground.
+#[derive(Debug)]
+pub(crate) struct TreeContact {
+    pub(crate) name: String,
+    /// The link that it is on.
+    pub(crate) link: usize,
+    /// Its place in the frame of the link.
+    pub(crate) at: Vector,
 }
 
 /// A link, or a step between two joints of one link.

@@ -22,15 +22,23 @@ const MAX_PREFIXES: usize = 16;
 /// The text of a file, with declarations that it lacks.
 pub(crate) struct Source<'a> {
     text: Cow<'a, str>,
-    /// Where declarations stand, and how long they are.
-    added: (usize, usize),
+    added: Added,
+}
+
+/// Declarations that a text has and its file lacks.
+#[derive(Clone, Copy, Debug, Default)]
+struct Added {
+    /// Where they stand.
+    at: usize,
+    /// How long they are.
+    length: usize,
 }
 
 /// An element of a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Element<'s> {
     node: Node<'s, 's>,
-    added: (usize, usize),
+    added: Added,
     /// Where another file is included that it is part of.
     within: Option<usize>,
 }
@@ -66,7 +74,7 @@ impl<'a> Source<'a> {
             let cause = Cause::with_hint("the file is not UTF-8 text", "save the file as UTF-8");
             refuse(error.valid_up_to(), cause)
         })?;
-        let mut source = Self { text: Cow::Borrowed(text), added: (0, 0) };
+        let mut source = Self { text: Cow::Borrowed(text), added: Added::default() };
         for _ in 0..=MAX_PREFIXES {
             let error = match source.parse() {
                 Ok(document) => {
@@ -107,13 +115,14 @@ impl<'a> Source<'a> {
     /// The text with a prefix declared in its first element.
     fn declared(&self, prefix: &str) -> Option<Self> {
         let at = match self.added {
-            (0, 0) => after_first_name(&self.text)?,
-            (at, _) => at,
+            Added { at: 0, length: 0 } => after_first_name(&self.text)?,
+            Added { at, .. } => at,
         };
         let declaration = format!(" xmlns:{prefix}=\"{prefix}\"");
         let mut text = self.text.clone().into_owned();
         text.insert_str(at, &declaration);
-        Some(Self { text: Cow::Owned(text), added: (at, self.added.1 + declaration.len()) })
+        let length = self.added.length + declaration.len();
+        Some(Self { text: Cow::Owned(text), added: Added { at, length } })
     }
 
     /// The first element of the document.
@@ -128,8 +137,8 @@ impl<'a> Source<'a> {
 }
 
 /// A place of the file, of one in the text with what was added.
-fn source_place(at: usize, (added_at, added): (usize, usize)) -> usize {
-    if at >= added_at + added { at - added } else { at.min(added_at) }
+fn source_place(at: usize, added: Added) -> usize {
+    if at >= added.at + added.length { at - added.length } else { at.min(added.at) }
 }
 
 /// Where the name of the first element ends.

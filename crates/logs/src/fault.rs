@@ -80,7 +80,7 @@ fn not_a_number(f: &mut fmt::Formatter<'_>, column: &str, cell: &str) -> fmt::Re
     }
 }
 
-fn damaged(f: &mut fmt::Formatter<'_>, (at, whole): (Place, usize), cause: &str) -> fmt::Result {
+fn damaged(f: &mut fmt::Formatter<'_>, at: Place, whole: usize, cause: &str) -> fmt::Result {
     let what = match at {
         Place::Message(_) => "messages",
         _ => "rows",
@@ -131,7 +131,7 @@ impl fmt::Display for FileFault {
             Self::OtherFormat { format, hint } => {
                 write!(f, "is {format}, which is not read\n  hint: {hint}")
             }
-            Self::Damaged { at, whole, cause } => damaged(f, (*at, *whole), cause),
+            Self::Damaged { at, whole, cause } => damaged(f, *at, *whole, cause),
             Self::NoMessages { topics } => no_messages(f, topics),
             Self::Bag { cause, hint } => write!(f, "{cause}\n  hint: {hint}"),
             Self::Outside { file } => write!(

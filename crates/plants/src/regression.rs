@@ -138,7 +138,7 @@ impl RegressionModel {
             listed: listed(&mut numbers, robot, &base)?,
             parameters: parameters(robot, &base, &theta0),
             law: CoulombLaw::Sign,
-            coulomb: coulomb_columns((&joints, &pattern), &axes, &standard),
+            coulomb: coulomb_columns(&joints, &pattern, &axes, &standard),
             joints,
             axes,
             standard,
@@ -239,7 +239,8 @@ fn reduced(robot: &Robot, keep: &[String]) -> Result<BaseParameters, RegressionE
 
 /// Where the columns of Coulomb friction stand: each is a parameter of its joint alone.
 fn coulomb_columns(
-    (joints, pattern): (&[RegressionJoint], &[Vec<usize>]),
+    joints: &[RegressionJoint],
+    pattern: &[Vec<usize>],
     axes: &[RegressionParameter],
     standard: &[StandardParameter],
 ) -> Vec<(usize, usize)> {

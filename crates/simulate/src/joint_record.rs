@@ -78,7 +78,8 @@ impl JointObserver {
     pub(super) fn see(
         &mut self,
         control: &Control,
-        (t_s, reference_s): (f64, f64),
+        t_s: f64,
+        reference_s: f64,
         [q, qd]: [&[f64]; 2],
     ) {
         self.seen_s = Some(t_s);
@@ -149,7 +150,7 @@ mod tests {
         let looks = [(0.0, 0.0, 3.0), (1.0, 1.5, 1.0), (1.5, 0.75, -2.5), (4.0, 0.5, 0.0)];
         for (t_s, q, command) in looks {
             seen.commanded_until(t_s);
-            seen.see(&control, (t_s, t_s), [&[q, -q], &[-2.0 * t_s, 0.0]]);
+            seen.see(&control, t_s, t_s, [&[q, -q], &[-2.0 * t_s, 0.0]]);
             seen.command(&[command, 9.0]);
         }
         let records = seen.finish();

@@ -43,6 +43,14 @@ pub(super) struct LawForces {
 /// Accelerations of joints and of motors, all on the side of the joints [rad/s^2, m/s^2].
 pub(super) type Accelerations<'a> = [&'a [f64]; 2];
 
+/// What the joints accelerate by without the laws: D qdd = torque.
+pub(super) struct Driven<'a> {
+    /// D, row by row.
+    pub(super) mass: &'a [f64],
+    /// Of each joint [N m, N].
+    pub(super) torque: &'a [f64],
+}
+
 impl LawForces {
     pub(super) fn new(model: &PlantModel, drives: &Drives) -> Self {
         let of = |joint| Sprung { joint, motor: drives.motor_of(model, joint) };
@@ -165,7 +173,8 @@ impl LawForces {
     /// Takes the laws away from the accelerations of motors, on their own side \[rad/s^2\].
     pub(super) fn brake_motors(
         &self,
-        (model, drives): (&PlantModel, &Drives),
+        model: &PlantModel,
+        drives: &Drives,
         accelerations: &mut [f64],
     ) {
         for (motor, ratio) in self.sprung.iter().filter_map(|own| own.motor) {
@@ -191,12 +200,14 @@ impl LawForces {
         &mut self,
         plant: &mut dyn Plant,
         drives: &Drives,
-        (t_s, parts): (f64, Parts<'_>),
-        (mass, torque): (&[f64], &[f64]),
-        (joints, motors): (&mut [f64], &mut [f64]),
+        t_s: f64,
+        parts: Parts<'_>,
+        driven: Driven<'_>,
+        [joints, motors]: [&mut [f64]; 2],
     ) -> Result<(), Breakdown> {
         let (n, count) = (joints.len(), joints.len() + motors.len());
         let mut inertia = DMatrix::zeros(count, count);
+        let Driven { mass, torque } = driven;
         for (row, line) in mass.chunks_exact(n).enumerate() {
             line.iter().enumerate().for_each(|(column, entry)| inertia[(row, column)] = *entry);
         }

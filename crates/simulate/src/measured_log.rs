@@ -17,7 +17,8 @@ use denavit_numerics::Random;
 pub(crate) fn measured_log(
     log: &Log,
     measurement: &Measurement,
-    (torque_noise, is_sampled): (f64, bool),
+    torque_noise: f64,
+    is_sampled: bool,
     seed: u64,
 ) -> Log {
     let has_motor =
@@ -103,7 +104,7 @@ mod tests {
             values: (0..12 * 500).map(|at| (at % 12) as f64 + 0.26).collect(),
         };
         let measurement = Measurement { resolution: 0.1, ..Measurement::default() };
-        let measured = measured_log(&log, &measurement, (0.5, true), 1);
+        let measured = measured_log(&log, &measurement, 0.5, true, 1);
         let names = ["t", "q_a", "q_b", "ref_a", "tau_a", "tau_cmd_b", "motor_b", "f_toe_z"];
         assert_eq!(measured.columns, names);
         let column = |name: &str| measured.column(name).expect("a column");

@@ -15,7 +15,7 @@ use super::control::{Control, ControlMemory};
 use super::drive::{DriveOutput, Drives};
 use super::ground::Ground;
 use super::integrate::Rates;
-use super::laws::LawForces;
+use super::laws::{Driven, LawForces};
 use super::planner::JointPlan;
 use super::push::{self, Push};
 use super::state::{INTEGRALS, Layout};
@@ -228,14 +228,15 @@ impl<'a> Motion<'a> {
             let driving = acceleration.clone();
             self.delassus.solve_mass(acceleration);
             let motors = &mut drive.motor_acceleration;
-            let (at, torque) = ((t_s, parts), (&mass[..], &driving[..]));
-            laws.solve(self.plant, &self.drives, at, torque, (acceleration, motors))?;
+            let driven = Driven { mass, torque: &driving };
+            let found = [acceleration.as_mut_slice(), motors];
+            laws.solve(self.plant, &self.drives, t_s, parts, driven, found)?;
             laws.pass_on(&mut drive.torque);
         } else {
             acceleration.iter_mut().zip(&laws.torque).for_each(|(entry, law)| *entry -= law);
             self.delassus.solve_mass(acceleration);
-            let drives = (self.plant.model(), &self.drives);
-            laws.brake_motors(drives, &mut drive.motor_acceleration);
+            let model = self.plant.model();
+            laws.brake_motors(model, &self.drives, &mut drive.motor_acceleration);
             laws.pass_on(&mut drive.torque);
         }
         match acceleration.iter().all(|entry| entry.is_finite()) {

@@ -108,7 +108,8 @@ impl LinkWrench {
         pushes: &[Push],
         link: usize,
         plant: &mut dyn Plant,
-        (t_s, q): (f64, &[f64]),
+        t_s: f64,
+        q: &[f64],
     ) -> Self {
         let mut sum = Self { link, force: [0.0; 3], moment: [0.0; 3] };
         for push in pushes.iter().filter(|push| push.point.link == link) {

@@ -148,8 +148,8 @@ impl Recorder {
     fn see(&mut self, motion: &Motion<'_>, t_s: f64, y: &[f64]) {
         let parts = motion.layout.parts(y);
         self.joints.commanded_until(t_s);
-        let times = (t_s, motion.reference_time(t_s));
-        self.joints.see(&motion.control, times, [parts.q, parts.qd]);
+        let reference_s = motion.reference_time(t_s);
+        self.joints.see(&motion.control, t_s, reference_s, [parts.q, parts.qd]);
     }
 
     fn audit_contacts(&mut self, motion: &Motion<'_>) {
@@ -243,7 +243,7 @@ impl Recorder {
         }
         values.extend(energies);
         for link in &self.pushed {
-            let wrench = LinkWrench::of(motion.pushes, *link, motion.plant, (time, parts.q));
+            let wrench = LinkWrench::of(motion.pushes, *link, motion.plant, time, parts.q);
             values.extend(wrench.force);
             values.extend(wrench.moment);
         }

@@ -111,7 +111,7 @@ pub fn simulate_told(
     told: &mut Told<'_>,
 ) -> Result<Run, StartError> {
     let (motion, t_s, y) = prepare(plant, control, initial, simulation)?;
-    Ok(Runner::begin(motion, simulation, (t_s, y), None)?.told(told).go().0)
+    Ok(Runner::begin(motion, simulation, t_s, y, None)?.told(told).go().0)
 }
 
 /// As [`simulate`], with a controller that compensates by a model of its own, `believed`, which has
@@ -125,7 +125,7 @@ pub fn simulate_believing(
 ) -> Result<Run, StartError> {
     let (mut motion, t_s, y) = prepare(plant, control, initial, simulation)?;
     motion.believed = believed;
-    Ok(Runner::begin(motion, simulation, (t_s, y), None)?.go().0)
+    Ok(Runner::begin(motion, simulation, t_s, y, None)?.go().0)
 }
 
 /// As [`simulate`], and what small changes of the initial state become: each a direction in the
@@ -146,7 +146,7 @@ pub fn simulate_varied(
         prepare(plant, control, initial, simulation).map_err(VariationError::Start)?;
     let layout = motion.layout;
     let variation = Some(Variation::new(layout, changes));
-    let runner = Runner::begin(motion, simulation, (t_s, y), variation);
+    let runner = Runner::begin(motion, simulation, t_s, y, variation);
     let (run, variation) = runner.map_err(VariationError::Start)?.go();
     let changes = variation.map_or_else(|| Ok(Vec::new()), |variation| variation.finish(layout))?;
     match run.stop {
@@ -167,7 +167,8 @@ fn prepare<'a>(
     let mut drives = Drives::new(plant.model(), simulation.drives);
     drives.stiction_rate = simulation.stiction_rate;
     check(plant, control, &mut state, simulation, &drives)?;
-    check_steps(&state, simulation, "integrator", simulation.method.longest_step())?;
+    let (step_s, evaluations) = simulation.method.longest_step();
+    check_steps(&state, simulation, "integrator", step_s, evaluations)?;
     if state.laws.len() != plant.law_states() {
         let mut laws = LawForces::new(plant.model(), &drives);
         let started = laws.start(plant, state.t_s, Parts::of(&state));

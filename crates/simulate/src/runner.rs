@@ -62,7 +62,8 @@ impl<'a> Runner<'a> {
     pub(super) fn begin(
         mut motion: Motion<'a>,
         simulation: &'a Simulation,
-        (start_s, mut y): (f64, Vec<f64>),
+        start_s: f64,
+        mut y: Vec<f64>,
         variation: Option<Variation>,
     ) -> Result<Self, StartError> {
         let standing = stand(&mut motion, &mut y)?;
@@ -197,7 +198,7 @@ impl<'a> Runner<'a> {
         let stop = self.respond(fired)?;
         if self.events.len() > before && !passed {
             let law = &self.simulation.touching;
-            variation.jump(&mut self.motion, &crossing, (law, hit.as_deref()), &self.y)?;
+            variation.jump(&mut self.motion, &crossing, law, hit.as_deref(), &self.y)?;
         }
         self.variation = Some(variation);
         Ok(stop)

@@ -124,7 +124,7 @@ impl Settler {
         for _ in 0..HELD_ROUNDS {
             self.decide(motion, touching, &mut settled)?;
             motion.factor_mass(y)?;
-            settled.impulses.extend(self.adopt(motion, (&candidates, &before), &candidates, y));
+            settled.impulses.extend(self.adopt(motion, &candidates, &before, &candidates, y));
             if !self.release_held(motion, &candidates, y) {
                 break;
             }
@@ -136,7 +136,7 @@ impl Settler {
         if same && self.let_go(motion, &before, ahead)? {
             self.decide(motion, touching, &mut settled)?;
             motion.factor_mass(y)?;
-            settled.impulses.extend(self.adopt(motion, (&candidates, &before), &candidates, y));
+            settled.impulses.extend(self.adopt(motion, &candidates, &before, &candidates, y));
         }
         Ok(settled)
     }
@@ -253,7 +253,7 @@ impl Settler {
             }
             self.decide(motion, touching, settled)?;
             y.copy_from_slice(&before);
-            stilled = self.adopt(motion, (&slow, &[]), candidates, y);
+            stilled = self.adopt(motion, &slow, &[], candidates, y);
             let held = self.release_held(motion, &slow, y);
             let decided: Vec<bool> = self.solution.modes.iter().map(|m| m.is_closed()).collect();
             if !held && decided == carries {
@@ -400,7 +400,8 @@ impl Settler {
     fn adopt(
         &mut self,
         motion: &mut Motion<'_>,
-        (decided, before): (&[usize], &[Closed]),
+        decided: &[usize],
+        before: &[Closed],
         touching: &[usize],
         y: &mut [f64],
     ) -> Vec<(usize, Vec<f64>)> {

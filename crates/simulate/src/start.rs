@@ -136,7 +136,8 @@ pub(super) fn check_steps(
     state: &State,
     simulation: &Simulation,
     part: &'static str,
-    (step_s, evaluations): (f64, f64),
+    step_s: f64,
+    evaluations: f64,
 ) -> Result<(), StartError> {
     let needed = (simulation.end_s - state.t_s) / step_s * evaluations;
     let allowed = simulation.max_evaluations;

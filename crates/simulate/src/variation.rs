@@ -174,7 +174,7 @@ impl Variation {
         let mut rates = vec![0.0; y.len()];
         motion.rates(t_s, y, &mut rates)?;
         motion.holds_places = false;
-        let found = self.delays(motion, watch, fired, (y, &rates));
+        let found = self.delays(motion, watch, fired, y, &rates);
         motion.holds_places = true;
         let delays_s = found?;
         Ok(Crossing { t_s, y: y.to_vec(), closed: motion.closed.clone(), rates, delays_s })
@@ -186,7 +186,8 @@ impl Variation {
         motion: &mut Motion<'_>,
         watch: &mut Watch,
         fired: Fired,
-        (y, rates): (&[f64], &[f64]),
+        y: &[f64],
+        rates: &[f64],
     ) -> Result<Vec<f64>, Breakdown> {
         let (t_s, size) = (fired.t_s, self.columns.nrows());
         let mut along = |direction: &[f64], time: f64| -> Result<(f64, f64), Breakdown> {
@@ -214,7 +215,8 @@ impl Variation {
         &mut self,
         motion: &mut Motion<'_>,
         crossing: &Crossing,
-        (law, hit): (&Touching, Option<&[usize]>),
+        law: &Touching,
+        hit: Option<&[usize]>,
         after: &[f64],
     ) -> Result<(), Breakdown> {
         let size = self.columns.nrows();
@@ -225,7 +227,7 @@ impl Variation {
             let mut change: Vec<f64> = self.columns.column(index).as_slice().to_vec();
             change.iter_mut().zip(&crossing.rates).for_each(|(x, f)| *x += delay_s * f);
             if let Some(hit) = hit {
-                change = self.collided(motion, crossing, (law, hit), &change)?;
+                change = self.collided(motion, crossing, law, hit, &change)?;
             }
             change.iter_mut().zip(&rates).for_each(|(x, f)| *x -= delay_s * f);
             self.columns.column_mut(index).copy_from_slice(&change[..size]);
@@ -238,7 +240,8 @@ impl Variation {
         &mut self,
         motion: &mut Motion<'_>,
         crossing: &Crossing,
-        (law, hit): (&Touching, &[usize]),
+        law: &Touching,
+        hit: &[usize],
         change: &[f64],
     ) -> Result<Vec<f64>, Breakdown> {
         let nominal = motion.closed.clone();

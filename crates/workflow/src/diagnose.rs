@@ -5,7 +5,7 @@ mod completed;
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
 use crate::observer::{Observer, Progress, Stage, Watched};
-use crate::robot_file::{EffectUse, RobotFile};
+use crate::robot_file::{EffectUse, RobotFile, Treatment};
 pub use completed::{Completed, NamedEffect};
 use denavit_codegen::effect::{self, Channel, Effect};
 use denavit_codegen::model::Robot;
@@ -61,7 +61,8 @@ pub struct Diagnosed {
 }
 
 /// What becomes of laws beside the equations that the model has.
-const ESTIMATED: (&str, &str) = ("estimated", "estimated again within its stated errors");
+const ESTIMATED: Treatment =
+    Treatment { name: "estimated", words: "estimated again within its stated errors" };
 
 /// Says which effects a model lacks, where, and how sure that is: the model's own parameters are
 /// estimated again within their standard deviations, effects of the catalogue are compared by the
@@ -160,7 +161,7 @@ fn subject(
 ) -> Result<Subject, Error> {
     let ApartEffects { robot, .. } = &file.apart;
     let model = regression(robot)?;
-    let [mut train, mut held_out] = read(logs, (robot, &model), remarks)?;
+    let [mut train, mut held_out] = read(logs, robot, &model, remarks)?;
     let before = before_springs(robot, &model.joints, &mut [&mut train, &mut held_out]);
     let (robot, model, springs) = match before {
         Some(BeforeSprings { robot, springs }) => {
@@ -211,13 +212,14 @@ fn regression(robot: &Robot) -> Result<RegressionModel, Error> {
 /// Reads the logs that are searched and those that judge.
 fn read(
     logs: &Logs,
-    (robot, model): (&Robot, &RegressionModel),
+    robot: &Robot,
+    model: &RegressionModel,
     remarks: &mut Vec<(String, LogRemark)>,
 ) -> Result<[Vec<MeasuredLog>; 2], Error> {
     let failed = |error| Cause::Plant(model.model.clone(), error);
     let mut ground = Ground::under(robot, model).map_err(failed)?;
     let paths = logs.train.iter().chain(&logs.held_out);
-    let read = paths.map(|path| logs.measured(path, (robot, model)));
+    let read = paths.map(|path| logs.measured(path, robot, model));
     let mut all = Error::of_any_log(read)?;
     for log in &mut all {
         for remark in std::mem::take(&mut log.remarks) {

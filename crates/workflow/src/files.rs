@@ -321,7 +321,8 @@ impl Files {
     pub fn bytes_or_shipped(
         &self,
         path: &Path,
-        (kind, all): (&'static str, &'static [ShippedModel]),
+        kind: &'static str,
+        all: &'static [ShippedModel],
         wanted: FileKind,
     ) -> Result<Vec<u8>, Error> {
         let name = path.display().to_string();

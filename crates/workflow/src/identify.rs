@@ -13,7 +13,7 @@ mod two_stage;
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
 use crate::observer::{Observer, Stage, Watched};
-use crate::robot_file::{EffectUse, RobotFile};
+use crate::robot_file::{EffectUse, RobotFile, Treatment};
 pub use conditions::{Conditions, FilterChoice};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;
@@ -112,10 +112,11 @@ struct Work<'a> {
 }
 
 /// What becomes of laws beside the equations.
-const TAKEN_OUT: (&str, &str) = (
-    "taken_out",
-    "a law beside the equations of the bodies: taken out of the logs with the values of the model",
-);
+const TAKEN_OUT: Treatment = Treatment {
+    name: "taken_out",
+    words: "a law beside the equations of the bodies: taken out of the logs with the values of the \
+            model",
+};
 
 /// Identifies base parameters, with standard errors, from logs of motion and torque.
 ///
@@ -155,7 +156,7 @@ pub fn identify(
     let simulates = !read.motions.is_empty() && watched.begins(Stage::SimulatingLogs);
     let simulated = simulates.then(|| {
         let controller = options.controller.as_ref();
-        SimulationGap::new((&file.whole, &updated), controller, (&read.motions, options.window_s))
+        SimulationGap::new(&file.whole, &updated, controller, &read.motions, options.window_s)
     });
     if let (Some(gap), true) = (&simulated, options.controller.is_some()) {
         gap.check()?;

@@ -40,7 +40,8 @@ impl Logs {
     pub(crate) fn measured(
         &self,
         path: &Path,
-        (robot, model): (&Robot, &RegressionModel),
+        robot: &Robot,
+        model: &RegressionModel,
     ) -> Result<MeasuredLog, Error> {
         let contacts: Vec<String> = robot.contacts.values().map(|one| one.name.clone()).collect();
         let of = LogOf {

@@ -51,6 +51,15 @@ pub struct RobotFile {
     pub notes: Vec<String>,
 }
 
+/// What is made of laws beside the equations of the bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Treatment {
+    /// As answers call it.
+    pub(crate) name: &'static str,
+    /// The same as part of a sentence.
+    pub(crate) words: &'static str,
+}
+
 /// What becomes of an effect that a model has.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectUse {
@@ -112,20 +121,21 @@ impl RobotFile {
     pub fn left_out(&self) -> Vec<EffectUse> {
         let words = "left out, since it is a law beside the equations of the bodies; `denavit \
                      identify` takes it out of logs";
-        self.uses(("left_out", words))
+        self.uses(Treatment { name: "left_out", words })
     }
 
     /// What becomes of each effect where laws are treated in this way.
-    pub(crate) fn uses(&self, (treatment, words): (&'static str, &'static str)) -> Vec<EffectUse> {
-        let known = "part of what is known, with the values of the model";
-        let of = |[effect, at]: [String; 2], treatment, words| EffectUse {
+    pub(crate) fn uses(&self, treatment: Treatment) -> Vec<EffectUse> {
+        let words = "part of what is known, with the values of the model";
+        let known = Treatment { name: "known", words };
+        let of = |[effect, at]: [String; 2], treatment: Treatment| EffectUse {
             effect,
             at,
-            treatment,
-            words,
+            treatment: treatment.name,
+            words: treatment.words,
         };
-        let taken_up = self.apart.taken_up.iter().cloned().map(|one| of(one, "known", known));
+        let taken_up = self.apart.taken_up.iter().cloned().map(|one| of(one, known));
         let laws = self.apart.laws.iter().map(|one| [one.law.name.clone(), one.at.clone()]);
-        taken_up.chain(laws.map(|one| of(one, treatment, words))).collect()
+        taken_up.chain(laws.map(|one| of(one, treatment))).collect()
     }
 }

@@ -15,8 +15,8 @@ impl Files {
     /// All that is wrong with it, or why it is not read.
     pub fn scenario(&self, path: &Path) -> Result<Scenario, Error> {
         let name = path.display().to_string();
-        let all = ("scenario", shipped::SCENARIOS);
-        let bytes = self.bytes_or_shipped(path, all, FileKind::Scenario)?;
+        let all = shipped::SCENARIOS;
+        let bytes = self.bytes_or_shipped(path, "scenario", all, FileKind::Scenario)?;
         let load = |model: &str| self.beside(path, model);
         Ok(walk::read_scenario(&name, &bytes, &load).map_err(Cause::Scenario)?)
     }

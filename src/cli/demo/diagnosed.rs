@@ -35,6 +35,6 @@ pub(super) fn diagnosed(
     let gaps = &shown.found.held_out;
     let gap = [gaps.before.all, gaps.after.all, gaps.floor.all];
     let paragraph = verdict_paragraph(&shown.found, &shown.candidates);
-    let verdict = (shown.found.verdict.word(), paragraph);
-    Ok(hidden.revealed(verdict, shown.named(), gap, files))
+    let verdict = shown.found.verdict.word();
+    Ok(hidden.revealed(verdict, paragraph, shown.named(), gap, files))
 }

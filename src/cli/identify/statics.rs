@@ -21,8 +21,7 @@ pub(super) fn run(
     let (logs, options) = (arguments.logs()?, arguments.options(&robot)?);
     let (name, bytes) = (path.display().to_string(), FILES.wanted(path, FileKind::Statics)?);
     let progress = Progress::new();
-    let found =
-        identify_statics(&robot, (&name, &bytes), (&logs, &options), &mut progress.observer())?;
+    let found = identify_statics(&robot, &name, &bytes, &logs, &options, &mut progress.observer())?;
     progress.clear();
     match arguments.json {
         true => write_json(out, &statics_json(&found))?,

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     check_outputs(&outputs)?;
     let progress = Progress::new();
     progress.show(&format!("designing {}", arguments.gait.display()));
-    let designed = design_gait(&FILES, &gait, (&arguments.gait, arguments.output.as_deref()))?;
+    let designed = design_gait(&FILES, &gait, &arguments.gait, arguments.output.as_deref())?;
     progress.clear();
     if let Some(path) = &arguments.output {
         write_whole(path, designed.scenario.as_bytes())?;

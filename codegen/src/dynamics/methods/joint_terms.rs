@@ -84,8 +84,8 @@ fn springs(dag: &mut Dag, link: &Link) -> ExprId {
     if let Some(spring) = link.drive.and_then(|drive| drive.return_spring) {
         let stretch = dag.sub(variables.q, spring.angle);
         let pull = dag.mul(spring.stiffness, stretch);
-        let acts = acting_side(spring.side, variables.q, spring.angle);
-        let one_sided = dag.select(Relation::Less, acts, pull, zero);
+        let (left, right) = acting_side(spring.side, variables.q, spring.angle);
+        let one_sided = dag.select(Relation::Less, left, right, pull, zero);
         torque = dag.add(torque, one_sided);
     }
     torque

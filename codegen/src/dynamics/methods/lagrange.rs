@@ -163,8 +163,8 @@ fn add_joint_energies(dag: &mut Dag, link: &Link, sums: &mut Energies) {
     }
     if let Some(spring) = link.drive.and_then(|drive| drive.return_spring) {
         let stretch = dag.sub(variables.q, spring.angle);
-        let acts = acting_side(spring.side, variables.q, spring.angle);
-        let elongation = dag.select(Relation::Less, acts, stretch, zero);
+        let (left, right) = acting_side(spring.side, variables.q, spring.angle);
+        let elongation = dag.select(Relation::Less, left, right, stretch, zero);
         let square = dag.mul(elongation, elongation);
         sums.springs = add_half_product(dag, sums.springs, spring.stiffness, square);
     }

@@ -85,7 +85,7 @@ pub fn robot_decomposition(
         nomenclature::description(&robot.description, &robot.source, &robot.assumptions);
     let table = nomenclature::nomenclature(robot, &found.dag, &notation);
     let hash = format!("{:016x}", robot.hash);
-    contents.document((&robot.name, &hash), &description, &table)
+    contents.document(&robot.name, &hash, &description, &table)
 }
 
 /// f and B of given equations.
@@ -110,7 +110,7 @@ pub fn equations_decomposition(
         &equations.assumptions,
     );
     let table = nomenclature::names(equations, &notation);
-    contents.document((&equations.name, "of equations"), &description, &table)
+    contents.document(&equations.name, "of equations", &description, &table)
 }
 
 struct Contents<'a> {
@@ -130,7 +130,8 @@ type Formulas<'a> = &'a [Vec<String>];
 impl Contents<'_> {
     fn document(
         &self,
-        (name, hash): (&str, &str),
+        name: &str,
+        hash: &str,
         description: &str,
         table: &str,
     ) -> Result<String, TemplateError> {

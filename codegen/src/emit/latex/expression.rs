@@ -122,10 +122,10 @@ impl<'a> Writer<'a> {
         let name = self.notation.intermediate(self.definitions.len() + 1);
         self.definitions.push((name.clone(), form.text()));
         let rank = u32::try_from(self.definitions.len()).unwrap_or(u32::MAX);
-        self.factor(expr, (Place::Intermediate, rank), Body::Symbol(name))
+        self.factor(expr, Place::Intermediate, rank, Body::Symbol(name))
     }
 
-    fn factor(&self, base: ExprId, (place, rank): (Place, u32), body: Body) -> Form {
+    fn factor(&self, base: ExprId, place: Place, rank: u32, body: Body) -> Form {
         Form::factor(Factor { base, place, rank, body, exponent: 1 })
     }
 
@@ -133,7 +133,7 @@ impl<'a> Writer<'a> {
         let of = |operand: ExprId| self.forms[&operand].clone();
         match self.dag.node(expr) {
             Node::Constant(id) => Form::number(self.dag.constant_value(id).clone()),
-            Node::Pi => self.factor(expr, (Place::Inertia, 0), Body::Symbol(r"\pi".to_owned())),
+            Node::Pi => self.factor(expr, Place::Inertia, 0, Body::Symbol(r"\pi".to_owned())),
             Node::Symbol(id) => {
                 let place = match self.dag.symbols()[id].class {
                     SymbolClass::Inertia => Place::Inertia,
@@ -147,7 +147,7 @@ impl<'a> Writer<'a> {
                 let text = self.notation.symbol(self.dag, id);
                 // In the order of their making: the file's.
                 let rank = u32::try_from(id.index() + 1).unwrap_or(u32::MAX);
-                self.factor(expr, (place, rank), Body::Symbol(text))
+                self.factor(expr, place, rank, Body::Symbol(text))
             }
             Node::Neg(a) => of(a).negated(),
             Node::Add(a, b) => of(a).plus(of(b)),
@@ -183,7 +183,7 @@ impl<'a> Writer<'a> {
 
     fn closed(&self, expr: ExprId, text: String, is_tall: bool) -> Form {
         let rank = self.order.rank(expr);
-        self.factor(expr, (Place::Function, rank), Body::Closed { text, is_tall })
+        self.factor(expr, Place::Function, rank, Body::Closed { text, is_tall })
     }
 
     fn unary(&self, expr: ExprId, function: UnaryFunction, a: ExprId) -> Form {
@@ -213,7 +213,7 @@ impl<'a> Writer<'a> {
             // By the lowest joint first; six bits hold a joint's number.
             let key = (0..4).fold(0, |key, row| (key << 6) | joints.get(row).map_or(0, |j| j & 63));
             let rank = u32::try_from(2 * key + first).unwrap_or(u32::MAX);
-            return self.factor(expr, (Place::Abbreviation, rank), Body::Symbol(text));
+            return self.factor(expr, Place::Abbreviation, rank, Body::Symbol(text));
         }
         let is_symbol = matches!(self.dag.node(a), Node::Symbol(_) | Node::Pi);
         let argument = match is_symbol {
@@ -221,7 +221,7 @@ impl<'a> Writer<'a> {
             false => super::term::bracketed(&text, is_tall),
         };
         let body = Body::Function { name: name.to_owned(), argument };
-        self.factor(expr, (Place::Function, self.order.rank(expr)), body)
+        self.factor(expr, Place::Function, self.order.rank(expr), body)
     }
 
     fn binary(&self, expr: ExprId, function: BinaryFunction, a: ExprId, b: ExprId) -> Form {

@@ -198,7 +198,7 @@ impl Printer<'_> {
             Node::Neg(a) => match self.dag.node(a) {
                 // One of two opposite differences is stored; a name hides what it is.
                 Node::Sub(x, y) if self.names[a].is_none() => {
-                    infix(pieces, (y, Level::Sum), " - ", (x, Level::Product));
+                    infix(pieces, y, Level::Sum, " - ", x, Level::Product);
                 }
                 _ => pieces.extend([Task::Text("-"), Task::Expr(a, Level::Product)]),
             },
@@ -208,11 +208,11 @@ impl Printer<'_> {
                     None if self.dag.as_constant(b).is_some() => [a, b],
                     None => self.arranged(a, b, Level::Sum),
                 };
-                infix(pieces, (first, Level::Sum), " + ", (second, Level::Product));
+                infix(pieces, first, Level::Sum, " + ", second, Level::Product);
             }
-            Node::Sub(a, b) => infix(pieces, (a, Level::Sum), " - ", (b, Level::Product)),
+            Node::Sub(a, b) => infix(pieces, a, Level::Sum, " - ", b, Level::Product),
             Node::Mul(a, b) => self.product(a, b, pieces),
-            Node::Div(a, b) => infix(pieces, (a, Level::Product), "/", (b, Level::Power)),
+            Node::Div(a, b) => infix(pieces, a, Level::Product, "/", b, Level::Power),
             Node::Pow(a, n) => pieces.push(Task::Power(a, n)),
             Node::Unary(function, a) => {
                 arguments(pieces, Function::Unary(function), &[a]);
@@ -230,9 +230,9 @@ impl Printer<'_> {
                     Relation::Equal => " == ",
                 };
                 pieces.push(Task::Text("select("));
-                infix(pieces, (left, Level::Sum), relation, (right, Level::Sum));
+                infix(pieces, left, Level::Sum, relation, right, Level::Sum);
                 pieces.push(Task::Text(", "));
-                infix(pieces, (then, Level::Sum), ", ", (otherwise, Level::Sum));
+                infix(pieces, then, Level::Sum, ", ", otherwise, Level::Sum);
                 pieces.push(Task::Text(")"));
             }
         }
@@ -254,7 +254,7 @@ impl Printer<'_> {
             }
         }
         let [first, second] = self.arranged(a, b, Level::Product);
-        infix(pieces, (first, Level::Product), "*", (second, Level::Power));
+        infix(pieces, first, Level::Product, "*", second, Level::Power);
     }
 
     /// Two operands that may be exchanged: the one that needs no brackets in the first place
@@ -291,9 +291,11 @@ const LONGEST_POWER: u32 = MAX_EXPONENT.unsigned_abs();
 
 fn infix(
     pieces: &mut Vec<Task>,
-    (left, left_place): (ExprId, Level),
+    left: ExprId,
+    left_place: Level,
     operator: &'static str,
-    (right, right_place): (ExprId, Level),
+    right: ExprId,
+    right_place: Level,
 ) {
     let right = Task::Expr(right, right_place);
     pieces.extend([Task::Expr(left, left_place), Task::Text(operator), right]);

@@ -39,7 +39,7 @@ impl Case {
     /// On the torso, body 5 of the virtual chain.
     pub(crate) fn torso(name: &str, terms: MotionTerms) -> Self {
         Self::build(name, |dag, frames| {
-            torso_regressor(dag, frames, (5, TorsoMotion::Spatial), terms)
+            torso_regressor(dag, frames, 5, TorsoMotion::Spatial, terms)
         })
     }
 

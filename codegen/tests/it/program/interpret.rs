@@ -79,7 +79,7 @@ fn every_operation() -> (Dag, Function) {
     }
     for relation in [Relation::Less, Relation::LessEqual, Relation::Equal] {
         let (then, otherwise) = (dag.integer(1), dag.integer(2));
-        entries.push(dag.select(relation, (a, b), then, otherwise));
+        entries.push(dag.select(relation, a, b, then, otherwise));
     }
     entries.push(dag.pow(a, 7));
     let (sum, quotient) = (dag.add(a, b), dag.div(a, b));

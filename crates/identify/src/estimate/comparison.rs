@@ -43,7 +43,7 @@ impl Comparison<'_> {
         let (prior, weights) = (&self.fit.options.prior[..], &settled.weights[..]);
         let problem = Problem { condensed: &condensed, weights, prior, solution: &solution };
         let mut covariance = problem.covariance(Errors::Correlated);
-        let bias = self.bias(logs, (&solution, weights));
+        let bias = self.bias(logs, &solution, weights);
         covariance += &bias * bias.transpose();
         let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
         let weights = condensed.noise_of_joints(&noise).into_iter().map(weight).collect();
@@ -51,7 +51,7 @@ impl Comparison<'_> {
     }
 
     /// What noise of the positions makes of what some logs say.
-    fn bias(&self, logs: &[usize], (solution, weights): (&Solution, &[Vec<f64>])) -> DVector<f64> {
+    fn bias(&self, logs: &[usize], solution: &Solution, weights: &[Vec<f64>]) -> DVector<f64> {
         let times = |(&log, weights): (&usize, &Vec<f64>)| {
             let before = &self.noise.1[log];
             let square = |(now, before): (&f64, &f64)| match *before > 0.0 {
@@ -83,7 +83,7 @@ impl Comparison<'_> {
         let phi = &one.with_own(&said.solution);
         let means = &self.condensed.means(others, phi.as_slice());
         let claim = Claim { model, phi, covariance: &said.covariance, left_out, means };
-        claim.against((log, self.logs), &one)
+        claim.against(log, self.logs, &one)
     }
 
     /// Of logs that contradict the others the one without which fewest of these contradict each

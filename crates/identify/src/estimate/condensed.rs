@@ -3,7 +3,7 @@
 //! Joints are kept apart, so that they can be weighted afterwards; parts are, so that errors can be
 //! found that residuals make which are alike from one sample to the next.
 
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
 use super::solve::{PriorRow, stacked};
 use super::triangle::Triangle;
@@ -45,6 +45,16 @@ pub(super) type Rows<'a> = (&'a [Conditioned], &'a LeftOut);
 pub(super) type RowsOf<'a> =
     &'a mut dyn for<'b> FnMut(usize, &'b Block, usize) -> Option<Vec<Cow<'b, [f64]>>>;
 
+/// The parts that a log is cut into.
+#[derive(Clone, Copy)]
+struct PartsOfLog {
+    /// The number of the first of them.
+    begin: usize,
+    count: usize,
+    /// Samples in a part; the last one has the rest, too.
+    length: usize,
+}
+
 impl Condensed {
     /// Condenses all rows of conditioned logs.
     pub fn new(model: &RegressionModel, logs: &[Conditioned]) -> Self {
@@ -53,7 +63,7 @@ impl Condensed {
 
     /// Condenses conditioned logs without the rows that are left out.
     pub(super) fn counted(model: &RegressionModel, logs: Rows<'_>) -> Self {
-        Self::of_rows(model, logs, (model.pattern().to_vec(), model.rank()), &mut plain)
+        Self::of_rows(model, logs, model.pattern().to_vec(), model.rank(), &mut plain)
     }
 
     /// Condenses them with each row multiplied by a factor, which is found for a log, a block and a
@@ -63,8 +73,8 @@ impl Condensed {
         logs: Rows<'_>,
         factors: &dyn Fn(usize, &Block, usize) -> Vec<f64>,
     ) -> Self {
-        let shape = (model.pattern().to_vec(), model.rank());
-        Self::of_rows(model, logs, shape, &mut |log, block, joint| {
+        let (pattern, rank) = (model.pattern().to_vec(), model.rank());
+        Self::of_rows(model, logs, pattern, rank, &mut |log, block, joint| {
             let columns = block.with_target(joint)?;
             let factors = factors(log, block, joint);
             let scaled = |column: &[f64]| -> Vec<f64> {
@@ -78,7 +88,8 @@ impl Condensed {
     pub(super) fn of_rows(
         model: &RegressionModel,
         (logs, left_out): Rows<'_>,
-        (pattern, rank): (Vec<Vec<usize>>, usize),
+        pattern: Vec<Vec<usize>>,
+        rank: usize,
         rows: RowsOf<'_>,
     ) -> Self {
         let all: usize = logs.iter().map(Conditioned::samples).sum();
@@ -99,26 +110,30 @@ impl Condensed {
                 let last = if part + 1 == count { log.samples() } else { (part + 1) * length };
                 condensed.end_s.push(log.time_s(last.max(1) - 1) - log.time_s(0));
             }
-            let rests = left_out.all_rests((index, log));
+            let parts = PartsOfLog { begin, count, length };
+            let own = NumberedLog { number: index, log };
+            let rests = left_out.all_rests(own);
             BlockMaker::resting(model, log, &rests).for_each(|block| {
                 for joint in 0..condensed.pattern.len() {
                     let Some(columns) = rows(index, block, joint) else { continue };
-                    let (first, samples) = (block.first, block.samples);
-                    let counts = left_out.counts((index, log), joint, (first, samples));
-                    let columns = (&columns[..], counts.as_deref());
-                    condensed.add((block, joint), columns, (begin, count, length));
+                    let counts = left_out.counts(own, joint, block.first, block.samples);
+                    condensed.add(block, joint, &columns, counts.as_deref(), parts);
                 }
             });
         }
         condensed
     }
 
+    /// Adds the rows of a joint in a block, those that count.
     fn add(
         &mut self,
-        (block, joint): (&Block, usize),
-        (columns, counts): (&[Cow<'_, [f64]>], Option<&[bool]>),
-        (begin, count, length): (usize, usize, usize),
+        block: &Block,
+        joint: usize,
+        columns: &[Cow<'_, [f64]>],
+        counts: Option<&[bool]>,
+        parts: PartsOfLog,
     ) {
+        let PartsOfLog { begin, count, length } = parts;
         let mut from = 0;
         while from < block.samples {
             let part = ((block.first + from) / length).min(count - 1);

@@ -408,7 +408,7 @@ fn standard(
     let size = model.standard.len();
     let mut theta = DVector::zeros(size);
     let mut slope = DMatrix::zeros(size, eta.len());
-    products(model, pieces, eta, (&mut theta, &mut slope));
+    products(model, pieces, eta, &mut theta, &mut slope);
     let mut at = 0;
     for piece in pieces {
         match *piece {
@@ -452,7 +452,8 @@ fn products(
     model: &RegressionModel,
     pieces: &[Piece],
     eta: &DVector<f64>,
-    (theta, slope): (&mut DVector<f64>, &mut DMatrix<f64>),
+    theta: &mut DVector<f64>,
+    slope: &mut DMatrix<f64>,
 ) {
     let own = own_values(model, pieces, eta);
     if own.is_empty() {

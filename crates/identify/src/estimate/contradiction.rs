@@ -7,11 +7,12 @@
 use super::comparison::Comparison;
 use super::condensed::Condensed;
 use super::least_squares::{Estimate, Fit, Method, Options};
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, NumberedLog};
 use super::noise_bias::noise_squares;
 use super::own_estimate::{Own, Tested, of_joint, spread};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
+use super::unexplained::ShownLogs;
 use crate::policy::contradiction::{ALIKE, OF_BEATS, OF_CHANCE, OF_OWN, OF_OWN_ALONE, OF_TORQUE};
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
@@ -122,16 +123,18 @@ impl fmt::Display for ContradictingLog {
 /// best is left out, until the others agree.
 pub(crate) fn contradicting_logs(
     model: &RegressionModel,
-    (logs, shown): (&[Conditioned], &[usize]),
-    (found, options): (&Estimate, &Options),
+    shown_logs: ShownLogs<'_>,
+    found: &Estimate,
+    options: &Options,
 ) -> Vec<ContradictingLog> {
+    let ShownLogs { logs, shown } = shown_logs;
     if logs.len() < 2 || found.condensed.rank != model.rank() {
         return Vec::new();
     }
     // those whose own noise is large beside what the others agree on: an estimate of all rows alike
     // is asked with weights, too
     let is_alike = options.method == Method::Ordinary;
-    let condensed = &*plain(model, logs, (found, options));
+    let condensed = &*plain(model, logs, found, options);
     let fit = Fit { options, start: found.solution.phi.as_slice() };
     let weighted = (is_alike || is_by_row(options)).then(|| fit.settled(condensed, true).weights);
     let weights = weighted.as_ref().unwrap_or(&found.weights);
@@ -175,7 +178,8 @@ fn is_by_row(options: &Options) -> bool {
 fn plain<'a>(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (found, options): (&'a Estimate, &Options),
+    found: &'a Estimate,
+    options: &Options,
 ) -> Cow<'a, Condensed> {
     match is_by_row(options) {
         true => Cow::Owned(Condensed::counted(model, (logs, &found.left_out))),
@@ -187,8 +191,10 @@ fn plain<'a>(
 /// anywhere within their errors, and those that the estimate does not show are the logs' own.
 pub(crate) fn contradicting_held_out(
     model: &RegressionModel,
-    (train, logs): (&[Conditioned], &[Conditioned]),
-    (found, options): (&Estimate, &Options),
+    train: &[Conditioned],
+    logs: &[Conditioned],
+    found: &Estimate,
+    options: &Options,
 ) -> Vec<ContradictingLog> {
     if logs.is_empty() || found.condensed.rank != model.rank() {
         return Vec::new();
@@ -199,13 +205,13 @@ pub(crate) fn contradicting_held_out(
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
     let all: Vec<usize> = (0..train.len()).collect();
-    let train = plain(model, train, (found, options));
+    let train = plain(model, train, found, options);
     let means = &train.means(&all, found.solution.phi.as_slice());
     let of = |at: usize| {
         let one = Tested::new(&condensed, at, &weights);
         let phi = &one.with_own(&found.solution);
         let (covariance, left_out) = (&found.covariance, &left_out);
-        let told = Claim { model, phi, covariance, left_out, means }.against((at, logs), &one)?;
+        let told = Claim { model, phi, covariance, left_out, means }.against(at, logs, &one)?;
         Some(ContradictingLog { standing: Standing::HeldOut, ..told })
     };
     (0..logs.len()).filter_map(of).collect()
@@ -227,7 +233,8 @@ impl Claim<'_> {
     /// Whether a log of this number contradicts it.
     pub(super) fn against(
         &self,
-        (at, logs): (usize, &[Conditioned]),
+        at: usize,
+        logs: &[Conditioned],
         one: &Tested<'_>,
     ) -> Option<ContradictingLog> {
         let log = &logs[at];
@@ -235,9 +242,9 @@ impl Claim<'_> {
             joint: self.model.joints[joint].name.clone(),
             left,
             own,
-            like: likeness(self.model, log, (joint, self.phi.as_slice())),
+            like: likeness(self.model, log, joint, self.phi.as_slice()),
         };
-        let joints: Vec<_> = self.told((at, logs), one).into_iter().map(named).collect();
+        let joints: Vec<_> = self.told(at, logs, one).into_iter().map(named).collect();
         let (file, standing) = (log.file.clone(), Standing::Undecided);
         (!joints.is_empty()).then_some(ContradictingLog { file, joints, standing })
     }
@@ -245,13 +252,14 @@ impl Claim<'_> {
     /// The joints that tell it. Those of whose torque noise of the positions may make as much, or
     /// as much as would tell it, are asked behind half the cutoff, which leaves less of it, and so
     /// on: of a long log in its first piece.
-    fn told(&self, (at, logs): (usize, &[Conditioned]), one: &Tested<'_>) -> Vec<Told> {
+    fn told(&self, at: usize, logs: &[Conditioned], one: &Tested<'_>) -> Vec<Told> {
         let log = &logs[at];
         // where the sign of a rate is not known, a constant may be friction
         let is_known = |joint: usize| !log.resting[joint] && log.unsure_signs(joint).is_none();
         let signs: Vec<bool> = (0..self.model.joints.len()).map(is_known).collect();
-        let mut told = self.joints((one, &signs));
-        let noise = noise_squares(self.model, ((at, log), self.left_out), self.phi);
+        let mut told = self.joints(one, &signs);
+        let noise =
+            noise_squares(self.model, NumberedLog { number: at, log }, self.left_out, self.phi);
         told.retain(|told| told.explained > OF_BEATS * noise[told.joint]);
         let is_noisy = |joint: usize| {
             let torque = one.triangles[joint].target_squares();
@@ -268,7 +276,7 @@ impl Claim<'_> {
             let lower = &[lower];
             let condensed = Condensed::counted(self.model, (lower, left_out));
             let one = Tested::new(&condensed, 0, one.weights);
-            let lower = Claim { left_out, ..*self }.told((0, lower), &one);
+            let lower = Claim { left_out, ..*self }.told(0, lower, &one);
             told.extend(lower.into_iter().filter(|one| open.contains(&one.joint)));
         }
         told
@@ -276,7 +284,7 @@ impl Claim<'_> {
 
     /// The joints of whose torque an estimate of a log's own, or a constant beside what others
     /// have, leaves much less than phi does.
-    fn joints(&self, (one, signs): (&Tested<'_>, &[bool])) -> Vec<Told> {
+    fn joints(&self, one: &Tested<'_>, signs: &[bool]) -> Vec<Told> {
         let Self { model, phi, covariance, .. } = *self;
         let pattern = model.pattern();
         let own = one.own(phi.as_slice());
@@ -286,7 +294,7 @@ impl Claim<'_> {
             let all = triangle.target_squares();
             let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
             let unsure = spread(triangle, &pattern[joint], covariance);
-            let constant = one.constant(left, (joint, phi.as_slice(), self.means[joint]));
+            let constant = one.constant(left, joint, phi.as_slice(), self.means[joint]);
             let constant = signs[joint].then_some(constant);
             let told = |Own { squares, variance, chance }: &Own| {
                 let explained = (left - squares).max(0.0);
@@ -319,7 +327,8 @@ struct Told {
 fn likeness(
     model: &RegressionModel,
     log: &Conditioned,
-    (joint, phi): (usize, &[f64]),
+    joint: usize,
+    phi: &[f64],
 ) -> Option<Likeness> {
     let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
     // rows, sums of what is left and of its squares, its products with the computed torque, whose

@@ -8,7 +8,7 @@
 use super::condensed::{Condensed, MIN_PART};
 use super::filter_error::filter_errors;
 use super::least_squares::{Estimate, Options};
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, NumberedLog};
 use super::noise_bias::noise_squares;
 use super::own_estimate::{Tested, of_joint, spread};
 use super::triangle::Triangle;
@@ -26,7 +26,9 @@ const SAMPLES: usize = 200_000;
 pub(crate) fn exceeding_joints(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (found, options, counted): (&Estimate, &Options, &[f64]),
+    found: &Estimate,
+    options: &Options,
+    counted: &[f64],
 ) -> Vec<Unexplained> {
     if logs.is_empty() || found.condensed.rank != model.rank() {
         return Vec::new();
@@ -97,7 +99,7 @@ impl HeldOut<'_> {
     fn made(&self, triangles: &[Triangle]) -> Vec<f64> {
         let Self { model, logs, at, phi, left_out } = *self;
         let smeared = filter_errors(model, &logs[at..=at], phi.as_slice());
-        let noise = noise_squares(model, ((at, &logs[at]), left_out), phi);
+        let noise = noise_squares(model, NumberedLog { number: at, log: &logs[at] }, left_out, phi);
         let of = |((triangle, noise), share): ((&Triangle, f64), f64)| {
             let squares = OF_NOISE * noise + share * share * triangle.target_squares();
             squares / triangle.rows().max(1) as f64

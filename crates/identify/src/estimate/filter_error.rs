@@ -26,7 +26,7 @@ pub(crate) fn filter_errors(
     }
     let longest = SAMPLES / logs.len().max(1);
     let again: Vec<Conditioned> =
-        logs.iter().filter_map(|log| filtered_again(model, (log, longest), &smooth)).collect();
+        logs.iter().filter_map(|log| filtered_again(model, log, longest, &smooth)).collect();
     let left = validate(model, &smooth, &again);
     let of_joint = |joint: &denavit_plants::regression::RegressionJoint| {
         let found = left.joints.iter().find(|one| one.name == joint.name);
@@ -39,7 +39,8 @@ pub(crate) fn filter_errors(
 /// it; none if the filter leaves nothing of it.
 fn filtered_again(
     model: &RegressionModel,
-    (log, longest): (&Conditioned, usize),
+    log: &Conditioned,
+    longest: usize,
     phi: &[f64],
 ) -> Option<Conditioned> {
     let filter = log.filter.as_ref()?;
@@ -59,7 +60,7 @@ fn filtered_again(
         rates: log.rates.as_ref().map(|both| {
             both.each_ref().map(|columns| columns.iter().map(|column| again(column)).collect())
         }),
-        torque: torques(model, (log, start, length), phi, filter),
+        torque: torques(model, log, start, length, phi, filter),
         range,
         decimation: log.decimation,
         filter: log.filter.clone(),
@@ -71,7 +72,9 @@ fn filtered_again(
 /// The filtered torques of phi, of joints whose torque was measured.
 fn torques(
     model: &RegressionModel,
-    (log, start, length): (&Conditioned, usize, usize),
+    log: &Conditioned,
+    start: usize,
+    length: usize,
     phi: &[f64],
     filter: &Butterworth,
 ) -> Vec<Option<Vec<f64>>> {

@@ -68,7 +68,7 @@ fn paired(model: &RegressionModel, rows: Rows<'_>, instruments: &[Conditioned]) 
         .collect();
     let mut makers: Vec<BlockMaker<'_>> =
         instruments.iter().map(|log| BlockMaker::new(model, log)).collect();
-    Condensed::of_rows(model, rows, (pattern, 2 * rank), &mut |log, block, joint| {
+    Condensed::of_rows(model, rows, pattern, 2 * rank, &mut |log, block, joint| {
         let columns = block.with_target(joint)?;
         let other = makers[log].at(block.first, block.samples);
         let z = other.columns[joint].iter().map(|column| Cow::Owned(column.clone()));

@@ -185,8 +185,9 @@ pub fn estimate(
     let problem = fit.problem(&first);
     let mut covariance = match options.method {
         Method::Robust(loss) => {
-            let of = (first.solution.phi.as_slice(), &first.noise[..], loss);
-            problem.robust_covariance(options.errors, &influences(model, rows, of))
+            let (phi, scales) = (first.solution.phi.as_slice(), &first.noise);
+            let influences = influences(model, rows, phi, scales, loss);
+            problem.robust_covariance(options.errors, &influences)
         }
         _ => problem.covariance(options.errors),
     };
@@ -201,7 +202,7 @@ pub fn estimate(
                 degrees_of_freedom.fill(free);
             } else {
                 let by_filter = first.solution.covariance() * wider;
-                at_least(model, &mut covariance, (&by_filter, &degrees_of_freedom, parts));
+                at_least(model, &mut covariance, &by_filter, &degrees_of_freedom, parts);
             }
         }
         Errors::Classical if options.method == Method::Ordinary => {
@@ -222,7 +223,9 @@ pub fn estimate(
 fn at_least(
     model: &RegressionModel,
     covariance: &mut DMatrix<f64>,
-    (other, degrees_of_freedom, parts): (&DMatrix<f64>, &DVector<f64>, usize),
+    other: &DMatrix<f64>,
+    degrees_of_freedom: &DVector<f64>,
+    parts: usize,
 ) {
     for (parameter, &degrees) in model.to_listed().row_iter().zip(degrees_of_freedom) {
         let share = match degrees {
@@ -328,11 +331,11 @@ impl Fit<'_> {
         found: Estimate,
         loss: Loss,
     ) -> Result<Estimate, EstimateError> {
-        self.reweighting((model, rows), found, |found, round| {
+        self.reweighting(model, rows, found, |found, round| {
             // medians jump: with scales that stay the weights settle
             if round < ROUNDS_OF_SCALES {
                 let scales = scales(model, rows, found.solution.phi.as_slice());
-                found.noise = found.condensed.steadied(&scales, (&found.solution, &found.weights));
+                found.noise = found.condensed.steadied(&scales, &found.solution, &found.weights);
             }
             (Box::new(factors_of_loss(found, loss)), found.noise.clone())
         })
@@ -344,7 +347,7 @@ impl Fit<'_> {
         rows: Rows<'_>,
         found: Estimate,
     ) -> Result<Estimate, EstimateError> {
-        self.reweighting((model, rows), found, |found, _| {
+        self.reweighting(model, rows, found, |found, _| {
             let ones = vec![vec![1.0; found.condensed.pattern.len()]; rows.0.len()];
             (Box::new(self.factors_of_noise(model, rows.0, found)), ones)
         })
@@ -354,7 +357,8 @@ impl Fit<'_> {
     /// what was found, and the number of the round, the factors of rows and each joint's deviation.
     fn reweighting(
         &self,
-        (model, rows): (&RegressionModel, Rows<'_>),
+        model: &RegressionModel,
+        rows: Rows<'_>,
         mut found: Estimate,
         mut weigh: impl FnMut(&mut Estimate, usize) -> (Factors, ByLog),
     ) -> Result<Estimate, EstimateError> {
@@ -387,24 +391,24 @@ impl Fit<'_> {
         logs: &[Conditioned],
         found: &Estimate,
     ) -> impl Fn(usize, &Block, usize) -> Vec<f64> + use<> {
-        let of = (found.solution.phi.as_slice(), &self.options.position_noise[..]);
-        let variance = likelihood::Variance::new(model, logs, of);
+        let (phi, deviations) = (found.solution.phi.as_slice(), &self.options.position_noise[..]);
+        let variance = likelihood::Variance::new(model, logs, phi, deviations);
         let noise = variance.torque_noise(&found.noise);
-        move |log, block, joint| variance.factors((log, joint), block, &noise)
+        move |log, block, joint| variance.factors(log, joint, block, &noise)
     }
 
     /// The bias of an estimate, with the weights of its rows.
     fn noise_bias(&self, model: &RegressionModel, rows: Rows<'_>, found: &Estimate) -> NoiseBias {
-        let of = (model, self.start);
+        let given = self.start;
         match self.options.method {
             Method::Robust(loss) => {
-                noise_bias(of, rows, found, Some(&factors_of_loss(found, loss)))
+                noise_bias(model, given, rows, found, Some(&factors_of_loss(found, loss)))
             }
             Method::Likelihood => {
                 let factors = self.factors_of_noise(model, rows.0, found);
-                noise_bias(of, rows, found, Some(&factors))
+                noise_bias(model, given, rows, found, Some(&factors))
             }
-            _ => noise_bias(of, rows, found, None),
+            _ => noise_bias(model, given, rows, found, None),
         }
     }
 }

@@ -67,7 +67,8 @@ fn near_of_moving(logs: &[Conditioned], joint: usize) -> (usize, usize) {
 pub(crate) fn biased_frictions(
     model: &RegressionModel,
     logs: &[Conditioned],
-    (phi, covariance): (&DVector<f64>, &DMatrix<f64>),
+    phi: &DVector<f64>,
+    covariance: &DMatrix<f64>,
 ) -> Vec<(usize, f64)> {
     if model.law != CoulombLaw::Sign {
         return Vec::new();
@@ -83,6 +84,14 @@ pub(crate) fn biased_frictions(
         is_biased(share, phi[at], covariance[(at, at)]).then_some((joint, share))
     };
     model.coulomb().iter().filter_map(biased).collect()
+}
+
+/// One of several logs.
+#[derive(Clone, Copy)]
+pub(super) struct NumberedLog<'a> {
+    /// Its place among them.
+    pub(super) number: usize,
+    pub(super) log: &'a Conditioned,
 }
 
 /// For each log and joint whether samples before decimation are left out; none where all count.
@@ -138,16 +147,17 @@ impl LeftOut {
             if options.method != Method::Instrumental {
                 asked.add_rests(model, logs);
             }
-            (0..logs.len()).for_each(|log| asked.keep_enough((log, logs)));
+            (0..logs.len()).for_each(|log| asked.keep_enough(log, logs));
         }
         asked
     }
 
     /// Leaves out nothing of joints of a log of which too little would be left.
-    pub(super) fn keep_enough(&mut self, (number, logs): (usize, &[Conditioned])) {
+    pub(super) fn keep_enough(&mut self, number: usize, logs: &[Conditioned]) {
         let log = &logs[number];
         for joint in 0..log.joints() {
-            let Some(counts) = self.counts((number, log), joint, (0, log.samples())) else {
+            let Some(counts) = self.counts(NumberedLog { number, log }, joint, 0, log.samples())
+            else {
                 continue;
             };
             let kept = counts.into_iter().filter(|counts| *counts).count() as f64;
@@ -224,7 +234,8 @@ impl LeftOut {
         }
         let counted = |((number, log), near): ((usize, &Conditioned), &Vec<bool>)| {
             let counts = log.counts(near, 0, log.samples()).into_iter();
-            let rests: usize = self.rests((number, log), joint).iter().map(Range::len).sum();
+            let rests: usize =
+                self.rests(NumberedLog { number, log }, joint).iter().map(Range::len).sum();
             counts.filter(|counts| *counts).count() + rests
         };
         let kept: usize = logs.iter().enumerate().zip(&near).map(counted).sum();
@@ -243,9 +254,10 @@ impl LeftOut {
     /// those of rests beside a constant; none where all do.
     pub(super) fn counts(
         &self,
-        (number, log): (usize, &Conditioned),
+        NumberedLog { number, log }: NumberedLog<'_>,
         joint: usize,
-        (first, samples): (usize, usize),
+        first: usize,
+        samples: usize,
     ) -> Option<Vec<bool>> {
         let left_out = self.rows[number][joint].as_ref()?;
         let mut counts = log.counts(left_out, first, samples);

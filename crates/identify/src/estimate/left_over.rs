@@ -1,9 +1,9 @@
 //! What is left of torques: how much, and whether it is noise.
 
 use super::least_squares::Estimate;
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, NumberedLog};
 use super::rows::BlockMaker;
-use super::unexplained::samples_of;
+use super::unexplained::{ShownLogs, samples_of};
 use crate::policy::left_over::NO_NOISE;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
@@ -85,7 +85,8 @@ impl LeftOut {
         let own: Vec<Vec<f64>> = (0..model.joints.len()).map(of_joint).collect();
         let of_log = |(number, log): (usize, &Conditioned)| {
             let apart = samples_of(log, 0.5);
-            let rests = self.all_rests((number, log));
+            let numbered = NumberedLog { number, log };
+            let rests = self.all_rests(numbered);
             let mut maker = BlockMaker::resting(model, log, &rests);
             let mut left: Vec<Left> = (0..own.len())
                 .map(|joint| Left {
@@ -98,7 +99,7 @@ impl LeftOut {
             maker.for_each(|block| {
                 for (joint, (left, recent)) in left.iter_mut().zip(&mut recent).enumerate() {
                     let Some(all) = block.residual(joint, &own[joint]) else { continue };
-                    let counts = self.counts((number, log), joint, (block.first, block.samples));
+                    let counts = self.counts(numbered, joint, block.first, block.samples);
                     for (k, one) in all.into_iter().enumerate() {
                         let one = counts.as_ref().is_none_or(|counts| counts[k]).then_some(one);
                         left.add(one, recent);
@@ -115,9 +116,10 @@ impl LeftOut {
 /// that count, where that is no noise [N m, N].
 pub(crate) fn no_noise(
     model: &RegressionModel,
-    (logs, shown): (&[Conditioned], &[usize]),
+    shown_logs: ShownLogs<'_>,
     found: &Estimate,
 ) -> Vec<(usize, f64)> {
+    let ShownLogs { logs, shown } = shown_logs;
     let left = found.left_out.left(model, logs, found.solution.phi.as_slice());
     let of_joint = |joint: usize| {
         let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log][joint]));

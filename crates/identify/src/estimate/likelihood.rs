@@ -28,14 +28,15 @@ impl Variance {
     pub(super) fn new(
         model: &RegressionModel,
         logs: &[Conditioned],
-        (phi, deviations): (&[f64], &[f64]),
+        phi: &[f64],
+        deviations: &[f64],
     ) -> Self {
         let of_log = |log: &Conditioned| {
             let known = deviations.iter().copied().chain(std::iter::repeat(0.0));
             let both = log.position_noise.iter().copied().chain(std::iter::repeat(0.0)).zip(known);
             let deviations: Vec<f64> =
                 both.take(log.joints()).map(|(own, known)| own.max(known)).collect();
-            of_log(model, (log, 1), (phi, &deviations), &log.noise_gains())
+            of_log(model, log, 1, phi, &deviations, &log.noise_gains())
         };
         Self { of_positions: logs.iter().map(of_log).collect() }
     }
@@ -56,7 +57,8 @@ impl Variance {
     /// 1 over the deviation of each row.
     pub(super) fn factors(
         &self,
-        (log, joint): (usize, usize),
+        log: usize,
+        joint: usize,
         block: &Block,
         torque_noise: &ByLog,
     ) -> Vec<f64> {
@@ -76,8 +78,7 @@ pub(crate) fn noise_of_positions(
     let mut sums = vec![[0.0; 2]; model.joints.len()];
     for log in logs {
         let every = log.samples().div_ceil(BLOCK * LOOKED_AT).max(1);
-        let of = (phi, &log.position_noise[..]);
-        let rows = of_log(model, (log, every), of, &log.filter_gains());
+        let rows = of_log(model, log, every, phi, &log.position_noise, &log.filter_gains());
         let looked_at = |sample: &usize| (sample / BLOCK).is_multiple_of(every);
         let count = (0..log.samples()).filter(looked_at).count().max(1) as f64;
         let weight = log.samples() as f64;
@@ -99,8 +100,10 @@ pub(crate) fn noise_of_positions(
 /// Of every so many blocks of a log one is looked at; the variances of others are 0.
 fn of_log(
     model: &RegressionModel,
-    (log, every): (&Conditioned, usize),
-    (phi, deviations): (&[f64], &[f64]),
+    log: &Conditioned,
+    every: usize,
+    phi: &[f64],
+    deviations: &[f64],
     gains: &[[f64; 3]; 3],
 ) -> Vec<Vec<f64>> {
     let n = log.joints();

@@ -61,5 +61,5 @@ pub use rows::{Block, BlockMaker};
 pub(crate) use rows::{Coulomb, coulomb};
 pub use solve::{PriorRow, Solution, solve, stacked};
 pub use triangle::Triangle;
-pub use unexplained::{Judgement, Unexplained, unexplained_joints};
+pub use unexplained::{Judgement, ShownLogs, Unexplained, unexplained_joints};
 pub use validate::{JointResidual, LAGS, Validation, validate};

@@ -9,7 +9,7 @@
 
 use super::condensed::Rows;
 use super::least_squares::Estimate;
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
 use super::validate::validate;
@@ -58,7 +58,8 @@ pub struct NoiseOfLog {
 /// What noise makes of phi, rows weighted as they are, by factors too, if there are any. `given` is
 /// phi of the model's values.
 pub(super) fn noise_bias(
-    (model, given): (&RegressionModel, &[f64]),
+    model: &RegressionModel,
+    given: &[f64],
     (logs, left_out): Rows<'_>,
     found: &Estimate,
     factors: Option<RowFactors<'_>>,
@@ -66,8 +67,8 @@ pub(super) fn noise_bias(
     let mut random = Random::new(SEED);
     let longest = SAMPLES / logs.len();
     let of_log = |(number, log): (usize, &Conditioned)| {
-        let of = (&found.weights[number][..], longest, factors);
-        Noise::of_log(model, ((number, log), left_out), of, &mut random)
+        let (own, weights) = (NumberedLog { number, log }, &found.weights[number]);
+        Noise::of_log(model, own, left_out, weights, longest, factors, &mut random)
     };
     let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
     let of_logs: Vec<Noise> = of_joints.iter().map(|one| Noise::of_joints(one)).collect();
@@ -113,21 +114,23 @@ pub(super) fn bias_of_some<'a>(
 /// torque, of the rows that count.
 pub(super) fn noise_squares(
     model: &RegressionModel,
-    ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
+    own: NumberedLog<'_>,
+    left_out: &LeftOut,
     phi: &DVector<f64>,
 ) -> Vec<f64> {
+    let log = own.log;
     let mut squares = vec![0.0; model.joints.len()];
     if log.position_noise.iter().all(|noise| *noise == 0.0) {
         return squares;
     }
-    let own = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-    let phi: Vec<Vec<f64>> = (0..squares.len()).map(own).collect();
-    let rests = &left_out.all_rests((number, log));
+    let of_joint = |joint: usize| model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let phi: Vec<Vec<f64>> = (0..squares.len()).map(of_joint).collect();
+    let rests = &left_out.all_rests(own);
     let mut random = Random::new(SEED);
-    with_noise(model, (log, SAMPLES, rests), &mut random, |first, block, noisy, of_all| {
+    with_noise(model, log, SAMPLES, rests, &mut random, |first, block, noisy, of_all| {
         for (joint, sum) in squares.iter_mut().enumerate() {
             let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
-            let counts = left_out.counts((number, log), joint, (first, block.samples));
+            let counts = left_out.counts(own, joint, first, block.samples);
             let counts = counts.unwrap_or_else(|| vec![true; clean.len()]);
             for noisy in noisy.iter().filter_map(|block| block.residual(joint, &phi[joint])) {
                 let both = noisy.iter().zip(&clean).zip(&counts).filter(|(_, counts)| **counts);
@@ -146,7 +149,8 @@ pub(crate) fn noise_in_torques(
     phi: &[f64],
 ) -> Vec<f64> {
     let all = LeftOut::none(std::slice::from_ref(log));
-    let noise = noise_squares(model, ((0, log), &all), &DVector::from_column_slice(phi));
+    let own = NumberedLog { number: 0, log };
+    let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
     let left = validate(model, phi, &[log]);
     let share = |(joint, noise): (&RegressionJoint, f64)| {
         let torque = left.joints.iter().find(|one| one.name == joint.name)?.torque_rms;
@@ -160,7 +164,9 @@ pub(crate) fn noise_in_torques(
 /// subtracted, and how many blocks it stands for.
 fn with_noise(
     model: &RegressionModel,
-    (log, longest, rests): (&Conditioned, usize, &[Vec<Range<usize>>]),
+    log: &Conditioned,
+    longest: usize,
+    rests: &[Vec<Range<usize>>],
     random: &mut Random,
     mut visit: impl FnMut(usize, &Block, [&Block; 2], f64),
 ) {
@@ -206,16 +212,20 @@ impl Noise {
     /// That of each joint of a log, of which so many samples are looked at before decimation.
     fn of_log(
         model: &RegressionModel,
-        ((number, log), left_out): ((usize, &Conditioned), &LeftOut),
-        (weights, longest, factors): (&[f64], usize, Option<RowFactors<'_>>),
+        own: NumberedLog<'_>,
+        left_out: &LeftOut,
+        weights: &[f64],
+        longest: usize,
+        factors: Option<RowFactors<'_>>,
         random: &mut Random,
     ) -> Vec<DMatrix<f64>> {
+        let NumberedLog { number, log } = own;
         let mut noise = vec![Self::new(model.rank()).0; model.joints.len()];
         if log.position_noise.iter().all(|noise| *noise == 0.0) {
             return noise;
         }
-        let rests = &left_out.all_rests((number, log));
-        with_noise(model, (log, longest, rests), random, |first, block, noisy, of_all| {
+        let rests = &left_out.all_rests(own);
+        with_noise(model, log, longest, rests, random, |first, block, noisy, of_all| {
             let count = block.samples;
             for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
                 let mut squares = vec![weight * weight * of_all; count];
@@ -223,10 +233,10 @@ impl Noise {
                     let factors = factors(number, block, joint);
                     squares.iter_mut().zip(factors).for_each(|(sq, by)| *sq *= by * by);
                 }
-                let counts = left_out.counts((number, log), joint, (first, count));
+                let counts = left_out.counts(own, joint, first, count);
                 let all = squares.iter_mut().zip(counts.unwrap_or_default());
                 all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
-                add(&mut noise[joint], (model, joint), (block, noisy), &squares);
+                add(&mut noise[joint], model, joint, block, noisy, &squares);
             }
         });
         noise
@@ -277,8 +287,10 @@ impl Noise {
 /// these squares of weights.
 fn add(
     sum: &mut DMatrix<f64>,
-    (model, joint): (&RegressionModel, usize),
-    (straight, both): (&Block, [&Block; 2]),
+    model: &RegressionModel,
+    joint: usize,
+    straight: &Block,
+    both: [&Block; 2],
     squares: &[f64],
 ) {
     let Some(clean) = straight.with_target(joint) else { return };

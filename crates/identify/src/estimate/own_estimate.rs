@@ -82,7 +82,7 @@ impl<'a> Tested<'a> {
 
     /// What a constant beside that of other logs, of mean `mean`, leaves of a joint's torque, of
     /// whose squares phi leaves `left`.
-    pub(super) fn constant(&self, left: f64, (joint, phi, mean): (usize, &[f64], f64)) -> Own {
+    pub(super) fn constant(&self, left: f64, joint: usize, phi: &[f64], mean: f64) -> Own {
         let phi = &of_joint(&self.condensed.pattern[joint], phi);
         let sums = |triangle: &Triangle| [triangle.rows() as f64, triangle.sum(phi)];
         let independent = self.independent();

@@ -6,7 +6,7 @@
 //! brake carries it, the torque does not follow the load, or an estimate leaves more of it than
 //! while the joint moves: such rows are left out.
 
-use super::left_out::LeftOut;
+use super::left_out::{LeftOut, NumberedLog};
 use super::left_over::Left;
 use super::nominal::nominal_values;
 use super::rows::BlockMaker;
@@ -27,7 +27,7 @@ impl LeftOut {
                 Some(rests.into_iter().map(|rests| !rests).collect())
             };
             self.awake[number] = (0..log.joints()).map(awake).collect();
-            let follows = self.follows(model, (number, log), &values);
+            let follows = self.follows(model, NumberedLog { number, log }, &values);
             for (awake, follows) in self.awake[number].iter_mut().zip(follows) {
                 awake.take_if(|_| !follows);
             }
@@ -35,16 +35,11 @@ impl LeftOut {
     }
 
     /// Whether the torque of each joint follows the load while it rests.
-    fn follows(
-        &self,
-        model: &RegressionModel,
-        (number, log): (usize, &Conditioned),
-        values: &[f64],
-    ) -> Vec<bool> {
-        let rests = self.all_rests((number, log));
+    fn follows(&self, model: &RegressionModel, own: NumberedLog<'_>, values: &[f64]) -> Vec<bool> {
+        let rests = self.all_rests(own);
         // the squares of torque and load, and their product
         let mut sums = vec![[0.0; 3]; rests.len()];
-        let mut maker = BlockMaker::resting(model, log, &rests);
+        let mut maker = BlockMaker::resting(model, own.log, &rests);
         for (joint, (rests, sums)) in rests.iter().zip(&mut sums).enumerate() {
             let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
             for rest in rests {
@@ -68,7 +63,7 @@ impl LeftOut {
     /// The samples in which a joint rests and counts, of those that are left after decimation.
     pub(super) fn rests(
         &self,
-        (number, log): (usize, &Conditioned),
+        NumberedLog { number, log }: NumberedLog<'_>,
         joint: usize,
     ) -> Vec<Range<usize>> {
         let Some(awake) = &self.awake[number][joint] else { return Vec::new() };
@@ -84,8 +79,8 @@ impl LeftOut {
     }
 
     /// The same of all joints.
-    pub(super) fn all_rests(&self, log: (usize, &Conditioned)) -> Vec<Vec<Range<usize>>> {
-        (0..self.awake[log.0].len()).map(|joint| self.rests(log, joint)).collect()
+    pub(super) fn all_rests(&self, log: NumberedLog<'_>) -> Vec<Vec<Range<usize>>> {
+        (0..self.awake[log.number].len()).map(|joint| self.rests(log, joint)).collect()
     }
 
     /// The same with rests left out.
@@ -117,7 +112,8 @@ impl LeftOut {
         &self,
         model: &RegressionModel,
         logs: &[Conditioned],
-        (phi, moving): (&[f64], &[Vec<Left>]),
+        phi: &[f64],
+        moving: &[Vec<Left>],
     ) -> Option<Self> {
         let left = self.of_rests_alone()?.left(model, logs, phi);
         let held = |log: usize, joint: usize| {
@@ -134,7 +130,7 @@ impl LeftOut {
                 fewer.awake[log][joint] = None;
             }
         }
-        (0..logs.len()).for_each(|log| fewer.keep_enough((log, logs)));
+        (0..logs.len()).for_each(|log| fewer.keep_enough(log, logs));
         (fewer != *self).then_some(fewer)
     }
 }

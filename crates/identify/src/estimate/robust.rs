@@ -3,6 +3,7 @@
 
 use super::condensed::Rows;
 use super::errors::{Errors, FEWEST_PARTS, Problem};
+use super::left_out::NumberedLog;
 use super::rows::BlockMaker;
 use super::solve::solve;
 use super::weights::ByLog;
@@ -63,11 +64,13 @@ pub(super) struct Influence {
 pub(super) fn influences(
     model: &RegressionModel,
     rows: Rows<'_>,
-    (phi, scales, loss): (&[f64], &[Vec<f64>], Loss),
+    phi: &[f64],
+    scales: &[Vec<f64>],
+    loss: Loss,
 ) -> Vec<Influence> {
     let mut sums = vec![[0.0; 3]; model.joints.len()];
     for (number, scales) in scales.iter().enumerate() {
-        counted_residuals(model, (number, rows), phi, |joint, _, residual| {
+        counted_residuals(model, number, rows, phi, |joint, _, residual| {
             let sums = &mut sums[joint];
             let deviations = residual / scales[joint].max(f64::MIN_POSITIVE);
             let weight = loss.factor(deviations).powi(2);
@@ -126,7 +129,7 @@ pub(super) fn scales(model: &RegressionModel, rows: Rows<'_>, phi: &[f64]) -> By
     let stride = samples.div_ceil(SCALE_SAMPLES).max(1);
     let of_log = |number: usize| {
         let mut found: Vec<Vec<f64>> = vec![Vec::new(); model.joints.len()];
-        counted_residuals(model, (number, rows), phi, |joint, sample, residual| {
+        counted_residuals(model, number, rows, phi, |joint, sample, residual| {
             if sample % stride == 0 {
                 found[joint].push(residual.abs());
             }
@@ -140,17 +143,18 @@ pub(super) fn scales(model: &RegressionModel, rows: Rows<'_>, phi: &[f64]) -> By
 /// those that are left out are no noise.
 fn counted_residuals(
     model: &RegressionModel,
-    (number, (logs, left_out)): (usize, Rows<'_>),
+    number: usize,
+    (logs, left_out): Rows<'_>,
     phi: &[f64],
     mut visit: impl FnMut(usize, usize, f64),
 ) {
-    let log = (number, &logs[number]);
+    let own = NumberedLog { number, log: &logs[number] };
     let of_joint = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
-    let own: Vec<Vec<f64>> = model.pattern().iter().map(of_joint).collect();
-    BlockMaker::resting(model, log.1, &left_out.all_rests(log)).for_each(|block| {
-        for (joint, own) in own.iter().enumerate() {
-            let counts = left_out.counts(log, joint, (block.first, block.samples));
-            let left = block.residual(joint, own).unwrap_or_default().into_iter().enumerate();
+    let phi: Vec<Vec<f64>> = model.pattern().iter().map(of_joint).collect();
+    BlockMaker::resting(model, own.log, &left_out.all_rests(own)).for_each(|block| {
+        for (joint, phi) in phi.iter().enumerate() {
+            let counts = left_out.counts(own, joint, block.first, block.samples);
+            let left = block.residual(joint, phi).unwrap_or_default().into_iter().enumerate();
             for (at, left) in left.filter(|(at, _)| counts.as_ref().is_none_or(|one| one[*at])) {
                 visit(joint, block.first + at, left);
             }

@@ -101,6 +101,15 @@ impl fmt::Display for Unexplained {
     }
 }
 
+/// Logs, of some of which noise makes most.
+#[derive(Clone, Copy)]
+pub struct ShownLogs<'a> {
+    /// All of them.
+    pub logs: &'a [Conditioned],
+    /// The numbers of the others, which show what the model says.
+    pub shown: &'a [usize],
+}
+
 /// What joints are judged by.
 #[derive(Clone, Copy)]
 pub struct Judgement<'a> {
@@ -118,21 +127,22 @@ pub struct Judgement<'a> {
 /// joints.
 pub fn unexplained_joints(
     model: &RegressionModel,
-    (logs, shown): (&[Conditioned], &[usize]),
+    shown_logs: ShownLogs<'_>,
     judged: Judgement<'_>,
 ) -> Vec<Unexplained> {
+    let ShownLogs { logs, shown } = shown_logs;
     let phi = judged.found.solution.phi.as_slice();
     let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log]).collect();
     // a joint that moves may be left with nothing but noise of the positions
     let noise = noise_of_positions(model, &together, phi);
     let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
-    let mut all = moving(model, &together, (judged, &least));
+    let mut all = moving(model, &together, judged, &least);
     let not_noise = vec![f64::INFINITY; noise.len()];
     for &log in &together {
         let left = validate(model, phi, &[log]);
-        let mut own = resting(model, log, (judged.found, &left));
+        let mut own = resting(model, log, judged.found, &left);
         if logs.len() > 1 {
-            own.extend(moving(model, &[log], (Judgement { left: &left, ..judged }, &not_noise)));
+            own.extend(moving(model, &[log], Judgement { left: &left, ..judged }, &not_noise));
         }
         own.retain(|one| all.iter().all(|other| other.joint != one.joint || other.file.is_some()));
         let file = (logs.len() > 1).then(|| log.file.clone());
@@ -145,7 +155,8 @@ pub fn unexplained_joints(
 fn moving(
     model: &RegressionModel,
     logs: &[&Conditioned],
-    (judged, noise): (Judgement<'_>, &[f64]),
+    judged: Judgement<'_>,
+    noise: &[f64],
 ) -> Vec<Unexplained> {
     let lag = logs.iter().map(|log| samples_of(log, 0.5)).max().unwrap_or(1);
     let of = |(((joint, moves), counted), noise): (((&RegressionJoint, bool), &f64), &f64)| {
@@ -170,7 +181,8 @@ fn moving(
 fn resting(
     model: &RegressionModel,
     log: &Conditioned,
-    (found, left): (&Estimate, &Validation),
+    found: &Estimate,
+    left: &Validation,
 ) -> Vec<Unexplained> {
     let moving = moves(model, &[log]);
     let rests: Vec<Vec<bool>> = (0..model.joints.len())
@@ -197,7 +209,7 @@ fn resting(
             beside: None,
         })
     };
-    at_rest(model, log, (found, &rests)).into_iter().enumerate().filter_map(of).collect()
+    at_rest(model, log, found, &rests).into_iter().enumerate().filter_map(of).collect()
 }
 
 /// What is left of the torque of a joint that rests.
@@ -230,7 +242,8 @@ impl RestingJoint {
 fn at_rest(
     model: &RegressionModel,
     log: &Conditioned,
-    (found, rests): (&Estimate, &[Vec<bool>]),
+    found: &Estimate,
+    rests: &[Vec<bool>],
 ) -> Vec<RestingJoint> {
     let phi = found.solution.phi.as_slice();
     // friction that is not shown holds nothing that is known

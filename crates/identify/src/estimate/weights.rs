@@ -72,7 +72,7 @@ impl Fit<'_> {
         weights: ByLog,
     ) -> Settled {
         let solution = self.solved(condensed, triangles, &weights);
-        let noise = condensed.deviations(triangles, (&solution, &weights));
+        let noise = condensed.deviations(triangles, &solution, &weights);
         Settled { solution, weights, noise, rounds: 1 }
     }
 
@@ -172,7 +172,7 @@ impl Condensed {
 
     /// Independent residuals of each joint in each log, without what the estimate takes of them:
     /// trace of w^2 W F F^T W^T.
-    fn free(&self, triangles: &[Vec<Triangle>], (solution, weights): (&Solution, &ByLog)) -> ByLog {
+    fn free(&self, triangles: &[Vec<Triangle>], solution: &Solution, weights: &ByLog) -> ByLog {
         let factor = &solution.factor;
         let of = |log: usize, joint: usize| {
             let (pattern, triangle) = (&self.pattern[joint], &triangles[log][joint]);
@@ -188,9 +188,14 @@ impl Condensed {
     }
 
     /// The deviation of each joint's residuals in each log.
-    fn deviations(&self, triangles: &[Vec<Triangle>], of: (&Solution, &ByLog)) -> ByLog {
-        let free = self.free(triangles, of);
-        let mut sums = self.squares(triangles, of.0.phi.as_slice());
+    fn deviations(
+        &self,
+        triangles: &[Vec<Triangle>],
+        solution: &Solution,
+        weights: &ByLog,
+    ) -> ByLog {
+        let free = self.free(triangles, solution, weights);
+        let mut sums = self.squares(triangles, solution.phi.as_slice());
         for (sums, share) in sums.iter_mut().zip(&self.independent) {
             sums.iter_mut().for_each(|sum| *sum *= share);
         }
@@ -198,8 +203,8 @@ impl Condensed {
     }
 
     /// Deviations of scales that were found otherwise, each joint in each log.
-    pub(super) fn steadied(&self, scales: &ByLog, of: (&Solution, &ByLog)) -> ByLog {
-        let free = self.free(&self.whole(), of);
+    pub(super) fn steadied(&self, scales: &ByLog, solution: &Solution, weights: &ByLog) -> ByLog {
+        let free = self.free(&self.whole(), solution, weights);
         let of_log = |(scales, free): (&Vec<f64>, &Vec<f64>)| {
             scales.iter().zip(free).map(|(scale, free)| scale * scale * free).collect()
         };

@@ -40,14 +40,15 @@ impl Fit<'_> {
         }
         // without the bias of one friction errors are smaller, which may show that of another
         loop {
-            let of = (&fitted.found.solution.phi, &fitted.covariance);
-            let biased = biased_frictions(model, logs, of).into_iter().map(|(joint, _)| joint);
-            let joints: Vec<usize> = biased.filter(|&joint| !tried[joint]).collect();
+            let (phi, covariance) = (&fitted.found.solution.phi, &fitted.covariance);
+            let biased = biased_frictions(model, logs, phi, covariance).into_iter();
+            let joints = biased.map(|(joint, _)| joint).filter(|&joint| !tried[joint]);
+            let joints: Vec<usize> = joints.collect();
             if joints.is_empty() {
                 return Ok((fitted.found, fitted.left_out));
             }
             joints.iter().for_each(|&joint| tried[joint] = true);
-            fitted = self.widened(model, logs, (fitted, joints));
+            fitted = self.widened(model, logs, fitted, joints);
         }
     }
 
@@ -80,7 +81,7 @@ impl Fit<'_> {
         loop {
             let found = self.plain(model, (logs, &asked))?;
             let phi = found.solution.phi.as_slice();
-            let Some(fewer) = asked.without_held(model, logs, (phi, &moving)) else { break };
+            let Some(fewer) = asked.without_held(model, logs, phi, &moving) else { break };
             asked = fewer;
         }
         if asked.awake == fitted.left_out.awake {
@@ -88,7 +89,7 @@ impl Fit<'_> {
         }
         let mut left_out = fitted.left_out;
         left_out.awake = asked.awake;
-        (0..logs.len()).for_each(|log| left_out.keep_enough((log, logs)));
+        (0..logs.len()).for_each(|log| left_out.keep_enough(log, logs));
         self.fitted(model, logs, left_out)
     }
 
@@ -108,7 +109,8 @@ impl Fit<'_> {
         &self,
         model: &RegressionModel,
         logs: &[Conditioned],
-        (mut fitted, mut joints): (Fitted, Vec<usize>),
+        mut fitted: Fitted,
+        mut joints: Vec<usize>,
     ) -> Fitted {
         for doublings in 0..=MOST_DOUBLINGS {
             let times = f64::from(1 << doublings);

@@ -25,7 +25,7 @@ pub fn closed_loop(
     if rows <= 2 * settling + 1 {
         return Err(ForwardError::TooShort((2 * settling + 1) as f64 * log.step_s));
     }
-    let run = run(plant, believed, controller, (log, from, rows))?;
+    let run = run(plant, believed, controller, log, from, rows)?;
     let kept = settling..rows - settling;
     let filtered = |prefix: &str, name: &str| {
         let mut values = column(&run, prefix, name, rows);
@@ -69,7 +69,7 @@ pub fn simulated_log(
     log: &MotionLog,
 ) -> Result<MeasuredLog, ForwardError> {
     let rows = log.samples();
-    let run = run(plant, believed, controller, (log, 0, rows))?;
+    let run = run(plant, believed, controller, log, 0, rows)?;
     let signals = |name: &str| JointSignals {
         q: column(&run, "q", name, rows),
         qd: Some(column(&run, "qd", name, rows)),
@@ -90,7 +90,9 @@ fn run(
     plant: &mut dyn Plant,
     believed: Option<&mut (dyn Plant + 'static)>,
     controller: &Controller,
-    (log, from, rows): (&MotionLog, usize, usize),
+    log: &MotionLog,
+    from: usize,
+    rows: usize,
 ) -> Result<Log, ForwardError> {
     names(plant.model())?;
     let control = following(plant, controller, log)?;

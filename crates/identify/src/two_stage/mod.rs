@@ -126,8 +126,8 @@ pub fn two_stage(
     let motion = Motion::new(conditioned(&how.of_springs)?, plant.joints.len());
     let mut springs = Vec::new();
     for (place, one) in elastic.iter().enumerate() {
-        let friction = (model.law, how.slow);
-        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, friction)?);
+        let (law, slow) = (model.law, how.slow);
+        springs.push(one.identify(&plant.joints[one.joint].name, &motion, place, law, slow)?);
     }
     let conditioned = conditioned(&how.of_load)?;
     let step = |joint: &JointSignals| joint.step.unwrap_or(0.0) / 12.0_f64.sqrt();
@@ -256,7 +256,8 @@ impl Elastic {
         name: &str,
         motion: &Motion,
         place: usize,
-        (law, slow): (CoulombLaw, SlowRows),
+        law: CoulombLaw,
+        slow: SlowRows,
     ) -> Result<Spring, TwoStageError> {
         let [angles, rates, accelerations] = &motion.motors[place];
         readings::check_angles(name, angles, &motion.positions[self.joint], self.turns())?;
@@ -280,7 +281,7 @@ impl Elastic {
             CoulombLaw::Sign => motion.slow(place, slow, turns),
             CoulombLaw::Tanh(_) => None,
         };
-        let (solved, covariance) = Solved::counted(&columns, &left, (1, is_left_out))
+        let (solved, covariance) = Solved::counted(&columns, &left, 1, is_left_out)
             .ok_or_else(|| TwoStageError::NotExcited(format!("the spring of `{name}`")))?;
         let estimate = |at: usize| Estimate {
             value: solved.values[at],
@@ -408,7 +409,8 @@ impl Solved {
     fn counted(
         columns: &[Vec<f64>; 4],
         left: &[f64],
-        (friction, left_out): (usize, Option<Vec<bool>>),
+        friction: usize,
+        left_out: Option<Vec<bool>>,
     ) -> Option<(Self, DMatrix<f64>)> {
         let of = |rows: &[usize]| {
             let x = DMatrix::from_fn(rows.len(), 4, |row, column| columns[column][rows[row]]);

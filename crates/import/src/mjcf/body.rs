@@ -205,7 +205,7 @@ impl<'s, 'f> Reader<'s, 'f> {
                 before.clear();
             }
             let is_driven = self.driven.contains(name.as_str());
-            let made = joint(&name, &attributes, (is_free, is_driven), self.settings, self.faults);
+            let made = joint(&name, &attributes, is_free, is_driven, self.settings, self.faults);
             if made.iter().any(|freedom| freedom.is_snapped) {
                 self.snapped.push(name);
             }

@@ -25,7 +25,8 @@ struct Shape {
 pub(crate) fn lump(
     geom: &Attributes<'_>,
     settings: &Settings<'_>,
-    (outer, body): (&Pose, &str),
+    outer: &Pose,
+    body: &str,
     snapped: &mut Snapped,
     faults: &mut Faults,
 ) -> Option<Lump> {

@@ -28,7 +28,8 @@ impl Freedom {
 pub(crate) fn joint(
     name: &str,
     attributes: &Attributes<'_>,
-    (is_free, is_driven): (bool, bool),
+    is_free: bool,
+    is_driven: bool,
     settings: &Settings<'_>,
     faults: &mut Faults,
 ) -> Vec<Freedom> {

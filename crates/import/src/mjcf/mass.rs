@@ -46,7 +46,7 @@ pub(crate) fn mass_of<'s>(
         .iter()
         .filter_map(|(geom, scope)| {
             let attributes = settings.with_class(*geom, scope.class, faults);
-            lump(&attributes, settings, (&scope.frame, name), &mut notes.snapped, faults)
+            lump(&attributes, settings, &scope.frame, name, &mut notes.snapped, faults)
         })
         .collect();
     let whole = together(&lumps)?;

@@ -7,7 +7,7 @@ use crate::fault::{Cause, Faults, clip};
 use crate::names::identifier;
 use crate::options::Options;
 use crate::place::{Pose, is_quarter, matrix};
-use crate::tree::Tree;
+use crate::tree::{Tree, TreeContact};
 use crate::xml::Element;
 use denavit_codegen::number::{Rational, integer};
 use num_traits::Zero;
@@ -37,7 +37,8 @@ pub(crate) fn find(
             faults.push(link.name.at, Cause::with_hint(said, hint));
         }
         for (at, point) in points.into_iter().enumerate() {
-            tree.contacts.push((format!("{}_{}", identifier(wanted), at + 1), place, point));
+            let name = format!("{}_{}", identifier(wanted), at + 1);
+            tree.contacts.push(TreeContact { name, link: place, at: point });
         }
     }
 }

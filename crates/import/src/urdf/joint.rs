@@ -72,7 +72,7 @@ pub(crate) fn push(
             let drive = drive(joint, raw, tree, faults);
             let limits = limits(joint, tree, faults);
             let steps = steps(kind, joint.name.text, axis);
-            push_steps(tree, steps, link, parent, before, (limits, drive));
+            push_steps(tree, steps, link, parent, before, limits, drive);
         }
     }
 }
@@ -129,7 +129,8 @@ fn push_steps(
     link: &RawLink<'_>,
     parent: usize,
     before: Vec<Pose>,
-    (limits, drive): (TreeLimits, TreeDrive),
+    limits: TreeLimits,
+    drive: TreeDrive,
 ) {
     let frame = Pose::turned(steps.frame);
     let count = steps.joints.len();

@@ -231,7 +231,7 @@ pub fn write_mcap(rows: &Rows<'_>) -> Result<Vec<u8>, String> {
     };
     let all = [(JOINTS, &states, [Some(0), Some(1), Some(2)]), (MOTORS, &motors, MOTOR_PARTS)];
     for (topic, joints, parts) in all.into_iter().filter(|(_, one, _)| !one.names.is_empty()) {
-        let message = move |row: &[f64], at| joint_state((joints, parts), row, at);
+        let message = move |row: &[f64], at| joint_state(joints, parts, row, at);
         add(&mut writer, topic, &JOINT_STATE, Box::new(message))?;
     }
     if !controlled.names.is_empty() {
@@ -266,7 +266,8 @@ pub fn write_mcap(rows: &Rows<'_>) -> Result<Vec<u8>, String> {
 const MOTOR_PARTS: [Option<usize>; 3] = [Some(0), None, Some(1)];
 
 fn joint_state(
-    (joints, parts): (&Joints, [Option<usize>; 3]),
+    joints: &Joints,
+    parts: [Option<usize>; 3],
     row: &[f64],
     time_ns: i64,
 ) -> Result<Vec<u8>, String> {

@@ -59,7 +59,7 @@ impl Definition {
         let parts = Parts::new(kind, text);
         let mut left = MOST_FIELDS;
         let package = kind.split('/').next().unwrap_or_default();
-        let fields = parts.fields((package, &parts.all[0].1), 0, &mut left)?;
+        let fields = parts.fields(package, &parts.all[0].1, 0, &mut left)?;
         Ok(Self { fields })
     }
 }
@@ -94,7 +94,8 @@ impl<'a> Parts<'a> {
     /// The fields of a kind, given by its package and lines.
     fn fields(
         &self,
-        (package, lines): (&str, &[&str]),
+        package: &str,
+        lines: &[&str],
         depth: usize,
         left: &mut usize,
     ) -> Result<Vec<Field>, String> {
@@ -115,7 +116,7 @@ impl<'a> Parts<'a> {
                 continue;
             }
             *left = left.checked_sub(1).ok_or("its definition has too many fields")?;
-            let kind = self.kind((package, kind), depth, left)?;
+            let kind = self.kind(package, kind, depth, left)?;
             fields.push(Field { name: name.to_owned(), kind });
         }
         Ok(fields)
@@ -123,12 +124,13 @@ impl<'a> Parts<'a> {
 
     fn kind(
         &self,
-        (package, text): (&str, &str),
+        package: &str,
+        text: &str,
         depth: usize,
         left: &mut usize,
     ) -> Result<Kind, String> {
         if let Some((of, length)) = text.strip_suffix(']').and_then(|text| text.rsplit_once('[')) {
-            let of = Box::new(self.kind((package, of), depth, left)?);
+            let of = Box::new(self.kind(package, of, depth, left)?);
             return match length.parse::<usize>() {
                 Ok(length) => Ok(Kind::Array(of, length)),
                 Err(_) if length.is_empty() || length.starts_with("<=") => Ok(Kind::Sequence(of)),
@@ -147,14 +149,15 @@ impl<'a> Parts<'a> {
             "float32" => Number::F32,
             "float64" => Number::F64,
             text if text == "string" || text.starts_with("string<=") => return Ok(Kind::Text),
-            text => return self.group((package, text), depth, left),
+            text => return self.group(package, text, depth, left),
         };
         Ok(Kind::Number(number))
     }
 
     fn group(
         &self,
-        (package, text): (&str, &str),
+        package: &str,
+        text: &str,
         depth: usize,
         left: &mut usize,
     ) -> Result<Kind, String> {
@@ -167,7 +170,7 @@ impl<'a> Parts<'a> {
         let fields = match (found, name.as_str()) {
             (Some((name, lines)), _) => {
                 let package = name.split('/').next().unwrap_or_default();
-                self.fields((package, lines), depth + 1, left)?
+                self.fields(package, lines, depth + 1, left)?
             }
             (None, "builtin_interfaces/Time" | "builtin_interfaces/Duration") => time(),
             (None, _) => return Err(format!("its definition has `{text}`, which it does not say")),

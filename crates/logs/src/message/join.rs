@@ -67,7 +67,7 @@ pub(super) fn joined(
     if !unstamped.is_empty() {
         remarks.push(FileRemark::RecordingTimes { topics: unstamped });
     }
-    remarks.extend(outside((&all[clock], own), &rows));
+    remarks.extend(outside(&all[clock], own, &rows));
     let weights: Vec<_> = ordered.iter().map(|other| Weights::new(other, own, &rows)).collect();
     for (other, weights) in ordered.iter().zip(&weights) {
         match pause(other, own, &rows) {
@@ -149,7 +149,7 @@ fn in_common(own: &[i64], others: &[Ordered<'_>]) -> Vec<usize> {
 }
 
 /// What of the clock's topic the others do not have.
-fn outside((stream, own): (&Stream, &[i64]), rows: &[usize]) -> Option<FileRemark> {
+fn outside(stream: &Stream, own: &[i64], rows: &[usize]) -> Option<FileRemark> {
     let [all, kept] = [(0, own.len().checked_sub(1)?), (*rows.first()?, *rows.last()?)]
         .map(|(first, last)| own[last].saturating_sub(own[first]) as f64 / 1e9);
     let left_out_s = all - kept;

@@ -98,7 +98,7 @@ fn states_of_controllers_are_read_by_their_definition() {
 fn usual_definitions_stand_in() {
     let mut file = Mcap::default();
     let kind = "sensor_msgs/msg/JointState";
-    let topic = file.topic_as("/joint_states", (kind, "", ""), "cdr");
+    let topic = file.topic_as("/joint_states", kind, "", "", "cdr");
     for row in 1..=4_u64 {
         file.message(topic, 0, &joint_state(row * 1000, &["a"], [&[1.0], &[], &[]]));
     }
@@ -110,7 +110,7 @@ fn usual_definitions_stand_in() {
 fn what_is_no_joint_state_in_cdr_is_named() {
     let mut file = Mcap::default();
     file.topic("/image", "sensor_msgs/msg/Image", "uint8[] data\n");
-    file.topic_as("/joint_states", ("sensor_msgs/JointState", "ros1msg", "x"), "ros1");
+    file.topic_as("/joint_states", "sensor_msgs/JointState", "ros1msg", "x", "ros1");
     let faults = opened(&file.plain(), &Opening::default()).unwrap_err();
     assert!(matches!(&faults[..], [FileFault::NoMessages { topics }] if topics.len() == 2));
     let text = faults[0].to_string();

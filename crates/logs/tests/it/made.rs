@@ -97,13 +97,15 @@ pub(crate) struct Mcap {
 
 impl Mcap {
     pub(crate) fn topic(&mut self, topic: &str, kind: &str, definition: &str) -> u16 {
-        self.topic_as(topic, (kind, "ros2msg", definition), "cdr")
+        self.topic_as(topic, kind, "ros2msg", definition, "cdr")
     }
 
     pub(crate) fn topic_as(
         &mut self,
         topic: &str,
-        (kind, language, definition): (&str, &str, &str),
+        kind: &str,
+        language: &str,
+        definition: &str,
         encoding: &str,
     ) -> u16 {
         self.topics += 1;

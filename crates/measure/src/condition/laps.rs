@@ -2,6 +2,7 @@
 
 use super::ConditionError;
 use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
+use std::ops::Range;
 
 /// Samples that a search for the period looks at, at most.
 const SEARCHED: usize = 4000;
@@ -56,10 +57,10 @@ struct Compared<'a> {
 
 impl<'a> Compared<'a> {
     /// Places within a range, of which values between samples need some on either side.
-    fn new(moving: &'a [(&'a [f64], f64)], (start, end): (usize, usize), stride: usize) -> Self {
+    fn new(moving: &'a [(&'a [f64], f64)], span: Range<usize>, stride: usize) -> Self {
         let length = moving.first().map_or(0, |(q, _)| q.len());
-        let inner = (start.max(REACH), end.min(length.saturating_sub(REACH)));
-        Self { moving, start: inner.0, end: inner.1, stride }
+        let (start, end) = (span.start.max(REACH), span.end.min(length.saturating_sub(REACH)));
+        Self { moving, start, end, stride }
     }
 
     /// The places whose counterpart is between samples that there are.
@@ -113,8 +114,8 @@ impl<'a> Compared<'a> {
 }
 
 /// Positions of joints that move, with their variances between two samples.
-fn moving(positions: &[Vec<f64>], (start, end): (usize, usize)) -> Vec<(&[f64], f64)> {
-    let all = positions.iter().map(|q| (q.as_slice(), variance(&q[start..end])));
+fn moving(positions: &[Vec<f64>], span: Range<usize>) -> Vec<(&[f64], f64)> {
+    let all = positions.iter().map(|q| (q.as_slice(), variance(&q[span.clone()])));
     let all: Vec<(&[f64], f64)> = all.collect();
     let most = all.iter().map(|(_, variance)| *variance).fold(0.0, f64::max);
     all.into_iter().filter(|(_, variance)| *variance > MOVES * most).collect()
@@ -125,14 +126,15 @@ impl Laps {
     /// found, as long as that is less than a sample in a lap.
     pub fn given(
         positions: &[Vec<f64>],
-        (period_s, step_s): (f64, f64),
-        (start, end): (usize, usize),
+        period_s: f64,
+        step_s: f64,
+        span: Range<usize>,
     ) -> Result<Self, ConditionError> {
         let period = period_s / step_s;
-        let laps = Self::of_period(period, step_s, (start, end))?;
-        let moving = moving(positions, (start, end));
-        let stride = (end - start).div_ceil(SEARCHED).max(1);
-        let compared = Compared::new(&moving, (start, end), stride);
+        let laps = Self::of_period(period, step_s, span.clone())?;
+        let moving = moving(positions, span.clone());
+        let stride = span.len().div_ceil(SEARCHED).max(1);
+        let compared = Compared::new(&moving, span.clone(), stride);
         // the best one may be further away than what digits leave open
         let away = compared.refined(laps.period) - laps.period;
         let period = refined(&compared, laps.period, laps.count);
@@ -141,23 +143,21 @@ impl Laps {
             true if away.abs() >= DIGITS => {
                 Err(ConditionError::OtherPeriod { period_s, longer: away > 0.0 })
             }
-            true => Self::of_period(period, step_s, (start, end)),
+            true => Self::of_period(period, step_s, span),
             false => Err(ConditionError::NotRepeated { period_s, misfit }),
         }
     }
 
     /// Laps of a period in samples from sample `start` on.
-    fn of_period(
-        period: f64,
-        step_s: f64,
-        (start, end): (usize, usize),
-    ) -> Result<Self, ConditionError> {
+    fn of_period(period: f64, step_s: f64, span: Range<usize>) -> Result<Self, ConditionError> {
         let period_s = period * step_s;
         if !(period >= FEWEST && period.is_finite()) {
             return Err(ConditionError::ShortPeriod { period_s, step_s });
         }
-        match ((end - start) as f64 / period + 1e-9).floor() as usize {
-            count @ 2.. => Ok(Self { start, period, samples: period.round() as usize, count }),
+        match (span.len() as f64 / period + 1e-9).floor() as usize {
+            count @ 2.. => {
+                Ok(Self { start: span.start, period, samples: period.round() as usize, count })
+            }
             _ => Err(ConditionError::OneLap { period_s }),
         }
     }
@@ -169,13 +169,14 @@ impl Laps {
         step_s: f64,
         (start, end): (usize, usize),
     ) -> Result<Self, ConditionError> {
-        let samples = end - start;
+        let span = start..end;
+        let samples = span.len();
         let stride = samples.div_ceil(SEARCHED).max(1);
-        let moving = moving(positions, (start, end));
+        let moving = moving(positions, span.clone());
         if moving.is_empty() {
             return Err(ConditionError::NoPeriod);
         }
-        let compared = Compared::new(&moving, (start, end), stride);
+        let compared = Compared::new(&moving, span.clone(), stride);
         // From the first lag at which the motion has become another one.
         let lags = (1..samples / 2 / stride).map(|lag| lag * stride);
         let mut left = false;
@@ -198,7 +199,7 @@ impl Laps {
             .map_or(near, |(lag, _)| lag);
         let count = samples / lag;
         let period = refined(&compared, lag as f64, count);
-        Self::of_period(period, step_s, (start, end))
+        Self::of_period(period, step_s, span)
     }
 
     /// The distance of the mean lap's samples, in those of the log.
@@ -275,10 +276,10 @@ mod tests {
     fn periods_have_fractions_of_samples() {
         for period in [628.318, 62.831_853, 40.5] {
             let positions = [two_harmonics(period, 6000)];
-            let span = (20, 5980);
             let rounded = (period * 10.0_f64).round() / 10.0;
-            let found = Laps::find(&positions, 1e-3, span).expect("it repeats");
-            let given = Laps::given(&positions, (1e-3 * rounded, 1e-3), span).expect("it repeats");
+            let found = Laps::find(&positions, 1e-3, (20, 5980)).expect("it repeats");
+            let given =
+                Laps::given(&positions, 1e-3 * rounded, 1e-3, 20..5980).expect("it repeats");
             for laps in [found, given] {
                 assert!((laps.period - period).abs() < 1e-4, "{} {period}", laps.period);
                 let (mean, noise) = laps.mean(&positions[0]);
@@ -303,7 +304,7 @@ mod tests {
         let mut random = denavit_numerics::Random::new(3);
         let noise: Vec<f64> = (0..2700).map(|_| 1e-4 * random.normal()).collect();
         let positions = [two_harmonics(640.0, 2700), noise];
-        let given = |period_s: f64| Laps::given(&positions, (period_s, 1e-3), (20, 2680));
+        let given = |period_s: f64| Laps::given(&positions, period_s, 1e-3, 20..2680);
         assert_eq!(given(0.64).map(|laps| laps.count), Ok(4));
         for wrong in [0.6, 0.32, 0.7] {
             let refused = matches!(given(wrong), Err(ConditionError::NotRepeated { .. }));
@@ -315,7 +316,7 @@ mod tests {
     #[test]
     fn a_period_that_is_off_by_samples_is_refused() {
         let positions = [two_harmonics(640.0, 2700)];
-        let given = |period_s: f64| Laps::given(&positions, (period_s, 1e-3), (20, 2680));
+        let given = |period_s: f64| Laps::given(&positions, period_s, 1e-3, 20..2680);
         for (wrong, is_longer) in [(0.638, true), (0.6425, false), (0.644, false)] {
             let expected = ConditionError::OtherPeriod { period_s: wrong, longer: is_longer };
             assert_eq!(given(wrong), Err(expected));

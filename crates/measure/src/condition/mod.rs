@@ -299,11 +299,11 @@ impl Conditioned {
     fn average(&mut self, averaging: Averaging) -> Result<(), ConditionError> {
         // values between samples need some on either side
         let samples = self.q.first().map_or(0, Vec::len);
-        let span = (self.range.start.max(STENCIL), self.range.end.min(samples - STENCIL));
+        let span = self.range.start.max(STENCIL)..self.range.end.min(samples - STENCIL);
         let laps = match averaging {
             Averaging::No => return Ok(()),
-            Averaging::Period(period_s) => Laps::given(&self.q, (period_s, self.step_s), span)?,
-            Averaging::Found => Laps::find(&self.q, self.step_s, span)?,
+            Averaging::Period(period_s) => Laps::given(&self.q, period_s, self.step_s, span)?,
+            Averaging::Found => Laps::find(&self.q, self.step_s, (span.start, span.end))?,
         };
         // A lap goes on as it began, so that its edges can be filtered and differentiated.
         let edge = STENCIL + self.filter.as_ref().map_or(0, Butterworth::settling);

@@ -98,7 +98,7 @@ impl Conditioned {
         let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
         let (period, samples) = (2 * filter.smear(), self.range.len());
         let mut is_unsure = vec![false; samples];
-        for Range { start, end } in self.slow_spells(joint, (filter, 0.0)) {
+        for Range { start, end } in self.slow_spells(joint, filter, 0.0) {
             let last = (end + period).min(samples);
             is_unsure[start.saturating_sub(period)..last].fill(true);
         }
@@ -112,8 +112,8 @@ impl Conditioned {
         let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
         let least = STILL * self.usual_rate(joint);
         let period = 2 * filter.smear();
-        let spells = self.slow_spells(joint, (filter, least));
-        self.within(spells, (period, (RESTS - 2) * period))
+        let spells = self.slow_spells(joint, filter, least);
+        self.within(spells, period, (RESTS - 2) * period)
     }
 
     /// The same of rests whose rows may count, if there are any: they are shorter, and the joint
@@ -125,14 +125,14 @@ impl Conditioned {
         let period = 2 * filter.smear();
         let stops_s = self.usual_rate(joint) / self.usual_acceleration(joint);
         let stops = (stops_s / self.step_s).ceil().min(self.range.len() as f64) as usize;
-        let spells = self.slow_spells(joint, (filter, 0.0));
-        let rests = self.within(spells, (period.max(stops), COUNTED * period));
+        let spells = self.slow_spells(joint, filter, 0.0);
+        let rests = self.within(spells, period.max(stops), COUNTED * period);
         rests.contains(&true).then_some(rests)
     }
 
     /// The samples within spells, without so many at either end, into which the filter smears what
     /// is beside, if more than so many are left.
-    fn within(&self, spells: Vec<Range<usize>>, (edge, least): (usize, usize)) -> Vec<bool> {
+    fn within(&self, spells: Vec<Range<usize>>, edge: usize, least: usize) -> Vec<bool> {
         let mut within = vec![false; self.range.len()];
         for Range { start, end } in spells {
             if end - start > 2 * edge + least {
@@ -145,7 +145,7 @@ impl Conditioned {
     /// The samples of [`Conditioned::range`] in which a joint is no faster than noise of its
     /// position makes it, than two steps of its encoder in a period of the filter's cutoff, or than
     /// another rate, for such a period or longer.
-    fn slow_spells(&self, joint: usize, (filter, least): (&Butterworth, f64)) -> Vec<Range<usize>> {
+    fn slow_spells(&self, joint: usize, filter: &Butterworth, least: f64) -> Vec<Range<usize>> {
         let of_steps = self.encoders[joint]
             .map_or(0.0, |one| STEPS * one.step * filter.cutoff() / self.step_s);
         let of_noise = NOISE * self.filter_gains()[1][1].sqrt() * self.position_noise[joint];

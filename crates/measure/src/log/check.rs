@@ -25,11 +25,11 @@ pub(super) fn check(log: &MeasuredLog, joints: &[RegressionJoint]) -> Findings {
     for ((signals, joint), &moves) in log.joints.iter().zip(joints).zip(&moving) {
         position(signals, joint, &mut found);
         if moves {
-            logged_rate((signals, log.step_s), joint, &mut found);
+            logged_rate(signals, log.step_s, joint, &mut found);
         } else if !joint.is_base {
             found.remarks.push(LogRemark::Resting { joint: joint.name.clone() });
         }
-        torque(signals, (joint, has_drives), moves, &mut found);
+        torque(signals, joint, has_drives, moves, &mut found);
     }
     if !moving.contains(&true) {
         found.faults.push(LogFault::NothingMoves);
@@ -101,11 +101,7 @@ fn position(signals: &JointSignals, joint: &RegressionJoint, found: &mut Finding
 
 /// The integral of a rate against its position: neither noise nor steps of an encoder matter there,
 /// as they would in a derivative.
-fn logged_rate(
-    (signals, step_s): (&JointSignals, f64),
-    joint: &RegressionJoint,
-    found: &mut Findings,
-) {
+fn logged_rate(signals: &JointSignals, step_s: f64, joint: &RegressionJoint, found: &mut Findings) {
     let Some(logged) = &signals.qd else { return };
     let column = format!("qd_{}", joint.name);
     let (position, travelled) = (level(&signals.q), level(&integral(logged, step_s)));
@@ -123,7 +119,8 @@ fn logged_rate(
 
 fn torque(
     signals: &JointSignals,
-    (joint, has_drives): (&RegressionJoint, bool),
+    joint: &RegressionJoint,
+    has_drives: bool,
     moves: bool,
     found: &mut Findings,
 ) {

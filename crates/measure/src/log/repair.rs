@@ -74,7 +74,7 @@ pub(super) fn even(mut table: Table, names: &[String]) -> Result<Even, Vec<LogFa
     let time = columns.remove(0);
     if !is_even {
         for column in &mut columns {
-            *column = interpolated(&time, column, (start_s, step_s, samples));
+            *column = interpolated(&time, column, start_s, step_s, samples);
         }
     }
     Ok(Even { step_s, start_s, columns, remarks })
@@ -167,7 +167,7 @@ fn fill_cells(
     }
 }
 
-fn interpolated(time: &[f64], column: &[f64], (start, step, count): (f64, f64, usize)) -> Vec<f64> {
+fn interpolated(time: &[f64], column: &[f64], start: f64, step: f64, count: usize) -> Vec<f64> {
     (0..count).map(|sample| cubic(time, column, start + step * sample as f64)).collect()
 }
 

@@ -205,8 +205,8 @@ impl Wanted {
             }
         }
         faults.extend(shared(log, &columns));
-        faults.extend(missing_torques((log, robot), &columns, mapping));
-        faults.extend(missing_forces(robot, (&all, &columns), mapping));
+        faults.extend(missing_torques(log, robot, &columns, mapping));
+        faults.extend(missing_forces(robot, &all, &columns, mapping));
         faults.extend(other_robot(log, robot, &columns));
         let torque_side = torque_side(log).unwrap_or_else(|fault| {
             faults.push(fault);
@@ -317,7 +317,8 @@ fn shared(log: &Log<'_>, columns: &[WantedColumn]) -> Vec<LogFault> {
 /// those without a drive in a model with drives. A log without any torque is another matter: the
 /// wrench on a base shows parameters too.
 fn missing_torques(
-    (log, robot): (&Log<'_>, LogOf<'_>),
+    log: &Log<'_>,
+    robot: LogOf<'_>,
     columns: &[WantedColumn],
     mapping: &ColumnMapping,
 ) -> Vec<LogFault> {
@@ -353,7 +354,8 @@ fn missing_torques(
 /// Forces on a floating base that the log does not have: without them its weight rests on nothing.
 fn missing_forces(
     robot: LogOf<'_>,
-    (all, columns): (&[Ours], &[WantedColumn]),
+    all: &[Ours],
+    columns: &[WantedColumn],
     mapping: &ColumnMapping,
 ) -> Option<LogFault> {
     if !robot.joints.iter().any(|joint| joint.is_base) {

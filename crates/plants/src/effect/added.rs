@@ -93,7 +93,7 @@ pub fn apart(robot: &Robot, own: &[Effect]) -> Result<ApartEffects, AddedError> 
         match effect.law {
             Law::Moves(_) | Law::Term(_) => taken_up.push([added.effect.clone(), at]),
             Law::Torque(_) | Law::Measured(_) => {
-                laws.push(law_of(robot, (number, added), effect, at)?);
+                laws.push(law_of(robot, number, added, effect, at)?);
             }
         }
     }
@@ -104,7 +104,8 @@ pub fn apart(robot: &Robot, own: &[Effect]) -> Result<ApartEffects, AddedError> 
 
 fn law_of(
     robot: &Robot,
-    (number, added): (usize, &AddedEffect),
+    number: usize,
+    added: &AddedEffect,
     effect: &Effect,
     at: String,
 ) -> Result<AddedLaw, AddedError> {

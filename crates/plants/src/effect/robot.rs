@@ -108,7 +108,7 @@ impl RobotEffect {
                 };
                 rigid.effects = vec![added];
                 attach(&mut rigid, effect, 0).map_err(RobotEffectError::Place)?;
-                Self::of_moved(effect, (&rigid, at), numbers)
+                Self::of_moved(effect, &rigid, at, numbers)
             }
             Law::Torque(_) | Law::Measured(_) => {
                 Err(RobotEffectError::OneJoint(effect.name.clone()))
@@ -137,7 +137,8 @@ impl RobotEffect {
 
     fn of_moved(
         effect: &Effect,
-        (moved, at): (&Robot, EffectPlace),
+        moved: &Robot,
+        at: EffectPlace,
         numbers: &[String],
     ) -> Result<Self, RobotEffectError> {
         let Derived { mut dag, entries, inputs } = derived(moved)?;

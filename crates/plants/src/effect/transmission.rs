@@ -129,7 +129,7 @@ impl Rotor {
             let (h, mut sum) = (step_s / steps, 0.0);
             for step in 0..steps as usize {
                 let u = step as f64 / steps;
-                let joint = between([q[k - 1], q[k]], [qd[k - 1], qd[k]], (u, step_s));
+                let joint = between([q[k - 1], q[k]], [qd[k - 1], qd[k]], u, step_s);
                 let torque = tau[k - 1] + u * (tau[k] - tau[k - 1]) - offset;
                 let ahead = position - joint[0];
                 let beyond = ahead - ahead.clamp(-half, half);
@@ -152,7 +152,7 @@ impl Rotor {
 }
 
 /// Position and rate of the cubic with these ends, a share of the step from the first one.
-fn between(q: [f64; 2], qd: [f64; 2], (u, step_s): (f64, f64)) -> [f64; 2] {
+fn between(q: [f64; 2], qd: [f64; 2], u: f64, step_s: f64) -> [f64; 2] {
     let (slope, rise) = (qd.map(|rate| step_s * rate), q[1] - q[0]);
     let (square, cube) = (3.0 * rise - 2.0 * slope[0] - slope[1], slope[0] + slope[1] - 2.0 * rise);
     let position = q[0] + u * (slope[0] + u * (square + u * cube));

@@ -192,7 +192,7 @@ pub fn diagnosed_json<'a>(
     let sorted = |is_named: bool| {
         let all = found.effects.iter().enumerate();
         let own = all.filter(|(_, one)| one.is_named == is_named);
-        own.map(|(number, one)| effect((shown, folder), number, one)).collect()
+        own.map(|(number, one)| effect(shown, folder, number, one)).collect()
     };
     let structures = found.structures.iter().map(|one| StructureJson {
         joint: &one.at,
@@ -230,7 +230,8 @@ pub fn diagnosed_json<'a>(
 }
 
 fn effect<'a>(
-    (shown, folder): (&'a Diagnosed, Option<&DiagnosisFolder>),
+    shown: &'a Diagnosed,
+    folder: Option<&DiagnosisFolder>,
     number: usize,
     one: &'a FoundEffect,
 ) -> EffectJson<'a> {
@@ -252,7 +253,7 @@ fn effect<'a>(
         parameters: values(&one.parameters),
         indistinguishable: others.collect(),
         exact_alias: &one.exact,
-        separating_experiment: experiment((shown, folder), number, one),
+        separating_experiment: experiment(shown, folder, number, one),
     }
 }
 
@@ -269,7 +270,8 @@ fn visible(shown: &Diagnosed) -> Vec<VisibleJson<'_>> {
 
 /// The motion that tells an effect from what would do as well, or why there is none.
 fn experiment(
-    (shown, folder): (&Diagnosed, Option<&DiagnosisFolder>),
+    shown: &Diagnosed,
+    folder: Option<&DiagnosisFolder>,
     number: usize,
     one: &FoundEffect,
 ) -> Option<Value> {

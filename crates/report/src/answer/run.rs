@@ -84,13 +84,15 @@ pub fn run_text(
     took: Duration,
 ) -> String {
     let mut out = String::new();
-    write(&mut out, (scenario, run, broken), took).expect("text has room");
+    write(&mut out, scenario, run, broken, took).expect("text has room");
     out
 }
 
 fn write(
     out: &mut String,
-    (scenario, run, broken): (&Scenario, &Run, &[(&'static str, f64, f64)]),
+    scenario: &Scenario,
+    run: &Run,
+    broken: &[(&'static str, f64, f64)],
     took: Duration,
 ) -> fmt::Result {
     let scheme = scheme_text(scenario);

@@ -222,7 +222,8 @@ enum Case {
 impl Case {
     fn of(
         problem: &ContactProblem<'_>,
-        (index, scales): (usize, Scales),
+        index: usize,
+        scales: Scales,
         f: &DVector<f64>,
         w: &DVector<f64>,
     ) -> Self {
@@ -263,7 +264,7 @@ fn laws(
     let mut missed = f.clone();
     for (index, &own) in scales.iter().enumerate() {
         let (first, n) = (problem.block(index).start, problem.normal(index));
-        let case = Case::of(problem, (index, own), f, w);
+        let case = Case::of(problem, index, own, f, w);
         if !matches!(case, Case::Open) {
             missed[n] = own.normal * w[n];
         }
@@ -294,7 +295,7 @@ fn slopes(
     for (index, &own) in scales.iter().enumerate() {
         let (first, n) = (problem.block(index).start, problem.normal(index));
         let mu = friction(problem, index);
-        let case = Case::of(problem, (index, own), f, w);
+        let case = Case::of(problem, index, own, f, w);
         if !matches!(case, Case::Open) {
             slope.set_row(n, &(own.normal * g.row(n)));
         }

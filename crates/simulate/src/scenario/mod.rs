@@ -117,16 +117,16 @@ impl Scenario {
         let run = match self.scheme {
             RunScheme::Event => simulate_told(plant, control, initial, simulation, told),
             RunScheme::TimeStepping => {
-                let scheme = (simulation, &self.stepping);
-                simulate_by_steps_told(plant, control, initial, scheme, told)
+                let stepping = &self.stepping;
+                simulate_by_steps_told(plant, control, initial, simulation, stepping, told)
             }
         };
         let mut run = run.map_err(|error| self.origin.place(error))?;
         run.log.header = self.header(&run);
         if let Some(noise) = self.logged_torque_noise {
             let Simulation { measurement, seed, log_period_s, .. } = &self.simulation;
-            let torque = (noise, self.control.period_s == Some(*log_period_s));
-            run.log = measured_log(&run.log, measurement, torque, *seed);
+            let is_sampled = self.control.period_s == Some(*log_period_s);
+            run.log = measured_log(&run.log, measurement, noise, is_sampled, *seed);
         }
         Ok(run)
     }

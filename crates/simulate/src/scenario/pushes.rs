@@ -14,7 +14,8 @@ const KEYS: &[&str] = &["link", "position_m", "at_s", "impulse_ns", "force_n", "
 /// \[s\].
 pub(super) fn pushes(
     fields: &Fields<'_>,
-    (model, run_s): (&PlantModel, [f64; 2]),
+    model: &PlantModel,
+    run_s: [f64; 2],
     report: &mut Report,
 ) -> Vec<Push> {
     let nodes = fields.get("pushes").map_or_else(Vec::new, |node| node.items(report));

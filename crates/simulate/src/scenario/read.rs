@@ -70,7 +70,7 @@ pub fn read_planned(
     let origin = Origin { file: file.to_owned(), source: source.to_vec() };
     model::read_document(file, source, |root, report| {
         let fields = root.fields(KEYS, report)?;
-        let mut scenario = scenario(&fields, origin, (load, planner), report)?;
+        let mut scenario = scenario(&fields, origin, load, planner, report)?;
         if report.is_empty() {
             find_start_faults(&mut scenario, root.0, report);
         }
@@ -81,7 +81,8 @@ pub fn read_planned(
 fn scenario(
     fields: &Fields<'_>,
     origin: Origin,
-    (load, planner): (&Loader<'_>, Option<&GaitPlanner<'_>>),
+    load: &Loader<'_>,
+    planner: Option<&GaitPlanner<'_>>,
     report: &mut Report,
 ) -> Option<Scenario> {
     check_format(fields, FORMAT, report);
@@ -99,7 +100,7 @@ fn scenario(
     let initial = initial(fields, plant.as_mut(), &control, posture, report);
     simulation.end_s += initial.t_s;
     let run_s = [initial.t_s, simulation.end_s];
-    simulation.pushes = pushes(fields, (plant.model(), run_s), report);
+    simulation.pushes = pushes(fields, plant.model(), run_s, report);
     find_idle(fields, plant.model(), &simulation, &control, report);
     Some(Scenario {
         origin,

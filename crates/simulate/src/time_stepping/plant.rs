@@ -167,8 +167,8 @@ impl<'a> ControlledPlant<'a> {
         if laws.respond(self.plant, t_s, parts, None) {
             law_torque.copy_from_slice(&laws.torque[..parts.q.len()]);
             *law_power = laws.power(parts);
-            let drives = (self.plant.model(), &self.drives);
-            laws.brake_motors(drives, &mut output.motor_acceleration);
+            let model = self.plant.model();
+            laws.brake_motors(model, &self.drives, &mut output.motor_acceleration);
             laws.pass_on(torque);
         }
     }

@@ -98,7 +98,7 @@ impl StepRecorder {
             interval: Interval::default(),
         };
         recorder.open_interval(system, t_s, q, qd);
-        recorder.joints.see(control, (t_s, t_s), [q, qd]);
+        recorder.joints.see(control, t_s, t_s, [q, qd]);
         recorder
     }
 
@@ -175,13 +175,14 @@ impl StepRecorder {
     pub(super) fn see_joints(
         &mut self,
         control: &Control,
-        (t_s, command): (f64, &[f64]),
+        t_s: f64,
+        command: &[f64],
         q: &[f64],
         qd: &[f64],
     ) {
         self.joints.command(command);
         self.joints.commanded_until(t_s);
-        self.joints.see(control, (t_s, t_s), [q, qd]);
+        self.joints.see(control, t_s, t_s, [q, qd]);
     }
 
     /// An event is a step in which contacts begin or cease to push.

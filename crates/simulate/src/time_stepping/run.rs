@@ -29,7 +29,7 @@ pub fn simulate_by_steps(
     simulation: &Simulation,
     stepping: &Stepping,
 ) -> Result<Run, StartError> {
-    simulate_by_steps_told(plant, control, initial, (simulation, stepping), &mut |_| {})
+    simulate_by_steps_told(plant, control, initial, simulation, stepping, &mut |_| {})
 }
 
 /// As [`simulate_by_steps`], heard by somebody.
@@ -40,7 +40,8 @@ pub fn simulate_by_steps_told(
     plant: &mut dyn Plant,
     control: &Control,
     initial: &State,
-    (simulation, stepping): (&Simulation, &Stepping),
+    simulation: &Simulation,
+    stepping: &Stepping,
     told: &mut Told<'_>,
 ) -> Result<Run, StartError> {
     let mut state = initial.clone();
@@ -50,7 +51,7 @@ pub fn simulate_by_steps_told(
         return Err(StartError::EventSchemeOnly("references that are planned during a run"));
     }
     check_stepping(simulation, stepping)?;
-    check_steps(&state, simulation, "time_stepping", (stepping.step_s, 1.0))?;
+    check_steps(&state, simulation, "time_stepping", stepping.step_s, 1.0)?;
     if plant.law_states() > 0 || plant.has_accelerated_laws() {
         let what = "effects with states, or that depend on the load";
         return Err(StartError::EventSchemeOnly(what));
@@ -223,7 +224,7 @@ impl Runner<'_> {
         let work = self.system.finish_step(before, after, settings.step_s, settings.implicitness);
         let made = Made { t_s: end_s, report, q: &self.q, before, after, work };
         self.recorder.note_step(&self.system, &self.stepper, &made);
-        self.recorder.see_joints(self.control, (end_s, &self.system.step.command), &self.q, after);
+        self.recorder.see_joints(self.control, end_s, &self.system.step.command, &self.q, after);
         if let Some(name) = self.falls.fallen(self.system.plant(), &self.ground, &self.q) {
             return Some(Stop::Fall(name));
         }

@@ -81,12 +81,12 @@ impl Columns {
         })?;
         let mut faults = LogFaults::default();
         for (row, values) in file.log.rows().enumerate() {
-            columns.check_row(file, (row, values), &mut faults);
+            columns.check_row(file, row, values, &mut faults);
         }
         faults.or(columns)
     }
 
-    fn check_row(&self, file: &LogFile, (row, values): (usize, &[f64]), faults: &mut LogFaults) {
+    fn check_row(&self, file: &LogFile, row: usize, values: &[f64], faults: &mut LogFaults) {
         let contacts = self.forces.len();
         let name = |column: usize| file.log.columns[column].clone();
         let mut found = Vec::new();

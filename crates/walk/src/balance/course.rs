@@ -222,7 +222,7 @@ fn instants(
                     let pushed = wrench.torques(plant, &q);
                     torques.iter_mut().zip(pushed).for_each(|(torque, push)| *torque += push);
                 }
-                let found = accelerations(plant, (&q, &qd), &torques, &forces);
+                let found = accelerations(plant, &q, &qd, &torques, &forces);
                 found.ok_or(BalanceError::Singular(t_s))?
             }
         };
@@ -260,7 +260,8 @@ fn closed(plant: &dyn Plant, forces: &[[f64; 3]], digits: Option<Vec<bool>>) -> 
 /// D^-1 (tau - bias + W f).
 fn accelerations(
     plant: &mut dyn Plant,
-    (q, qd): (&[f64], &[f64]),
+    q: &[f64],
+    qd: &[f64],
     torques: &[f64],
     forces: &[[f64; 3]],
 ) -> Option<Vec<f64>> {

@@ -79,7 +79,7 @@ impl Instant {
         let mut positions = vec![0.0; 3 * points];
         plant.contact_positions(at.q, &mut positions);
         let speeds = speeds(plant, at);
-        let (closed, feet) = carrying(plant, at, (&positions, &speeds));
+        let (closed, feet) = carrying(plant, at, &positions, &speeds);
         let support = {
             let places = closed.iter().map(|c| &positions[3 * c..3 * c + 3]);
             SupportPolygon::of(plant.model(), places)
@@ -152,7 +152,8 @@ fn flat(plant: &dyn Plant) -> SupportForm {
 fn carrying(
     plant: &dyn Plant,
     at: &Moving<'_>,
-    (positions, speeds): (&[f64], &[f64]),
+    positions: &[f64],
+    speeds: &[f64],
 ) -> (Vec<usize>, Vec<usize>) {
     let model = plant.model();
     let mut feet: Vec<usize> = Vec::new();

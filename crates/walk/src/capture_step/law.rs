@@ -2,7 +2,7 @@
 
 use super::planner::CaptureStepper;
 use crate::capturability::StepLimits;
-use crate::gait_plan::{Height, PlanError, Pose, Walker};
+use crate::gait_plan::{Height, PlanError, Pose, Sought, Walker};
 use denavit_plants::Plant;
 use denavit_simulate::{PlanningLaw, ReferencePlanner};
 
@@ -94,7 +94,7 @@ pub fn capture_step(plant: &mut dyn Plant, numbers: &CaptureStep) -> Result<Prep
         height: Height::CenterOfMass(numbers.height_m),
         pitch_rad: 0.0,
     };
-    let start = walker.first(plant, &pose, ("start", 0.0))?.q;
+    let start = walker.first(plant, &pose, Sought { name: "start", t_s: 0.0 })?.q;
     Ok(Prepared { law: CaptureStepLaw { numbers: *numbers, walker }, start })
 }
 

@@ -5,7 +5,7 @@ use super::pendulum::Pressure;
 use super::reach::Reach;
 use super::torques::torques;
 use crate::fading::{FADES_PER_S, Moving};
-use crate::gait_plan::{Height, Pose, Walker};
+use crate::gait_plan::{Height, Pose, Sought, Walker};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, TrajectoryError};
 use denavit_runtime::Scalar;
@@ -90,7 +90,8 @@ impl Motion<'_> {
     }
 
     fn posture(&self, plant: &mut dyn Plant, t_s: f64, near: &[f64]) -> Option<Vec<f64>> {
-        let found = self.walker.reach(plant, &self.pose(t_s), near, ("capture step", t_s));
+        let at = Sought { name: "capture step", t_s };
+        let found = self.walker.reach(plant, &self.pose(t_s), near, at);
         Some(found.ok()?.q)
     }
 

@@ -46,7 +46,7 @@ pub(super) fn torques(
         }
     }
     let forces = loop {
-        let forces = least_forces(&jacobian, n, (&base, &needed), &pushes)?;
+        let forces = least_forces(&jacobian, n, &base, &needed, &pushes)?;
         let pulls = (0..pushes.len()).filter(|index| pushes[*index].pushes && forces[*index] < 0.0);
         match pulls.min_by(|a, b| forces[*a].total_cmp(&forces[*b])) {
             Some(most) => drop(pushes.remove(most)),
@@ -65,7 +65,8 @@ pub(super) fn torques(
 fn least_forces(
     jacobian: &[f64],
     n: usize,
-    (base, needed): (&[usize], &[f64]),
+    base: &[usize],
+    needed: &[f64],
     pushes: &[Push],
 ) -> Option<DVector<f64>> {
     let columns =

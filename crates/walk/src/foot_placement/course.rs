@@ -169,10 +169,10 @@ impl Course {
         };
         let way = [beyond(0), beyond(1)];
         let phase = &self.phases[self.phase_at(t_s)];
-        let feet = (&phase.soles, phase.standing());
+        let standing = phase.standing();
         let margin = |share: f64| {
             let at = [0, 1].map(|axis| place[axis] + share * way[axis]);
-            self.walk.biped.margin_m(model, feet, at)
+            self.walk.biped.margin_m(model, &phase.soles, standing, at)
         };
         let least_m = law.margin_m.min(margin(0.0));
         let share = largest_share(|share| margin(share) >= least_m);

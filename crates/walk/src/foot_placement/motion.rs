@@ -5,7 +5,7 @@ use super::law::FootPlacementLaw;
 use super::measured::Measured;
 use super::pendulum::Pendulum;
 use crate::fading::{FADES_PER_S, Moving};
-use crate::gait_plan::{Bearing, Moment, pose, torques};
+use crate::gait_plan::{Bearing, Moment, Sought, pose, torques};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
 use denavit_simulate::JointPlan;
@@ -43,26 +43,28 @@ impl Motion<'_> {
     fn posture(
         &self,
         plant: &mut dyn Plant,
-        (t_s, pendulum): (f64, &Pendulum),
+        t_s: f64,
+        pendulum: &Pendulum,
         near: &[f64],
     ) -> Option<Vec<f64>> {
         let walk = &self.law.walk;
         let phase = &self.course.phases[self.course.phase_at(t_s)];
         let share = (t_s - phase.start_s) / phase.duration_s;
         let pose = pose(&walk.problem, phase, share, pendulum.center_m);
-        Some(walk.biped.reach(plant, &pose, near, (&phase.name, t_s)).ok()?.q)
+        let at = Sought { name: &phase.name, t_s };
+        Some(walk.biped.reach(plant, &pose, near, at).ok()?.q)
     }
 
     /// Postures at all times, up to the first that is out of reach; what is measured beside the
     /// first one fades.
     fn postures(&self, plant: &mut dyn Plant) -> Option<Vec<Vec<f64>>> {
         let (now_s, measured) = (self.times_s[0], self.measured);
-        let first = self.posture(plant, (now_s, &self.pendulums[0]), &measured.q)?;
+        let first = self.posture(plant, now_s, &self.pendulums[0], &measured.q)?;
         let Pendulum { center_m, divergent_m } = self.pendulums[0];
         let way = DIFFERENCE_S * self.course.omega();
         let on = |axis: usize| center_m[axis] + way * (divergent_m[axis] - center_m[axis]);
         let soon = Pendulum { center_m: [on(0), on(1)], divergent_m };
-        let next = self.posture(plant, (now_s + DIFFERENCE_S, &soon), &first)?;
+        let next = self.posture(plant, now_s + DIFFERENCE_S, &soon, &first)?;
         let apart: Vec<Moving> = (0..first.len())
             .map(|joint| Moving {
                 value: measured.q[joint] - first[joint],
@@ -72,7 +74,7 @@ impl Motion<'_> {
         let mut postures = Vec::with_capacity(self.times_s.len());
         let mut near = first;
         for (t_s, pendulum) in self.times_s.iter().zip(self.pendulums) {
-            let Some(posture) = self.posture(plant, (*t_s, pendulum), &near) else { break };
+            let Some(posture) = self.posture(plant, *t_s, pendulum, &near) else { break };
             let since_s = t_s - now_s;
             let faded =
                 posture.iter().zip(&apart).map(|(q, apart)| q + apart.left(FADES_PER_S, since_s));

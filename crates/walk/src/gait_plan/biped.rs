@@ -1,7 +1,7 @@
 //! A robot in space with two legs, and its joint positions for given places of its soles.
 
 use super::fault::PlanError;
-use super::posture::{Conditions, Posture, bent, first, placed, reach};
+use super::posture::{Conditions, Posture, Sought, bent, first, placed, reach};
 use crate::inverse_kinematics::{Condition, largest_error};
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::SupportPolygon;
@@ -173,7 +173,8 @@ impl Biped {
     pub fn margin_m(
         &self,
         model: &PlantModel,
-        (soles, standing): (&[SolePlace; 2], [bool; 2]),
+        soles: &[SolePlace; 2],
+        standing: [bool; 2],
         [x, y]: [f64; 2],
     ) -> f64 {
         let own = (0..2).filter(|side| standing[*side]);
@@ -282,7 +283,7 @@ impl Biped {
         plant: &mut dyn Plant,
         pose: &BipedPose,
         near: &[f64],
-        at: (&str, f64),
+        at: Sought<'_>,
     ) -> Result<Posture, PlanError> {
         reach(plant, &self.conditions(pose), near, at)
     }
@@ -296,14 +297,14 @@ impl Biped {
         &self,
         plant: &mut dyn Plant,
         pose: &BipedPose,
-        at: (&str, f64),
+        at: Sought<'_>,
     ) -> Result<Posture, PlanError> {
         let mut start = bent(plant.model(), &self.drivable);
         let [x, y, z] = pose.center_m;
         for (place, value) in self.base.places.into_iter().zip([x, y, self.ground_m + z]) {
             start[place] = value;
         }
-        first(plant, &self.conditions(pose), (&start, &self.drivable), at)
+        first(plant, &self.conditions(pose), &start, &self.drivable, at)
     }
 
     /// All coordinates for these joint positions while a foot stands at a place.
@@ -313,9 +314,10 @@ impl Biped {
     pub(super) fn placed(
         &self,
         plant: &mut dyn Plant,
-        (side, place): (usize, &SolePlace),
+        side: usize,
+        place: &SolePlace,
         q: &[f64],
-        at: (&str, f64),
+        at: Sought<'_>,
     ) -> Result<Vec<f64>, PlanError> {
         let mut conditions = self.sole(side, place).to_vec();
         let joints = self.drivable.iter();

@@ -12,7 +12,7 @@ use super::fault::PlanError;
 use super::footsteps::{AnkleRolls, DivergentComponentProblem, Phase, phases};
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, Knot, ROUNDING_M};
-use super::posture::Posture;
+use super::posture::{Posture, Sought};
 use super::torque::{Bearing, Moment, torques};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
@@ -243,8 +243,8 @@ impl Planner<'_> {
             .ok_or_else(|| PlanError::NoBiped("walk from rest to rest".to_owned()))
     }
 
-    fn at(&self, time: Time) -> (&str, f64) {
-        (&self.phases[time.phase].name, time.t_s)
+    fn at(&self, time: Time) -> Sought<'_> {
+        Sought { name: &self.phases[time.phase].name, t_s: time.t_s }
     }
 
     fn pose(&self, center: &[PendulumPath; 2], time: Time) -> BipedPose {
@@ -279,17 +279,17 @@ impl Planner<'_> {
         let mut all = Vec::with_capacity(2 * self.times.len());
         for (index, time) in self.times.iter().enumerate() {
             let posture = motion.postures[index].clone();
-            all.push(self.knot(plant, motion, *time, (posture, true))?);
+            all.push(self.knot(plant, motion, *time, posture, true)?);
             let Some(next) = self.times.get(index + 1) else { continue };
             let between = Time { t_s: 0.5 * (time.t_s + next.t_s), ..*time };
             let (pose, stance) =
                 (self.pose(&motion.center, between), self.phase(between).0.stance());
             let along: Vec<f64> =
                 motion.splines.iter().map(|spline| spline.at(between.t_s).position).collect();
-            let foot = (stance, &pose.soles[stance]);
-            let q = self.biped.placed(plant, foot, &along, self.at(between))?;
+            let (place, at) = (&pose.soles[stance], self.at(between));
+            let q = self.biped.placed(plant, stance, place, &along, at)?;
             let residual = self.biped.error(plant, &pose, &q);
-            all.push(self.knot(plant, motion, between, (Posture { q, residual }, false))?);
+            all.push(self.knot(plant, motion, between, Posture { q, residual }, false)?);
         }
         Ok(all)
     }
@@ -299,7 +299,8 @@ impl Planner<'_> {
         plant: &mut dyn Plant,
         motion: &Motion,
         time: Time,
-        (posture, is_solved): (Posture, bool),
+        posture: Posture,
+        is_solved: bool,
     ) -> Result<Knot, PlanError> {
         let (phase, pose) = (&self.phases[time.phase], self.pose(&motion.center, time));
         let (name, t_s) = (phase.name.clone(), time.t_s);
@@ -307,9 +308,9 @@ impl Planner<'_> {
             return Err(PlanError::Collision { posture: name, t_s });
         }
         let pressure = motion.zero_moment_point(plant, t_s)?;
-        let feet = (&pose.soles, phase.standing());
+        let standing = phase.standing();
         let [x, y, _] = pose.center_m;
-        let margin_m = self.biped.margin_m(plant.model(), feet, pressure);
+        let margin_m = self.biped.margin_m(plant.model(), &pose.soles, standing, pressure);
         let least_m = self.problem.margin_m;
         if margin_m < least_m - ROUNDING_M || margin_m.is_nan() {
             let point = "planned zero moment point";
@@ -321,7 +322,7 @@ impl Planner<'_> {
             q: posture.q,
             is_solved,
             residual: posture.residual,
-            static_margin_m: self.biped.margin_m(plant.model(), feet, [x, y]),
+            static_margin_m: self.biped.margin_m(plant.model(), &pose.soles, standing, [x, y]),
             pressure_margin_m: Some(margin_m),
         })
     }

@@ -221,7 +221,7 @@ pub(super) fn phases(
     let mut course = Course { problem, rolls, soles, load: 0.5, phases: Vec::new() };
     let pressures_m = [course.middle_m(), course.pressures_m(1 - first)[0]];
     let [begin_s, end_s] = problem.standing_s;
-    course.push("start".to_owned(), begin_s, None, (pressures_m, stance_load(1 - first)));
+    course.push("start".to_owned(), begin_s, None, pressures_m, stance_load(1 - first));
     for step in 0..problem.swings() {
         let side = (first + step) % 2;
         if let Some(footstep) = problem.footsteps.get(step) {
@@ -234,18 +234,18 @@ pub(super) fn phases(
         let swing_s = problem.step_s - problem.double_support_s;
         let swing = Some((side, beside(&frame, side, width)));
         let name = format!("step {}, swing", step + 1);
-        course.push(name, swing_s, swing, (pressures_m, stance_load(1 - side)));
+        course.push(name, swing_s, swing, pressures_m, stance_load(1 - side));
         if step + 1 == problem.swings() {
             let (last_m, load) = match problem.ends {
                 Ending::SideBySide => (course.middle_m(), 0.5),
                 Ending::OnLastFoot => (course.pressures_m(side)[1], stance_load(side)),
             };
-            course.push("stop".to_owned(), end_s, None, ([to, last_m], load));
+            course.push("stop".to_owned(), end_s, None, [to, last_m], load);
         } else {
             let pressures_m = [to, course.pressures_m(side)[0]];
             let name = format!("step {}, double support", step + 1);
             let both_s = problem.double_support_s;
-            course.push(name, both_s, None, (pressures_m, stance_load(side)));
+            course.push(name, both_s, None, pressures_m, stance_load(side));
         }
     }
     course.phases
@@ -289,7 +289,8 @@ impl Course<'_> {
         name: String,
         duration_s: f64,
         swing: Option<(usize, SolePlace)>,
-        (pressures_m, load): ([[f64; 2]; 2], f64),
+        pressures_m: [[f64; 2]; 2],
+        load: f64,
     ) {
         let yaw = |soles: &[SolePlace; 2]| 0.5 * (soles[0].yaw_rad + soles[1].yaw_rad);
         let before = self.soles;

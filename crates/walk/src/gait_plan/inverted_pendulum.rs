@@ -7,7 +7,7 @@ use super::fault::PlanError;
 use super::footsteps::smooth;
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, JointGains, Knot, ROUNDING_M};
-use super::posture::Posture;
+use super::posture::{Posture, Sought};
 use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
 use denavit_runtime::Scalar;
@@ -224,7 +224,7 @@ impl Planner<'_> {
             let is_last = phase.start_s + phase.duration_s >= self.course.end_s();
             for index in 0..count as usize + usize::from(is_last) {
                 let t_s = phase.start_s + phase.duration_s * (index as f64 / count);
-                let (pose, at) = (self.pose(phase, t_s), (phase.name.as_str(), t_s));
+                let (pose, at) = (self.pose(phase, t_s), Sought { name: &phase.name, t_s });
                 let posture = match knots.last() {
                     None => self.walker.first(plant, &pose, at)?,
                     Some(before) => self.walker.reach(plant, &pose, &before.q, at)?,
@@ -284,8 +284,8 @@ impl Planner<'_> {
                 q[path.joint] = reference.at(t_s).position;
             }
             let (pose, stance) = (self.pose(phase, t_s), phase.stance());
-            let foot = (stance, pose.feet_m[stance]);
-            let q = self.walker.placed(plant, foot, &q, (&phase.name, t_s))?;
+            let (foot_m, at) = (pose.feet_m[stance], Sought { name: &phase.name, t_s });
+            let q = self.walker.placed(plant, stance, foot_m, &q, at)?;
             let residual = self.walker.error(plant, &pose, &q);
             all.push(self.knot(phase, t_s, Posture { q, residual }, false));
         }

@@ -34,7 +34,7 @@ pub use footsteps::{AnkleRolls, DivergentComponentProblem, Ending, Footstep, Sid
 pub use inverted_pendulum::{InvertedPendulumProblem, plan_inverted_pendulum};
 pub use pendulum::{PendulumPath, PendulumState, PressureSegment};
 pub use plan::{GaitPlan, JointGains, Knot};
-pub use posture::Posture;
+pub use posture::{Posture, Sought};
 pub use primitives::{Join, Primitive, PrimitivesProblem, plan_primitives};
 pub(crate) use torque::{Bearing, Moment, torques};
 pub use walker::{Foot, Height, Pose, Walker};

@@ -14,6 +14,15 @@ pub struct Posture {
     pub residual: f64,
 }
 
+/// Which posture is looked for: messages say it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sought<'a> {
+    /// Its name, or that of its phase.
+    pub name: &'a str,
+    /// When it is taken \[s\].
+    pub t_s: f64,
+}
+
 /// Starts of the search for the first posture.
 const STARTS: usize = 24;
 /// How far joints are from their middle in these \[rad\].
@@ -23,8 +32,7 @@ const BENT: f64 = 0.5;
 /// Beyond a limit by less is at it [rad, m].
 const AT_LIMIT: f64 = 1e-9;
 
-/// The posture near `near` that meets conditions, whatever the limits; `name` and time are for
-/// messages.
+/// The posture near `near` that meets conditions, whatever the limits.
 ///
 /// # Errors
 /// Conditions that are out of reach.
@@ -32,13 +40,13 @@ pub(super) fn placed(
     plant: &mut dyn Plant,
     conditions: &[Condition],
     near: &[f64],
-    (name, t_s): (&str, f64),
+    at: Sought<'_>,
 ) -> Result<Vec<f64>, PlanError> {
     let mut q = near.to_vec();
     match solve(plant, conditions, &mut q) {
         Ok(()) => Ok(q),
         Err(PostureError::OutOfReach { residual }) => {
-            Err(PlanError::OutOfReach { posture: name.to_owned(), t_s, residual })
+            Err(PlanError::OutOfReach { posture: at.name.to_owned(), t_s: at.t_s, residual })
         }
         Err(PostureError::Count { conditions, coordinates }) => {
             Err(PlanError::Undetermined { conditions, coordinates })
@@ -66,23 +74,23 @@ pub(super) fn reach(
     plant: &mut dyn Plant,
     conditions: &Conditions,
     near: &[f64],
-    at: (&str, f64),
+    at: Sought<'_>,
 ) -> Result<Posture, PlanError> {
     let Conditions { solved, implied } = conditions;
     let q = placed(plant, solved, near, at)?;
     let missed = largest_error(plant, implied, &q);
     if missed > BRANCH {
         return Err(PlanError::OutOfReach {
-            posture: at.0.to_owned(),
-            t_s: at.1,
+            posture: at.name.to_owned(),
+            t_s: at.t_s,
             residual: missed,
         });
     }
     for (joint, value) in plant.model().joints.iter().zip(&q) {
         let Some(limits) = joint.position_limits else { continue };
         if *value < limits[0] - AT_LIMIT || *value > limits[1] + AT_LIMIT {
-            let (posture, joint) = (at.0.to_owned(), joint.name.clone());
-            return Err(PlanError::Limit { posture, t_s: at.1, joint, value: *value, limits });
+            let (posture, joint) = (at.name.to_owned(), joint.name.clone());
+            return Err(PlanError::Limit { posture, t_s: at.t_s, joint, value: *value, limits });
         }
     }
     stays_above(plant, &q, at)?;
@@ -91,7 +99,7 @@ pub(super) fn reach(
 }
 
 /// What must not touch the ground is above it.
-fn stays_above(plant: &mut dyn Plant, q: &[f64], at: (&str, f64)) -> Result<(), PlanError> {
+fn stays_above(plant: &mut dyn Plant, q: &[f64], at: Sought<'_>) -> Result<(), PlanError> {
     let mut transforms = vec![0.0; 12 * plant.model().links.len()];
     plant.link_transforms(q, &mut transforms);
     let model = plant.model();
@@ -101,8 +109,8 @@ fn stays_above(plant: &mut dyn Plant, q: &[f64], at: (&str, f64)) -> Result<(), 
         let place = [place[0], place[1], place[2]];
         let height_m = model.ground.height(&place) - model.fall_radii_m[index];
         if height_m < 0.0 {
-            let (posture, body) = (at.0.to_owned(), model.fall_points[index].name.clone());
-            return Err(PlanError::Fallen { posture, t_s: at.1, body, height_m });
+            let (posture, body) = (at.name.to_owned(), model.fall_points[index].name.clone());
+            return Err(PlanError::Fallen { posture, t_s: at.t_s, body, height_m });
         }
     }
     Ok(())
@@ -116,8 +124,9 @@ fn stays_above(plant: &mut dyn Plant, q: &[f64], at: (&str, f64)) -> Result<(), 
 pub(super) fn first(
     plant: &mut dyn Plant,
     conditions: &Conditions,
-    (start, joints): (&[f64], &[usize]),
-    at: (&str, f64),
+    start: &[f64],
+    joints: &[usize],
+    at: Sought<'_>,
 ) -> Result<Posture, PlanError> {
     let mut random = Random::new(1);
     let mut best: Option<(f64, Posture)> = None;

@@ -4,7 +4,7 @@
 use super::curve::{Curve, JointPath, Piece};
 use super::fault::PlanError;
 use super::plan::{GaitPlan, JointGains, Knot, ROUNDING_M};
-use super::posture::Posture;
+use super::posture::{Posture, Sought};
 use super::walker::{Height, Pose, Walker};
 use denavit_plants::Plant;
 
@@ -94,7 +94,7 @@ pub fn plan_primitives(
     }
     let mut postures: Vec<Posture> = Vec::new();
     for (primitive, t_s) in problem.postures.iter().zip(&times_s) {
-        let (pose, at) = (pose(primitive), (primitive.name.as_str(), *t_s));
+        let (pose, at) = (pose(primitive), Sought { name: &primitive.name, t_s: *t_s });
         let posture = match postures.last() {
             None => walker.first(plant, &pose, at)?,
             // a leap from one posture to another may lead nowhere where a search does not
@@ -234,11 +234,12 @@ impl Step<'_> {
         q: &[f64],
     ) -> Result<Knot, PlanError> {
         let name = format!("after {}", self.problem.postures[part].name);
-        let q = self.walker.placed(plant, (0, [0.0; 2]), q, (&name, t_s))?;
+        let at = Sought { name: &name, t_s };
+        let q = self.walker.placed(plant, 0, [0.0; 2], q, at)?;
         let is_double = self.is_double(part);
         let foot_m = self.problem.postures[part].swing_foot_m;
         let residual = match is_double {
-            true => self.walker.off_place_m(plant, (1, foot_m), &q),
+            true => self.walker.off_place_m(plant, 1, foot_m, &q),
             false => self.walker.depth_m(plant, 1, &q),
         };
         let static_margin_m = self.margin_m(plant, part, [true, is_double], &q);

@@ -1,7 +1,7 @@
 //! A planar robot with two legs, and its joint positions for given places of its feet.
 
 use super::fault::PlanError;
-use super::posture::{Conditions, Posture, bent, first, placed, reach};
+use super::posture::{Conditions, Posture, Sought, bent, first, placed, reach};
 use crate::inverse_kinematics::{Condition, largest_error};
 use crate::leg_exchange::LegExchange;
 use denavit_plants::Plant;
@@ -162,7 +162,7 @@ impl Walker {
         plant: &mut dyn Plant,
         pose: &Pose,
         near: &[f64],
-        at: (&str, f64),
+        at: Sought<'_>,
     ) -> Result<Posture, PlanError> {
         reach(plant, &self.conditions(pose), near, at)
     }
@@ -176,7 +176,7 @@ impl Walker {
         &self,
         plant: &mut dyn Plant,
         pose: &Pose,
-        at: (&str, f64),
+        at: Sought<'_>,
     ) -> Result<Posture, PlanError> {
         let mut start = bent(plant.model(), &self.driven);
         let height = match pose.height {
@@ -185,7 +185,7 @@ impl Walker {
         start[self.base[0]] = pose.center_m;
         start[self.base[1]] = self.ground_m + height;
         start[self.base[2]] = pose.pitch_rad;
-        first(plant, &self.conditions(pose), (&start, &self.driven), at)
+        first(plant, &self.conditions(pose), &start, &self.driven, at)
     }
 
     /// All coordinates for these joint positions while a foot stands level at a place.
@@ -195,9 +195,10 @@ impl Walker {
     pub(super) fn placed(
         &self,
         plant: &mut dyn Plant,
-        (side, foot_m): (usize, [f64; 2]),
+        side: usize,
+        foot_m: [f64; 2],
         q: &[f64],
-        at: (&str, f64),
+        at: Sought<'_>,
     ) -> Result<Vec<f64>, PlanError> {
         let mut conditions = self.sole(side, foot_m).to_vec();
         let joints = (0..q.len()).filter(|joint| !self.base.contains(joint));
@@ -209,7 +210,8 @@ impl Walker {
     pub(super) fn off_place_m(
         &self,
         plant: &mut dyn Plant,
-        (side, foot_m): (usize, [f64; 2]),
+        side: usize,
+        foot_m: [f64; 2],
         q: &[f64],
     ) -> f64 {
         largest_error(plant, &self.sole(side, foot_m), q)

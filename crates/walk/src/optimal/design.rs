@@ -249,8 +249,8 @@ impl Designer<'_> {
         let mut start = start.map(<[f64]>::to_vec);
         loop {
             let shared = Layout::shared_out(&self.phases, self.intervals);
-            let parts = (&self.phases[..], &shared[..]);
-            let mut step = Step::new(self.plant, &self.legs, parts, limits, costs);
+            let (phases, legs) = (&self.phases, &self.legs);
+            let mut step = Step::new(self.plant, legs, phases, &shared, limits, costs);
             let guess = start.take().unwrap_or_else(|| step.guess(problem.guess));
             let found = search_plan(&mut step, &guess);
             self.stages.push(Stage {

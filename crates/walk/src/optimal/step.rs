@@ -42,7 +42,8 @@ impl<'p> Step<'p> {
     pub(super) fn new(
         plant: &'p mut dyn Plant,
         legs: &Legs,
-        (phases, intervals): (&[Phase], &[usize]),
+        phases: &[Phase],
+        intervals: &[usize],
         limits: StepLimits,
         cost_settings: CostSettings,
     ) -> Self {
@@ -315,8 +316,8 @@ mod tests {
             acceleration: 1e-5,
             impulse: 2.0,
         };
-        let parts = (&phases[..], &[2, 2, 3, 2][..]);
-        check(&mut Step::new(plant.as_mut(), &legs, parts, limits, costs));
+        let intervals = [2, 2, 3, 2];
+        check(&mut Step::new(plant.as_mut(), &legs, &phases, &intervals, limits, costs));
     }
 
     /// A point away from the guess: nothing is 0 by chance.

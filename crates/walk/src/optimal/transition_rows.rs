@@ -13,9 +13,9 @@ impl Step<'_> {
         let transition = self.layout.transitions[number].clone();
         let before = *self.layout.last_of(transition.from);
         let after = self.layout.points_of(transition.to)[0];
-        self.continuity_rows(x, (&before, &after), &transition, sink);
+        self.continuity_rows(x, &before, &after, &transition, sink);
         if transition.is_impact() {
-            self.impact_rows(x, (&before, &after), number, sink);
+            self.impact_rows(x, &before, &after, number, sink);
             self.after_impact_rows(x, &after, &transition, sink);
             self.before_impact_rows(x, &before, &transition, sink);
         }
@@ -40,7 +40,8 @@ impl Step<'_> {
     fn continuity_rows(
         &self,
         x: &[f64],
-        (before, after): (&Point, &Point),
+        before: &Point,
+        after: &Point,
         transition: &Transition,
         sink: &mut Sink<'_>,
     ) {
@@ -78,7 +79,8 @@ impl Step<'_> {
     fn impact_rows(
         &mut self,
         x: &[f64],
-        (before, after): (&Point, &Point),
+        before: &Point,
+        after: &Point,
         number: usize,
         sink: &mut Sink<'_>,
     ) {

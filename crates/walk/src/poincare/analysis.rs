@@ -164,10 +164,11 @@ pub fn analyse(
     };
     let mut section_spread =
         if options.checks && is_clock { spread(&mut map, &cycle, &own)? } else { None };
-    let leading = own.first().filter(|_| options.returns.1 > 0);
-    let convergence = leading.map(|one| converge(&mut map, &cycle, one, options.returns));
+    let (off, cycles) = options.returns;
+    let leading = own.first().filter(|_| cycles > 0);
+    let convergence = leading.map(|one| converge(&mut map, &cycle, one, off, cycles));
     // where contacts forbid that deviation there is no way back
-    let is_off = |way: &Convergence| way.lengths[0] > LEFT * options.returns.0;
+    let is_off = |way: &Convergence| way.lengths[0] > LEFT * off;
     let convergence = convergence.filter(is_off);
     let forbidden = if is_clock { forbidden(map.plant, own.len()) } else { 0 };
     if options.checks && !is_clock && rhythm.clock_s.is_some() {
@@ -262,7 +263,7 @@ fn approach(
         }
         _ => {
             let step = until(map, &begun, start_s + period_s)?;
-            let quiet = quiet_times(&step, (start_s, period_s));
+            let quiet = quiet_times(&step, start_s, period_s);
             quiet.first().map_or(start_s, |(middle_s, _)| *middle_s)
         }
     };
@@ -321,7 +322,7 @@ fn strike_of_clock(
 }
 
 /// Middle and length of the times without an event in a cycle, the longest first \[s\].
-fn quiet_times(run: &Run, (start_s, period_s): (f64, f64)) -> Vec<(f64, f64)> {
+fn quiet_times(run: &Run, start_s: f64, period_s: f64) -> Vec<(f64, f64)> {
     let events = run.events.iter().filter(|event| event.kind != EventKind::Start);
     let mut times: Vec<f64> = events.map(|event| event.t_s).collect();
     // the cycle closes
@@ -355,7 +356,7 @@ fn spread(
     let step = run(map, &start, start.t_s + cycle.period_s)?;
     let section = map.section;
     let (mut apart, mut count) = (0.0_f64, 1);
-    let others = quiet_times(&step, (start.t_s, cycle.period_s));
+    let others = quiet_times(&step, start.t_s, cycle.period_s);
     for (at_s, _) in others.into_iter().skip(1).take(SECTIONS) {
         let mut near = run(map, &start, at_s)?.end;
         if at_s >= start.t_s + cycle.period_s {

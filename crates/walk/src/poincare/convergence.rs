@@ -39,7 +39,8 @@ pub fn converge(
     map: &mut ReturnMap<'_>,
     cycle: &FixedPoint,
     leading: &Multiplier,
-    (off, cycles): (f64, usize),
+    off: f64,
+    cycles: usize,
 ) -> Convergence {
     let chart = &cycle.chart;
     let joints = leading_velocities(map.plant.model(), cycle, leading);

@@ -79,13 +79,13 @@ fn alternates(control: &Control, exchange: &LegExchange, half_s: f64) -> bool {
         gains(law) == gains(mirrored)
             && parts.into_iter().all(|(here, there, sign)| match (here, there) {
                 (None, None) => true,
-                (Some(here), Some(there)) => are_alike(here, there, (sign, half_s)),
+                (Some(here), Some(there)) => are_alike(here, there, sign, half_s),
                 _ => false,
             })
     })
 }
 
-fn are_alike(here: &Reference, there: &Reference, (sign, half_s): (f64, f64)) -> bool {
+fn are_alike(here: &Reference, there: &Reference, sign: f64, half_s: f64) -> bool {
     (0..SAMPLES).all(|sample| {
         // not at limits of parts, where references may jump
         let t_s = (sample as f64 + 0.5) / SAMPLES as f64 * 2.0 * half_s;

@@ -68,7 +68,7 @@ pub fn capture_pushes(
         let impulse_ns = options.impulses_ns[index];
         let made = scenario.as_mut().and_then(|scenario| run(scenario, impulse_ns, options));
         let Some((run, walker, scenario)) = made else { return nothing(impulse_ns) };
-        judged(scenario.plant.as_mut(), &walker, capturability, (impulse_ns, run))
+        judged(scenario.plant.as_mut(), &walker, capturability, impulse_ns, run)
     })
 }
 
@@ -108,7 +108,8 @@ fn judged(
     plant: &mut dyn Plant,
     walker: &Walker,
     capturability: &Capturability,
-    (impulse_ns, run): (f64, Run),
+    impulse_ns: f64,
+    run: Run,
 ) -> CapturePush {
     let omega = capturability.limits().omega();
     let pushed = run.events.iter().find(|event| event.kind == EventKind::Push);

@@ -54,7 +54,7 @@ pub fn least_pushes(
             return LeastPush { at_s, direction, impulse_ns: None, outcome: Outcome::NoStart };
         };
         let mut outcome_of =
-            |impulse_ns: f64| outcome(scenario, start, (at_s, direction, impulse_ns), options);
+            |impulse_ns: f64| outcome(scenario, start, at_s, direction, impulse_ns, options);
         let (impulse_ns, outcome) = least(&mut outcome_of, options);
         LeastPush { at_s, direction, impulse_ns, outcome }
     })
@@ -93,7 +93,9 @@ fn least(
 fn outcome(
     scenario: &mut Scenario,
     start: &State,
-    (at_s, direction, impulse_ns): (f64, [f64; 3], f64),
+    at_s: f64,
+    direction: [f64; 3],
+    impulse_ns: f64,
     options: &PushOptions,
 ) -> Outcome {
     let at_s = start.t_s + at_s;

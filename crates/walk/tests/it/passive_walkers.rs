@@ -30,7 +30,8 @@ fn plant(path: &str, overrides: &[(&str, f64)]) -> LoadedPlant {
 fn passive<'a>(
     plant: &'a mut dyn Plant,
     control: &'a Control,
-    (section, patience_s): (Section, f64),
+    section: Section,
+    patience_s: f64,
 ) -> ReturnMap<'a> {
     ReturnMap {
         plant,
@@ -67,7 +68,7 @@ fn the_simplest_walker_has_a_stable_and_an_unstable_gait() {
         ([0.1939, -0.2039], [0.19393736981023, -0.20386692744206], short),
     ] {
         let (mut walker, control) = (SimplestWalker::new(0.009), Control::passive(2));
-        let mut map = passive(&mut walker, &control, (Section::Jump(0), 6.0));
+        let mut map = passive(&mut walker, &control, Section::Jump(0), 6.0);
         let [angle, rate]: [f64; 2] = start;
         let qd = vec![rate, rate * (1.0 - (2.0 * angle).cos())];
         let near = State { qd, ..State::resting(vec![angle, 2.0 * angle]) };
@@ -81,7 +82,7 @@ fn the_simplest_walker_has_a_stable_and_an_unstable_gait() {
 fn the_kneed_walker_is_stable() {
     let (mut walker, control) = (KneedWalker::new((7.25_f64 / 144.0).asin()), Control::passive(3));
     let section = Section::Jump(KneedWalker::HEEL_STRIKE);
-    let mut map = passive(&mut walker, &control, (section, 0.8));
+    let mut map = passive(&mut walker, &control, section, 0.8);
     let near = State { qd: vec![-1.134, -0.109, 0.0], ..State::resting(vec![0.1893, -0.29, 0.0]) };
     let expected = [[0.54818500, 0.49857750], [0.54818500, -0.49857750], [0.10774936, 0.0]];
     let fixed = assert_multipliers(&mut map, &near, &expected);
@@ -128,7 +129,7 @@ fn the_rimless_wheel_forgets_by_its_closed_form() {
             offsets: vec![0.0, 0.0, -2.0 * half],
             contacts,
         };
-        let mut map = passive(&mut wheel, &control, (Section::Touch(standing), 6.0));
+        let mut map = passive(&mut wheel, &control, Section::Touch(standing), 6.0);
         map.exchange = Some(exchange);
         let Ok(cycle) = fixed_point(&mut map, &near) else { continue };
         let matrix = by_differences(&mut map, &cycle.chart).unwrap();
@@ -174,7 +175,7 @@ fn compass(degrees: f64) -> LoadedPlant {
 
 fn compass_map<'a>(plant: &'a mut dyn Plant, control: &'a Control) -> ReturnMap<'a> {
     let exchange = LegExchange::find(plant);
-    let mut map = passive(plant, control, (STRIKES, 1.5));
+    let mut map = passive(plant, control, STRIKES, 1.5);
     assert!(exchange.is_some());
     map.exchange = exchange;
     let touching = Touching { scuffing: Scuffing::IgnoredBehind, ..map.simulation.touching };

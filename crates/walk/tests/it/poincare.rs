@@ -13,7 +13,8 @@ use denavit_walk::poincare::{
 /// The return map of a gait with this time of a step, looked at after a share of it.
 fn with_map<T>(
     name: &str,
-    (step_s, share): (f64, f64),
+    step_s: f64,
+    share: f64,
     then: impl FnOnce(&mut ReturnMap<'_>, State) -> T,
 ) -> T {
     let mut scenario = scenario(name);
@@ -39,7 +40,7 @@ fn with_map<T>(
 
 /// Largest first; those after them are smaller than 1e-3.
 fn assert_cycle(gait: (&str, f64), share: f64, travel_m: f64, expected: &[[f64; 2]]) {
-    with_map(gait.0, (gait.1, share), |map, near| {
+    with_map(gait.0, gait.1, share, |map, near| {
         let cycle = fixed_point(map, &near).unwrap();
         assert_eq!(cycle.chart.len(), 12, "fourteen, of which a flat foot forbids two");
         assert_near(cycle.travel_m[0], travel_m, 2e-4);
@@ -76,7 +77,7 @@ fn the_limit_cycle_is_returned_to_as_its_multipliers_say() {
 /// With the place along the ground among the coordinates there is one more, equal to 1.
 #[test]
 fn the_place_along_the_ground_has_the_multiplier_1() {
-    with_map(LIMIT_CYCLE.0, (LIMIT_CYCLE.1, 0.5), |map, near| {
+    with_map(LIMIT_CYCLE.0, LIMIT_CYCLE.1, 0.5, |map, near| {
         let cycle = fixed_point(map, &near).unwrap();
         let of = |map: &mut ReturnMap<'_>, chart: &Chart| {
             multipliers(&by_variation(map, chart, cycle.period_s).unwrap()).unwrap()
@@ -126,7 +127,7 @@ fn the_limit_cycle_has_its_multipliers_on_every_section() {
 fn the_fixed_points_are_those_of_walking_md() {
     // torso, stance thigh, shank, foot, swing thigh, shank, foot from upright, counterclockwise
     let expected = [0.1625252, 0.2582333, -0.74292352, 0.0, 0.31361067, -1.00950902, -0.0258306];
-    with_map(LIMIT_CYCLE.0, (LIMIT_CYCLE.1, 0.5), |map, near| {
+    with_map(LIMIT_CYCLE.0, LIMIT_CYCLE.1, 0.5, |map, near| {
         let cycle = fixed_point(map, &near).unwrap();
         let q = &cycle.chart.base.q;
         // clockwise from the base on: pitch, then hip, knee and ankle of each leg
@@ -147,7 +148,7 @@ fn the_fixed_points_are_those_of_walking_md() {
 #[test]
 fn perturbing_joints_without_the_base_gives_wrong_multipliers() {
     let largest = |share: f64| {
-        with_map(LIMIT_CYCLE.0, (LIMIT_CYCLE.1, share), |map, near| {
+        with_map(LIMIT_CYCLE.0, LIMIT_CYCLE.1, share, |map, near| {
             let cycle = fixed_point(map, &near).unwrap();
             let chart = &cycle.chart;
             let (base, h) = (chart.base.clone(), 1e-4);

@@ -105,7 +105,8 @@ impl Conditions {
     pub(super) fn lower(
         &self,
         logs: &[&Conditioned],
-        (halvings, asking): (&[u32], &[bool]),
+        halvings: &[u32],
+        asking: &[bool],
     ) -> Option<Halvings> {
         let samples = |log: &Conditioned| log.q.first().map_or(0, Vec::len);
         let is_long = |log: &Conditioned, halvings: u32| match (self.averaging, log.laps) {

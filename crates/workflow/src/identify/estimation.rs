@@ -50,8 +50,9 @@ impl Estimation<'_> {
 
     fn judged(&self, read: &Read, options: &Options, estimated: Estimated) -> Found {
         let found = estimated.judged(self.request(read, options));
-        let both = (&found.consistent, &found.parameters[..]);
-        let updated = updated_model(self.work.robot, self.work.model, both, self.source);
+        let Work { robot, model, .. } = self.work;
+        let (bodies, listed) = (&found.consistent, &found.parameters);
+        let updated = updated_model(robot, model, bodies, listed, self.source);
         let updated = updated.and_then(|updated| with_all_effects(updated, self.own));
         (found, updated)
     }
@@ -94,7 +95,7 @@ impl Estimation<'_> {
             };
             (found, halvings) = (better, lower);
         }
-        self.lower_held_out((&mut read, halvings), &found, watched)?;
+        self.lower_held_out(&mut read, halvings, &found, watched)?;
         let mut found = self.judged(&read, options, found);
         let given = &self.work.logs.columns;
         found.0.misread.iter_mut().for_each(|one| one.given = given.clone());
@@ -105,7 +106,8 @@ impl Estimation<'_> {
     /// their positions, if nobody asked for others.
     fn lower_held_out(
         &self,
-        (read, mut halvings): (&mut Read, Halvings),
+        read: &mut Read,
+        mut halvings: Halvings,
         found: &Estimated,
         watched: &mut Watched<'_>,
     ) -> Result<(), Error> {
@@ -117,7 +119,7 @@ impl Estimation<'_> {
                 |(log, is_open): (_, &bool)| *is_open && found.is_noisy(self.work.model, log);
             let others = read.validate.iter().zip(&is_open).map(asks);
             let asking: Vec<bool> = std::iter::repeat_n(false, train).chain(others).collect();
-            let lower = self.work.options.conditions.lower(&read.logs(), (&halvings, &asking));
+            let lower = self.work.options.conditions.lower(&read.logs(), &halvings, &asking);
             let Some(mut lower) = lower else { return Ok(()) };
             if !watched.begins(Stage::ReadingHeldOutAgain) {
                 return Ok(());
@@ -143,7 +145,7 @@ impl Estimation<'_> {
     fn lower(&self, read: &Read, halvings: &[u32], found: &Estimated) -> Option<(Halvings, f64)> {
         let conditions = &self.work.options.conditions;
         let logs: Vec<&Conditioned> = read.train.iter().collect();
-        let lower = |asking: &[bool]| conditions.lower(&logs, (halvings, asking));
+        let lower = |asking: &[bool]| conditions.lower(&logs, halvings, asking);
         let of_biasing = lower(&found.biasing_logs).map(|lower| (lower, f64::INFINITY));
         let of_alone = || lower(&found.biased_alone).map(|lower| (lower, NO_LARGER));
         let may_change = found.parameters.iter().any(IdentifiedParameter::may_change);

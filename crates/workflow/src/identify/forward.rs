@@ -33,7 +33,8 @@ impl Controlled {
         let name = path.display().to_string();
         let bytes = files.bytes_or_shipped(
             path,
-            ("controller", shipped::CONTROLLERS),
+            "controller",
+            shipped::CONTROLLERS,
             FileKind::Controller,
         )?;
         let plant =
@@ -103,14 +104,16 @@ pub struct SimulationGap {
 
 impl SimulationGap {
     pub(super) fn new(
-        (robot, updated): (&Robot, &Result<UpdatedModel, UpdateError>),
+        robot: &Robot,
+        updated: &Result<UpdatedModel, UpdateError>,
         controlled: Option<&Controlled>,
-        (logs, window_s): (&[MotionLog], f64),
+        logs: &[MotionLog],
+        window_s: f64,
     ) -> Self {
         let moved = |robot: &Robot, believed: Option<&Robot>| {
             let plant = |robot: &Robot| plant_of(robot, &[]).map_err(NotMoved::Plant);
             let mut plants = (plant(robot)?, believed.map(plant).transpose()?);
-            all(&mut plants, controlled, (logs, window_s))
+            all(&mut plants, controlled, logs, window_s)
         };
         let before = moved(robot, None);
         let after = match updated {
@@ -168,7 +171,8 @@ type Plants = (Box<dyn Plant>, Option<Box<dyn Plant>>);
 fn all(
     (plant, believed): &mut Plants,
     controlled: Option<&Controlled>,
-    (logs, window_s): (&[MotionLog], f64),
+    logs: &[MotionLog],
+    window_s: f64,
 ) -> Result<Forward, NotMoved> {
     let mut joined: Option<Forward> = None;
     for log in logs {

@@ -38,7 +38,7 @@ pub(super) fn read(work: Work<'_>, halvings: &[u32]) -> Result<Read, Error> {
         options.method == Method::Instrumental && options.instruments.is_empty();
     let simulates_train = controlled && (logs.held_out.is_empty() || needs_instruments);
     let longest_s = simulates_train.then_some(f64::INFINITY);
-    let train = reader.kept((&logs.train, of_train), longest_s)?;
+    let train = reader.kept(&logs.train, of_train, longest_s)?;
     let whole = reader.motions.take().unwrap_or_default();
     let mut numbered = train.iter().enumerate();
     let same = numbered.find_map(|(at, log)| {
@@ -48,7 +48,7 @@ pub(super) fn read(work: Work<'_>, halvings: &[u32]) -> Result<Read, Error> {
     if let Some(same) = same {
         return Err(Cause::SameLogs(same).into());
     }
-    let instruments = reader.kept((&options.instruments, &[]), None)?;
+    let instruments = reader.kept(&options.instruments, &[], None)?;
     let is_measured =
         |one: &&Conditioned| train.iter().any(|log| log.q == one.q && log.torque == one.torque);
     if let Some(one) = instruments.iter().find(is_measured) {
@@ -75,7 +75,7 @@ impl Read {
         let is_fixed = model.joints.iter().all(|joint| !joint.is_base);
         let simulates = is_fixed || options.controller.is_some();
         let longest_s = simulates.then_some(LONGEST_S);
-        self.validate = reader.kept((&logs.held_out, halvings), longest_s)?;
+        self.validate = reader.kept(&logs.held_out, halvings, longest_s)?;
         self.motions = reader.motions.take().unwrap_or_default();
         for log in &self.validate {
             if let Some(same) = self.train.iter().find(|other| other.overlaps(log)) {
@@ -136,23 +136,25 @@ impl<'a> Reader<'a> {
     /// Reads logs, whose cutoffs are halved so often, and keeps their motion for so long \[s\].
     fn kept(
         &mut self,
-        (paths, halvings): (&[PathBuf], &[u32]),
+        paths: &[PathBuf],
+        halvings: &[u32],
         longest_s: Option<f64>,
     ) -> Result<Vec<Conditioned>, Error> {
         self.motions = longest_s.map(|_| Vec::new());
         let halvings = halvings.iter().copied().chain(std::iter::repeat(0));
         let all = paths.iter().zip(halvings);
-        Error::of_any_log(all.map(|(path, own)| self.one((path, own), longest_s)))
+        Error::of_any_log(all.map(|(path, own)| self.one(path, own, longest_s)))
     }
 
     fn one(
         &mut self,
-        (path, halvings): (&Path, u32),
+        path: &Path,
+        halvings: u32,
         longest_s: Option<f64>,
     ) -> Result<Conditioned, Error> {
         let file = path.display().to_string();
         let Work { logs, options, robot, laws, model } = self.work;
-        let mut log = logs.measured(path, (robot, model))?;
+        let mut log = logs.measured(path, robot, model)?;
         let required = log.require_joint_torques(&model.joints, logs.accepts_suspicious);
         required.map_err(|faults| Cause::Logs(vec![faults]))?;
         undo_readings(&mut log, laws);

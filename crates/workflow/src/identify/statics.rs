@@ -39,8 +39,10 @@ impl StaticsFound {
 /// All that is wrong with the file or the logs, or why they do not suit the robot.
 pub fn identify_statics(
     robot: &RobotFile,
-    (name, bytes): (&str, &[u8]),
-    (logs, options): (&Logs, &IdentifyOptions),
+    name: &str,
+    bytes: &[u8],
+    logs: &Logs,
+    options: &IdentifyOptions,
     observer: &mut dyn Observer,
 ) -> Result<StaticsFound, Error> {
     if let Some(law) = robot.apart.laws.first() {

@@ -67,7 +67,7 @@ pub fn identify_two_stage(
     let model = regression(&robot, &options)?;
     let stopped = || Error::from(Cause::Stopped);
     watched.begins(Stage::ReadingLogs).then_some(()).ok_or_else(stopped)?;
-    let log = logs.measured(path, (&robot, &model))?;
+    let log = logs.measured(path, &robot, &model)?;
     watched.begins(Stage::Estimating).then_some(()).ok_or_else(stopped)?;
     let plant = plant_of(&robot, &[]).map_err(|error| Cause::Plant(robot.name.clone(), error))?;
     let plant = plant.model();
@@ -87,7 +87,7 @@ pub fn identify_two_stage(
     let mut held_out = Vec::new();
     let mut is_searched_again = false;
     for path in &logs.held_out {
-        let log = logs.measured(path, (&robot, &model))?;
+        let log = logs.measured(path, &robot, &model)?;
         let new = named(&log).into_iter().filter(|one| !remarks.contains(one));
         remarks.extend(new.collect::<Vec<String>>());
         let loads = conditioned(plant, &log, &stages.springs, &conditions(&log))?;
@@ -157,8 +157,8 @@ impl TwoStageFound {
     /// If what was found makes no model.
     pub fn updated(&self) -> Result<String, Error> {
         let Self { robot, model, source, .. } = self;
-        let both = (&self.bodies, &self.parameters[..]);
-        let updated = updated_model(robot, model, both, source).map_err(Cause::Update)?;
+        let (bodies, listed) = (&self.bodies, &self.parameters);
+        let updated = updated_model(robot, model, bodies, listed, source).map_err(Cause::Update)?;
         let mut named = Vec::new();
         for spring in &self.stages.springs {
             let values = [("k", spring.stiffness), ("fv", spring.viscous), ("fc", spring.coulomb)];

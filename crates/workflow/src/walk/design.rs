@@ -38,7 +38,7 @@ impl Files {
     /// All that is wrong with it, or why it is not read.
     pub fn gait(&self, path: &Path) -> Result<Gait, Error> {
         let name = path.display().to_string();
-        let bytes = self.bytes_or_shipped(path, ("gait", shipped::GAITS), FileKind::Gait)?;
+        let bytes = self.bytes_or_shipped(path, "gait", shipped::GAITS, FileKind::Gait)?;
         let file = read_gait(&name, &bytes).map_err(Cause::Scenario)?;
         Ok(Gait { name, file })
     }
@@ -52,7 +52,7 @@ impl Files {
             return self.scenario(path);
         }
         let gait = self.gait(path)?;
-        let designed = design_gait(self, &gait, (path, None))?;
+        let designed = design_gait(self, &gait, path, None)?;
         let load = |model: &str| self.beside(path, model);
         let read = read_scenario(&gait.name, designed.scenario.as_bytes(), &load);
         Ok(read.map_err(Cause::Scenario)?)
@@ -65,7 +65,7 @@ fn refused(name: &str, why: impl std::fmt::Display) -> Error {
     Cause::Walk(name.to_owned(), why.to_string()).into()
 }
 
-/// Designs a gait. The paths are that of its file, and where its scenario goes: they say how the
+/// Designs a gait. The path of its file, and `output`, where its scenario goes, say how the
 /// scenario calls its model.
 ///
 /// # Errors
@@ -73,9 +73,10 @@ fn refused(name: &str, why: impl std::fmt::Display) -> Error {
 pub fn design_gait(
     files: &Files,
     gait: &Gait,
-    paths: (&Path, Option<&Path>),
+    gait_file: &Path,
+    output: Option<&Path>,
 ) -> Result<Designed, Error> {
-    designed(files, paths, (&gait.name, &gait.file))
+    designed(files, gait_file, output, &gait.name, &gait.file)
 }
 
 /// A gait that was designed.
@@ -151,8 +152,10 @@ fn is_gait(files: &Files, path: &Path) -> bool {
 /// Designs a gait; its file, and where the scenario goes, say how the scenario calls its model.
 fn designed(
     files: &Files,
-    (gait_file, output): (&Path, Option<&Path>),
-    (name, gait): (&str, &GaitFile),
+    gait_file: &Path,
+    output: Option<&Path>,
+    name: &str,
+    gait: &GaitFile,
 ) -> Result<Designed, Error> {
     let bytes = files
         .beside(gait_file, &gait.model)
@@ -161,7 +164,7 @@ fn designed(
     let mut plant = plant_of(&robot, &gait.parameters).map_err(|error| refused(name, error))?;
     let stem = gait_file.file_stem().unwrap_or_default().to_string_lossy();
     let own = if gait.name.is_empty() { stem.into_owned() } else { gait.name.clone() };
-    let model = model_from((gait_file, output), &gait.model);
+    let model = model_from(gait_file, output, &gait.model);
     let source = format!("`denavit walk design` from the gait {own}");
     let head = ScenarioHead {
         name: &own,
@@ -196,7 +199,7 @@ fn designed(
 }
 
 /// What the scenario calls its model: paths are taken from the scenario's directory.
-fn model_from((gait, output): (&Path, Option<&Path>), model: &str) -> String {
+fn model_from(gait: &Path, output: Option<&Path>, model: &str) -> String {
     if shipped::find_referred(model).is_some() {
         return model.to_owned();
     }

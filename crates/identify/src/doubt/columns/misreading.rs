@@ -110,7 +110,8 @@ impl Misreading {
     pub(super) fn describe(
         self,
         f: &mut fmt::Formatter<'_>,
-        (joints, step_s): (&[RegressionJoint], f64),
+        joints: &[RegressionJoint],
+        step_s: f64,
     ) -> fmt::Result {
         let of_all = |what: &str, factor: f64| match factor == -1.0 {
             true => format!("all {what} seem"),

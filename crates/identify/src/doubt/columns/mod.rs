@@ -76,7 +76,7 @@ impl fmt::Display for MisreadColumns {
         if let Some(file) = &self.file {
             write!(f, "{file}: ")?;
         }
-        self.misreading.describe(f, (&self.joints, self.step_s))?;
+        self.misreading.describe(f, &self.joints, self.step_s)?;
         let [before, after] = self.left_by_estimate.map(share);
         write!(f, ": of the torques an estimate leaves {before} as the log is, and {after} so")?;
         if let Some([before, after]) = self.left_by_model.map(|left| left.map(share)) {
@@ -135,7 +135,7 @@ fn misread_alike(
     logs: &[&Conditioned],
     values: Option<GivenValues<'_>>,
 ) -> Vec<MisreadColumns> {
-    let mut found = misread_as_filtered(model, (logs, false), values);
+    let mut found = misread_as_filtered(model, logs, false, values);
     let mut lower: Vec<Conditioned> = Vec::new();
     for _ in 0..policy::HALVINGS {
         if found.iter().any(|one| one.is_sure) {
@@ -147,7 +147,7 @@ fn misread_alike(
             break;
         }
         let lower: Vec<&Conditioned> = lower.iter().collect();
-        let told = misread_as_filtered(model, (&lower, true), values);
+        let told = misread_as_filtered(model, &lower, true, values);
         if found.is_empty() || told.iter().any(|one| one.is_sure) {
             found = told;
         }
@@ -158,7 +158,8 @@ fn misread_alike(
 /// The same of logs behind the filters that they have, or behind lower ones.
 fn misread_as_filtered(
     model: &RegressionModel,
-    (logs, is_lower): (&[&Conditioned], bool),
+    logs: &[&Conditioned],
+    is_lower: bool,
     values: Option<GivenValues<'_>>,
 ) -> Vec<MisreadColumns> {
     let step_s = logs.iter().map(|log| log.step_s).fold(f64::INFINITY, f64::min);
@@ -171,7 +172,7 @@ fn misread_as_filtered(
     let readings = 3 * joints * joints / 2 + 20 * joints + 30;
     let [fewest, most] = policy::SAMPLES;
     let samples = (policy::SAMPLES_READ / readings).clamp(fewest, most);
-    let sample = Sample::new(model, (logs, 2 * latest + 1), samples);
+    let sample = Sample::new(model, logs, 2 * latest + 1, samples);
     if (0..joints).all(|joint| !sample.is_measured(joint)) {
         return Vec::new();
     }

@@ -73,7 +73,8 @@ impl<'a> Sample<'a> {
     /// Of logs, so many samples of all, whose signals are read up to `latest` samples late.
     pub(super) fn new(
         model: &'a RegressionModel,
-        (logs, latest): (&[&'a Conditioned], isize),
+        logs: &[&'a Conditioned],
+        latest: isize,
         samples: usize,
     ) -> Self {
         let blocks = (samples / BLOCK / logs.len().max(1)).max(1);
@@ -84,7 +85,7 @@ impl<'a> Sample<'a> {
             let every = samples.div_ceil(BLOCK * blocks).max(1);
             for first in (0..samples).step_by(BLOCK * every) {
                 let count = BLOCK.min(samples - first);
-                windows.push(Window::new((log, &counts), [first, count], latest));
+                windows.push(Window::new(log, &counts, [first, count], latest));
             }
         }
         let (mut evaluator, rows) = (model.evaluator(), RegressionRows::default());
@@ -219,7 +220,7 @@ impl<'a> Sample<'a> {
                 let [above, below] = [step, -step].map(|by| {
                     let other = reading.with(line.at(by), &self.model.joints);
                     self.read(window, &other);
-                    (0..n).map(|joint| self.left(window, &other, (joint, phi))).collect::<Vec<_>>()
+                    (0..n).map(|joint| self.left(window, &other, joint, phi)).collect::<Vec<_>>()
                 });
                 for (own, (above, below)) in own.iter_mut().zip(above.into_iter().zip(below)) {
                     let slope = |(above, below): (f64, f64)| (below - above) / (2.0 * step);
@@ -229,7 +230,7 @@ impl<'a> Sample<'a> {
                     // of the torque that phi makes: the measured one times 0 would explain all
                     self.read(window, reading);
                     let measured = self.windows[window].torque(&reading.torques[joint]);
-                    let left = self.left(window, reading, (joint, phi));
+                    let left = self.left(window, reading, joint, phi);
                     let made = left.iter().zip(measured.iter().flatten());
                     *own[joint].last_mut().expect("it was pushed") =
                         made.map(|(left, measured)| left - measured).collect();
@@ -242,12 +243,7 @@ impl<'a> Sample<'a> {
 
     /// What phi leaves of the torque of a joint, of the rows that were made last; nothing of one
     /// that is not measured.
-    fn left(
-        &self,
-        window: usize,
-        reading: &Reading,
-        (joint, phi): (usize, &DVector<f64>),
-    ) -> Vec<f64> {
+    fn left(&self, window: usize, reading: &Reading, joint: usize, phi: &DVector<f64>) -> Vec<f64> {
         let Some(measured) = self.windows[window].torque(&reading.torques[joint]) else {
             return Vec::new();
         };
@@ -276,7 +272,7 @@ impl<'a> Sample<'a> {
                 let mut torque = self.windows[window].torque(source).unwrap_or_default();
                 self.count(window, joint, &mut torque);
                 let square = |values: &[f64]| values.iter().map(|one| one * one).sum::<f64>();
-                *left += square(&self.left(window, reading, (joint, phi)));
+                *left += square(&self.left(window, reading, joint, phi));
                 *all += square(&torque);
             }
         }
@@ -293,7 +289,7 @@ impl<'a> Sample<'a> {
         for window in 0..self.windows.len() {
             self.read(window, reading);
             for joint in 0..n {
-                let left = self.left(window, reading, (joint, phi));
+                let left = self.left(window, reading, joint, phi);
                 rows[joint] += left.iter().filter(|left| **left != 0.0).count() as f64;
                 for (lag, sum) in alike[joint].iter_mut().enumerate().take(left.len()) {
                     *sum += left.iter().zip(&left[lag..]).map(|(a, b)| a * b).sum::<f64>();

@@ -108,9 +108,9 @@ impl Search<'_> {
         let values = self.beliefs.values.clone();
         let own = values.map(|phi| self.sample.left_by(reading, &phi));
         let is_noisy = self.is_noise(&fit) || own.is_some_and(|own| self.is_noise(&own));
-        for one in self.tried(reading, (&fit, is_noisy)) {
+        for one in self.tried(reading, &fit, is_noisy) {
             let other = self.other(&reading.with(one, &self.sample.model.joints), &straight);
-            found.push(Found::new(one, (&straight, &other), None));
+            found.push(Found::new(one, &straight, &other, None));
         }
         if !self.is_lower {
             found.extend(self.along_lines(reading, &straight, is_noisy));
@@ -120,7 +120,7 @@ impl Search<'_> {
     }
 
     /// The mistakes of no size that are worth an estimate.
-    fn tried(&mut self, reading: &Reading, (fit, is_noisy): (&Shares, bool)) -> Vec<Misreading> {
+    fn tried(&mut self, reading: &Reading, fit: &Shares, is_noisy: bool) -> Vec<Misreading> {
         let model = self.sample.model;
         let mut tried = hypotheses(model, &|joint| fit[joint].is_some());
         tried.retain(|one| reading.with(*one, &model.joints) != *reading);
@@ -182,7 +182,7 @@ impl Search<'_> {
             let rows = &self.sample.rows_along(reading, &lines, &one.phi);
             let gain = |line: usize| {
                 let beside = Some((line, deviation[line]));
-                let with = self.beliefs.weigh_with((rows, &noise), beside, trust);
+                let with = self.beliefs.weigh_with(rows, &noise, beside, trust);
                 with.log_evidence - one.log_evidence
             };
             let mut promising: Vec<(f64, usize)> =
@@ -190,8 +190,8 @@ impl Search<'_> {
             promising.retain(|(gain, _)| *gain > NAMED);
             promising.sort_by(|a, b| b.0.total_cmp(&a.0));
             for &(_, line) in promising.iter().take(policy::FOLLOWED) {
-                let line = (lines[line], deviation[line]);
-                found.extend(self.along((reading, straight), line, (trust, one)));
+                let (line, deviation) = (lines[line], deviation[line]);
+                found.extend(self.along(reading, straight, line, deviation, trust, one));
             }
         }
         found
@@ -200,9 +200,12 @@ impl Search<'_> {
     /// The best reading on a line, if values are believed so far.
     fn along(
         &mut self,
-        (reading, straight): (&Reading, &Weighed),
-        (line, deviation): (Line, f64),
-        (trust, from): (Trust, &Believed),
+        reading: &Reading,
+        straight: &Weighed,
+        line: Line,
+        deviation: f64,
+        trust: Trust,
+        from: &Believed,
     ) -> Option<Found> {
         let mut phi = from.phi.clone();
         let (mut size, mut std) = (0.0, deviation);
@@ -212,7 +215,7 @@ impl Search<'_> {
             let rows = self.sample.rows_along(&here, &[line], &phi);
             let noise = here.by_joint(&straight.noise);
             let beside = Some((0, deviation));
-            let told = self.beliefs.weigh_with((&rows, &noise), beside, trust);
+            let told = self.beliefs.weigh_with(&rows, &noise, beside, trust);
             let (step, error) = told.more?;
             let before = size;
             size += (step * deviation).clamp(-2.0 * deviation, 2.0 * deviation);
@@ -231,7 +234,7 @@ impl Search<'_> {
         }
         let other = self.other(&other, straight);
         let sized = Sized { size: size / deviation, std: std / deviation };
-        Some(Found::new(misreading, (straight, &other), Some(sized)))
+        Some(Found::new(misreading, straight, &other, Some(sized)))
     }
 }
 
@@ -242,11 +245,7 @@ struct Sized {
 }
 
 impl Found {
-    fn new(
-        misreading: Misreading,
-        (before, after): (&Weighed, &Weighed),
-        size: Option<Sized>,
-    ) -> Self {
+    fn new(misreading: Misreading, before: &Weighed, after: &Weighed, size: Option<Sized>) -> Self {
         // Laplace's: how much narrower than believed the logs make it, and how far off it is
         let cost = size.as_ref().map_or(0.0, |one| one.std.ln() - 0.5 * one.size * one.size);
         let gain = together(&after.all) - together(&before.all);

@@ -110,7 +110,7 @@ impl Beliefs {
 
     /// Weighs rows with the noise of each torque.
     pub(super) fn weigh(&self, rows: &[Option<JointRows>], noise: &[Noise]) -> Vec<Believed> {
-        let with = |trust: Trust| self.weigh_with((rows, noise), None, trust);
+        let with = |trust: Trust| self.weigh_with(rows, noise, None, trust);
         self.trusts().into_iter().map(with).collect()
     }
 
@@ -118,7 +118,8 @@ impl Beliefs {
     /// believed so far.
     pub(super) fn weigh_with(
         &self,
-        (rows, noise): (&[Option<JointRows>], &[Noise]),
+        rows: &[Option<JointRows>],
+        noise: &[Noise],
         line: Option<(usize, f64)>,
         trust: Trust,
     ) -> Believed {

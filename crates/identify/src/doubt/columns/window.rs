@@ -46,7 +46,8 @@ impl<'a> Window<'a> {
     /// So many samples of a log, from one on, that are read up to `latest` samples late; for each
     /// joint those of the log that count.
     pub(super) fn new(
-        (log, all): (&'a Conditioned, &[Option<Vec<bool>>]),
+        log: &'a Conditioned,
+        all: &[Option<Vec<bool>>],
         [first, count]: [usize; 2],
         latest: isize,
     ) -> Self {

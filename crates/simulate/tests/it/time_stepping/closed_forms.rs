@@ -35,7 +35,7 @@ fn bouncing(t: f64) -> f64 {
 fn a_bouncing_ball_is_of_first_order() {
     let (q, qd) = start(1.0);
     let error = |h| {
-        let samples = run(&mut ball(), stepping(MOREAU, h, 1, 0.0, 0.8), (&q, &qd), 2.5);
+        let samples = run(&mut ball(), stepping(MOREAU, h, 1, 0.0, 0.8), &q, &qd, 2.5);
         let last = samples.last().unwrap();
         (last.q[1] - bouncing(last.t_s)).abs()
     };
@@ -47,7 +47,7 @@ fn a_bouncing_ball_is_of_first_order() {
 fn a_ball_passes_its_last_bounce() {
     let (q, qd) = start(1.0);
     for h in [1e-3, 1e-4] {
-        let samples = run(&mut ball(), stepping(MOREAU, h, 1, 0.0, 0.8), (&q, &qd), 4.5);
+        let samples = run(&mut ball(), stepping(MOREAU, h, 1, 0.0, 0.8), &q, &qd, 4.5);
         let moving = samples.iter().rev().find(|sample| sample.qd[1].abs() > 1e-9).unwrap();
         let late = moving.t_s - 4.063_712_768_87;
         assert!(late.abs() < 70.0 * h, "late by {late} s at {h}");
@@ -58,7 +58,7 @@ fn a_ball_passes_its_last_bounce() {
 #[test]
 fn a_ball_without_restitution_does_not_penetrate_where_the_gap_is_constrained() {
     let (q, qd) = start(0.1);
-    let samples = run(&mut ball(), stepping(ANITESCU, 1e-3, 1, 0.0, 0.0), (&q, &qd), 0.5);
+    let samples = run(&mut ball(), stepping(ANITESCU, 1e-3, 1, 0.0, 0.0), &q, &qd, 0.5);
     assert!(samples.iter().all(|sample| sample.q[1] > -1e-12));
     let last = samples.last().unwrap();
     assert!(last.q[1].abs() < 1e-12 && last.qd[1].abs() < 1e-12);
@@ -75,7 +75,7 @@ fn a_sliding_block_stops_and_sticks() {
             let force = [pull, -push];
             let mut block = PlaneBody { mass: 1.0, inertia: 0.1, points, force };
             let laws = stepping(scheme, h, 2, 0.3, 0.0);
-            run(&mut block, laws, (&[0.0; 3], &[2.0, 0.0, 0.0]), 2.0)
+            run(&mut block, laws, &[0.0; 3], &[2.0, 0.0, 0.0], 2.0)
         };
         let path = |h| (slide(h).last().unwrap().q[0] - 1.673_919_488_91).abs();
         match scheme {
@@ -129,7 +129,7 @@ fn a_sliding_sphere_comes_to_roll() {
     let h = 1e-4;
     let rolling = 2.0 * speed / (7.0 * mu * GRAVITY);
     let laws = stepping(MOREAU, h, 1, mu, 0.0);
-    let samples = run(&mut sphere, laws, (&[0.0, radius, 0.0], &[speed, 0.0, 0.0]), 1.0);
+    let samples = run(&mut sphere, laws, &[0.0, radius, 0.0], &[speed, 0.0, 0.0], 1.0);
     let slips = |sample: &&Sample| (sample.qd[0] + radius * sample.qd[2]).abs() > 1e-9;
     let last = samples.iter().filter(slips).count() as f64 * h;
     assert!((last - rolling).abs() < 2.0 * h, "{last} instead of {rolling}");
@@ -149,7 +149,7 @@ fn a_rocking_block_is_of_first_order() {
         let mut block = PlaneBody { mass: 1.0, inertia, points, force: [0.0, -GRAVITY] };
         let z = b * tilt.sin() + height * tilt.cos();
         let laws = stepping(MOREAU, h, 2, 0.6, 0.0);
-        let samples = run(&mut block, laws, (&[0.0, z, -tilt], &[0.0; 3]), 0.5);
+        let samples = run(&mut block, laws, &[0.0, z, -tilt], &[0.0; 3], 0.5);
         let rates: Vec<f64> = samples.iter().map(|sample| sample.qd[2]).collect();
         let impact = rates.windows(2).position(|pair| (pair[1] - pair[0]).abs() > 0.02).unwrap();
         assert!((samples[impact].t_s - 0.264_713_415_73).abs() < 5.0 * h);
@@ -172,7 +172,7 @@ fn a_falling_rod_is_of_first_order() {
             let speed = 1.0 - GRAVITY * 0.01;
             let z = s + 0.01 * speed + 0.5 * GRAVITY * 1e-4;
             let laws = stepping(MOREAU, h, 1, mu, 0.0);
-            let samples = run(&mut rod, laws, (&[0.0, z, 0.0], &[0.0, -speed, 0.0]), 0.02);
+            let samples = run(&mut rod, laws, &[0.0, z, 0.0], &[0.0, -speed, 0.0], 0.02);
             let hit = samples.iter().find(|sample| sample.qd[2] != 0.0).unwrap();
             assert_eq!(hit.report.closed, 1);
             (hit.qd[2].abs() - omega).abs()
@@ -190,7 +190,7 @@ fn cradles_collide_at_once() {
         let mut qd = vec![0.0; balls];
         qd[0] = 1.0;
         let laws = stepping(MOREAU, 1e-3, balls - 1, 0.0, 1.0);
-        let samples = run(&mut Cradle { balls }, laws, (&q, &qd), 0.02);
+        let samples = run(&mut Cradle { balls }, laws, &q, &qd, 0.02);
         let end = &samples.last().unwrap().qd;
         assert!((end[0] - first).abs() < 1e-9, "{end:?}");
         assert!(end[1..].iter().all(|rate| (rate - others).abs() < 1e-9), "{end:?}");
@@ -201,14 +201,14 @@ fn cradles_collide_at_once() {
 fn smooth_motion_is_of_second_order_and_stiff_damping_is_stable() {
     let error = |h| {
         let mut spring = Oscillator { stiffness: 4.0, damping: 0.0 };
-        let samples = run(&mut spring, stepping(MOREAU, h, 0, 0.0, 0.0), (&[1.0], &[0.0]), 1.0);
+        let samples = run(&mut spring, stepping(MOREAU, h, 0, 0.0, 0.0), &[1.0], &[0.0], 1.0);
         let last = samples.last().unwrap();
         (last.q[0] - (2.0 * last.t_s).cos()).abs()
     };
     assert_order(order(1e-2, error), 2.0);
     // Explicitly unstable: h d = 30.
     let mut damper = Oscillator { stiffness: 0.0, damping: 3e4 };
-    let samples = run(&mut damper, stepping(MOREAU, 1e-3, 0, 0.0, 0.0), (&[0.0], &[1.0]), 0.05);
+    let samples = run(&mut damper, stepping(MOREAU, 1e-3, 0, 0.0, 0.0), &[0.0], &[1.0], 0.05);
     assert!(samples.windows(2).all(|pair| pair[1].qd[0].abs() < pair[0].qd[0].abs()));
 }
 
@@ -220,7 +220,7 @@ fn damping_is_of_the_order_of_its_implicit_part() {
             let mut damper = Oscillator { stiffness: 0.0, damping: 3.0 };
             let (steps, laws) = stepping(MOREAU, h, 0, 0.0, 0.0);
             let laws = (Stepping { implicitness, ..steps }, laws);
-            let samples = run(&mut damper, laws, (&[0.0], &[1.0]), 1.0);
+            let samples = run(&mut damper, laws, &[0.0], &[1.0], 1.0);
             let last = samples.last().unwrap();
             (last.qd[0] - (-3.0 * last.t_s).exp()).abs()
         };

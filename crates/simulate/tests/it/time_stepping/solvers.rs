@@ -14,7 +14,7 @@ fn sweeps_and_pivots_agree_on_a_rocking_block() {
             let (steps, laws) = stepping(scheme, 1e-3, 2, 0.6, 0.0);
             let laws = (Stepping { solver, ..steps }, laws);
             let z = 0.1 * 0.1_f64.sin() + 0.4 * 0.1_f64.cos();
-            run(&mut block, laws, (&[0.0, z, -0.1], &[0.0; 3]), 1.5)
+            run(&mut block, laws, &[0.0, z, -0.1], &[0.0; 3], 1.5)
         };
         let limits = SweepLimits { sweeps: 100_000, response: 1e-14 };
         let swept = solve(StepSolver::Sweeps(limits));
@@ -36,7 +36,7 @@ fn pivots_stand_in_for_sweeps() {
     let solver = StepSolver::Sweeps(SweepLimits { sweeps: 0, response: 0.0 });
     let (steps, laws) = stepping(Scheme::MoreauMidpoint, 1e-3, 2, 0.3, 0.0);
     let laws = (Stepping { solver, ..steps }, laws);
-    let samples = run(&mut block, laws, (&[0.0, 0.05, 0.0], &[0.0; 3]), 0.1);
+    let samples = run(&mut block, laws, &[0.0, 0.05, 0.0], &[0.0; 3], 0.1);
     assert!(samples.iter().all(|sample| sample.report.fell_back));
     // It slips: 4 N is more than 0.3 times its weight.
     let end = samples.last().unwrap();

@@ -143,7 +143,8 @@ pub(crate) struct Sample {
 pub(crate) fn run(
     model: &mut impl TimeSteppingModel,
     (stepping, laws): Laws,
-    (q, qd): (&[f64], &[f64]),
+    q: &[f64],
+    qd: &[f64],
     end_s: f64,
 ) -> Vec<Sample> {
     let h = stepping.step_s;

@@ -130,7 +130,7 @@ fn identified(
     progress: &Progress,
 ) -> Result<IdentifiedOutcome, Failure> {
     progress.show("simulating an experiment");
-    let log = Experiment::log(seed).map_err(Failure::Scenario)?;
+    let log = Experiment::log(seed)?;
     let path = directory.join(&log.name);
     let log = write(directory, log)?;
     let (model, cutoff_hz) = (Experiment::MODEL, Experiment::CUTOFF_HZ);

@@ -8,17 +8,15 @@ use super::json::write_json;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::excite::{
-    Check, Columns, Ends, ExciteOptions, Excited, Family, Objective, check_trajectory, excite,
-};
+use denavit::excite::{Check, Columns, Ends, ExciteOptions, Family, Objective, check_trajectory};
 use denavit::model::Robot;
-use denavit::report::answer::{ExcitationAnswer, excited_json, excited_text};
-use denavit::report::{ExcitationPicture, excitation_picture};
+use denavit::report::answer::{
+    ExcitationAnswer, drawn_excitation, excited_json, excited_text, excited_trajectory,
+};
 use denavit::simulate::scenario::read_trajectory;
-use denavit::workflow::{EffectUse, FileKind};
+use denavit::workflow::{EffectUse, FileKind, excite};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Find a trajectory that excites what is to be identified
 ///
@@ -243,27 +241,15 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         return checked(arguments, &robot, &effects, &options, path, out);
     }
     let progress = Progress::new();
-    // starts go on side by side: the share is that of all evaluations that may be made
-    let evaluated: Vec<AtomicUsize> = (0..options.starts).map(|_| AtomicUsize::new(0)).collect();
-    let most = options.evaluations.saturating_mul(options.starts).max(1);
-    let tell = |at: &denavit::excite::Progress| {
-        if let Some(own) = evaluated.get(at.start) {
-            own.store(at.evaluations, Ordering::Relaxed);
-        }
-        let done: usize = evaluated.iter().map(|own| own.load(Ordering::Relaxed)).sum();
-        let (start, count, condition) = (at.start + 1, options.starts, at.iterate.condition);
-        let detail = format!("start {start} of {count} has condition {condition:.4e}");
-        progress.show_part("searching", Some(done as f64 / most as f64), &detail);
-    };
-    let found = excite(&robot, &options, &tell).map_err(Failure::Excite)?;
+    let found = excite(&robot, &options, &mut progress.observer())?;
     progress.clear();
     let answer = verdict(&found.found().ended);
     // what a robot cannot run, or what shows nothing, is no trajectory to be run by mistake
     if let (Some(path), Answer::Done) = (&arguments.output, answer) {
-        write_whole(path, &trajectory(arguments, &found)?)?;
+        write_whole(path, excited_trajectory(&found, &options).as_bytes())?;
     }
     if let Some(path) = &arguments.svg {
-        write_whole(path, picture(&found).as_bytes())?;
+        write_whole(path, drawn_excitation(&found).as_bytes())?;
     }
     let (stack, check) = (&found.stack, &found.found().ended);
     let excited = Some(&found);
@@ -301,45 +287,12 @@ fn checked(
     let name = path.display().to_string();
     let load = |log: &str| load_beside(path, log);
     let bytes = FILES.wanted(path, FileKind::Trajectory)?;
-    let trajectory = read_trajectory(&name, &bytes, &load).map_err(Failure::Scenario)?;
-    let (check, stack) = check_trajectory(robot, options, &trajectory).map_err(Failure::Excite)?;
+    let trajectory = read_trajectory(&name, &bytes, &load)?;
+    let (check, stack) = check_trajectory(robot, options, &trajectory)?;
     let shown = ExcitationAnswer { robot, effects, stack: &stack, check: &check, excited: None };
     match arguments.json {
         true => write_json(out, &excited_json(&shown))?,
         false => write!(out, "{}", excited_text(&shown))?,
     }
     Ok(verdict(&check))
-}
-
-/// The trajectory file; what is remarked says how it was found.
-fn trajectory(arguments: &Arguments, found: &Excited) -> Result<Vec<u8>, Failure> {
-    let check = &found.found().ended;
-    let model = &found.model.regression.model;
-    let remarks = serde_json::json!({
-        "denavit": env!("CARGO_PKG_VERSION"),
-        "condition": check.excitation.condition,
-        "condition_scaled": check.excitation.condition_scaled,
-        "feasible": check.is_feasible(),
-        "seed": arguments.seed,
-        "start": found.best + 1,
-        "starts": arguments.starts,
-    });
-    let mut bytes =
-        serde_json::to_vec_pretty(&found.to_json(&format!("{model}_excitation"), &remarks))?;
-    bytes.push(b'\n');
-    Ok(bytes)
-}
-
-fn picture(found: &Excited) -> String {
-    let check = &found.found().ended;
-    let model = &found.model.regression.model;
-    let title = format!("{}: exciting trajectory", model.replace('_', " "));
-    let subtitle = format!(
-        "condition {:.1} (columns of length 1: {:.1}), {}",
-        check.excitation.condition,
-        check.excitation.condition_scaled,
-        if check.is_feasible() { "within all limits" } else { "outside of a limit" },
-    );
-    let picture = ExcitationPicture { title: &title, subtitle: &subtitle, excited: found };
-    excitation_picture(&picture)
 }

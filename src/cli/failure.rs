@@ -34,28 +34,18 @@ pub(crate) enum Failure {
     Read { file: String, error: io::Error },
     /// An output is not written.
     Output(OutputFailure),
-    /// A model has no code.
-    Code(CodeError),
-    /// A model has no files of source code.
-    Source(SourceError),
+    /// The library has no answer, and says why.
+    Library(Box<dyn std::error::Error>),
     /// The base parameters are not found; holds the file.
     Base(String, Box<ProvenBaseError>),
     /// A file is no certificate.
     Certificate { file: String, error: serde_json::Error },
-    /// There are no f and B.
-    Decompose(DecomposedError),
     /// `--with modelled` was given with other joint parameters.
     ModelledAndMore,
     /// Options that only models have were given for equations; holds their name.
     NotOfEquations(String),
-    /// A document would be too long to be read, or set.
-    TooLongToSet(TooLongToSet),
-    /// A scenario file is wrong.
-    Scenario(ScenarioError),
     /// A window that the run does not have; holds the run's beginning and end \[s\].
     Window([f64; 2]),
-    /// No trajectory can be looked for.
-    Excite(ExciteError),
     /// A model has an effect beside its equations, for which a command has no place; holds model
     /// and effect.
     Effect(String, String),
@@ -110,17 +100,23 @@ impl From<Misuse> for Failure {
 impl From<MotionError> for Failure {
     fn from(error: MotionError) -> Self {
         match error {
-            MotionError::NoFunction(error) => Self::Code(CodeError::NoFunction(error)),
+            MotionError::NoFunction(error) => CodeError::NoFunction(error).into(),
             MotionError::Effect(model, effect) => Self::Effect(model, effect),
         }
     }
 }
 
-impl From<CodeError> for Failure {
-    fn from(error: CodeError) -> Self {
-        Self::Code(error)
-    }
+macro_rules! of_library {
+    ($($error:ty),*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::Library(Box::new(error))
+            }
+        })*
+    };
 }
+
+of_library!(CodeError, DecomposedError, ExciteError, ScenarioError, SourceError, TooLongToSet);
 
 impl From<RobotError> for Failure {
     fn from(error: RobotError) -> Self {
@@ -128,30 +124,6 @@ impl From<RobotError> for Failure {
             RobotError::Source(error) => error.into(),
             RobotError::Base(error) => Self::Base(String::new(), Box::new(error)),
         }
-    }
-}
-
-impl From<ScenarioError> for Failure {
-    fn from(error: ScenarioError) -> Self {
-        Self::Scenario(error)
-    }
-}
-
-impl From<SourceError> for Failure {
-    fn from(error: SourceError) -> Self {
-        Self::Source(error)
-    }
-}
-
-impl From<DecomposedError> for Failure {
-    fn from(error: DecomposedError) -> Self {
-        Self::Decompose(error)
-    }
-}
-
-impl From<TooLongToSet> for Failure {
-    fn from(error: TooLongToSet) -> Self {
-        Self::TooLongToSet(error)
     }
 }
 
@@ -218,15 +190,10 @@ impl Failure {
             | Self::Export(..)
             | Self::States(..)
             | Self::Output(_)
-            | Self::Scenario(_)
-            | Self::Excite(_)
             | Self::Misuse(_)
             | Self::Walk(..)
             | Self::Base(..)
-            | Self::Decompose(_)
-            | Self::TooLongToSet(_)
-            | Self::Code(_)
-            | Self::Source(_)
+            | Self::Library(_)
             | Self::Read { .. }
             | Self::Stdout(_) => return None,
         })
@@ -258,11 +225,8 @@ impl Failure {
             // place and hint are part of these
             Self::Model(error) => write!(f, "{error}")?,
             Self::Import(_) | Self::Export(..) | Self::States(..) => self.of_others(f)?,
-            Self::Code(error) => write!(f, "{error}")?,
-            Self::Source(error) => write!(f, "{error}")?,
-            Self::TooLongToSet(error) => write!(f, "{error}")?,
+            Self::Library(error) => write!(f, "{error}")?,
             Self::Output(error) => write!(f, "{error}")?,
-            Self::Decompose(error) => write!(f, "{error}")?,
             Self::NotOfEquations(name) => write!(
                 f,
                 "{name}: equations have no --with, --terms, --basis, --numeric or --certificate"
@@ -276,8 +240,6 @@ impl Failure {
             Self::Certificate { file, error } => {
                 write!(f, "{file}: is no certificate: {error}")?;
             }
-            Self::Scenario(error) => write!(f, "{error}")?,
-            Self::Excite(error) => write!(f, "{error}")?,
             Self::Effect(model, effect) => {
                 write!(f, "{model}: this has no place for the effect `{effect}`")?;
             }

@@ -98,11 +98,6 @@ impl Progress {
         self.show_part(stage, None, "");
     }
 
-    /// Says what is being done now, and how much of it is done, from 0 to 1.
-    pub(crate) fn show_share(&self, stage: &str, share: f64) {
-        self.show_part(stage, Some(share), "");
-    }
-
     /// The same with the parts of it that are done.
     pub(crate) fn show_count(&self, stage: &str, done: usize, all: usize) {
         let share = done as f64 / all.max(1) as f64;
@@ -138,7 +133,8 @@ impl Progress {
 
     /// Says how far a use case has come.
     pub(crate) fn report(&self, at: &workflow::Progress<'_>) {
-        self.show_part(&at.stage.to_string(), at.share, "");
+        let best = at.condition.map(|condition| format!("condition {condition:.4e}"));
+        self.show_part(&at.stage.to_string(), at.share, best.as_deref().unwrap_or_default());
     }
 
     /// Ends the stage and takes its line away, so that an answer can be written.

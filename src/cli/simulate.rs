@@ -9,8 +9,9 @@ use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::report::answer::{drawn_run, run_json, run_text};
-use denavit::simulate::scenario::{RunScheme, Scenario};
-use denavit::simulate::{Log, Run, Stop};
+use denavit::simulate::scenario::RunScheme;
+use denavit::simulate::{Log, Stop};
+use denavit::workflow::simulate;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -104,7 +105,9 @@ pub(super) fn run_kept(
     }
     check_outputs(&outputs)?;
     let started = Instant::now();
-    let run = run_shown(&mut scenario)?;
+    let progress = Progress::new();
+    let run = simulate(&mut scenario, &mut progress.observer())?;
+    drop(progress);
     let took = started.elapsed();
     let broken = scenario.broken(&run);
     if let Some(path) = &arguments.output {
@@ -126,22 +129,4 @@ pub(super) fn run_kept(
     }
     let good = run.stop == Stop::End && broken.is_empty();
     Ok((if good { Answer::Done } else { Answer::Negative }, run.log))
-}
-
-/// A step is this share of a run before anybody hears of it: most are shorter than a look.
-const HEARD_SHARE: f64 = 0.002;
-
-/// Runs a scenario, and shows how far it is.
-fn run_shown(scenario: &mut Scenario) -> Result<Run, Failure> {
-    let progress = Progress::new();
-    let stage = format!("simulating {}", scenario.name);
-    progress.show_share(&stage, 0.0);
-    let mut heard = 0.0;
-    let mut told = |share: f64| {
-        if share - heard >= HEARD_SHARE {
-            heard = share;
-            progress.show_share(&stage, share);
-        }
-    };
-    scenario.run_told(&mut told).map_err(Failure::Scenario)
 }

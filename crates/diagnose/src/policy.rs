@@ -180,6 +180,9 @@ pub(crate) mod standstill {
     /// parabola moves by 8.
     pub(crate) const LEAVES: f64 = 30.0;
 
+    /// Steps from which on a reading is another one.
+    pub(crate) const ANOTHER: f64 = 0.5;
+
     /// What is one step of readings, for rounding.
     pub(crate) const SAME: f64 = 1.01;
 

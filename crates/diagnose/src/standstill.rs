@@ -10,7 +10,9 @@
 //! Åström, Lischinsky 1995).
 
 use super::signals::Signals;
-use crate::policy::standstill::{CREEPS, EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE};
+use crate::policy::standstill::{
+    ANOTHER, CREEPS, EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE,
+};
 use std::ops::Range;
 
 /// Samples of the shortest rest.
@@ -150,7 +152,7 @@ pub(super) fn rests(positions: &[f64], step: f64, times: [f64; 2]) -> Vec<Rest> 
                 found.push(still);
             } else {
                 // A drive that comes slowly may rest from its next reading on.
-                let is_same = |q: &&f64| (**q - positions[first]).abs() < 0.5 * step;
+                let is_same = |q: &&f64| (**q - positions[first]).abs() < ANOTHER * step;
                 first += positions[first..].iter().take_while(is_same).count();
             }
         }

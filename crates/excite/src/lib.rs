@@ -160,11 +160,12 @@ fn stacked(robot: &Robot, model: &ExcitedModel) -> Result<(Stack, Evaluators), E
 }
 
 /// Looks for a trajectory that excites the base parameters of `robot`; `tell` hears what each
-/// start does, from several threads.
+/// start does, from several threads, and says whether to go on. If not, each start ends where it
+/// is.
 pub fn excite(
     robot: &Robot,
     options: &ExciteOptions,
-    tell: &(dyn Fn(&Progress) + Sync),
+    tell: &(dyn Fn(&Progress) -> bool + Sync),
 ) -> Result<Excited, ExciteError> {
     let (model, space, stack, _) = prepared(robot, options)?;
     let search = Search { options, model: &model, space: &space, stack: &stack };
@@ -295,7 +296,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The starts in order; each thread takes the next that nobody has taken.
-    fn run(&self, tell: &(dyn Fn(&Progress) + Sync)) -> Vec<StartReport> {
+    fn run(&self, tell: &(dyn Fn(&Progress) -> bool + Sync)) -> Vec<StartReport> {
         let count = self.options.starts;
         let machine = thread::available_parallelism().map_or(1, usize::from);
         let threads = self.options.threads.unwrap_or(machine).clamp(1, count);
@@ -326,7 +327,7 @@ impl Search<'_> {
         &self,
         start: usize,
         evaluators: &mut Evaluators,
-        tell: &(dyn Fn(&Progress) + Sync),
+        tell: &(dyn Fn(&Progress) -> bool + Sync),
     ) -> StartReport {
         let mut problem = Problem {
             model: self.model,
@@ -350,7 +351,7 @@ impl Search<'_> {
             let before = evaluations;
             let tell_start = |iterate: &Iterate, evaluations: usize| {
                 let evaluations = before + evaluations;
-                tell(&Progress { start, evaluations, iterate: *iterate });
+                tell(&Progress { start, evaluations, iterate: *iterate })
             };
             let solved = solve::solve(&problem, evaluators, &x, most, &tell_start);
             x = solved.x;
@@ -362,6 +363,9 @@ impl Search<'_> {
             stop = solved.stop;
             evaluations += solved.evaluations;
             iterates.extend(solved.iterates);
+            if stop == SolverStop::Watcher {
+                break;
+            }
         }
         let Candidate { x: coordinates, shrunk, check: ended, objective } = best;
         StartReport { began, ended, objective, stop, evaluations, shrunk, iterates, coordinates }

@@ -19,6 +19,8 @@ pub enum SolverStop {
     Evaluations,
     /// It found no way on.
     Stuck,
+    /// Who watched asked for no more.
+    Watcher,
 }
 
 impl SolverStop {
@@ -29,6 +31,7 @@ impl SolverStop {
             Self::Rounding => "rounding",
             Self::Evaluations => "evaluations",
             Self::Stuck => "stuck",
+            Self::Watcher => "watcher",
         }
     }
 }
@@ -62,7 +65,8 @@ struct Memory<'p, 'm> {
     derivatives: Option<Derivatives>,
     evaluations: usize,
     iterates: Vec<Iterate>,
-    tell: &'p dyn Fn(&Iterate, usize),
+    tell: &'p dyn Fn(&Iterate, usize) -> bool,
+    is_stopped: bool,
 }
 
 impl Memory<'_, '_> {
@@ -90,12 +94,17 @@ impl Memory<'_, '_> {
         // derivatives are asked for where a search along a line has ended
         if let Some(iterate) = self.iterate() {
             self.iterates.push(iterate);
-            (self.tell)(&iterate, self.evaluations);
+            self.is_stopped = self.is_stopped || !(self.tell)(&iterate, self.evaluations);
         }
     }
 
     /// The objective, or the limit of a number.
     fn value(&mut self, limit: Option<usize>, x: &[f64], gradient: Option<&mut [f64]>) -> f64 {
+        if self.is_stopped {
+            // the solver ends where nothing has a slope, and limits hold
+            gradient.into_iter().flatten().for_each(|slope| *slope = 0.0);
+            return -1.0;
+        }
         self.go_to(x);
         if let Some(gradient) = gradient {
             self.differentiate();
@@ -121,7 +130,7 @@ pub(super) fn solve(
     evaluators: &mut Evaluators,
     start: &[f64],
     most: usize,
-    tell: &dyn Fn(&Iterate, usize),
+    tell: &dyn Fn(&Iterate, usize) -> bool,
 ) -> Solved {
     let bounds: Vec<(f64, f64)> =
         problem.model.moving().iter().flat_map(|_| problem.space.bounds()).collect();
@@ -134,6 +143,7 @@ pub(super) fn solve(
         evaluations: 0,
         iterates: Vec::new(),
         tell,
+        is_stopped: false,
     });
     let function = |limit: Option<usize>| {
         let memory = &memory;
@@ -153,6 +163,7 @@ pub(super) fn solve(
         Err((FailStatus::RoundoffLimited, x, _)) => (x, SolverStop::Rounding),
         Err((_, x, _)) => (x, SolverStop::Stuck),
     };
-    let Memory { evaluations, iterates, .. } = memory.into_inner();
+    let Memory { evaluations, iterates, is_stopped, .. } = memory.into_inner();
+    let stop = if is_stopped { SolverStop::Watcher } else { stop };
     Solved { x, stop, evaluations, iterates }
 }

@@ -16,7 +16,9 @@ mod walk;
 pub use diagnosed::diagnosed_text;
 pub use diagnosed_json::diagnosed_json;
 pub use diagnosis_folder::{DIAGNOSIS_FILES, DiagnosisFolder};
-pub use excited::{ExcitationAnswer, excited_json, excited_text};
+pub use excited::{
+    ExcitationAnswer, drawn_excitation, excited_json, excited_text, excited_trajectory,
+};
 pub use identified::{identified_doubts, identified_text};
 pub use identified_json::identified_json;
 pub use run::{drawn_run, run_json, run_text};

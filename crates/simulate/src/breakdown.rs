@@ -60,6 +60,8 @@ pub enum Stop {
     EvaluationLimit,
     /// Events follow each other without end.
     Zeno,
+    /// Who watched asked for no more.
+    Watcher,
     /// The equations have no answer.
     Breakdown(Breakdown),
 }
@@ -73,6 +75,7 @@ impl Stop {
             Self::EventLimit => "event_limit",
             Self::EvaluationLimit => "evaluation_limit",
             Self::Zeno => "zeno",
+            Self::Watcher => "watcher",
             Self::Breakdown(breakdown) => match breakdown {
                 Breakdown::Singular { .. } | Breakdown::SingularPose => "singular",
                 Breakdown::NotFinite => "not_finite",
@@ -114,6 +117,7 @@ impl fmt::Display for Stop {
             Self::EventLimit => write!(f, "stopped at the limit of events"),
             Self::EvaluationLimit => write!(f, "stopped at the limit of evaluations"),
             Self::Zeno => write!(f, "stopped: events follow each other without end"),
+            Self::Watcher => write!(f, "stopped: who watched asked for no more"),
             Self::Breakdown(breakdown) => write!(f, "stopped: {breakdown}"),
         }
     }

@@ -86,8 +86,9 @@ pub struct Run {
 /// Contacts this near the ground are closed at the start \[m\].
 const START_TOUCH_M: f64 = 1e-6;
 
-/// Hears the share of a run's time that is simulated, after each step, from 0 to 1.
-pub type Told<'a> = dyn FnMut(f64) + 'a;
+/// Hears the share of a run's time that is simulated, after each step, from 0 to 1. Says whether to
+/// go on; if not, the run ends there ([`Stop::Watcher`]).
+pub type Told<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// Runs a plant under control from a state; deterministic.
 pub fn simulate(

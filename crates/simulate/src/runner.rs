@@ -161,7 +161,10 @@ impl<'a> Runner<'a> {
             self.y.copy_from_slice(self.stepper.state());
             self.t_s = self.stepper.time();
             if let Some(told) = &mut self.told {
-                told((self.t_s - self.start_s) / (self.simulation.end_s - self.start_s));
+                let whole_s = self.simulation.end_s - self.start_s;
+                if !told((self.t_s - self.start_s) / whole_s) {
+                    return Ok(Some(Stop::Watcher));
+                }
             }
             if let Some(variation) = &mut self.variation {
                 variation.follow(&mut self.motion, &mut self.stepper, self.t_s)?;

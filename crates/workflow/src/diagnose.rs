@@ -127,7 +127,7 @@ pub fn diagnose(
                 (Stage::EffectsFound(taken.len()), None)
             }
         };
-        watched.progress(&Progress { stage, share, best: &best })
+        watched.progress(&Progress { stage, share, best: &best, ..Progress::default() })
     });
     let found = found.map_err(Cause::Diagnosis)?;
     let (model_effects, source) = (file.uses(ESTIMATED), file.source.clone());

@@ -4,6 +4,7 @@ use crate::files::reason;
 use crate::mistaken::Mistaken;
 use denavit_codegen::model::ModelError;
 use denavit_diagnose::DiagnosisError;
+use denavit_excite::ExciteError;
 use denavit_identify::UpdateError;
 use denavit_identify::doubt::MisreadColumns;
 use denavit_identify::estimate::EstimateError;
@@ -112,6 +113,8 @@ pub(crate) enum Cause {
     Apart(String, AddedError),
     /// A scenario, a controller or a file of statics is wrong.
     Scenario(ScenarioError),
+    /// No trajectory excites a robot as it is asked for.
+    Excite(ExciteError),
     /// A log of the project's own columns is wrong.
     Log(LogFaults),
     /// A model has no regression.
@@ -301,6 +304,7 @@ impl fmt::Display for Cause {
             }
             Self::Apart(model, error) => write!(f, "{model}: {error}"),
             Self::Scenario(error) => write!(f, "{error}"),
+            Self::Excite(error) => write!(f, "{error}"),
             Self::Log(error) => write!(f, "{error}"),
             Self::Regression(error) => write!(f, "{error}"),
             Self::Mapping(error) => write!(f, "{error}"),
@@ -352,9 +356,36 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match &*self.0 {
             Cause::Model(error) => Some(error),
+            Cause::Import(error) => Some(error),
             Cause::Read { error, .. } => Some(error),
+            Cause::Apart(_, error) => Some(error),
             Cause::Scenario(error) => Some(error),
-            _ => None,
+            Cause::Excite(error) => Some(error),
+            Cause::Log(error) => Some(error),
+            Cause::Regression(error) => Some(error.as_ref()),
+            Cause::Mapping(error) => Some(error),
+            Cause::Condition(_, error) => Some(error),
+            Cause::Plant(_, error) => Some(error),
+            Cause::Estimate(_, error) => Some(error),
+            Cause::Update(error) => Some(error),
+            Cause::Forward(_, error) => Some(error),
+            Cause::TwoStage(_, error) => Some(error),
+            Cause::Diagnosis(error) => Some(error),
+            Cause::NoModel { .. }
+            | Cause::NoShipped { .. }
+            | Cause::TooLarge { .. }
+            | Cause::Effect(..)
+            | Cause::Logs(_)
+            | Cause::Misread(_)
+            | Cause::OneLog
+            | Cause::Statics(..)
+            | Cause::NoInstruments
+            | Cause::OwnInstruments(_)
+            | Cause::NoPrior(_)
+            | Cause::SameLogs(_)
+            | Cause::Walk(..)
+            | Cause::Mistaken(_)
+            | Cause::Stopped => None,
         }
     }
 }

@@ -5,6 +5,7 @@
 //! - [`identify()`]: parameters from logs, by [`IdentifyOptions`]; [`identify_two_stage`] and
 //!   [`identify_statics`] for springs, and for measurements at rest
 //! - [`diagnose()`]: what a model lacks, by [`DiagnoseOptions`]
+//! - [`excite()`]: a trajectory that shows the parameters; [`simulate()`]: a run of a scenario
 //! - [`design_gait`], [`judge_run`], [`judge_log`]: gaits, and balance along runs and logs
 //! - [`Observer`]: hears of progress as data, and may stop the work, which then returns what it has
 //! - [`Error`]: why there is no answer, with its kind and hints
@@ -13,6 +14,7 @@
 
 mod diagnose;
 mod error;
+mod excite;
 mod files;
 mod identify;
 mod logs;
@@ -20,10 +22,12 @@ mod mistaken;
 mod observer;
 mod robot_file;
 mod scenario;
+mod simulate;
 mod walk;
 
 pub use diagnose::{Completed, DiagnoseOptions, Diagnosed, NamedEffect, diagnose};
 pub use error::{Error, ErrorKind, Hint, RobotFaults};
+pub use excite::excite;
 pub use files::{Files, Input, ModelText, described, effects_folder, reason};
 pub use identify::{
     Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, NotMoved, SimulationGap,
@@ -33,6 +37,7 @@ pub use logs::Logs;
 pub use mistaken::{FileKind, Mistaken};
 pub use observer::{Observer, Progress, Silent, Stage};
 pub use robot_file::{EffectUse, RobotFile, WholeRobot};
+pub use simulate::simulate;
 pub use walk::{
     Designed, Gait, GaitCurves, GaitQuantity, JudgeOptions, Judged, design_gait, judge_log,
     judge_run,

@@ -3,10 +3,11 @@
 use std::fmt;
 
 /// What work is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
     /// Logs are read, checked and filtered.
+    #[default]
     ReadingLogs,
     /// They are read again, behind a filter whose cutoff was halved so often.
     ReadingLogsAgain(u32),
@@ -24,6 +25,10 @@ pub enum Stage {
     EvaluatingEffects,
     /// So many effects have been found.
     EffectsFound(usize),
+    /// A scenario is simulated.
+    Simulating,
+    /// Trajectories are searched that excite a robot; holds of how many starts.
+    Exciting(usize),
 }
 
 impl fmt::Display for Stage {
@@ -43,20 +48,25 @@ impl fmt::Display for Stage {
             Self::EvaluatingEffects => write!(f, "effects evaluated"),
             Self::EffectsFound(1) => write!(f, "one effect found"),
             Self::EffectsFound(count) => write!(f, "{count} effects found"),
+            Self::Simulating => write!(f, "simulating"),
+            Self::Exciting(1) => write!(f, "searching from one start"),
+            Self::Exciting(starts) => write!(f, "searching from {starts} starts"),
         }
     }
 }
 
 /// How far work has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress<'a> {
     /// What is being done.
     pub stage: Stage,
     /// The share of the stage that is done, from 0 to 1, where that is known: where effects are
-    /// evaluated.
+    /// evaluated, a scenario is simulated, or trajectories are searched.
     pub share: Option<f64>,
     /// The best answer so far: effects that are missing, each with its place.
     pub best: &'a [[String; 2]],
+    /// The lowest condition number of a trajectory so far, where these are searched.
+    pub condition: Option<f64>,
 }
 
 /// Who watches. A closure is one.
@@ -96,7 +106,7 @@ impl<'a> Watched<'a> {
 
     /// A stage begins; whether to go on. Work that was stopped stays so.
     pub(crate) fn begins(&mut self, stage: Stage) -> bool {
-        self.progress(&Progress { stage, share: None, best: &[] })
+        self.progress(&Progress { stage, ..Progress::default() })
     }
 
     /// Work has come so far; whether to go on.

@@ -19,7 +19,7 @@ pub(super) fn diagnosed(
     let robot = hidden.robot();
     let (mut files, mut logs) = (Vec::new(), Vec::new());
     for motion in [0, 1] {
-        let log = Hidden::log(&robot.text, seed, motion).map_err(Failure::Scenario)?;
+        let log = Hidden::log(&robot.text, seed, motion)?;
         logs.push(directory.join(&log.name));
         files.push(write(directory, log)?);
     }

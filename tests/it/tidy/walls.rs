@@ -31,8 +31,8 @@ const WALLS: [(&str, &[&str]); 19] = [
     (
         "crates/workflow",
         &[
-            "codegen", "diagnose", "identify", "import", "logs", "measure", "numerics", "plants",
-            "simulate", "walk",
+            "codegen", "diagnose", "excite", "identify", "import", "logs", "measure", "numerics",
+            "plants", "simulate", "walk",
         ],
     ),
     (

@@ -22,7 +22,7 @@ fn options() -> ExciteOptions {
 }
 
 fn found(robot: &Robot, options: &ExciteOptions) -> Excited {
-    excite(robot, options, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
+    excite(robot, options, &|_| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn trajectory(found: &Excited) -> Trajectory {
@@ -162,7 +162,7 @@ fn all_faults_are_found_at_once() {
         weights: vec![("link1".to_owned(), -1.0)],
         ..options()
     };
-    let error = excite(&robot, &bad, &|_| {}).expect_err("nothing is right");
+    let error = excite(&robot, &bad, &|_| true).expect_err("nothing is right");
     let missing = |joint: &str, limit| ExciteFault::MissingLimit { joint: joint.to_owned(), limit };
     for fault in [
         ExciteFault::Duration(0.0),
@@ -178,7 +178,7 @@ fn all_faults_are_found_at_once() {
         assert!(error.faults.contains(&fault), "{fault:?} is not in {error:?}");
     }
     assert_eq!(error.faults.len(), 5, "{error:?}");
-    let narrow = excite(&arm("[0.5, 0.5]", ""), &options(), &|_| {}).expect_err("no room");
+    let narrow = excite(&arm("[0.5, 0.5]", ""), &options(), &|_| true).expect_err("no room");
     let limit = LimitKind::Position;
     assert_eq!(narrow.faults, [ExciteFault::NoRoom { joint: "link2".to_owned(), limit }]);
 }

@@ -1,8 +1,10 @@
 //! What is said of an excitation, as text and as JSON.
 
-use crate::{Align, Table, paragraph, short};
+use crate::{Align, ExcitationPicture, Table, excitation_picture, paragraph, short};
 use denavit_codegen::model::Robot;
-use denavit_excite::{Check, Excited, Extremes, JointUse, LimitKind, Stack, StartReport};
+use denavit_excite::{
+    Check, ExciteOptions, Excited, Extremes, JointUse, LimitKind, Stack, StartReport,
+};
 use denavit_workflow::EffectUse;
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
@@ -20,6 +22,37 @@ pub struct ExcitationAnswer<'a> {
     pub check: &'a Check,
     /// How it was found, if it was looked for.
     pub excited: Option<&'a Excited>,
+}
+
+/// A trajectory that was looked for as a trajectory file; remarks say how it was found.
+pub fn excited_trajectory(found: &Excited, options: &ExciteOptions) -> String {
+    let check = &found.found().ended;
+    let model = &found.model.regression.model;
+    let remarks = json!({
+        "denavit": env!("CARGO_PKG_VERSION"),
+        "condition": check.excitation.condition,
+        "condition_scaled": check.excitation.condition_scaled,
+        "feasible": check.is_feasible(),
+        "seed": options.seed,
+        "start": found.best + 1,
+        "starts": options.starts,
+    });
+    format!("{:#}\n", found.to_json(&format!("{model}_excitation"), &remarks))
+}
+
+/// The picture of a trajectory that was looked for.
+pub fn drawn_excitation(found: &Excited) -> String {
+    let check = &found.found().ended;
+    let model = &found.model.regression.model;
+    let title = format!("{}: exciting trajectory", model.replace('_', " "));
+    let subtitle = format!(
+        "condition {:.1} (columns of length 1: {:.1}), {}",
+        check.excitation.condition,
+        check.excitation.condition_scaled,
+        if check.is_feasible() { "within all limits" } else { "outside of a limit" },
+    );
+    let picture = ExcitationPicture { title: &title, subtitle: &subtitle, excited: found };
+    excitation_picture(&picture)
 }
 
 /// An excitation as JSON.

@@ -104,7 +104,7 @@ pub struct Scenario {
 impl Scenario {
     /// Runs it by its scheme; the log's header says what it was made of.
     pub fn run(&mut self) -> Result<Run, ScenarioError> {
-        self.run_told(&mut |_| {})
+        self.run_told(&mut |_| true)
     }
 
     /// As [`run`](Self::run), heard by somebody.

@@ -29,7 +29,7 @@ pub fn simulate_by_steps(
     simulation: &Simulation,
     stepping: &Stepping,
 ) -> Result<Run, StartError> {
-    simulate_by_steps_told(plant, control, initial, simulation, stepping, &mut |_| {})
+    simulate_by_steps_told(plant, control, initial, simulation, stepping, &mut |_| true)
 }
 
 /// As [`simulate_by_steps`], heard by somebody.
@@ -166,7 +166,10 @@ impl Runner<'_> {
                 if let Some(stop) = self.step(end_s) {
                     return stop;
                 }
-                told((self.t_s - self.start_s) / (self.simulation.end_s - self.start_s));
+                let whole_s = self.simulation.end_s - self.start_s;
+                if !told((self.t_s - self.start_s) / whole_s) {
+                    return Stop::Watcher;
+                }
             }
         }
     }

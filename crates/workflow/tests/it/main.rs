@@ -2,6 +2,7 @@
 
 mod errors;
 mod observers;
+mod runs;
 
 use std::fs;
 use std::path::{Path, PathBuf};

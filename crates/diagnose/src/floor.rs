@@ -35,7 +35,7 @@ impl NoiseFloor {
                 Some(rows.iter().map(|deflection| stiffness * deflection).collect())
             });
             let torque = signals.torque.iter().cloned().chain(passed).collect::<Vec<_>>();
-            Self::new(signals, &torque, [&computed, &disturbed])
+            Self::new(signals, &torque, &computed, &disturbed)
         };
         logs.iter().map(of).collect()
     }
@@ -45,7 +45,8 @@ impl NoiseFloor {
     pub fn new(
         signals: &Signals,
         torque: &[Option<Vec<f64>>],
-        [computed, disturbed]: [&[Vec<f64>]; 2],
+        computed: &[Vec<f64>],
+        disturbed: &[Vec<f64>],
     ) -> Self {
         let gain = signals.noise_gain();
         let mut white: Vec<f64> = signals
@@ -63,7 +64,7 @@ impl NoiseFloor {
             .collect();
         let q: Vec<Vec<f64>> = signals.q.iter().map(|q| signals.cell_means(q)).collect();
         let end = q.first().map_or(0, Vec::len);
-        let laps = Laps::find(&q, signals.log_step_s, (0, end)).ok();
+        let laps = Laps::find(&q, signals.log_step_s, 0..end).ok();
         let of_laps = laps.map(|laps| {
             let of = |(equation, computed): (usize, &Vec<f64>)| {
                 let computed = signals.cell_means(computed);

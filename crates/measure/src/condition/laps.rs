@@ -167,9 +167,8 @@ impl Laps {
     pub fn find(
         positions: &[Vec<f64>],
         step_s: f64,
-        (start, end): (usize, usize),
+        span: Range<usize>,
     ) -> Result<Self, ConditionError> {
-        let span = start..end;
         let samples = span.len();
         let stride = samples.div_ceil(SEARCHED).max(1);
         let moving = moving(positions, span.clone());
@@ -266,7 +265,7 @@ mod tests {
     #[test]
     fn the_period_of_two_harmonics_is_found() {
         let signal = two_harmonics(640.0, 2700);
-        let laps = Laps::find(&[signal], 1e-3, (20, 2680)).expect("it repeats");
+        let laps = Laps::find(&[signal], 1e-3, 20..2680).expect("it repeats");
         assert_eq!((laps.samples, laps.count), (640, 4));
         assert!((laps.period - 640.0).abs() < 1e-6, "{}", laps.period);
     }
@@ -277,7 +276,7 @@ mod tests {
         for period in [628.318, 62.831_853, 40.5] {
             let positions = [two_harmonics(period, 6000)];
             let rounded = (period * 10.0_f64).round() / 10.0;
-            let found = Laps::find(&positions, 1e-3, (20, 5980)).expect("it repeats");
+            let found = Laps::find(&positions, 1e-3, 20..5980).expect("it repeats");
             let given =
                 Laps::given(&positions, 1e-3 * rounded, 1e-3, 20..5980).expect("it repeats");
             for laps in [found, given] {
@@ -327,7 +326,7 @@ mod tests {
     #[test]
     fn what_never_repeats_has_no_period() {
         let slope: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_eq!(Laps::find(&[slope], 1e-3, (0, 1000)), Err(ConditionError::NoPeriod));
+        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(ConditionError::NoPeriod));
     }
 
     #[test]

@@ -303,7 +303,7 @@ impl Conditioned {
         let laps = match averaging {
             Averaging::No => return Ok(()),
             Averaging::Period(period_s) => Laps::given(&self.q, period_s, self.step_s, span)?,
-            Averaging::Found => Laps::find(&self.q, self.step_s, (span.start, span.end))?,
+            Averaging::Found => Laps::find(&self.q, self.step_s, span)?,
         };
         // A lap goes on as it began, so that its edges can be filtered and differentiated.
         let edge = STENCIL + self.filter.as_ref().map_or(0, Butterworth::settling);

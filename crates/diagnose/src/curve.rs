@@ -21,7 +21,7 @@ pub struct Curve {
 }
 
 /// The curves of all logs, joint by joint, from what is left in the rows.
-pub(super) fn curves(data: &Data<'_>, [before, after]: [&[f64]; 2]) -> Vec<Curve> {
+pub(super) fn curves(data: &Data<'_>, before: &[f64], after: &[f64]) -> Vec<Curve> {
     let of_stretch = |stretch: &super::Stretch| {
         let signals = &data.signals[stretch.log];
         let rows = stretch.first..stretch.first + stretch.rows;

@@ -21,7 +21,7 @@ use super::rounds::Found;
 use super::search::{Search, SearchOptions, Step};
 use super::signals::{Filters, Signals};
 use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
-use super::state::{Setting, State, Taken};
+use super::state::{Effects, Setting, State, Taken};
 use super::structure::{Structure, describe};
 use super::verdict::{Verdict, judge};
 use super::weighing::{Placed, Weighing};
@@ -70,7 +70,7 @@ pub struct Gaps {
 }
 
 impl Gaps {
-    fn new((data, floors): (&Data<'_>, &[NoiseFloor]), [before, after]: [&[f64]; 2]) -> Self {
+    fn new(data: &Data<'_>, floors: &[NoiseFloor], before: &[f64], after: &[f64]) -> Self {
         Self {
             before: Gap::new(data, before),
             after: Gap::new(data, after),
@@ -158,14 +158,13 @@ pub fn diagnose(
     let misread = misread(&train, &setting.as_given(0));
     let options = if misread.is_empty() { request.options } else { SearchOptions::none() };
     let sets = vec![setting.train, setting.held_out];
-    let own = (setting.candidates, setting.given.as_slice());
+    let own = setting.effects(&setting.given);
     let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
-        let options = (setting.given.len(), options);
-        let search =
-            Search::new(weighing, options, &mut |share| watch(&Progress::Evaluated(share)));
+        let watched = &mut |share| watch(&Progress::Evaluated(share));
+        let search = Search::new(weighing, setting.given.len(), options, watched);
         let watch = &mut |taken: &[usize]| watch(&Progress::Found(taken.to_vec()));
-        let found = search.run((begun, may_move), watch);
+        let found = search.run(begun, may_move, watch);
         (search, found)
     };
     let mut z = null(&sets, own);
@@ -180,7 +179,7 @@ pub fn diagnose(
     // What does not help logs that its values were not fitted to is not told.
     let (after, mut effects) = loop {
         let after = setting.state(&found.after.parts, &z);
-        let effects = found_effects(&setting, &search, (&found, [&before, &after]));
+        let effects = found_effects(&setting, &search, &found, &before, &after);
         let idle = effects.iter().position(|one| one.log_predicted < -policy::NAMED);
         let Some(place) = idle else { break (after, effects) };
         search.drop(&mut found, place);
@@ -189,7 +188,7 @@ pub fn diagnose(
         tell_aliases(request.candidates, aliases, &mut effects);
     }
     if let Some((robot, options)) = request.experiment {
-        separate(&setting, (robot, &options), (&after, filters), &mut effects);
+        separate(&setting, robot, &options, &after, filters, &mut effects);
     }
     let visible = visible(&setting, &search, &found.after);
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
@@ -200,7 +199,7 @@ pub fn diagnose(
 }
 
 /// The model's own numbers, in their deviations, as all logs have them where nothing is missing.
-fn null(sets: &[&Data<'_>], given: (&[Candidate], &[Taken])) -> Vec<f64> {
+fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
     let columns = sets[0].columns.len();
     let weighing = Weighing::new(sets.to_vec(), given, &vec![0.0; columns]);
     let weighed = weighing.base.weigh(&[], None, policy::ROUNDS[1]);
@@ -242,15 +241,12 @@ impl Told<'_, '_> {
             after: left(after),
             given: given_effects(setting, after),
             effects,
-            train: Gaps::new((train, train_floor), [&as_given(0), &after.residual]),
-            held_out: Gaps::new(
-                (held_out, held_out_floor),
-                [&as_given(1), &after.held_out_residual],
-            ),
+            train: Gaps::new(train, train_floor, &as_given(0), &after.residual),
+            held_out: Gaps::new(held_out, held_out_floor, &as_given(1), &after.held_out_residual),
             visible,
             leftovers,
             structures,
-            curves: curves(held_out, [&before.held_out_residual, &after.held_out_residual]),
+            curves: curves(held_out, &before.held_out_residual, &after.held_out_residual),
             motion: setting.moved.map(|_| motion_gaps(setting, [before, after])),
             filters: *filters,
             driven: [before, after].map(|state| driven_names(setting, state)),
@@ -289,7 +285,7 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
 /// The gaps of the models before and after in motion.
 fn motion_gaps(setting: &Setting<'_>, states: [&State; 2]) -> Result<MotionGaps, NotMoved> {
     let of = |set: usize| -> Result<[MotionGap; 2], NotMoved> {
-        let [before, after] = states.map(|state| setting.motion_gap(set, (&state.taken, &state.z)));
+        let [before, after] = states.map(|state| setting.motion_gap(set, &state.taken, &state.z));
         Ok([before?, after?])
     };
     Ok(MotionGaps { train: of(0)?, held_out: of(1)? })

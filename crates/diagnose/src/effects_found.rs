@@ -82,7 +82,9 @@ pub struct GivenEffect {
 pub(super) fn found_effects(
     setting: &Setting<'_>,
     search: &Search<'_>,
-    (found, [before, after]): (&Found, [&State; 2]),
+    found: &Found,
+    before: &State,
+    after: &State,
 ) -> Vec<FoundEffect> {
     let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual).all;
     let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
@@ -105,7 +107,7 @@ pub(super) fn found_effects(
             share: (gap(&reopened) - gap(after)) / whole,
             log_predicted: predicted - setting.log_predicted(&judging, &reopened),
             is_named: true,
-            parameters: values(setting, (all, after), place),
+            parameters: values(setting, all, after, place),
             alternatives: alternatives(found, place),
             exact: Vec::new(),
             experiment: None,
@@ -134,7 +136,8 @@ fn alternatives(found: &Found, place: usize) -> Vec<Alternative> {
 /// another motion (Chow 1960).
 fn values(
     setting: &Setting<'_>,
-    (all, state): (&Hypothesis, &State),
+    all: &Hypothesis,
+    state: &State,
     place: usize,
 ) -> Vec<EffectValue> {
     let own = setting.given.len() + place;
@@ -220,8 +223,10 @@ const MOST_RIVALS: usize = 3;
 /// Looks for motions that tell what was found from what would do as well.
 pub(super) fn separate(
     setting: &Setting<'_>,
-    (robot, options): (&Robot, &ExperimentOptions),
-    (state, filters): (&State, Filters),
+    robot: &Robot,
+    options: &ExperimentOptions,
+    state: &State,
+    filters: Filters,
     found: &mut [FoundEffect],
 ) {
     let given = setting.given.len();

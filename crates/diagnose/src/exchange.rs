@@ -48,7 +48,7 @@ impl Search<'_> {
                 let beside = self.glance(&now, &now.parts);
                 let is_other = |candidate| candidate != own.placed.candidate;
                 let of = Some((&beside, &own));
-                all = self.with_one_more((&rest, &others), &is_other, of);
+                all = self.with_one_more(&rest, &others, &is_other, of);
                 all.retain(|one| {
                     one.posterior <= now.posterior || !self.is_missing_beside(&own, one)
                 });
@@ -57,7 +57,7 @@ impl Search<'_> {
                     let last = one.parts.len() - 1;
                     one.parts[place..=last].rotate_right(1);
                 }
-                let better = self.better(&now, (&rest, place), &all).filter(|_| may_exchange);
+                let better = self.better(&now, &rest, place, &all).filter(|_| may_exchange);
                 better.map(|one| self.settled(one.parts.clone(), Some(one)))
             };
             let Some(next) = next else {
@@ -106,7 +106,8 @@ impl Search<'_> {
     fn better<'h>(
         &self,
         now: &'h Hypothesis,
-        (rest, place): (&Hypothesis, usize),
+        rest: &Hypothesis,
+        place: usize,
         all: &'h [Hypothesis],
     ) -> Option<&'h Hypothesis> {
         let best = all.iter().find(|one| self.is_worth(rest, one, place))?;
@@ -135,7 +136,7 @@ impl Search<'_> {
             others.remove(a);
             let rest = self.weighed(others.clone(), Some(now), policy::ROUNDS[0]);
             let is_there = |candidate: usize| self.weighing.candidates[candidate].at == of(a).at;
-            let all = self.with_one_more((&rest, &others), &is_there, None);
+            let all = self.with_one_more(&rest, &others, &is_there, None);
             let best = all.iter().find(|one| self.is_worth(&rest, one, one.parts.len() - 1));
             if let Some(best) = best.filter(|one| one.posterior > now.posterior) {
                 let next = self.plainest(best, best.parts.len() - 1, &all);

@@ -250,7 +250,7 @@ impl Ambiguity<'_> {
                 laws: self.names[..1].iter().chain(&self.others).map(|o| self.fitted(o)).collect(),
                 log: self.log,
             };
-            motors = follower.motors(references, (rows, options.duration_s))?;
+            motors = follower.motors(references, rows, options.duration_s)?;
         }
         let joint = |(joint, reference): (usize, &Reference)| JointSignals {
             q: position(reference),
@@ -300,7 +300,7 @@ impl Ambiguity<'_> {
         let mut least = f64::INFINITY;
         for rival in 1..self.names.len() {
             for (truth, told) in [(0, rival), (rival, 0)] {
-                let blocks = self.left(seen, &problem, (seen.names[truth].clone(), told));
+                let blocks = self.left(seen, &problem, seen.names[truth].clone(), told);
                 least = least.min((blocks.iter().sum::<f64>() / ROWS_PER_SAMPLE).sqrt());
             }
         }
@@ -312,7 +312,8 @@ impl Ambiguity<'_> {
         &self,
         seen: &Seen<'_>,
         problem: &Problem<'_>,
-        (rows, name): (Vec<f64>, usize),
+        rows: Vec<f64>,
+        name: usize,
     ) -> Vec<f64> {
         let Taken { candidate, values } = &self.names[name];
         let law = self.candidates[*candidate].law.as_ref();
@@ -333,9 +334,9 @@ impl Ambiguity<'_> {
             for _ in 0..options.draws {
                 let mut rows = seen.names[truth].clone();
                 self.add_noise(seen, &mut random, &mut rows);
-                let own = self.left(seen, &problem, (rows.clone(), truth));
+                let own = self.left(seen, &problem, rows.clone(), truth);
                 let is_told = against.clone().all(|other| {
-                    let others = self.left(seen, &problem, (rows.clone(), other));
+                    let others = self.left(seen, &problem, rows.clone(), other);
                     paired(&others, &own) > DISTINCT
                 });
                 right += usize::from(is_told);

@@ -29,10 +29,11 @@ impl Follower<'_> {
     pub(super) fn motors(
         &self,
         references: &[Reference],
-        (samples, lap_s): (usize, f64),
+        samples: usize,
+        lap_s: f64,
     ) -> Option<Vec<Option<Vec<f64>>>> {
         let within = (self.log.log_step_s / self.log.step_s).round() as usize;
-        let signals = self.settled(self.joints(references, (samples * within, lap_s)))?;
+        let signals = self.settled(self.joints(references, samples * within, lap_s))?;
         let zeros = self.nominal.zeros_of_springs(self.z);
         let mut found = vec![None; references.len()];
         for (spring, zero) in self.nominal.springs.iter().zip(zeros) {
@@ -46,7 +47,7 @@ impl Follower<'_> {
 
     /// The motion of the joints at the rate of laws, with motors that are not ahead of them; of
     /// which nothing was measured.
-    fn joints(&self, references: &[Reference], (samples, lap_s): (usize, f64)) -> Signals {
+    fn joints(&self, references: &[Reference], samples: usize, lap_s: f64) -> Signals {
         let mut signals = self.log.clone();
         let offset = 0.5 * (signals.log_step_s - signals.step_s);
         let time = |k: usize| signals.step_s * k as f64 - offset;

@@ -62,6 +62,15 @@ pub struct Nominal<'a> {
     pub(super) usual: Vec<[f64; 2]>,
 }
 
+/// The nominal model with its own numbers where they are.
+#[derive(Clone, Copy)]
+pub(super) struct NominalAt<'a> {
+    /// The model.
+    pub(super) nominal: &'a Nominal<'a>,
+    /// What its numbers are off, in their deviations.
+    pub(super) z: &'a [f64],
+}
+
 /// A spring between a motor and its joint, on the side of the joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {

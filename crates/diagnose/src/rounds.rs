@@ -3,6 +3,7 @@
 use super::candidate::Candidate;
 use super::hypothesis::{Hypothesis, Part};
 use super::search::{Search, Step};
+use super::state::Effects;
 use super::weighing::{Placed, Weighing};
 use denavit_evidence::policy;
 use std::collections::BTreeSet;
@@ -33,7 +34,8 @@ impl Search<'_> {
     /// what was found so far, and says whether to go on.
     pub(super) fn run(
         &self,
-        (begun, may_move): (&[Placed], bool),
+        begun: &[Placed],
+        may_move: bool,
         watch: &mut dyn FnMut(&[usize]) -> bool,
     ) -> Found {
         let before = self.weighed(Vec::new(), None, policy::ROUNDS[1]);
@@ -50,7 +52,7 @@ impl Search<'_> {
         let (is_full, is_stopped) = loop {
             let is_stopped = !watch(&now.candidates());
             let room = self.options.most_effects.saturating_sub(now.parts.len());
-            let next = (room > 0 && !is_stopped).then(|| self.next((&now, room), &mut steps));
+            let next = (room > 0 && !is_stopped).then(|| self.next(&now, room, &mut steps));
             if let Some(next) = next.flatten() {
                 // Effects of other joints hardly notice: they are looked at in the end.
                 let new = now.parts.len()..next.parts.len();
@@ -84,9 +86,9 @@ impl Search<'_> {
     }
 
     /// What was found with one more effect that is worth it, or with several, if there are any.
-    fn next(&self, (now, room): (&Hypothesis, usize), steps: &mut Vec<Step>) -> Option<Hypothesis> {
-        let all = self.with_one_more((now, &now.parts), &|_| true, None);
-        if let Some(next) = self.together((now, room), &all) {
+    fn next(&self, now: &Hypothesis, room: usize, steps: &mut Vec<Step>) -> Option<Hypothesis> {
+        let all = self.with_one_more(now, &now.parts, &|_| true, None);
+        if let Some(next) = self.together(now, room, &all) {
             steps.extend(self.steps_together(now, &next));
             return Some(next);
         }
@@ -137,8 +139,9 @@ impl Search<'_> {
     /// evaluated with these: a law of an angle that is off by much turns what the numbers do, too.
     fn moved_numbers(&self, now: &Hypothesis) -> Option<Vec<f64>> {
         let Weighing { sets, candidates, given, .. } = &self.weighing;
+        let effects = Effects { candidates, taken: given };
         let z = &now.weighed.own[..sets[0].columns.len()];
-        let other = Weighing::new(sets.clone(), (candidates, given), z);
+        let other = Weighing::new(sets.clone(), effects, z);
         let parts = now.parts.iter().map(|part| other.part(&part.placed)).collect();
         let other = Self { weighing: other, screen: Vec::new(), ..*self };
         let moved = other.settled(parts, Some(now));

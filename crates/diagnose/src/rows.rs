@@ -81,9 +81,9 @@ impl LogRows {
 /// each spring, what its joint takes less what it passes on.
 pub(super) fn torques(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     if signals.motor.iter().all(Option::is_none) {
-        return of_axes(nominal, (signals, &phi.axes), true);
+        return of_axes(nominal, signals, &phi.axes, true);
     }
-    let loads = of_axes(nominal, (signals, &phi.loads), true);
+    let loads = of_axes(nominal, signals, &phi.loads, true);
     let mut torques = drives(nominal, signals, phi);
     let all = torques.iter_mut().flatten().zip(loads.iter().flatten());
     all.for_each(|(torque, load)| *torque += load);
@@ -107,7 +107,7 @@ fn drives(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
             moved.qdd[joint].clone_from(accelerations);
         }
     }
-    of_axes(nominal, (&moved, &phi.drives), false)
+    of_axes(nominal, &moved, &phi.drives, false)
 }
 
 /// What rotors and friction before springs take more than they would with the motion of their
@@ -123,17 +123,13 @@ pub(super) fn behind_springs(
         return Vec::new();
     }
     let there = drives(nominal, signals, phi);
-    let here = of_axes(nominal, (signals, &phi.drives), false);
+    let here = of_axes(nominal, signals, &phi.drives, false);
     let more = |joint: usize| there[joint].iter().zip(&here[joint]).map(|(a, b)| a - b).collect();
     sprung.into_iter().map(|joint| (joint, more(joint))).collect()
 }
 
 /// The torque of every joint by phi on the joint axes, and by what is known if that is asked for.
-fn of_axes(
-    nominal: &Nominal<'_>,
-    (signals, phi): (&Signals, &[f64]),
-    with_known: bool,
-) -> PerJoint {
+fn of_axes(nominal: &Nominal<'_>, signals: &Signals, phi: &[f64], with_known: bool) -> PerJoint {
     let joints = nominal.model.joints.len();
     let of_joint: Vec<Vec<f64>> = nominal
         .model

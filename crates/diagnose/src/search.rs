@@ -67,7 +67,8 @@ impl<'a> Search<'a> {
     /// and says whether to go on.
     pub(super) fn new(
         weighing: Weighing<'a>,
-        (given, options): (usize, SearchOptions),
+        given: usize,
+        options: SearchOptions,
         watch: &mut dyn FnMut(f64) -> bool,
     ) -> Self {
         let candidates = weighing.candidates;
@@ -203,7 +204,8 @@ impl<'a> Search<'a> {
     /// missing as well.
     pub(super) fn with_one_more(
         &self,
-        (now, parts): (&Hypothesis, &[Part]),
+        now: &Hypothesis,
+        parts: &[Part],
         is_asked: &dyn Fn(usize) -> bool,
         rivals_of: Option<(&Glance, &Part)>,
     ) -> Vec<Hypothesis> {

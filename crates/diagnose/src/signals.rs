@@ -105,9 +105,11 @@ impl Rows {
     /// the same of what was before them. But noise is larger where it is mirrored, and motions
     /// begin and end at rest: a log with rows to spare leaves more out.
     fn new(
-        (samples, edge): (usize, usize),
+        samples: usize,
+        edge: usize,
         filter: &Butterworth,
-        (stride, within): (usize, usize),
+        stride: usize,
+        within: usize,
     ) -> Result<Self, ConditionError> {
         let needed = 2 * (edge + filter.smear()) + LEAST_ROWS * stride;
         if samples < needed {
@@ -132,7 +134,7 @@ impl Signals {
         let samples = joints.first().map_or(0, |joint| joint.q.len());
         let edge = STENCIL + wide.settling();
         let stride = ((ROWS_PER_PERIOD * filters.torque_hz * step_s).recip() as usize).max(1);
-        let rows = Rows::new((samples, edge), &filter, (stride, samples_within(step_s)))?;
+        let rows = Rows::new(samples, edge, &filter, stride, samples_within(step_s))?;
         let kept = edge..samples - edge;
         let within = rows.within;
         let fine = step_s / within as f64;

@@ -4,8 +4,8 @@
 //! with angle and rate of these, and are moved by the motors' torques.
 
 use super::candidate::Candidate;
-use super::nominal::Nominal;
-use super::state::Taken;
+use super::nominal::{Nominal, NominalAt};
+use super::state::{Effects, Taken};
 use crate::policy::simulated::LONGEST_S;
 use denavit_codegen::effect::{Effect, EffectSite, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, ModelError, Robot};
@@ -108,9 +108,10 @@ impl Moved<'_> {
     /// whether they are.
     fn robot(
         &self,
-        (nominal, z): (&Nominal<'_>, &[f64]),
-        (candidates, taken): (&[Candidate], &[Taken]),
+        at: NominalAt<'_>,
+        Effects { candidates, taken }: Effects<'_>,
     ) -> Result<(Robot, bool), NotMoved> {
+        let NominalAt { nominal, z } = at;
         let (given, found) = taken.split_at(self.numbers.len().min(taken.len()));
         let values = |one: &Taken| -> Vec<(String, f64)> {
             let parameters = candidates[one.candidate].law.parameters().iter();
@@ -139,7 +140,7 @@ impl Moved<'_> {
         let moved = moved_numbers(nominal, z, &with).ok_or_else(|| NotMoved::NoPlace(name()))?;
         let name = "the model";
         let moved = read_estimated_model(name, moved.as_bytes(), self.effects).ok();
-        let moved = moved.and_then(|robot| with_springs(robot, (nominal, z)));
+        let moved = moved.and_then(|robot| with_springs(robot, at));
         if let Some(moved) = moved {
             return Ok((moved, true));
         }
@@ -160,14 +161,15 @@ impl Moved<'_> {
     /// The gap of a set of logs: those that are searched, or those that judge.
     pub(super) fn gap(
         &self,
-        (set, cutoff_hz): (usize, f64),
-        nominal: (&Nominal<'_>, &[f64]),
-        taken: (&[Candidate], &[Taken]),
+        set: usize,
+        cutoff_hz: f64,
+        at: NominalAt<'_>,
+        effects: Effects<'_>,
     ) -> Result<MotionGap, NotMoved> {
-        let (mut robot, is_estimated) = self.robot(nominal, taken)?;
-        let model = nominal.0.model;
+        let (mut robot, is_estimated) = self.robot(at, effects)?;
+        let model = at.nominal.model;
         let logs = &self.logs[set];
-        let zeros = drive_by_motors(&mut robot, nominal, logs)?;
+        let zeros = drive_by_motors(&mut robot, at, logs)?;
         let laws = apart(&robot, self.effects).map_err(|error| NotMoved::Law(error.to_string()))?;
         let of_springs = robot.spring_laws.iter().flat_map(|own| &own.law.states);
         let has_states = robot.law_states().chain(of_springs).next().is_some()
@@ -207,7 +209,8 @@ impl Moved<'_> {
 }
 
 /// The robot with the stiffness of its springs as z has it; none if that makes no spring.
-fn with_springs(mut robot: Robot, (nominal, z): (&Nominal<'_>, &[f64])) -> Option<Robot> {
+fn with_springs(mut robot: Robot, at: NominalAt<'_>) -> Option<Robot> {
+    let NominalAt { nominal, z } = at;
     let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
     for (spring, stiffness) in nominal.springs.iter().zip(nominal.phi(z).springs) {
         let share = stiffness / spring.stiffness;
@@ -227,9 +230,10 @@ fn with_springs(mut robot: Robot, (nominal, z): (&Nominal<'_>, &[f64])) -> Optio
 /// on the torque that was measured of them.
 fn drive_by_motors(
     robot: &mut Robot,
-    (nominal, z): (&Nominal<'_>, &[f64]),
+    at: NominalAt<'_>,
     logs: &[MeasuredLog],
 ) -> Result<Option<Vec<f64>>, NotMoved> {
+    let NominalAt { nominal, z } = at;
     let links: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
     let is_measured = |joint: usize| logs.iter().any(|log| log.joints[joint].motor.is_some());
     if !(0..links.len()).any(is_measured) {

@@ -107,8 +107,8 @@ impl Spectra {
                 };
                 if transformed.iter().find(is_it).is_none() {
                     let own = rows(line.set, line.stretch);
-                    let place = (line.set, line.stretch);
-                    let own = own.map(|rows| self.transformed(rows, place, up_to_hz));
+                    let own =
+                        own.map(|rows| self.transformed(rows, line.set, line.stretch, up_to_hz));
                     is_filled |= own.is_some();
                     transformed.push((line.set, line.stretch, own));
                 }
@@ -122,7 +122,7 @@ impl Spectra {
 
     /// The orthonormal cosine transform of what a stretch has up to a frequency \[Hz\], its rows by
     /// what they count.
-    fn transformed(&self, rows: &[f64], (set, stretch): (usize, usize), up_to_hz: f64) -> Vec<f64> {
+    fn transformed(&self, rows: &[f64], set: usize, stretch: usize, up_to_hz: f64) -> Vec<f64> {
         let plan = self.plans.iter().find(|(length, _)| *length == rows.len());
         let plan = &plan.expect("every stretch has a plan").1;
         let mut lines = rows.to_vec();

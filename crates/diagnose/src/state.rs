@@ -5,6 +5,7 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::floor::NoiseFloor;
 use super::hypothesis::{Hypothesis, Part};
+use super::nominal::NominalAt;
 use super::problem::{Fitted, Found, Problem};
 use super::search::{Search, SearchOptions};
 use super::simulated::{MotionGap, Moved, NotMoved};
@@ -19,6 +20,15 @@ pub struct Taken {
     pub candidate: usize,
     /// The values of its parameters.
     pub values: Vec<f64>,
+}
+
+/// Effects of a model, by their numbers among all that may be missing.
+#[derive(Clone, Copy)]
+pub(super) struct Effects<'a> {
+    /// What may be missing, after what the model has.
+    pub(super) candidates: &'a [Candidate],
+    /// Those that the model has, at their values.
+    pub(super) taken: &'a [Taken],
 }
 
 /// Logs, candidates and floors: what does not change during a search.
@@ -60,12 +70,16 @@ pub(super) struct State {
 const MOST_HELD: usize = 8;
 
 impl<'a> Setting<'a> {
+    /// Effects that a model has.
+    pub(super) fn effects<'s>(&'s self, taken: &'s [Taken]) -> Effects<'s> {
+        Effects { candidates: self.candidates, taken }
+    }
+
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
-        let given = (self.candidates, self.given.as_slice());
-        let weighing = Weighing::new(vec![self.train], given, z);
-        let options = (self.candidates.len(), SearchOptions::default());
-        let search = Search::new(weighing, options, &mut |_| true);
+        let weighing = Weighing::new(vec![self.train], self.effects(&self.given), z);
+        let (all, options) = (self.candidates.len(), SearchOptions::default());
+        let search = Search::new(weighing, all, options, &mut |_| true);
         let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
         let fitted = search.settled(parts, None);
         self.fitted_state(&search.weighing, &fitted)
@@ -106,7 +120,7 @@ impl<'a> Setting<'a> {
 
     /// Held-out logs alone, in which effects are weighed.
     pub(super) fn judging(&self, z: &[f64]) -> Weighing<'_> {
-        Weighing::new(vec![self.held_out], (self.candidates, self.given.as_slice()), z)
+        Weighing::new(vec![self.held_out], self.effects(&self.given), z)
     }
 
     /// The log of the evidence of held-out logs with the effects as those that were fitted have
@@ -144,10 +158,12 @@ impl<'a> Setting<'a> {
     pub(super) fn motion_gap(
         &self,
         set: usize,
-        (taken, z): (&[Taken], &[f64]),
+        taken: &[Taken],
+        z: &[f64],
     ) -> Result<MotionGap, NotMoved> {
         let Some((moved, cutoff_hz)) = self.moved else { return Ok(MotionGap::default()) };
-        moved.gap((set, cutoff_hz), (self.train.nominal, z), (self.candidates, taken))
+        let model = NominalAt { nominal: self.train.nominal, z };
+        moved.gap(set, cutoff_hz, model, self.effects(taken))
     }
 }
 

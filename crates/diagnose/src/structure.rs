@@ -34,7 +34,7 @@ pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) ->
     let sets = [(setting.train, 0), (setting.held_out, 1)];
     let [train, held_out] = sets.map(|(data, set)| {
         let left = if set == 0 { &state.residual } else { &state.held_out_residual };
-        Rows::new(data, &state.torques[set], (equation, left))
+        Rows::new(data, &state.torques[set], equation, left)
     });
     let whole = held_out.left.norm_squared();
     let (mut places, mut found, mut least) = (Vec::new(), DVector::zeros(0), whole);
@@ -68,7 +68,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn new(data: &Data<'_>, torques: &[ModelTorques], (equation, left): (usize, &[f64])) -> Self {
+    fn new(data: &Data<'_>, torques: &[ModelTorques], equation: usize, left: &[f64]) -> Self {
         let mut rows = Self { names: Vec::new(), columns: Vec::new(), left: DVector::zeros(0) };
         let (mut columns, mut all_left): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
         for stretch in data.stretches.iter().filter(|stretch| stretch.equation == equation) {

@@ -22,7 +22,8 @@ impl Search<'_> {
     /// them are worth it.
     pub(super) fn together(
         &self,
-        (now, room): (&Hypothesis, usize),
+        now: &Hypothesis,
+        room: usize,
         all: &[Hypothesis],
     ) -> Option<Hypothesis> {
         let glance = self.glance(now, &now.parts);

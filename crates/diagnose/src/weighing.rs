@@ -5,7 +5,7 @@ use super::data::{Data, ModelTorques, RowResponse};
 use super::hypothesis::Part;
 use super::nominal::Nominal;
 use super::spectra::Spectra;
-use super::state::Taken;
+use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
 
 /// An effect near values of its parameters, with what is believed of them.
@@ -41,11 +41,7 @@ pub(super) struct Weighing<'a> {
 
 impl<'a> Weighing<'a> {
     /// Sets of logs with the torques of the model's own numbers at z, and the effects that it has.
-    pub(super) fn new(
-        sets: Vec<&'a Data<'a>>,
-        (candidates, given): (&'a [Candidate], &'a [Taken]),
-        z: &[f64],
-    ) -> Self {
+    pub(super) fn new(sets: Vec<&'a Data<'a>>, effects: Effects<'a>, z: &[f64]) -> Self {
         let cutoff_hz = sets[0].signals.first().map_or(0.0, |signals| signals.torque_hz);
         let spectra = Spectra::new(&sets, cutoff_hz);
         let logs = sets.iter().flat_map(|data| &data.signals);
@@ -57,8 +53,8 @@ impl<'a> Weighing<'a> {
         let mut weighing = Self {
             base: Base::new(spectra.layout.clone(), residual.clone(), &[]),
             sets,
-            candidates,
-            given,
+            candidates: effects.candidates,
+            given: effects.taken,
             torques,
             spectra,
             driven_hz,
@@ -68,7 +64,7 @@ impl<'a> Weighing<'a> {
         for (column, factor) in own.iter().zip(z) {
             add(&mut residual, column, *factor);
         }
-        for taken in given {
+        for taken in effects.taken {
             let law = weighing.candidates[taken.candidate].law.as_ref();
             let (torque, gradient) = weighing.spectrum(taken);
             add(&mut residual, &torque, -1.0);
@@ -131,10 +127,10 @@ impl<'a> Weighing<'a> {
         log_share: f64,
     ) -> Option<(Placed, Terms)> {
         let taken = Taken { candidate, values: start.values.clone() };
-        let spectra = self.spectrum(&taken);
-        let mut is_felt = self.spectra.largest_share(&spectra.0) > policy::LEAST_FELT;
+        let (torque, gradient) = self.spectrum(&taken);
+        let mut is_felt = self.spectra.largest_share(&torque) > policy::LEAST_FELT;
         let deviation = |(place, given): (usize, &Option<f64>)| {
-            let share = self.spectra.largest_share(&spectra.1[place]);
+            let share = self.spectra.largest_share(&gradient[place]);
             match given {
                 Some(deviation) => {
                     is_felt |= share * deviation > policy::LEAST_FELT;
@@ -150,12 +146,12 @@ impl<'a> Weighing<'a> {
         let is_term = start.values.is_empty();
         let deviations: Vec<f64> = match is_term {
             true => Vec::new(),
-            false if spectra.1.len() < start.values.len() => return None,
+            false if gradient.len() < start.values.len() => return None,
             false => start.deviations.iter().enumerate().map(deviation).collect(),
         };
         let Taken { candidate, values } = taken;
         let placed = Placed { candidate, center: values.clone(), values, deviations, log_share };
-        let terms = self.terms_of(&placed, spectra);
+        let terms = self.terms_of(&placed, torque, gradient);
         (is_felt || is_term).then_some((placed, terms))
     }
 
@@ -174,10 +170,11 @@ impl<'a> Weighing<'a> {
     /// The terms of an effect where it is placed.
     pub(super) fn terms(&self, placed: &Placed) -> Terms {
         let taken = Taken { candidate: placed.candidate, values: placed.values.clone() };
-        self.terms_of(placed, self.spectrum(&taken))
+        let (torque, gradient) = self.spectrum(&taken);
+        self.terms_of(placed, torque, gradient)
     }
 
-    fn terms_of(&self, placed: &Placed, (known, mut columns): (Spectrum, Vec<Spectrum>)) -> Terms {
+    fn terms_of(&self, placed: &Placed, known: Spectrum, mut columns: Vec<Spectrum>) -> Terms {
         let parameters = self.candidates[placed.candidate].law.parameters();
         for (column, deviation) in columns.iter_mut().zip(&placed.deviations) {
             column.iter_mut().flatten().for_each(|entry| *entry *= deviation);

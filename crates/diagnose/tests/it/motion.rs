@@ -34,7 +34,7 @@ fn motion(phase: f64) -> impl Fn(f64) -> [f64; 3] {
 #[test]
 fn a_missing_force_moves_a_mass_by_half_its_acceleration_times_the_square_of_time() {
     let torque = |at: [f64; 3]| MASS * at[2] + OFFSET;
-    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&motion(phase), &torque, (seed, 0.01)));
+    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&motion(phase), &torque, seed, 0.01));
     let (found, candidates) = diagnosed(SLED, logs);
     let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
     assert_eq!(candidates[one.candidate].effect, "torque_offset");

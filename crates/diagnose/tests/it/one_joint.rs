@@ -20,7 +20,8 @@ pub(super) type Motion<'m> = &'m dyn Fn(f64) -> [f64; 3];
 pub(super) fn log(
     motion: Motion<'_>,
     torque: &dyn Fn([f64; 3]) -> f64,
-    (seed, noise): (u64, f64),
+    seed: u64,
+    noise: f64,
 ) -> MeasuredLog {
     let mut random = Random::new(seed);
     let step = 1.0 / 100_000.0;

@@ -43,8 +43,7 @@ fn limited(phase: f64) -> impl Fn(f64) -> [f64; 3] {
 #[test]
 fn the_limit_of_a_drive_is_found_where_logs_have_what_was_demanded() {
     let demand = |at: [f64; 3]| MASS * at[2];
-    let logs =
-        [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&limited(phase), &demand, (seed, 0.02)));
+    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&limited(phase), &demand, seed, 0.02));
     let (found, candidates) = diagnosed(SLED, logs);
     let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
     assert_eq!(candidates[one.candidate].effect, "torque_saturation");

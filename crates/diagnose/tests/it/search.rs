@@ -28,7 +28,8 @@ pub(super) fn puma() -> RegressionModel {
 /// A log of periodic motion, whose torques are those of the rows with phi, and more.
 fn log(
     model: &RegressionModel,
-    (seed, samples): (u64, usize),
+    seed: u64,
+    samples: usize,
     phi: &[f64],
     hidden: impl Fn(usize, Sample) -> f64,
 ) -> MeasuredLog {
@@ -81,7 +82,7 @@ fn log(
 }
 
 pub(super) fn puma_log(model: &RegressionModel, phi: &[f64]) -> MeasuredLog {
-    log(model, (3, 3000), phi, |_, _| 0.0)
+    log(model, 3, 3000, phi, |_, _| 0.0)
 }
 
 fn candidates(model: &RegressionModel) -> Vec<Candidate> {
@@ -112,14 +113,15 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
 /// closed.
 fn found(
     hidden: impl Fn(usize, Sample) -> f64,
-    (seed, joint): (u64, usize),
+    seed: u64,
+    joint: usize,
 ) -> (Vec<String>, Option<f64>) {
     let model = puma();
     let nominal = Nominal::new(&model, Uncertainty::default());
     let mut random = Random::new(seed);
     let truth: Vec<f64> = (0..nominal.len()).map(|_| random.normal().clamp(-0.9, 2.0)).collect();
     let phi = nominal.phi(&truth);
-    let made = |seed| vec![log(&model, (seed, 7500), &phi.axes, &hidden)];
+    let made = |seed| vec![log(&model, seed, 7500, &phi.axes, &hidden)];
     let candidates = candidates(&model);
     let request = Request {
         model: &model,
@@ -151,7 +153,8 @@ fn a_hidden_law_is_named() {
         |joint, s| {
             if joint == 2 { 1.5 * (-(s.qd / 0.2).powi(2)).exp() * s.qd.signum() } else { 0.0 }
         },
-        (7, 2),
+        7,
+        2,
     );
     assert_eq!(names, ["stribeck at elbow"]);
     assert!(share.is_some_and(|share| share > 0.9), "{share:?}");
@@ -159,7 +162,7 @@ fn a_hidden_law_is_named() {
 
 #[test]
 fn nothing_is_found_where_nothing_is_hidden() {
-    let (names, _) = found(|_, _| 0.0, (21, 2));
+    let (names, _) = found(|_, _| 0.0, 21, 2);
     assert_eq!(names, [""; 0]);
 }
 
@@ -171,7 +174,8 @@ fn two_laws_are_named() {
             4 => 0.8 * s.qd * s.qd.abs(),
             _ => 0.0,
         },
-        (40, 4),
+        40,
+        4,
     );
     names.sort();
     assert_eq!(names, ["quadratic_drag at wrist_pitch", "stribeck at elbow"]);

@@ -60,12 +60,13 @@ struct Experience {
 /// with which power it tells them apart, and does.
 fn is_separated(
     hidden: impl Fn([f64; 3]) -> f64,
-    (name, rival): (&str, &str),
+    name: &str,
+    rival: &str,
     Experience { about, size, noise }: Experience,
 ) {
     let torque = |at: [f64; 3]| INERTIA * at[2] + WEIGHT * at[0].cos() + hidden(at);
     let logs = [(0.0, 1), (1.1, 2)]
-        .map(|(phase, seed)| log(&small(about, size, phase), &torque, (seed, noise)));
+        .map(|(phase, seed)| log(&small(about, size, phase), &torque, seed, noise));
     let (found, candidates) = diagnosed(ROD, logs);
     let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
     let mut names = vec![candidates[one.candidate].effect.as_str()];
@@ -85,7 +86,7 @@ fn is_separated(
     let (check, _) = check_trajectory(&robot, &ExciteOptions::default(), &written).expect("limits");
     assert!(check.is_feasible(), "{check:?}");
     let logs = [(0.0, 3), (3.7, 4)]
-        .map(|(from_s, seed)| log(&along(reference, lap_s, from_s), &torque, (seed, noise)));
+        .map(|(from_s, seed)| log(&along(reference, lap_s, from_s), &torque, seed, noise));
     let (found, candidates) = diagnosed(ROD, logs);
     let [one] = &found.effects[..] else { panic!("{:?}", found.reasons) };
     assert_eq!(candidates[one.candidate].effect, name);
@@ -98,11 +99,11 @@ fn is_separated(
 #[test]
 fn friction_is_told_from_friction_of_a_load_that_hardly_changes() {
     let logs = Experience { about: 0.0, size: 0.02, noise: 0.02 };
-    is_separated(|[_, rate, _]| 2.0 * rate, ("viscous", "load_viscous"), logs);
+    is_separated(|[_, rate, _]| 2.0 * rate, "viscous", "load_viscous", logs);
 }
 
 #[test]
 fn an_offset_is_told_from_a_wrong_zero_where_gravity_hardly_changes() {
     let logs = Experience { about: 0.9, size: 0.008, noise: 0.1 };
-    is_separated(|_| 0.3, ("torque_offset", "joint_zero"), logs);
+    is_separated(|_| 0.3, "torque_offset", "joint_zero", logs);
 }

@@ -45,7 +45,7 @@ fn moved(phase: f64) -> impl Fn(f64) -> [f64; 3] {
 #[test]
 fn a_soft_transmission_is_found_by_the_motion_of_its_rotor() {
     let torque = |at: [f64; 3]| at[2] + VISCOUS * at[1] + COULOMB * at[1].signum();
-    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&moved(phase), &torque, (seed, 0.02)));
+    let logs = [(0.0, 1), (0.8, 2)].map(|(phase, seed)| log(&moved(phase), &torque, seed, 0.02));
     let (found, candidates) = diagnosed(SLED, logs);
     let names = found.effects.iter().map(|one| candidates[one.candidate].name());
     let [one] = &found.effects[..] else {

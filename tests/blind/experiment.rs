@@ -208,10 +208,13 @@ pub fn measure(
     };
     for joint in 0..run.q.len() {
         let here: Vec<&Hidden> = hidden.iter().filter(|one| one.joint == joint).collect();
-        let q: Vec<f64> = rows.iter().map(|row| between(&run.q[joint], *row)).collect();
+        let q: Vec<f64> =
+            rows.iter().map(|&(step, part)| between(&run.q[joint], step, part)).collect();
         let error = |q: f64| here.iter().map(|one| one.angle_error(q)).sum::<f64>();
         log.q.push(q.iter().map(|q| rounded(q + error(*q), random)).collect());
-        let motor = rows.iter().map(|row| rounded(between(&run.motor[joint], *row), random));
+        let motor =
+            |&(step, part): &(usize, f64)| rounded(between(&run.motor[joint], step, part), random);
+        let motor = rows.iter().map(motor);
         log.motor.push(motor.collect());
         let noise = sensors.torque_noise[joint];
         let torque = |((row, part), q): (&(usize, f64), &f64)| {
@@ -223,7 +226,9 @@ pub fn measure(
         log.tau.push(rows.iter().zip(&q).map(torque).collect());
         if let (Some(columns), Some(noise)) = (&mut log.qd, sensors.rate_noise) {
             let rates = &run.qd[joint];
-            let rates = rows.iter().map(|row| between(rates, *row) + noise * random.normal());
+            let rates = rows
+                .iter()
+                .map(|&(step, part)| between(rates, step, part) + noise * random.normal());
             columns.push(rates.collect());
         }
     }
@@ -231,7 +236,7 @@ pub fn measure(
 }
 
 /// A signal at a step and a part of one further on: on the cubic through four neighbours.
-fn between(signal: &[f64], (step, part): (usize, f64)) -> f64 {
+fn between(signal: &[f64], step: usize, part: f64) -> f64 {
     if part == 0.0 {
         return signal[step];
     }

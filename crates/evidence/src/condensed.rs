@@ -41,9 +41,9 @@ impl Told {
             least: cell.least,
         };
         let weighted: Vec<Cell> = cells.iter().map(of).collect();
-        let (evidence, variances) = settled(&weighted, &expected, (None, rounds), believed);
+        let (evidence, variances) = settled(&weighted, &expected, None, rounds, believed);
         let Posterior { mean, covariance, .. } = Posterior::new(&weighted, &variances, believed);
-        let (factors, gained) = bounded(&mean, &covariance, (lowest, believed));
+        let (factors, gained) = bounded(&mean, &covariance, lowest, believed);
         Self {
             log_evidence: evidence + gained,
             deviations: covariance.diagonal().map(f64::sqrt),

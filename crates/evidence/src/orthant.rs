@@ -17,7 +17,8 @@ const ROUNDS: usize = 300;
 pub(crate) fn bounded(
     mean: &DVector<f64>,
     covariance: &DMatrix<f64>,
-    (lowest, believed): (&[f64], &[f64]),
+    lowest: &[f64],
+    believed: &[f64],
 ) -> (DVector<f64>, f64) {
     let is_bound = |k: usize| lowest[k].is_finite();
     let places: Vec<usize> = (0..mean.len()).filter(|&k| is_bound(k)).collect();

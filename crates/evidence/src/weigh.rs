@@ -81,10 +81,10 @@ impl Base {
         let width = terms.iter().map(|one| one.len()).sum::<usize>();
         let cells = self.cells_with(terms, width);
         let expected = self.layout.expected();
-        let (evidence, variances) = settled(&cells, &expected, (start, rounds), &[]);
+        let (evidence, variances) = settled(&cells, &expected, start, rounds, &[]);
         let evidence = evidence - self.unpredicted(terms, &variances);
         let posterior = Posterior::new(&cells, &variances, &[]);
-        let mut weighed = posterior.told(terms, self.parameters, (evidence, variances));
+        let mut weighed = posterior.told(terms, self.parameters, evidence, variances);
         weighed.own = self.own_factors(&weighed.own);
         weighed
     }
@@ -169,7 +169,8 @@ impl Terms {
 pub(crate) fn settled(
     cells: &[Cell],
     expected: &[f64],
-    (start, rounds): (Option<&[f64]>, usize),
+    start: Option<&[f64]>,
+    rounds: usize,
     believed: &[f64],
 ) -> (f64, Vec<f64>) {
     let mut variances = match start {
@@ -270,12 +271,7 @@ impl Posterior {
         squares.max(0.0)
     }
 
-    fn told(
-        &self,
-        terms: &[&Terms],
-        own: usize,
-        (evidence, variances): (f64, Vec<f64>),
-    ) -> Weighed {
+    fn told(&self, terms: &[&Terms], own: usize, evidence: f64, variances: Vec<f64>) -> Weighed {
         let width = self.mean.len() - own;
         let covariance = self.covariance.view((own, own), (width, width)).into_owned();
         let all = |of: &dyn Fn(&Terms) -> Vec<f64>| -> Vec<f64> {
@@ -284,7 +280,7 @@ impl Posterior {
         let believed = all(&|one| one.believed.clone());
         let mean = DVector::from_fn(width, |k, _| self.mean[own + k] + believed[k]);
         let lowest = all(&|one| one.lowest.clone());
-        let (factors, gained) = bounded(&mean, &covariance, (&lowest, &believed));
+        let (factors, gained) = bounded(&mean, &covariance, &lowest, &believed);
         // own parameters follow the factors that bounds move
         let moved = &factors - &mean;
         let mut of_model = self.mean.rows(0, own).into_owned();

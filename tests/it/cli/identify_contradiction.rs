@@ -83,7 +83,7 @@ fn a_log_of_another_gain_is_named_beside_as_much_noise() {
 }
 
 /// Logs by their seed, gain, steps and noise of the torques.
-fn write_as(directory: &Directory, name: &str, (made, gain): (Made, f64), bits: i32) {
+fn write_as(directory: &Directory, name: &str, made: Made, gain: f64, bits: i32) {
     let mut rows = made.rows(&motions(made.seed, 0.7));
     round_positions(&mut rows, TAU / 2.0_f64.powi(bits));
     rows.iter_mut().flat_map(|row| &mut row[3..]).for_each(|torque| *torque *= gain);
@@ -99,10 +99,10 @@ fn a_log_of_another_gain_is_named_beside_noise_of_its_positions() {
     for seed in 1..=6 {
         let fine = Made { step_s: 0.002, samples: 5000, torque_noise: 0.02, seed, ..GOOD };
         let steps = Made { step_s: 0.001, samples: 8000, seed: 3 * seed, ..fine };
-        write_as(&directory, "one.csv", (Made { seed: 3 * seed + 1, ..fine }, 1.0), 20);
-        write_as(&directory, "other.csv", (Made { seed: 3 * seed + 2, ..fine }, 1.0), 20);
+        write_as(&directory, "one.csv", Made { seed: 3 * seed + 1, ..fine }, 1.0, 20);
+        write_as(&directory, "other.csv", Made { seed: 3 * seed + 2, ..fine }, 1.0, 20);
         for gain in [1.0, 1.2] {
-            write_as(&directory, "odd.csv", (steps, gain), 12);
+            write_as(&directory, "odd.csv", steps, gain, 12);
             let (code, text) = said(&directory, &ALL);
             assert_eq!(code, Some(i32::from(gain > 1.0)), "{seed}: {text}");
             let json = text.replace('\n', " ");
@@ -121,9 +121,9 @@ fn a_precise_log_of_another_gain_does_not_accuse_the_others() {
     for seed in 1..=6 {
         let noisy = Made { step_s: 0.002, samples: 3500, torque_noise: 0.5, seed, ..GOOD };
         let precise = Made { samples: 5000, torque_noise: 0.01, seed: 3 * seed, ..noisy };
-        write_as(&directory, "one.csv", (Made { seed: 3 * seed + 1, ..noisy }, 1.0), 16);
-        write_as(&directory, "other.csv", (Made { seed: 3 * seed + 2, ..noisy }, 1.0), 16);
-        write_as(&directory, "odd.csv", (precise, 1.2), 18);
+        write_as(&directory, "one.csv", Made { seed: 3 * seed + 1, ..noisy }, 1.0, 16);
+        write_as(&directory, "other.csv", Made { seed: 3 * seed + 2, ..noisy }, 1.0, 16);
+        write_as(&directory, "odd.csv", precise, 1.2, 18);
         let (code, text) = said(&directory, &ALL);
         assert_eq!(code, Some(1), "{seed}: {text}");
         let json = text.replace('\n', " ");
@@ -203,7 +203,7 @@ fn a_ripple_that_a_log_for_validation_alone_shows_is_said() {
             assert!(!line.contains("link1 is not explained"), "{seed}: {text}");
         }
         let noisy = Made { step_s: 0.002, samples: 5000, torque_noise: 3.0, seed: 9, ..GOOD };
-        write_as(&directory, "odd.csv", (noisy, 1.0), 14);
+        write_as(&directory, "odd.csv", noisy, 1.0, 14);
         let (code, text) = said(&directory, &["--train", "one.csv", "--validate", "odd.csv"]);
         assert_eq!(code, Some(0), "{seed}: {text}");
     }

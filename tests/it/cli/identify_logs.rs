@@ -8,8 +8,7 @@ use serde_json::Value;
 use std::f64::consts::TAU;
 
 /// A log of so many seconds at 1 kHz under encoders of so many bits.
-fn write(directory: &Directory, name: &str, made: (f64, f64), (bits, seed): (u32, u64)) {
-    let (seconds, slowest) = made;
+fn write(directory: &Directory, name: &str, seconds: f64, slowest: f64, bits: u32, seed: u64) {
     let made = Made { step_s: 0.001, samples: (1000.0 * seconds) as usize, seed, ..GOOD };
     let mut rows = made.rows(&motions(seed, slowest));
     round_positions(&mut rows, TAU / f64::from(1 << bits));
@@ -31,8 +30,8 @@ fn logs_of_little_but_noise_do_no_harm() {
     write_arm(&directory, None);
     let mut all = Vec::new();
     for (seed, (seconds, bits)) in [(1, (1.0, 14)), (2, (3.0, 12)), (3, (1.0, 12))] {
-        write(&directory, "good.csv", (20.0, 0.5), (14, seed));
-        write(&directory, "noisy.csv", (seconds, 0.2), (bits, 10 + seed));
+        write(&directory, "good.csv", 20.0, 0.5, 14, seed);
+        write(&directory, "noisy.csv", seconds, 0.2, bits, 10 + seed);
         let (code, alone) = said(&directory, &["--train", "good.csv", "--json"]);
         assert_eq!(code, Some(0), "{alone}");
         let (code, both) = said(&directory, &["--train", "good.csv", "noisy.csv", "--json"]);
@@ -80,8 +79,8 @@ fn logs_count_by_the_noise_of_their_torques() {
 fn filters_are_lowered_log_by_log() {
     let directory = Directory::new("logs-filters");
     write_arm(&directory, None);
-    write(&directory, "coarse.csv", (20.0, 0.5), (13, 1));
-    write(&directory, "fine.csv", (20.0, 0.5), (22, 2));
+    write(&directory, "coarse.csv", 20.0, 0.5, 13, 1);
+    write(&directory, "fine.csv", 20.0, 0.5, 22, 2);
     let (code, text) = said(&directory, &["--train", "coarse.csv", "fine.csv", "--json"]);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("coarse.csv: noise of positions would bias parameters"), "{text}");
@@ -142,7 +141,7 @@ fn a_last_line_without_end_is_left_out() {
 fn options_that_leave_nothing_are_named() {
     let directory = Directory::new("logs-options");
     write_arm(&directory, None);
-    write(&directory, "log.csv", (10.0, 0.6), (14, 5));
+    write(&directory, "log.csv", 10.0, 0.6, 14, 5);
     let (code, text) = said(&directory, &["--train", "log.csv", "--skip-slow", "50"]);
     assert_eq!(code, Some(2), "{text}");
     assert!(text.contains("as fast as --skip-slow says"), "{text}");
@@ -152,7 +151,7 @@ fn options_that_leave_nothing_are_named() {
         assert!(text.contains("a step above 0"), "{text}");
     }
     // half a second: nothing is said of a joint of which thousands of percent are left
-    write(&directory, "short.csv", (0.5, 0.6), (14, 6));
+    write(&directory, "short.csv", 0.5, 0.6, 14, 6);
     let (code, text) = said(&directory, &["--train", "short.csv"]);
     assert_eq!(code, Some(1), "{text}");
     let line = text.replace('\n', " ");

@@ -106,7 +106,7 @@ fn a_walk_in_space_is_designed() {
 }
 
 /// A gait file that says what cannot be, in place of a part of a shipped one.
-fn refused(directory: &Directory, (name, own, other): (&str, &str, &str)) -> String {
+fn refused(directory: &Directory, name: &str, own: &str, other: &str) -> String {
     let text = denavit::shipped::find_gait(name).unwrap().text;
     assert!(text.contains(own), "{own}");
     fs::write(directory.path.join("gait.json"), text.replacen(own, other, 1)).unwrap();
@@ -121,7 +121,7 @@ fn refused(directory: &Directory, (name, own, other): (&str, &str, &str)) -> Str
 fn gaits_that_cannot_be_are_named() {
     let directory = Directory::new("walk_design_refused");
     let (primitives, pendulum) = ("planar_biped_primitives", "planar_biped_inverted_pendulum");
-    for (change, parts) in [
+    for ((name, own, other), parts) in [
         (
             (primitives, "\"hip_height_m\": 0.54", "\"hip_height_m\": 0.7"),
             ["`both feet` at 0.000 s", "out of reach", "residual of"],
@@ -175,7 +175,7 @@ fn gaits_that_cannot_be_are_named() {
             ["planar_bipde", "`planar_biped` is a shipped model", "hint"],
         ),
     ] {
-        let said = refused(&directory, change);
+        let said = refused(&directory, name, own, other);
         for part in parts {
             assert!(said.contains(part), "{part}:\n{said}");
         }

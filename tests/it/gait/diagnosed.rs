@@ -27,7 +27,7 @@ fn tulip(has_spring: bool) -> String {
 }
 
 /// A step of the robot with the spring as instruments see it.
-fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
+fn step(model: &RegressionModel, length_m: f64, seed: u64) -> MeasuredLog {
     let mut log = walked(model, length_m, &|_| Ok(tulip(true).into_bytes()));
     let mut random = Random::new(seed);
     let torques = log.joints.iter_mut().filter_map(|joint| joint.tau.as_mut());
@@ -50,12 +50,12 @@ fn a_spring_in_the_knee_of_a_robot_that_steps_is_named() {
     let robot = denavit::model::read("tulip.json", tulip(false).as_bytes()).expect("a model");
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("a regression");
     let mut ground = Ground::under(&robot, &model).expect("a plant").expect("a floating base");
-    let mut log = |of| {
-        let mut log = step(&model, of);
+    let mut log = |length_m, seed| {
+        let mut log = step(&model, length_m, seed);
         ground.load(&mut log);
         log
     };
-    let (train, held_out) = (vec![log((0.1, 3))], vec![log((0.07, 4))]);
+    let (train, held_out) = (vec![log(0.1, 3)], vec![log(0.07, 4)]);
     let mut candidates = candidates(effect::catalogue(), &robot, &model);
     let tried =
         ["one_sided_spring", "one_sided_spring_below", "spring", "viscous", "payload_point"];

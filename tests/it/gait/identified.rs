@@ -43,7 +43,7 @@ pub(crate) fn walked(
 }
 
 /// The same as instruments see it.
-fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
+fn step(model: &RegressionModel, length_m: f64, seed: u64) -> MeasuredLog {
     let load = |name: &str| {
         let found = shipped::find_referred(name).ok_or("no such file")?;
         Ok(found.text.as_bytes().to_vec())
@@ -57,8 +57,8 @@ fn step(model: &RegressionModel, (length_m, seed): (f64, u64)) -> MeasuredLog {
 }
 
 /// A step conditioned, with the wrench on the base alone: no torque of any joint is used.
-fn conditioned(model: &RegressionModel, of: (f64, u64)) -> Conditioned {
-    let mut log = step(model, of);
+fn conditioned(model: &RegressionModel, length_m: f64, seed: u64) -> Conditioned {
+    let mut log = step(model, length_m, seed);
     for joint in &mut log.joints {
         joint.tau = None;
     }
@@ -80,8 +80,8 @@ fn conditioned(model: &RegressionModel, of: (f64, u64)) -> Conditioned {
 #[test]
 fn a_step_shows_the_parameters_that_it_excites() {
     let model = RegressionModel::new(&robot("tulip"), INERTIAL, &[]).expect("a regression");
-    let train = [conditioned(&model, (0.1, 3))];
-    let other = [conditioned(&model, (0.07, 4))];
+    let train = [conditioned(&model, 0.1, 3)];
+    let other = [conditioned(&model, 0.07, 4)];
     let truth = model.model_axes().expect("the model has values");
     let found = estimate(&model, &train, &[], &Options::default(), &truth).expect("an estimate");
     let phi = found.solution.phi.as_slice();

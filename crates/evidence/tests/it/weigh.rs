@@ -135,15 +135,18 @@ fn a_bound_keeps_the_allowed_share() {
     let free = base.weigh(&[&terms], Some(&VARIANCES), 0);
     let deviation = free.covariance[(0, 0)].sqrt();
     for by in [-0.5, 0.8, 3.0] {
-        is_kept((&base, &data, &own), &mut terms, (&free, free.factors[0] + by * deviation));
+        is_kept(&base, &data, &own, &mut terms, &free, free.factors[0] + by * deviation);
     }
 }
 
 /// The evidence with a lower bound against integration over the factor.
 fn is_kept(
-    (base, data, own): (&Base, &Spectrum, &[Spectrum]),
+    base: &Base,
+    data: &Spectrum,
+    own: &[Spectrum],
     terms: &mut Terms,
-    (free, lowest): (&Weighed, f64),
+    free: &Weighed,
+    lowest: f64,
 ) {
     let deviation = free.covariance[(0, 0)].sqrt();
     terms.lowest = vec![lowest];

@@ -15,7 +15,7 @@ use super::fault::DiagnosisError;
 use super::floor::NoiseFloor;
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
-use super::nominal::{Nominal, Uncertainty};
+use super::nominal::{Nominal, NominalAt, Uncertainty};
 use super::regime::{Where, where_left};
 use super::rounds::Found;
 use super::search::{Search, SearchOptions, Step};
@@ -27,6 +27,7 @@ use super::verdict::{Verdict, judge};
 use super::weighing::{Placed, Weighing};
 use denavit_codegen::model::Robot;
 use denavit_evidence::policy;
+use denavit_measure::Split;
 use denavit_measure::log::MeasuredLog;
 use denavit_plants::regression::RegressionModel;
 
@@ -141,23 +142,19 @@ pub fn diagnose(
         .filters
         .map_or_else(|| filters_of(&[request.train.as_slice(), &request.held_out].concat()), Ok)?;
     let read = |logs: Vec<MeasuredLog>| conditioned(logs, filters);
-    let (train, held_out) = (read(request.train)?, read(request.held_out)?);
-    let nominal = nominal.moving_as(&train);
-    let [train, held_out] = [train, held_out].map(|signals| Data::new(&nominal, signals));
-    let floors = [&train, &held_out].map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
-    let [train_floor, held_out_floor] = &floors;
+    let logs = Split { train: read(request.train)?, held_out: read(request.held_out)? };
+    let nominal = nominal.moving_as(&logs.train);
+    let data = logs.map(|signals| Data::new(&nominal, signals));
+    let floors = data.each_ref().map(|data| NoiseFloor::of_logs(&nominal, &data.signals));
     let setting = Setting {
-        train: &train,
-        held_out: &held_out,
-        moved: request.moved.map(|moved| (moved, filters.motion_hz)),
+        data: data.each_ref(),
         candidates: request.candidates,
         given: request.given,
-        train_floor,
-        held_out_floor,
+        floors: floors.each_ref().map(Vec::as_slice),
     };
-    let misread = misread(&train, &setting.as_given(0));
+    let misread = misread(&data.train, &setting.as_given(&data.train));
     let options = if misread.is_empty() { request.options } else { SearchOptions::none() };
-    let sets = vec![setting.train, setting.held_out];
+    let sets = Vec::from(setting.data.into_array());
     let own = setting.effects(&setting.given);
     let mut searched = |z: &[f64], begun: &[Placed], may_move: bool| {
         let weighing = Weighing::new(sets.clone(), own, z);
@@ -192,7 +189,8 @@ pub fn diagnose(
     }
     let visible = visible(&setting, &search, &found.after);
     let leftovers = leftovers(&search.weighing.spectra, &found.after);
-    let told = Told { setting: &setting, filters, found, before, after };
+    let moved = request.moved;
+    let told = Told { setting: &setting, moved, filters, found, before, after };
     let mut diagnosis = told.diagnosis(effects, visible, leftovers);
     judge(&mut diagnosis, &setting, &told.found, &told.after, &misread);
     Ok(diagnosis)
@@ -209,6 +207,7 @@ fn null(sets: &[&Data<'_>], given: Effects<'_>) -> Vec<f64> {
 /// What was found, with what it is told of.
 struct Told<'t, 'a> {
     setting: &'t Setting<'a>,
+    moved: Option<&'a Moved<'a>>,
     filters: Filters,
     found: Found,
     before: State,
@@ -222,13 +221,16 @@ impl Told<'_, '_> {
         visible: Vec<Visible>,
         leftovers: Vec<Leftover>,
     ) -> Diagnosis {
-        let Self { setting, filters, found, before, after } = self;
-        let Setting { train, held_out, train_floor, held_out_floor, .. } = setting;
-        let nominal = train.nominal;
-        let as_given = |set: usize| setting.as_given(set);
+        let Self { setting, moved, filters, found, before, after } = self;
+        let Setting { data, floors, .. } = setting;
+        let nominal = data.train.nominal;
+        let gaps = |data: &Data<'_>, floors: &[NoiseFloor], left: &[f64]| {
+            Gaps::new(data, floors, &setting.as_given(data), left)
+        };
         let filter_s = 0.35 / filters.torque_hz;
-        let left =
-            |of: &State| where_left(train, &of.residual, &of.torques[0], train_floor, filter_s);
+        let left = |State { residual, torques, .. }: &State| {
+            where_left(data.train, &residual.train, &torques.train, floors.train, filter_s)
+        };
         let has_structure = |one: &&Leftover| one.share > policy::LEFT;
         let unnamed = leftovers.iter().filter(has_structure);
         let structures: Vec<Structure> =
@@ -241,17 +243,30 @@ impl Told<'_, '_> {
             after: left(after),
             given: given_effects(setting, after),
             effects,
-            train: Gaps::new(train, train_floor, &as_given(0), &after.residual),
-            held_out: Gaps::new(held_out, held_out_floor, &as_given(1), &after.held_out_residual),
+            train: gaps(data.train, floors.train, &after.residual.train),
+            held_out: gaps(data.held_out, floors.held_out, &after.residual.held_out),
             visible,
             leftovers,
             structures,
-            curves: curves(held_out, &before.held_out_residual, &after.held_out_residual),
-            motion: setting.moved.map(|_| motion_gaps(setting, [before, after])),
+            curves: curves(data.held_out, &before.residual.held_out, &after.residual.held_out),
+            motion: moved.map(|moved| self.motion_gaps(moved)),
             filters: *filters,
             driven: [before, after].map(|state| driven_names(setting, state)),
             steps: found.steps.clone(),
         }
+    }
+
+    /// The gaps of the models before and after in motion.
+    fn motion_gaps(&self, moved: &Moved<'_>) -> Result<MotionGaps, NotMoved> {
+        let Self { setting, filters, before, after, .. } = self;
+        let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], NotMoved> {
+            let [before, after] = [before, after].map(|State { taken, z, .. }| {
+                let at = NominalAt { nominal: setting.data.train.nominal, z };
+                moved.gap(logs, filters.motion_hz, at, setting.effects(taken))
+            });
+            Ok([before?, after?])
+        };
+        Ok(MotionGaps { train: of(&moved.logs.train)?, held_out: of(&moved.logs.held_out)? })
     }
 }
 
@@ -280,15 +295,6 @@ fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
     // A lower cutoff needs longer logs.
     let has_rows = |logs: Vec<Signals>| logs.iter().all(Signals::has_rows_to_spare);
     Ok(if conditioned(logs.to_vec(), wanted).is_ok_and(has_rows) { wanted } else { widest })
-}
-
-/// The gaps of the models before and after in motion.
-fn motion_gaps(setting: &Setting<'_>, states: [&State; 2]) -> Result<MotionGaps, NotMoved> {
-    let of = |set: usize| -> Result<[MotionGap; 2], NotMoved> {
-        let [before, after] = states.map(|state| setting.motion_gap(set, &state.taken, &state.z));
-        Ok([before?, after?])
-    };
-    Ok(MotionGaps { train: of(0)?, held_out: of(1)? })
 }
 
 impl Diagnosis {

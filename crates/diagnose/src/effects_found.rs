@@ -86,8 +86,8 @@ pub(super) fn found_effects(
     before: &State,
     after: &State,
 ) -> Vec<FoundEffect> {
-    let gap = |state: &State| Gap::new(setting.held_out, &state.held_out_residual).all;
-    let floor = Gap::of_floor(setting.held_out, setting.held_out_floor).all;
+    let gap = |state: &State| Gap::new(setting.data.held_out, &state.residual.held_out).all;
+    let floor = Gap::of_floor(setting.data.held_out, setting.floors.held_out).all;
     // Where all was below the floor already, of what the effects closed.
     let whole = (gap(before) - floor).max(gap(before) - gap(after)).max(f64::MIN_POSITIVE);
     let given = setting.given.len();
@@ -194,7 +194,7 @@ pub(super) fn given_effects(setting: &Setting<'_>, state: &State) -> Vec<GivenEf
 /// The names of what the logs would move beyond what the model says of it: its own numbers, and
 /// those of its effects.
 pub(super) fn driven_names(setting: &Setting<'_>, state: &State) -> Vec<String> {
-    let nominal = setting.train.nominal;
+    let nominal = setting.data.train.nominal;
     let is_far = |z: &f64| z.abs() > MOST_Z;
     let numbers = state.z.iter().zip(&nominal.uncertain);
     let mut names: Vec<String> =
@@ -241,11 +241,11 @@ pub(super) fn separate(
         let mut others = state.taken.clone();
         let own = others.remove(given + place);
         let ambiguity = Ambiguity {
-            nominal: setting.train.nominal,
+            nominal: setting.data.train.nominal,
             candidates: setting.candidates,
-            log: &setting.train.signals[0],
+            log: &setting.data.train.signals[0],
             filters,
-            floor: &setting.train_floor[0],
+            floor: &setting.floors.train[0],
             z: &state.z,
             names: [vec![own], rivals].concat(),
             others,

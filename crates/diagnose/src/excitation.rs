@@ -68,7 +68,7 @@ pub(super) fn visible(
 
 /// Joints of which the logs say too little for the answer that nothing is missing.
 pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> {
-    let joints = &setting.train.nominal.model.joints;
+    let joints = &setting.data.train.nominal.model.joints;
     let mut found = Vec::new();
     for (joint, described) in joints.iter().enumerate() {
         let own = || visible.iter().filter(|one| one.joint == joint);
@@ -76,7 +76,7 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> 
         if 2 * unseen > of {
             found.push(Unseen::Effects { joint, unseen, of });
         }
-        let signals = || setting.train.signals.iter();
+        let signals = || setting.data.train.signals.iter();
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
         };

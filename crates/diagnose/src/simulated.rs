@@ -15,6 +15,7 @@ use denavit_identify::{
     EffectValues, NewEffect, NewPlace, NewValue, undo_logged_torques, undo_readings, updated_text,
     with_effects,
 };
+use denavit_measure::Split;
 use denavit_measure::condition::{ConditionError, Filter};
 use denavit_measure::log::MeasuredLog;
 use denavit_plants::effect::apart;
@@ -97,7 +98,7 @@ pub struct Moved<'a> {
     /// For each effect that the model has beside its equations its number in the file.
     pub numbers: &'a [usize],
     /// The logs that are searched, and those that judge.
-    pub logs: [Vec<MeasuredLog>; 2],
+    pub logs: Split<Vec<MeasuredLog>>,
 }
 
 /// Windows of all logs of a set: of so many the least costs are known well enough to be paired.
@@ -158,17 +159,16 @@ impl Moved<'_> {
         }
     }
 
-    /// The gap of a set of logs: those that are searched, or those that judge.
+    /// The gap of a set of logs, with a filter of a cutoff \[Hz\].
     pub(super) fn gap(
         &self,
-        set: usize,
+        logs: &[MeasuredLog],
         cutoff_hz: f64,
         at: NominalAt<'_>,
         effects: Effects<'_>,
     ) -> Result<MotionGap, NotMoved> {
         let (mut robot, is_estimated) = self.robot(at, effects)?;
         let model = at.nominal.model;
-        let logs = &self.logs[set];
         let zeros = drive_by_motors(&mut robot, at, logs)?;
         let laws = apart(&robot, self.effects).map_err(|error| NotMoved::Law(error.to_string()))?;
         let of_springs = robot.spring_laws.iter().flat_map(|own| &own.law.states);

@@ -5,13 +5,12 @@ use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
 use super::floor::NoiseFloor;
 use super::hypothesis::{Hypothesis, Part};
-use super::nominal::NominalAt;
 use super::problem::{Fitted, Found, Problem};
 use super::search::{Search, SearchOptions};
-use super::simulated::{MotionGap, Moved, NotMoved};
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
 use denavit_evidence::{Terms, policy};
+use denavit_measure::Split;
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,20 +32,14 @@ pub(super) struct Effects<'a> {
 
 /// Logs, candidates and floors: what does not change during a search.
 pub(super) struct Setting<'a> {
-    /// Logs to fit.
-    pub(super) train: &'a Data<'a>,
-    /// Logs to judge with.
-    pub(super) held_out: &'a Data<'a>,
+    /// Logs to fit, and to judge with.
+    pub(super) data: Split<&'a Data<'a>>,
     /// What may be missing.
     pub(super) candidates: &'a [Candidate],
     /// What the model has of them: the first effects of every state.
     pub(super) given: Vec<Taken>,
-    /// The model as a file, to be moved along the logs, with the filter of these \[Hz\].
-    pub(super) moved: Option<(&'a Moved<'a>, f64)>,
-    /// Floors of the logs to fit.
-    pub(super) train_floor: &'a [NoiseFloor],
-    /// Floors of the logs to judge with.
-    pub(super) held_out_floor: &'a [NoiseFloor],
+    /// Floors of the logs.
+    pub(super) floors: Split<&'a [NoiseFloor]>,
 }
 
 /// A model with effects, fitted to the logs for training.
@@ -58,12 +51,10 @@ pub(super) struct State {
     pub(super) deviations: Vec<Vec<f64>>,
     /// The nominal model's own parameters, in their deviations.
     pub(super) z: Vec<f64>,
-    /// What is left of the logs that were fitted [N m, N].
-    pub(super) residual: Vec<f64>,
-    /// What is left of the others.
-    pub(super) held_out_residual: Vec<f64>,
+    /// What is left of the rows of the logs [N m, N].
+    pub(super) residual: Split<Vec<f64>>,
     /// Torques that the model gives the motion of the logs.
-    pub(super) torques: [Vec<ModelTorques>; 2],
+    pub(super) torques: Split<Vec<ModelTorques>>,
 }
 
 /// Rounds in which entries of z are held.
@@ -77,7 +68,7 @@ impl<'a> Setting<'a> {
 
     /// The model with effects that were found by all logs, fitted to those for training alone.
     pub(super) fn state(&self, parts: &[Part], z: &[f64]) -> State {
-        let weighing = Weighing::new(vec![self.train], self.effects(&self.given), z);
+        let weighing = Weighing::new(vec![self.data.train], self.effects(&self.given), z);
         let (all, options) = (self.candidates.len(), SearchOptions::default());
         let search = Search::new(weighing, all, options, &mut |_| true);
         let parts = parts.iter().map(|part| search.weighing.part(&part.placed)).collect();
@@ -86,7 +77,7 @@ impl<'a> Setting<'a> {
     }
 
     fn fitted_state(&self, weighing: &Weighing<'_>, fitted: &Hypothesis) -> State {
-        let z = fitted.weighed.own[..self.train.columns.len()].to_vec();
+        let z = fitted.weighed.own[..self.data.train.columns.len()].to_vec();
         let mut taken = weighing.given(&fitted.weighed.own);
         let mut deviations: Vec<Vec<f64>> = self
             .given
@@ -104,23 +95,20 @@ impl<'a> Setting<'a> {
             taken.push(Taken { candidate, values: values.collect() });
             deviations.push(fitted.deviations(place));
         }
-        let torques = [self.train, self.held_out].map(|data| data.model_torques(&z));
-        let left = |data: &Data<'a>, torques: &Vec<ModelTorques>| {
+        let torques = self.data.map(|data| data.model_torques(&z));
+        let left = |data: &Data<'a>, torques: &[ModelTorques]| {
             data.left(&self.fitted(&taken), &z, torques)
         };
-        State {
-            residual: left(self.train, &torques[0]),
-            held_out_residual: left(self.held_out, &torques[1]),
-            taken,
-            deviations,
-            z,
-            torques,
-        }
+        let residual = Split {
+            train: left(self.data.train, &torques.train),
+            held_out: left(self.data.held_out, &torques.held_out),
+        };
+        State { taken, deviations, z, residual, torques }
     }
 
     /// Held-out logs alone, in which effects are weighed.
     pub(super) fn judging(&self, z: &[f64]) -> Weighing<'_> {
-        Weighing::new(vec![self.held_out], self.effects(&self.given), z)
+        Weighing::new(vec![self.data.held_out], self.effects(&self.given), z)
     }
 
     /// The log of the evidence of held-out logs with the effects as those that were fitted have
@@ -138,9 +126,8 @@ impl<'a> Setting<'a> {
         judging.base.weigh(&all, None, policy::ROUNDS[1]).log_evidence
     }
 
-    /// What the model as it is given leaves of a set of logs: those fitted, or the others.
-    pub(super) fn as_given(&self, set: usize) -> Vec<f64> {
-        let data = [self.train, self.held_out][set];
+    /// What the model as it is given leaves of a set of logs.
+    pub(super) fn as_given(&self, data: &Data<'_>) -> Vec<f64> {
         let z = vec![0.0; data.columns.len()];
         data.left(&self.fitted(&self.given), &z, &data.model_torques(&z))
     }
@@ -152,18 +139,6 @@ impl<'a> Setting<'a> {
             values: one.values.clone(),
         };
         taken.iter().map(of).collect()
-    }
-
-    /// The gap of the model in motion along a set of logs: those fitted, or the others.
-    pub(super) fn motion_gap(
-        &self,
-        set: usize,
-        taken: &[Taken],
-        z: &[f64],
-    ) -> Result<MotionGap, NotMoved> {
-        let Some((moved, cutoff_hz)) = self.moved else { return Ok(MotionGap::default()) };
-        let model = NominalAt { nominal: self.train.nominal, z };
-        moved.gap(set, cutoff_hz, model, self.effects(taken))
     }
 }
 

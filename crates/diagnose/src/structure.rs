@@ -31,11 +31,10 @@ const MOST_TERMS: usize = 4;
 
 /// Describes what is left of a joint or spring; none if no term explains a twentieth of it.
 pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) -> Option<Structure> {
-    let sets = [(setting.train, 0), (setting.held_out, 1)];
-    let [train, held_out] = sets.map(|(data, set)| {
-        let left = if set == 0 { &state.residual } else { &state.held_out_residual };
-        Rows::new(data, &state.torques[set], equation, left)
-    });
+    let State { torques, residual, .. } = state;
+    let train = Rows::new(setting.data.train, &torques.train, equation, &residual.train);
+    let held_out =
+        Rows::new(setting.data.held_out, &torques.held_out, equation, &residual.held_out);
     let whole = held_out.left.norm_squared();
     let (mut places, mut found, mut least) = (Vec::new(), DVector::zeros(0), whole);
     while places.len() < MOST_TERMS {
@@ -56,7 +55,7 @@ pub(super) fn describe(setting: &Setting<'_>, state: &State, equation: usize) ->
     let terms = places.iter().zip(found.iter());
     let terms: Vec<(String, f64)> =
         terms.map(|(&place, &factor)| (train.names[place].clone(), factor)).collect();
-    let at = setting.train.nominal.equation_name(equation);
+    let at = setting.data.train.nominal.equation_name(equation);
     (!terms.is_empty()).then(|| Structure { at, terms, share: 1.0 - least / whole })
 }
 

@@ -56,7 +56,7 @@ pub(super) fn judge(
     }
     let (verdict, mut reasons) = said(diagnosis, setting);
     reasons.extend(doubts(diagnosis, setting, found));
-    reasons.extend(untold(setting.held_out, &after.held_out_residual));
+    reasons.extend(untold(setting.data.held_out, &after.residual.held_out));
     (diagnosis.verdict, diagnosis.reasons) = (verdict, reasons);
     if found.is_stopped {
         diagnosis.verdict = Verdict::CannotTell;
@@ -78,7 +78,7 @@ fn left_beside<'l>(
     one: &FoundEffect,
 ) -> Option<&'l Leftover> {
     let candidate = &setting.candidates[one.candidate];
-    let nominal = setting.train.nominal;
+    let nominal = setting.data.train.nominal;
     let is_there = |left: &&Leftover| {
         let joint = nominal.joint_of(left.equation);
         candidate.is_body || candidate.joint.is_none_or(|own| own == joint)
@@ -100,7 +100,7 @@ fn said(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) 
     let most = diagnosis.leftovers.iter().max_by(|a, b| a.share.total_cmp(&b.share));
     let explained = diagnosis.effects.iter().map(|one| one.size).fold(0.0, f64::max);
     let unexplained = most.filter(|left| is_unexplained(left, explained));
-    let of_data: &Data<'_> = setting.train;
+    let of_data: &Data<'_> = setting.data.train;
     let left = left_open(diagnosis);
     if left > policy::NOTHING_LIKE {
         let why = format!(
@@ -166,7 +166,7 @@ fn probability(one: &FoundEffect) -> f64 {
 
 /// What it means that no effect was found, and why.
 fn nothing_found(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<String>) {
-    let joints = &setting.train.nominal.model.joints;
+    let joints = &setting.data.train.nominal.model.joints;
     let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
     let unseen = unseen(setting, &diagnosis.visible);
     // Numbers that are driven beyond what the model says stand for something else.
@@ -178,8 +178,9 @@ fn nothing_found(diagnosis: &Diagnosis, setting: &Setting<'_>) -> (Verdict, Vec<
 /// What else must be known to trust the answer.
 fn doubts(diagnosis: &Diagnosis, setting: &Setting<'_>, found: &Found) -> Vec<String> {
     let mut reasons = Vec::new();
-    let is_searched = |log: &Signals| setting.train.signals.iter().any(|other| other.q == log.q);
-    if setting.held_out.signals.iter().any(is_searched) {
+    let is_searched =
+        |log: &Signals| setting.data.train.signals.iter().any(|other| other.q == log.q);
+    if setting.data.held_out.signals.iter().any(is_searched) {
         reasons.push("judged with a log that was searched: nothing is held out".to_owned());
     }
     for one in diagnosis.effects.iter().filter(|one| !one.exact.is_empty()) {

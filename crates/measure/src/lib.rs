@@ -3,7 +3,11 @@
 //! - [`log`]: what was measured, read and checked
 //! - [`condition`]: filtered, differentiated, decimated; noise of positions, rests, velocity
 //!   reversals
+//! - [`Split`]: those that an answer is from, and those that judge it
 
 pub mod condition;
 pub mod log;
 mod policy;
+mod split;
+
+pub use split::Split;

@@ -16,6 +16,7 @@ use denavit_diagnose::{
     given_candidates, spring_candidates,
 };
 use denavit_identify::Ground;
+use denavit_measure::Split;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_plants::effect::ApartEffects;
@@ -84,7 +85,7 @@ pub fn diagnose(
     if !watched.begins(Stage::ReadingLogs) {
         return Err(Cause::Stopped.into());
     }
-    let Subject { robot, model, springs, train, held_out } = subject(file, logs, &mut remarks)?;
+    let Subject { robot, model, springs, logs } = subject(file, logs, &mut remarks)?;
     let laws = &file.apart.laws;
     let effects = with_own(&file.own);
     let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
@@ -93,19 +94,15 @@ pub fn diagnose(
     let mut searched = candidates(&effects, &robot, &model);
     searched.append(&mut spring_candidates(&effects, &springs, &model));
     let candidates = with_given(given_laws, searched);
-    let moved = Moved {
-        source: &file.source,
-        effects: &effects,
-        numbers: &numbers,
-        logs: [train.clone(), held_out.clone()],
-    };
+    let moved =
+        Moved { source: &file.source, effects: &effects, numbers: &numbers, logs: logs.clone() };
     let aliases = ExactAliases::new(&robot, &effects);
     let seed = options.experiment_seed;
     let request = Request {
         model: &model,
         springs: &springs,
-        train,
-        held_out,
+        train: logs.train,
+        held_out: logs.held_out,
         candidates: &candidates,
         given,
         aliases: aliases.as_ref(),
@@ -149,8 +146,7 @@ struct Subject {
     robot: Robot,
     model: RegressionModel,
     springs: Vec<SeriesSpring>,
-    train: Vec<MeasuredLog>,
-    held_out: Vec<MeasuredLog>,
+    logs: Split<Vec<MeasuredLog>>,
 }
 
 /// The robot and its logs; before the springs of its drives, where the logs have their motors.
@@ -161,8 +157,8 @@ fn subject(
 ) -> Result<Subject, Error> {
     let ApartEffects { robot, .. } = &file.apart;
     let model = regression(robot)?;
-    let [mut train, mut held_out] = read(logs, robot, &model, remarks)?;
-    let before = before_springs(robot, &model.joints, &mut [&mut train, &mut held_out]);
+    let mut logs = read(logs, robot, &model, remarks)?;
+    let before = before_springs(robot, &model.joints, &mut [&mut logs.train, &mut logs.held_out]);
     let (robot, model, springs) = match before {
         Some(BeforeSprings { robot, springs }) => {
             let model = regression(&robot)?;
@@ -170,7 +166,7 @@ fn subject(
         }
         None => (robot.clone(), model, Vec::new()),
     };
-    Ok(Subject { robot, model, springs, train, held_out })
+    Ok(Subject { robot, model, springs, logs })
 }
 
 impl Diagnosed {
@@ -215,7 +211,7 @@ fn read(
     robot: &Robot,
     model: &RegressionModel,
     remarks: &mut Vec<(String, LogRemark)>,
-) -> Result<[Vec<MeasuredLog>; 2], Error> {
+) -> Result<Split<Vec<MeasuredLog>>, Error> {
     let failed = |error| Cause::Plant(model.model.clone(), error);
     let mut ground = Ground::under(robot, model).map_err(failed)?;
     let paths = logs.train.iter().chain(&logs.held_out);
@@ -231,8 +227,8 @@ fn read(
         }
     }
     let held_out = all.split_off(logs.train.len());
-    let mut sets = [all, held_out];
-    let [train, _] = &sets;
+    let mut sets = Split { train: all, held_out };
+    let train = &sets.train;
     let same = train.iter().enumerate().find_map(|(at, log)| {
         let before = train[..at].iter().find(|other| other.joints == log.joints)?;
         Some([&before.file, &log.file].map(String::clone))
@@ -241,11 +237,13 @@ fn read(
         return Err(Cause::SameLogs(same).into());
     }
     remarks.extend(searched_again(model, &sets));
-    if ground.is_none() && sets.iter().flatten().any(|log| !log.wrenches.is_empty()) {
+    if ground.is_none()
+        && sets.train.iter().chain(&sets.held_out).any(|log| !log.wrenches.is_empty())
+    {
         ground = Some(Ground::around(robot, model).map_err(failed)?);
     }
     if let Some(ground) = &mut ground {
-        for log in sets.iter_mut().flatten() {
+        for log in sets.train.iter_mut().chain(&mut sets.held_out) {
             ground.load(log);
             let found = std::mem::take(&mut log.remarks);
             remarks.extend(found.into_iter().map(|remark| (log.file.clone(), remark)));
@@ -258,15 +256,15 @@ fn read(
 /// called.
 fn searched_again(
     model: &RegressionModel,
-    sets: &[Vec<MeasuredLog>; 2],
+    sets: &Split<Vec<MeasuredLog>>,
 ) -> Vec<(String, LogRemark)> {
     let names: Vec<String> = model.joints.iter().map(|joint| joint.name.clone()).collect();
     let as_it_is = |log: &MeasuredLog| {
         // one that is too short is refused later
         Conditioned::new(log.clone(), &names, &Conditioning::default()).ok()
     };
-    let [searched, judging] = sets.each_ref().map(|set| set.iter().filter_map(as_it_is));
-    let searched: Vec<Conditioned> = searched.collect();
+    let searched: Vec<Conditioned> = sets.train.iter().filter_map(as_it_is).collect();
+    let judging = sets.held_out.iter().filter_map(as_it_is);
     let same = judging.filter_map(|log| {
         let other = searched.iter().find(|other| other.overlaps(&log))?.file.clone();
         Some((log.file, LogRemark::SameAs { other }))

@@ -7,6 +7,7 @@ use denavit_diagnose::{
     BeforeSprings, Candidate, Diagnosis, DiagnosisError, Moved, Request, SearchOptions,
     Uncertainty, Verdict, before_springs, candidates, diagnose, spring_candidates,
 };
+use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
@@ -160,7 +161,7 @@ fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), DiagnosisErr
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
     let mut candidates = candidates(effect::catalogue(), &robot, &model);
     candidates.append(&mut spring_candidates(effect::catalogue(), &springs, &model));
-    let logs = [train.clone(), held_out.clone()];
+    let logs = Split { train: train.clone(), held_out: held_out.clone() };
     let moved = Moved { source: MODEL, effects: effect::catalogue(), numbers: &[], logs };
     let request = Request {
         model: &model,

@@ -7,6 +7,7 @@ use denavit_diagnose::{
     Candidate, Diagnosis, ExactAliases, ExperimentOptions, Moved, Request, SearchOptions,
     Uncertainty, candidates, diagnose,
 };
+use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
@@ -53,7 +54,7 @@ pub(super) fn diagnosed(
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");
     let all = candidates(effect::catalogue(), &robot, &model);
     let aliases = ExactAliases::new(&robot, effect::catalogue());
-    let logs = [vec![train.clone()], vec![held_out.clone()]];
+    let logs = Split { train: vec![train.clone()], held_out: vec![held_out.clone()] };
     let moved = Moved { source, effects: effect::catalogue(), numbers: &[], logs };
     let request = Request {
         model: &model,

@@ -7,6 +7,7 @@ use denavit_identify::forward::{LONGEST_S, MotionLog};
 use denavit_identify::{
     Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
 };
+use denavit_measure::Split;
 use denavit_measure::condition::{Conditioned, Conditioning, Filter};
 use denavit_measure::log::LogRemark;
 use denavit_plants::regression::CoulombLaw;
@@ -21,8 +22,8 @@ pub(super) struct Read {
     pub(super) motions: Vec<MotionLog>,
     /// Whole logs for the estimate, where instruments are to be simulated.
     pub(super) whole: Vec<MotionLog>,
-    /// What was found, by log, of those that are not for validation, and of those.
-    remarks: [Vec<(String, LogRemark)>; 2],
+    /// What was found, by log: of those that are not for validation, and of those.
+    remarks: Split<Vec<(String, LogRemark)>>,
     /// Deviation of each measured position [rad, m].
     pub(super) position_noise: Vec<f64>,
 }
@@ -56,7 +57,7 @@ pub(super) fn read(work: Work<'_>, halvings: &[u32]) -> Result<Read, Error> {
     }
     let motions = if logs.held_out.is_empty() { whole.clone() } else { Vec::new() };
     let Reader { remarks, noise, .. } = reader;
-    let (remarks, position_noise) = ([remarks, Vec::new()], noise);
+    let (remarks, position_noise) = (Split { train: remarks, held_out: Vec::new() }, noise);
     let validate = Vec::new();
     let mut read = Read { train, validate, instruments, motions, whole, remarks, position_noise };
     read.held_out(work, of_others)?;
@@ -86,14 +87,14 @@ impl Read {
         for (all, own) in self.position_noise.iter_mut().zip(reader.noise) {
             *all = all.max(own);
         }
-        self.remarks[1] = reader.remarks;
+        self.remarks.held_out = reader.remarks;
         Ok(())
     }
 
     /// Which logs for validation say the same as one of the estimate: seen behind one filter for
     /// all.
     pub(super) fn same(&self) -> Vec<(String, LogRemark)> {
-        let all = self.remarks[1].iter();
+        let all = self.remarks.held_out.iter();
         all.filter(|(_, remark)| matches!(remark, LogRemark::SameAs { .. })).cloned().collect()
     }
 
@@ -104,7 +105,8 @@ impl Read {
 
     /// What was found, by log.
     pub(super) fn into_remarks(self) -> Vec<(String, LogRemark)> {
-        self.remarks.into_iter().flatten().collect()
+        let Split { train, held_out } = self.remarks;
+        train.into_iter().chain(held_out).collect()
     }
 }
 

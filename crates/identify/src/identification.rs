@@ -13,6 +13,7 @@ use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
 use crate::policy::identification::{NOISY, SHORT, SMEARED};
+use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
@@ -323,9 +324,9 @@ impl Estimated {
         let misread = misread(request, &found, &contradicting_logs);
         let (judges, judging) = match held_out.is_empty() {
             true => (train, shown.clone()),
-            false => (held_out, (0..held_out.len()).collect()),
+            false => (held_out, (0..held_out.len()).map(LogIndex).collect()),
         };
-        let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log]).collect();
+        let together: Vec<&Conditioned> = judging.iter().map(|&log| &judges[log.0]).collect();
         let left_together = validate(model, phi, &together);
         contradicting_logs.extend(contradicting_held_out(model, train, held_out, &found, options));
         let exceeding = exceeding_joints(model, held_out, &found, options, &counted);
@@ -385,17 +386,17 @@ fn misread(
         return Vec::new();
     }
     let shown = shown_logs(train.len(), found);
-    let logs: Vec<&Conditioned> = shown.iter().map(|&log| &train[log]).collect();
+    let logs: Vec<&Conditioned> = shown.iter().map(|&log| &train[log.0]).collect();
     let mut misread = misread_columns(model, &logs, None);
     // values that a log gives which contradicts the others would accuse a good one
-    let is_told = |&log: &usize| contradicting.iter().any(|one| one.file == train[log].file);
-    let told: Vec<usize> = shown.iter().copied().filter(is_told).collect();
+    let is_told = |log: &LogIndex| contradicting.iter().any(|one| one.file == train[log.0].file);
+    let told: Vec<LogIndex> = shown.iter().copied().filter(is_told).collect();
     let asked = if told.is_empty() { &shown } else { &told };
     let odd = odd_log(model, asked, &shown, found);
     if let (true, Some((log, others))) = (misread.is_empty(), odd) {
         let errors: Vec<f64> = others.factor.row_iter().map(|row| row.norm()).collect();
         let values = GivenValues { phi: others.phi.as_slice(), errors: &errors };
-        misread = misread_apart(model, &[&train[log]], Some(values));
+        misread = misread_apart(model, &[&train[log.0]], Some(values));
         if contradicting.iter().any(|one| one.standing == Standing::Undecided) {
             misread.iter_mut().for_each(|one| one.is_sure = false);
         }

@@ -2,6 +2,7 @@
 
 use super::estimate::{BlockMaker, nominal_values};
 use crate::policy::idle::{ALIKE, FOLLOWS, ROUNDING};
+use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 
@@ -20,7 +21,7 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
     BlockMaker::new(model, log).for_each(|block| {
         for (&joint, sums) in resting.iter().zip(&mut sums) {
             let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
-            let Some(left) = block.residual(joint, &own) else { continue };
+            let Some(left) = block.residual(JointIndex(joint), &own) else { continue };
             let Some([_, target]) = &block.torque[joint] else { continue };
             for (left, torque) in left.into_iter().zip(target) {
                 let load = torque - left;

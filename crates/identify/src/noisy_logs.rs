@@ -3,6 +3,7 @@
 use super::estimate::{BIASING, Estimate, IdentifiedParameter, NoiseOfLog, Solution, solve};
 pub(super) use crate::policy::noisy_logs::MOST;
 use crate::policy::noisy_logs::SHARE;
+use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::fmt;
@@ -58,22 +59,23 @@ pub(super) fn noisy_logs(
     let of = |(log, one): (usize, &NoiseOfLog)| NoisyLog {
         file: logs[log].file.clone(),
         share: one.share,
-        adds: added(model, log, found),
+        adds: added(model, LogIndex(log), found),
     };
     found.noise_of_logs.iter().enumerate().filter(noisy).map(of).collect()
 }
 
 /// The logs for an estimate of which noise does not make most; all if it does of all.
-pub(super) fn shown_logs(logs: usize, found: &Estimate) -> Vec<usize> {
-    let share = |log: usize| found.noise_of_logs.get(log).map_or(0.0, |one| one.share);
-    let shown: Vec<usize> = (0..logs).filter(|&log| share(log) <= MOST).collect();
-    if shown.is_empty() { (0..logs).collect() } else { shown }
+pub(super) fn shown_logs(logs: usize, found: &Estimate) -> Vec<LogIndex> {
+    let share = |log: LogIndex| found.noise_of_logs.get(log.0).map_or(0.0, |one| one.share);
+    let all = (0..logs).map(LogIndex);
+    let shown: Vec<LogIndex> = all.clone().filter(|&log| share(log) <= MOST).collect();
+    if shown.is_empty() { all.collect() } else { shown }
 }
 
 /// What a log adds to the others, as if residuals were independent.
-fn added(model: &RegressionModel, log: usize, found: &Estimate) -> Added {
+fn added(model: &RegressionModel, log: LogIndex, found: &Estimate) -> Added {
     let mut weights = found.weights.clone();
-    weights[log].fill(0.0);
+    weights[log.0].fill(0.0);
     let condensed = &found.condensed;
     let others = condensed.system(&condensed.whole(), &weights, &[]);
     let without = solve(&others, found.solution.phi.as_slice());

@@ -1,16 +1,17 @@
 //! The log of several that is unlike the others.
 
 use super::estimate::{Estimate, Solution, Triangle, solve};
+use denavit_measure::{LogIndex, PartIndex};
 use denavit_plants::regression::RegressionModel;
 
 /// Of several logs the one, of those that are asked, without which the others agree best, and what
 /// the others say.
 pub(super) fn odd_log(
     model: &RegressionModel,
-    asked: &[usize],
-    logs: &[usize],
+    asked: &[LogIndex],
+    logs: &[LogIndex],
     found: &Estimate,
-) -> Option<(usize, Solution)> {
+) -> Option<(LogIndex, Solution)> {
     let condensed = &found.condensed;
     if logs.len() < 2 || condensed.rank != model.rank() {
         return None;
@@ -19,8 +20,9 @@ pub(super) fn odd_log(
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let by_joint: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
     let weights = vec![by_joint; condensed.independent.len()];
-    let without = |log: usize| {
-        let others = (0..condensed.parts.len()).filter(|&part| condensed.log_of_part[part] != log);
+    let without = |log: LogIndex| {
+        let parts = (0..condensed.parts.len()).map(PartIndex);
+        let others = parts.filter(|part| condensed.log_of_part[part.0] != log);
         let triangles = condensed.merged(others);
         let r = condensed.system(&triangles, &weights, &[]);
         let solution = solve(&r, found.solution.phi.as_slice());

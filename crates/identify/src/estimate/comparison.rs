@@ -10,6 +10,7 @@ use super::own_estimate::Tested;
 use super::solve::Solution;
 use crate::policy::comparison::APART;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
@@ -35,9 +36,9 @@ struct Said {
 }
 
 impl Comparison<'_> {
-    fn said(&self, logs: &[usize]) -> Said {
+    fn said(&self, logs: &[LogIndex]) -> Said {
         let condensed = self.condensed.of_logs(logs);
-        let weights: Vec<Vec<f64>> = logs.iter().map(|&log| self.weights[log].clone()).collect();
+        let weights: Vec<Vec<f64>> = logs.iter().map(|&log| self.weights[log.0].clone()).collect();
         let settled = self.fit.settled_from(&condensed, weights);
         let (solution, noise) = (settled.solution, settled.noise);
         let (prior, weights) = (&self.fit.options.prior[..], &settled.weights[..]);
@@ -51,32 +52,32 @@ impl Comparison<'_> {
     }
 
     /// What noise of the positions makes of what some logs say.
-    fn bias(&self, logs: &[usize], solution: &Solution, weights: &[Vec<f64>]) -> DVector<f64> {
-        let times = |(&log, weights): (&usize, &Vec<f64>)| {
-            let before = &self.noise.1[log];
+    fn bias(&self, logs: &[LogIndex], solution: &Solution, weights: &[Vec<f64>]) -> DVector<f64> {
+        let times = |(&log, weights): (&LogIndex, &Vec<f64>)| {
+            let before = &self.noise.1[log.0];
             let square = |(now, before): (&f64, &f64)| match *before > 0.0 {
                 true => (now / before).powi(2),
                 false => 0.0,
             };
             let times = weights.iter().zip(before).map(square).collect();
-            self.noise.0.get(log).map(|noise| (noise, times))
+            self.noise.0.get(log.0).map(|noise| (noise, times))
         };
         let noise = logs.iter().zip(weights).filter_map(times);
         bias_of_some(noise, solution, self.fit.start)
     }
 
     /// The logs that contradict what the others say without them.
-    pub(super) fn odd(&self, logs: &[usize]) -> Vec<(usize, ContradictingLog)> {
-        let without = |odd: usize| logs.iter().copied().filter(|log| *log != odd).collect();
-        let of = |&log: &usize| {
-            let others: Vec<usize> = without(log);
+    pub(super) fn odd(&self, logs: &[LogIndex]) -> Vec<(LogIndex, ContradictingLog)> {
+        let without = |odd: LogIndex| logs.iter().copied().filter(|log| *log != odd).collect();
+        let of = |&log: &LogIndex| {
+            let others: Vec<LogIndex> = without(log);
             Some((log, self.against(log, &others)?))
         };
         logs.iter().filter_map(of).collect()
     }
 
     /// Whether a log contradicts what others say.
-    pub(super) fn against(&self, log: usize, others: &[usize]) -> Option<ContradictingLog> {
+    pub(super) fn against(&self, log: LogIndex, others: &[LogIndex]) -> Option<ContradictingLog> {
         let Self { model, left_out, .. } = *self;
         let said = self.said(others);
         let one = Tested::new(self.condensed, log, &said.weights);
@@ -89,29 +90,34 @@ impl Comparison<'_> {
     /// Of logs that contradict the others the one without which fewest of these contradict each
     /// other, and of several such that without which least is left beside their own estimates, in
     /// units of what chance explains (Chow 1960).
-    pub(super) fn oddest(&self, logs: &[usize], odd: &[(usize, ContradictingLog)]) -> usize {
-        let alone = |log: usize| {
+    pub(super) fn oddest(
+        &self,
+        logs: &[LogIndex],
+        odd: &[(LogIndex, ContradictingLog)],
+    ) -> LogIndex {
+        let alone = |log: LogIndex| {
             let said = self.said(&[log]);
             let one = Tested::new(self.condensed, log, &said.weights);
             (one.own(said.solution.phi.as_slice()), one.triangles)
         };
         let own: Vec<_> = logs.iter().map(|&log| alone(log)).collect();
-        let among = |odd: usize| -> f64 {
-            let others: Vec<usize> = logs.iter().copied().filter(|log| *log != odd).collect();
+        let among = |odd: LogIndex| -> f64 {
+            let others: Vec<LogIndex> = logs.iter().copied().filter(|log| *log != odd).collect();
             let phi = self.said(&others).solution.phi;
             let all = logs.iter().zip(&own).filter(|(log, _)| **log != odd);
             let explained = all.flat_map(|(_, (own, triangles))| {
                 let phi = &phi;
                 own.iter().zip(triangles).enumerate().map(move |(joint, (own, triangle))| {
-                    let phi = self.condensed.of_joint(joint, phi.as_slice());
+                    let phi = self.condensed.of_joint(JointIndex(joint), phi.as_slice());
                     let explained = (triangle.squares(&phi) - own.squares).max(0.0);
                     if own.chance > 0.0 { explained / own.chance } else { 0.0 }
                 })
             });
             explained.sum()
         };
-        let without = |log: usize| {
-            let others: Vec<usize> = logs.iter().copied().filter(|other| *other != log).collect();
+        let without = |log: LogIndex| {
+            let others: Vec<LogIndex> =
+                logs.iter().copied().filter(|other| *other != log).collect();
             self.odd(&others).len()
         };
         let all = odd.iter().map(|(log, _)| (*log, without(*log), among(*log)));
@@ -120,7 +126,7 @@ impl Comparison<'_> {
     }
 
     /// Whether parameters are what some logs say.
-    pub(super) fn is_of(&self, logs: &[usize], phi: &DVector<f64>) -> bool {
+    pub(super) fn is_of(&self, logs: &[LogIndex], phi: &DVector<f64>) -> bool {
         let Said { solution, covariance, .. } = self.said(logs);
         let to = self.model.to_listed();
         let apart = to * (phi - &solution.phi);

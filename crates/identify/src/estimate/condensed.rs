@@ -8,6 +8,7 @@ use super::rows::{Block, BlockMaker};
 use super::solve::{PriorRow, stacked};
 use super::triangle::Triangle;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex, PartIndex, SampleIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 use std::borrow::Cow;
@@ -26,7 +27,7 @@ pub struct Condensed {
     /// Part by part, for each joint its triangle.
     pub parts: Vec<Vec<Triangle>>,
     /// The log that each part is of.
-    pub log_of_part: Vec<usize>,
+    pub log_of_part: Vec<LogIndex>,
     /// For each part the time of its last sample since the beginning of its log \[s\].
     pub end_s: Vec<f64>,
     /// For each log the share of its rows that are independent of each other.
@@ -41,9 +42,12 @@ pub struct Condensed {
 pub(super) type Rows<'a> = (&'a [Conditioned], &'a LeftOut);
 
 /// What the rows of a joint in a block become: columns, and what they are to give, of one length;
-/// none where there are none. The first argument is the number of the log.
+/// none where there are none.
 pub(super) type RowsOf<'a> =
-    &'a mut dyn for<'b> FnMut(usize, &'b Block, usize) -> Option<Vec<Cow<'b, [f64]>>>;
+    &'a mut dyn for<'b> FnMut(LogIndex, &'b Block, JointIndex) -> Option<Vec<Cow<'b, [f64]>>>;
+
+/// The factors of a block's rows of a joint, beside the joint's weight: log, block, joint.
+pub(super) type RowFactors<'a> = &'a dyn Fn(LogIndex, &Block, JointIndex) -> Vec<f64>;
 
 /// The parts that a log is cut into.
 #[derive(Clone, Copy)]
@@ -71,7 +75,7 @@ impl Condensed {
     pub(super) fn weighted(
         model: &RegressionModel,
         logs: Rows<'_>,
-        factors: &dyn Fn(usize, &Block, usize) -> Vec<f64>,
+        factors: RowFactors<'_>,
     ) -> Self {
         let (pattern, rank) = (model.pattern().to_vec(), model.rank());
         Self::of_rows(model, logs, pattern, rank, &mut |log, block, joint| {
@@ -99,23 +103,26 @@ impl Condensed {
         let independent = logs.iter().map(share).collect();
         let row_s = logs.iter().map(|log| log.step_s * log.decimation as f64).collect();
         let mut condensed = Self { pattern, parts, log_of_part, end_s, independent, row_s, rank };
-        for (index, log) in logs.iter().enumerate() {
+        for (number, log) in logs.iter().enumerate() {
+            let number = LogIndex(number);
             // A short rest goes with the part before it.
             let count = (log.samples() / length).max(1);
             let begin = condensed.parts.len();
             for part in 0..count {
                 let widths = condensed.pattern.iter().map(Vec::len);
                 condensed.parts.push(widths.map(Triangle::new).collect());
-                condensed.log_of_part.push(index);
+                condensed.log_of_part.push(number);
                 let last = if part + 1 == count { log.samples() } else { (part + 1) * length };
-                condensed.end_s.push(log.time_s(last.max(1) - 1) - log.time_s(0));
+                condensed
+                    .end_s
+                    .push(log.time_s(SampleIndex(last.max(1) - 1)) - log.time_s(SampleIndex(0)));
             }
             let parts = PartsOfLog { begin, count, length };
-            let own = NumberedLog { number: index, log };
+            let own = NumberedLog { number, log };
             let rests = left_out.all_rests(own);
             BlockMaker::resting(model, log, &rests).for_each(|block| {
-                for joint in 0..condensed.pattern.len() {
-                    let Some(columns) = rows(index, block, joint) else { continue };
+                for joint in (0..condensed.pattern.len()).map(JointIndex) {
+                    let Some(columns) = rows(number, block, joint) else { continue };
                     let counts = left_out.counts(own, joint, block.first, block.samples);
                     condensed.add(block, joint, &columns, counts.as_deref(), parts);
                 }
@@ -128,7 +135,7 @@ impl Condensed {
     fn add(
         &mut self,
         block: &Block,
-        joint: usize,
+        joint: JointIndex,
         columns: &[Cow<'_, [f64]>],
         counts: Option<&[bool]>,
         parts: PartsOfLog,
@@ -136,11 +143,11 @@ impl Condensed {
         let PartsOfLog { begin, count, length } = parts;
         let mut from = 0;
         while from < block.samples {
-            let part = ((block.first + from) / length).min(count - 1);
+            let part = ((block.first.0 + from) / length).min(count - 1);
             let end = if part + 1 == count { usize::MAX } else { (part + 1) * length };
-            let to = block.samples.min(end.saturating_sub(block.first));
+            let to = block.samples.min(end.saturating_sub(block.first.0));
             let rows: Vec<&[f64]> = columns.iter().map(|column| &column[from..to]).collect();
-            let triangle = &mut self.parts[begin + part][joint];
+            let triangle = &mut self.parts[begin + part][joint.0];
             match counts {
                 None => triangle.push(&rows),
                 Some(counts) => {
@@ -157,23 +164,24 @@ impl Condensed {
     }
 
     /// Some of the logs alone.
-    pub(super) fn of_logs(&self, logs: &[usize]) -> Self {
+    pub(super) fn of_logs(&self, logs: &[LogIndex]) -> Self {
         let number = |part: usize| logs.iter().position(|log| *log == self.log_of_part[part]);
-        let own: Vec<(usize, usize)> =
-            (0..self.parts.len()).filter_map(|part| Some((part, number(part)?))).collect();
+        let own: Vec<(usize, LogIndex)> = (0..self.parts.len())
+            .filter_map(|part| Some((part, LogIndex(number(part)?))))
+            .collect();
         Self {
             pattern: self.pattern.clone(),
             parts: own.iter().map(|&(part, _)| self.parts[part].clone()).collect(),
             log_of_part: own.iter().map(|&(_, log)| log).collect(),
             end_s: own.iter().map(|&(part, _)| self.end_s[part]).collect(),
-            independent: logs.iter().map(|&log| self.independent[log]).collect(),
-            row_s: logs.iter().map(|&log| self.row_s[log]).collect(),
+            independent: logs.iter().map(|&log| self.independent[log.0]).collect(),
+            row_s: logs.iter().map(|&log| self.row_s[log.0]).collect(),
             rank: self.rank,
         }
     }
 
     /// For each log the triangles of its joints, of the given parts.
-    pub fn merged(&self, parts: impl Iterator<Item = usize>) -> Vec<Vec<Triangle>> {
+    pub fn merged(&self, parts: impl Iterator<Item = PartIndex>) -> Vec<Vec<Triangle>> {
         let none = || self.pattern.iter().map(|places| Triangle::new(places.len())).collect();
         let mut merged: Vec<Vec<Triangle>> = self.independent.iter().map(|_| none()).collect();
         parts.for_each(|part| self.merge(part, &mut merged));
@@ -181,9 +189,9 @@ impl Condensed {
     }
 
     /// Adds the rows of a part.
-    pub(super) fn merge(&self, part: usize, merged: &mut [Vec<Triangle>]) {
-        let of_log = &mut merged[self.log_of_part[part]];
-        for (sum, own) in of_log.iter_mut().zip(&self.parts[part]) {
+    pub(super) fn merge(&self, part: PartIndex, merged: &mut [Vec<Triangle>]) {
+        let of_log = &mut merged[self.log_of_part[part.0].0];
+        for (sum, own) in of_log.iter_mut().zip(&self.parts[part.0]) {
             if own.rows() > 0 {
                 sum.merge(own);
             }
@@ -191,10 +199,10 @@ impl Condensed {
     }
 
     /// The mean of what phi leaves of each joint's torque in some logs.
-    pub(super) fn means(&self, logs: &[usize], phi: &[f64]) -> Vec<f64> {
+    pub(super) fn means(&self, logs: &[LogIndex], phi: &[f64]) -> Vec<f64> {
         let own = self.parts.iter().zip(&self.log_of_part).filter(|(_, log)| logs.contains(log));
         let of = |joint: usize| {
-            let phi = self.of_joint(joint, phi);
+            let phi = self.of_joint(JointIndex(joint), phi);
             let all = own.clone().map(|(part, _)| (part[joint].rows(), part[joint].sum(&phi)));
             let (rows, sum) = all.fold((0, 0.0), |(n, s), (rows, sum)| (n + rows, s + sum));
             sum / rows.max(1) as f64
@@ -204,7 +212,7 @@ impl Condensed {
 
     /// For each log the triangles of its joints, of all parts.
     pub fn whole(&self) -> Vec<Vec<Triangle>> {
-        self.merged(0..self.parts.len())
+        self.merged((0..self.parts.len()).map(PartIndex))
     }
 
     /// R of [W | y] of weighted triangles of logs, and of what is known beforehand.
@@ -221,13 +229,13 @@ impl Condensed {
     }
 
     /// The entries of phi that a joint's columns belong to.
-    pub fn of_joint(&self, joint: usize, phi: &[f64]) -> Vec<f64> {
-        self.pattern[joint].iter().map(|&place| phi[place]).collect()
+    pub fn of_joint(&self, joint: JointIndex, phi: &[f64]) -> Vec<f64> {
+        self.pattern[joint.0].iter().map(|&place| phi[place]).collect()
     }
 }
 
 /// The rows as they are.
-fn plain(_: usize, block: &Block, joint: usize) -> Option<Vec<Cow<'_, [f64]>>> {
+fn plain(_: LogIndex, block: &Block, joint: JointIndex) -> Option<Vec<Cow<'_, [f64]>>> {
     let columns = block.with_target(joint)?;
     Some(columns.into_iter().map(Cow::Borrowed).collect())
 }

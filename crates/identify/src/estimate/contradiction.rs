@@ -15,6 +15,7 @@ use super::triangle::Triangle;
 use super::unexplained::ShownLogs;
 use crate::policy::contradiction::{ALIKE, OF_BEATS, OF_CHANCE, OF_OWN, OF_OWN_ALONE, OF_TORQUE};
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
@@ -142,7 +143,7 @@ pub(crate) fn contradicting_logs(
     let (left_out, noise) = (&found.left_out, (&found.noise_of_logs[..], &noise_weights[..]));
     let comparison = Comparison { model, logs, condensed, weights, fit, left_out, noise };
     let mut agreeing = shown.to_vec();
-    let mut told: Vec<(usize, ContradictingLog)> = Vec::new();
+    let mut told: Vec<(LogIndex, ContradictingLog)> = Vec::new();
     while agreeing.len() > 1 {
         let mut odd = comparison.odd(&agreeing);
         if agreeing.len() > 2 && odd.len() > 1 {
@@ -155,12 +156,13 @@ pub(crate) fn contradicting_logs(
             break;
         }
     }
-    let noisy = (0..logs.len()).filter(|log| !agreeing.is_empty() && !shown.contains(log));
+    let numbers = || (0..logs.len()).map(LogIndex);
+    let noisy = numbers().filter(|log| !agreeing.is_empty() && !shown.contains(log));
     told.extend(noisy.filter_map(|log| Some((log, comparison.against(log, &agreeing)?))));
     told.sort_by_key(|(log, _)| *log);
-    let time_s = |log: usize| logs[log].range.len() as f64 * logs[log].step_s;
+    let time_s = |log: LogIndex| logs[log.0].range.len() as f64 * logs[log.0].step_s;
     let [all, few] =
-        [(0..logs.len()).map(time_s).sum::<f64>(), told.iter().map(|(log, _)| time_s(*log)).sum()];
+        [numbers().map(time_s).sum::<f64>(), told.iter().map(|(log, _)| time_s(*log)).sum()];
     if !told.is_empty() && 2 * told.len() < logs.len() && 2.0 * few < all {
         let is_followed = !comparison.is_of(&agreeing, &found.solution.phi);
         let standing = if is_followed { Standing::OfFewFollowed } else { Standing::OfFew };
@@ -204,17 +206,17 @@ pub(crate) fn contradicting_held_out(
     let condensed = Condensed::counted(model, (logs, &left_out));
     let weight = |noise: f64| if noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = found.noise_of_joints().into_iter().map(weight).collect();
-    let all: Vec<usize> = (0..train.len()).collect();
+    let all: Vec<LogIndex> = (0..train.len()).map(LogIndex).collect();
     let train = plain(model, train, found, options);
     let means = &train.means(&all, found.solution.phi.as_slice());
-    let of = |at: usize| {
+    let of = |at: LogIndex| {
         let one = Tested::new(&condensed, at, &weights);
         let phi = &one.with_own(&found.solution);
         let (covariance, left_out) = (&found.covariance, &left_out);
         let told = Claim { model, phi, covariance, left_out, means }.against(at, logs, &one)?;
         Some(ContradictingLog { standing: Standing::HeldOut, ..told })
     };
-    (0..logs.len()).filter_map(of).collect()
+    (0..logs.len()).map(LogIndex).filter_map(of).collect()
 }
 
 /// What others say of a log.
@@ -233,16 +235,16 @@ impl Claim<'_> {
     /// Whether a log of this number contradicts it.
     pub(super) fn against(
         &self,
-        at: usize,
+        at: LogIndex,
         logs: &[Conditioned],
         one: &Tested<'_>,
     ) -> Option<ContradictingLog> {
-        let log = &logs[at];
+        let log = &logs[at.0];
         let named = |Told { joint, left, own, .. }: Told| ContradictingJoint {
             joint: self.model.joints[joint].name.clone(),
             left,
             own,
-            like: likeness(self.model, log, joint, self.phi.as_slice()),
+            like: likeness(self.model, log, JointIndex(joint), self.phi.as_slice()),
         };
         let joints: Vec<_> = self.told(at, logs, one).into_iter().map(named).collect();
         let (file, standing) = (log.file.clone(), Standing::Undecided);
@@ -252,8 +254,8 @@ impl Claim<'_> {
     /// The joints that tell it. Those of whose torque noise of the positions may make as much, or
     /// as much as would tell it, are asked behind half the cutoff, which leaves less of it, and so
     /// on: of a long log in its first piece.
-    fn told(&self, at: usize, logs: &[Conditioned], one: &Tested<'_>) -> Vec<Told> {
-        let log = &logs[at];
+    fn told(&self, at: LogIndex, logs: &[Conditioned], one: &Tested<'_>) -> Vec<Told> {
+        let log = &logs[at.0];
         // where the sign of a rate is not known, a constant may be friction
         let is_known = |joint: usize| !log.resting[joint] && log.unsure_signs(joint).is_none();
         let signs: Vec<bool> = (0..self.model.joints.len()).map(is_known).collect();
@@ -270,13 +272,13 @@ impl Claim<'_> {
         let piece = log.pieces(SAMPLES)[0];
         let halved = if open.is_empty() { None } else { log.halved(piece) };
         if let Some([_, lower]) = halved {
-            let first = piece.first * log.decimation + lower.range.start - log.range.start;
+            let first = piece.first.0 * log.decimation + lower.range.start - log.range.start;
             let place = first..first + lower.range.len();
             let left_out = &self.left_out.of_halved(logs, &[(at, place)]);
             let lower = &[lower];
             let condensed = Condensed::counted(self.model, (lower, left_out));
-            let one = Tested::new(&condensed, 0, one.weights);
-            let lower = Claim { left_out, ..*self }.told(0, lower, &one);
+            let one = Tested::new(&condensed, LogIndex(0), one.weights);
+            let lower = Claim { left_out, ..*self }.told(LogIndex(0), lower, &one);
             told.extend(lower.into_iter().filter(|one| open.contains(&one.joint)));
         }
         told
@@ -294,7 +296,7 @@ impl Claim<'_> {
             let all = triangle.target_squares();
             let left = triangle.squares(&of_joint(&pattern[joint], phi.as_slice()));
             let unsure = spread(triangle, &pattern[joint], covariance);
-            let constant = one.constant(left, joint, phi.as_slice(), self.means[joint]);
+            let constant = one.constant(left, JointIndex(joint), phi.as_slice(), self.means[joint]);
             let constant = signs[joint].then_some(constant);
             let told = |Own { squares, variance, chance }: &Own| {
                 let explained = (left - squares).max(0.0);
@@ -327,15 +329,15 @@ struct Told {
 fn likeness(
     model: &RegressionModel,
     log: &Conditioned,
-    joint: usize,
+    joint: JointIndex,
     phi: &[f64],
 ) -> Option<Likeness> {
-    let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+    let own: Vec<f64> = model.pattern()[joint.0].iter().map(|&at| phi[at]).collect();
     // rows, sums of what is left and of its squares, its products with the computed torque, whose
     // squares
     let mut sums = [0.0; 5];
     BlockMaker::new(model, log).for_each(|block| {
-        let (Some(left), Some([torque, _])) = (block.residual(joint, &own), &block.torque[joint])
+        let (Some(left), Some([torque, _])) = (block.residual(joint, &own), &block.torque[joint.0])
         else {
             return;
         };
@@ -346,7 +348,7 @@ fn likeness(
         }
     });
     let [rows, sum, squares, both, computed] = sums;
-    let unit = if model.joints[joint].slides { "N" } else { "N m" };
+    let unit = if model.joints[joint.0].slides { "N" } else { "N m" };
     let constant = (squares - sum * sum / rows, Likeness::Constant(sum / rows, unit));
     let factor = (squares - both * both / computed, Likeness::Factor(1.0 + both / computed));
     let best = if constant.0 < factor.0 { constant } else { factor };

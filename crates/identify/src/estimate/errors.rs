@@ -3,6 +3,7 @@
 use super::condensed::Condensed;
 use super::solve::{PriorRow, Solution, solve};
 use crate::policy::errors::{MOST_ALIKE, MOST_LEVERAGE, NEIGHBOURS, ONE_OF_TWENTY};
+use denavit_measure::{JointIndex, LogIndex, PartIndex};
 use denavit_numerics::Random;
 use nalgebra::{DMatrix, DVector};
 
@@ -69,7 +70,7 @@ impl Problem<'_> {
         let follows = &self.solution.factor * (sums * &self.solution.factor).transpose();
         let mut moments = vec![[0.0; 2]; sums.nrows()];
         for (part, triangles) in self.condensed.parts.iter().enumerate() {
-            let weights = &self.weights[self.condensed.log_of_part[part]];
+            let weights = &self.weights[self.condensed.log_of_part[part].0];
             let mut decides = vec![0.0; sums.nrows()];
             for (joint, triangle) in triangles.iter().enumerate() {
                 let pattern = &self.condensed.pattern[joint];
@@ -106,14 +107,14 @@ impl Problem<'_> {
         let factor = &self.solution.factor;
         // F^T g has the squares of the excited directions alone.
         let of = |part| factor * self.left_out(part, factor.tr_mul(&self.score(part)));
-        (0..self.condensed.parts.len()).map(of).collect()
+        (0..self.condensed.parts.len()).map(PartIndex).map(of).collect()
     }
 
     /// A score in the excited directions as it is for the estimate without its part: the change of
     /// phi when the part is left out is (I - H)^-1 g with H = F^T W^T W F of the part (the
     /// jackknife of parts). The estimate adapts to a part that says much about the parameters,
     /// whose residuals are too small therefore; this puts it right, and errs to the safe side.
-    fn left_out(&self, part: usize, score: DVector<f64>) -> DVector<f64> {
+    fn left_out(&self, part: PartIndex, score: DVector<f64>) -> DVector<f64> {
         let factor = &self.solution.factor;
         let size = factor.ncols();
         if size == 0 {
@@ -121,8 +122,8 @@ impl Problem<'_> {
             return score;
         }
         let mut leverage = DMatrix::zeros(size, size);
-        let weights = &self.weights[self.condensed.log_of_part[part]];
-        for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
+        let weights = &self.weights[self.condensed.log_of_part[part.0].0];
+        for (joint, triangle) in self.condensed.parts[part.0].iter().enumerate() {
             let pattern = &self.condensed.pattern[joint];
             let own = DMatrix::from_fn(pattern.len(), size, |at, c| factor[(pattern[at], c)]);
             let r = triangle.matrix().view((0, 0), (pattern.len(), pattern.len()));
@@ -142,16 +143,16 @@ impl Problem<'_> {
     }
 
     /// sum over joints of w^2 W^T (y - W phi) of a part.
-    fn score(&self, part: usize) -> DVector<f64> {
+    fn score(&self, part: PartIndex) -> DVector<f64> {
         let mut score = DVector::zeros(self.condensed.rank);
         let phi = self.solution.phi.as_slice();
-        let weights = &self.weights[self.condensed.log_of_part[part]];
-        for (joint, triangle) in self.condensed.parts[part].iter().enumerate() {
+        let weights = &self.weights[self.condensed.log_of_part[part.0].0];
+        for (joint, triangle) in self.condensed.parts[part.0].iter().enumerate() {
             let weight = weights[joint] * weights[joint];
             if triangle.rows() == 0 || weight == 0.0 {
                 continue;
             }
-            let own = triangle.score(&self.condensed.of_joint(joint, phi));
+            let own = triangle.score(&self.condensed.of_joint(JointIndex(joint), phi));
             for (&place, entry) in self.condensed.pattern[joint].iter().zip(own) {
                 score[place] += weight * entry;
             }
@@ -165,9 +166,8 @@ impl Problem<'_> {
         let count = condensed.parts.len();
         let estimates: Vec<DVector<f64>> = (0..draws)
             .map(|_| {
-                let drawn: Vec<usize> =
-                    (0..count).map(|_| (random.bits() % count as u64) as usize).collect();
-                let triangles = condensed.merged(drawn.into_iter());
+                let drawn = (0..count).map(|_| PartIndex((random.bits() % count as u64) as usize));
+                let triangles = condensed.merged(drawn);
                 let r = condensed.system(&triangles, weights, prior);
                 solve(&r, solution.phi.as_slice()).phi
             })
@@ -186,7 +186,7 @@ impl Problem<'_> {
 /// The covariance of a sum over parts, of which neighbours of the same log are correlated: counted
 /// half where they are hardly, and where they are more, as much again as a process of first order
 /// has at larger distances, whose sums are 1 / (1 - r) times those of its neighbours.
-pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[usize]) -> DMatrix<f64> {
+pub(super) fn long_run(parts: &[DVector<f64>], log_of_part: &[LogIndex]) -> DMatrix<f64> {
     let size = parts.first().map_or(0, DVector::len);
     let (mut sum, mut beside) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
     for (at, part) in parts.iter().enumerate() {
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn sums_of_parts_that_are_alike_have_their_variance() {
         const PARTS: usize = 64;
-        let log_of_part = [0; PARTS];
+        let log_of_part = [LogIndex(0); PARTS];
         let mut random = Random::new(3);
         for alike in [0.0_f64, 0.5] {
             let fresh = (1.0 - alike * alike).sqrt();
@@ -269,7 +269,7 @@ mod tests {
         let condensed = Condensed {
             pattern: vec![vec![0, 1]],
             parts: (0..24).map(part).collect(),
-            log_of_part: vec![0; 24],
+            log_of_part: vec![LogIndex(0); 24],
             end_s: (1..25).map(f64::from).collect(),
             independent: vec![1.0],
             row_s: vec![1.0],

@@ -14,6 +14,7 @@ use super::own_estimate::{Tested, of_joint, spread};
 use super::triangle::Triangle;
 use super::unexplained::{Unexplained, moves};
 use crate::policy::exceeding::{MANY, OF_BAND, OF_NOISE, OF_TORQUE};
+use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
@@ -39,7 +40,7 @@ pub(crate) fn exceeding_joints(
     let weight = |noise: &f64| if *noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = noise.iter().map(weight).collect();
     let of_log = |at: usize| {
-        let one = Tested::new(&condensed, at, &weights);
+        let one = Tested::new(&condensed, LogIndex(at), &weights);
         let phi = one.with_own(&found.solution);
         let held_out = HeldOut { model, logs, at, phi: &phi, left_out };
         let share = |joint: usize| {
@@ -99,7 +100,12 @@ impl HeldOut<'_> {
     fn made(&self, triangles: &[Triangle]) -> Vec<f64> {
         let Self { model, logs, at, phi, left_out } = *self;
         let smeared = filter_errors(model, &logs[at..=at], phi.as_slice());
-        let noise = noise_squares(model, NumberedLog { number: at, log: &logs[at] }, left_out, phi);
+        let noise = noise_squares(
+            model,
+            NumberedLog { number: LogIndex(at), log: &logs[at] },
+            left_out,
+            phi,
+        );
         let of = |((triangle, noise), share): ((&Triangle, f64), f64)| {
             let squares = OF_NOISE * noise + share * share * triangle.target_squares();
             squares / triangle.rows().max(1) as f64
@@ -114,9 +120,9 @@ impl HeldOut<'_> {
         let log = &logs[at];
         let piece = log.pieces(SAMPLES)[0];
         let Some(both) = log.halved(piece) else { return vec![false; model.joints.len()] };
-        let first = piece.first * log.decimation + both[0].range.start - log.range.start;
+        let first = piece.first.0 * log.decimation + both[0].range.start - log.range.start;
         let place = first..first + both[0].range.len();
-        let left_out = &left_out.of_places(&[(at, place)], |_| 0);
+        let left_out = &left_out.of_places(&[(LogIndex(at), place)], |_| 0);
         let both = both.map(|one| Condensed::counted(model, (&[one], left_out)).whole().remove(0));
         let of = |joint: usize| {
             let [before, after] = both.each_ref().map(|one| self.left(&one[joint], joint));

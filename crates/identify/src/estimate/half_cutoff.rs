@@ -11,6 +11,7 @@ use super::condensed::{Condensed, Rows};
 use super::errors::{FEWEST_PARTS, Problem, long_run};
 use super::least_squares::{Estimate, Fit};
 use crate::policy::half_cutoff::OF_CHANGE;
+use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
@@ -59,8 +60,8 @@ impl Fit<'_> {
         for (number, log) in logs.iter().enumerate().filter(|(_, log)| noisy(log)) {
             for piece in log.pieces(SAMPLES / logs.len()) {
                 let Some([plain, lower]) = log.halved(piece) else { continue };
-                let first = piece.first * log.decimation + plain.range.start - log.range.start;
-                places.push((number, first..first + plain.range.len()));
+                let first = piece.first.0 * log.decimation + plain.range.start - log.range.start;
+                places.push((LogIndex(number), first..first + plain.range.len()));
                 own.push(plain);
                 halved.push(lower);
             }
@@ -70,7 +71,7 @@ impl Fit<'_> {
         }
         let left_out = left_out.of_halved(logs, &places);
         let weights: Vec<Vec<f64>> =
-            places.iter().map(|(number, _)| found.weights[*number].clone()).collect();
+            places.iter().map(|(number, _)| found.weights[number.0].clone()).collect();
         let both = [own, halved].map(|logs| {
             let condensed = Condensed::counted(model, (&logs, &left_out));
             let solution = self.solved(&condensed, &condensed.whole(), &weights);

@@ -70,8 +70,8 @@ fn paired(model: &RegressionModel, rows: Rows<'_>, instruments: &[Conditioned]) 
         instruments.iter().map(|log| BlockMaker::new(model, log)).collect();
     Condensed::of_rows(model, rows, pattern, 2 * rank, &mut |log, block, joint| {
         let columns = block.with_target(joint)?;
-        let other = makers[log].at(block.first, block.samples);
-        let z = other.columns[joint].iter().map(|column| Cow::Owned(column.clone()));
+        let other = makers[log.0].at(block.first, block.samples);
+        let z = other.columns[joint.0].iter().map(|column| Cow::Owned(column.clone()));
         Some(z.chain(columns.into_iter().map(Cow::Borrowed)).collect())
     })
 }
@@ -110,7 +110,8 @@ impl System {
         let count = condensed.parts.len();
         let scores: Vec<DVector<f64>> = (0..count)
             .map(|part| {
-                let (triangles, log) = (&condensed.parts[part..=part], condensed.log_of_part[part]);
+                let (triangles, log) =
+                    (&condensed.parts[part..=part], condensed.log_of_part[part].0);
                 let own = Self::new(condensed, triangles, &found.weights[log..=log]);
                 let fitted = |row: usize| {
                     (0..rank).map(|place| own.r[(row, rank + place)] * phi[place]).sum::<f64>()

@@ -15,6 +15,7 @@ use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
 use crate::policy::least_squares::{FEWEST_DEGREES, MOVES_LITTLE};
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
@@ -259,7 +260,7 @@ pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), Estimat
 }
 
 /// The factors of both sides of rows: log, block, joint.
-type Factors = Box<dyn Fn(usize, &Block, usize) -> Vec<f64>>;
+type Factors = Box<dyn Fn(LogIndex, &Block, JointIndex) -> Vec<f64>>;
 
 /// What estimates have in common.
 pub(super) struct Fit<'a> {
@@ -390,7 +391,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         logs: &[Conditioned],
         found: &Estimate,
-    ) -> impl Fn(usize, &Block, usize) -> Vec<f64> + use<> {
+    ) -> impl Fn(LogIndex, &Block, JointIndex) -> Vec<f64> + use<> {
         let (phi, deviations) = (found.solution.phi.as_slice(), &self.options.position_noise[..]);
         let variance = likelihood::Variance::new(model, logs, phi, deviations);
         let noise = variance.torque_noise(&found.noise);
@@ -422,13 +423,13 @@ fn settled(found: Estimate, change: f64) -> Result<Estimate, EstimateError> {
 fn factors_of_loss(
     found: &Estimate,
     loss: Loss,
-) -> impl Fn(usize, &Block, usize) -> Vec<f64> + use<> {
-    let own = |joint: usize| found.condensed.of_joint(joint, found.solution.phi.as_slice());
-    let phi: Vec<Vec<f64>> = (0..found.condensed.pattern.len()).map(own).collect();
+) -> impl Fn(LogIndex, &Block, JointIndex) -> Vec<f64> + use<> {
+    let own = |joint: JointIndex| found.condensed.of_joint(joint, found.solution.phi.as_slice());
+    let phi: Vec<Vec<f64>> = (0..found.condensed.pattern.len()).map(JointIndex).map(own).collect();
     let scales = found.noise.clone();
     move |log, block, joint| {
-        let residual = block.residual(joint, &phi[joint]).unwrap_or_default();
-        let scale = scales[log][joint].max(f64::MIN_POSITIVE);
+        let residual = block.residual(joint, &phi[joint.0]).unwrap_or_default();
+        let scale = scales[log.0][joint.0].max(f64::MIN_POSITIVE);
         residual.iter().map(|residual| loss.factor(residual / scale)).collect()
     }
 }

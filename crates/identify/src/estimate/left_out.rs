@@ -4,6 +4,7 @@
 use super::least_squares::{Method, Options};
 use crate::policy::left_out::{BIAS, LEAST, NOISE};
 use denavit_measure::condition::{Butterworth, Conditioned};
+use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -90,7 +91,7 @@ pub(crate) fn biased_frictions(
 #[derive(Clone, Copy)]
 pub(super) struct NumberedLog<'a> {
     /// Its place among them.
-    pub(super) number: usize,
+    pub(super) number: LogIndex,
     pub(super) log: &'a Conditioned,
 }
 
@@ -147,23 +148,21 @@ impl LeftOut {
             if options.method != Method::Instrumental {
                 asked.add_rests(model, logs);
             }
-            (0..logs.len()).for_each(|log| asked.keep_enough(log, logs));
+            (0..logs.len()).map(LogIndex).for_each(|log| asked.keep_enough(log, logs));
         }
         asked
     }
 
     /// Leaves out nothing of joints of a log of which too little would be left.
-    pub(super) fn keep_enough(&mut self, number: usize, logs: &[Conditioned]) {
-        let log = &logs[number];
-        for joint in 0..log.joints() {
-            let Some(counts) = self.counts(NumberedLog { number, log }, joint, 0, log.samples())
-            else {
-                continue;
-            };
+    pub(super) fn keep_enough(&mut self, number: LogIndex, logs: &[Conditioned]) {
+        let log = &logs[number.0];
+        let (own, start) = (NumberedLog { number, log }, SampleIndex(0));
+        for joint in (0..log.joints()).map(JointIndex) {
+            let Some(counts) = self.counts(own, joint, start, log.samples()) else { continue };
             let kept = counts.into_iter().filter(|counts| *counts).count() as f64;
             if kept < LEAST * log.samples() as f64 {
-                self.rows[number][joint] = None;
-                self.awake[number][joint] = None;
+                self.rows[number.0][joint.0] = None;
+                self.awake[number.0][joint.0] = None;
             }
         }
     }
@@ -205,20 +204,24 @@ impl LeftOut {
 
     /// The same of pieces whose edges and filters smear over twice the time: each with its log,
     /// where its first sample stands there, and how many it has.
-    pub(super) fn of_halved(&self, logs: &[Conditioned], pieces: &[(usize, Range<usize>)]) -> Self {
-        self.of_places(pieces, |number| smear(&logs[number]))
+    pub(super) fn of_halved(
+        &self,
+        logs: &[Conditioned],
+        pieces: &[(LogIndex, Range<usize>)],
+    ) -> Self {
+        self.of_places(pieces, |number| smear(&logs[number.0]))
     }
 
     /// The same of places of logs, and of so many beside those that are left out.
     pub(super) fn of_places(
         &self,
-        places: &[(usize, Range<usize>)],
-        beside: impl Fn(usize) -> usize,
+        places: &[(LogIndex, Range<usize>)],
+        beside: impl Fn(LogIndex) -> usize,
     ) -> Self {
-        let of = |all: &[Vec<Option<Vec<bool>>>], (number, range): &(usize, Range<usize>)| {
+        let of = |all: &[Vec<Option<Vec<bool>>>], (number, range): &(LogIndex, Range<usize>)| {
             let beside = beside(*number);
             let part = |all: &Vec<bool>| wider(all, beside)[range.clone()].to_vec();
-            all[*number].iter().map(|one| one.as_ref().map(part)).collect()
+            all[number.0].iter().map(|one| one.as_ref().map(part)).collect()
         };
         let mut those = Self::of(places.iter().map(|place| of(&self.rows, place)).collect());
         those.awake = places.iter().map(|place| of(&self.awake, place)).collect();
@@ -233,9 +236,9 @@ impl LeftOut {
             near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
         }
         let counted = |((number, log), near): ((usize, &Conditioned), &Vec<bool>)| {
-            let counts = log.counts(near, 0, log.samples()).into_iter();
-            let rests: usize =
-                self.rests(NumberedLog { number, log }, joint).iter().map(Range::len).sum();
+            let counts = log.counts(near, SampleIndex(0), log.samples()).into_iter();
+            let own = NumberedLog { number: LogIndex(number), log };
+            let rests: usize = self.rests(own, JointIndex(joint)).iter().map(Range::len).sum();
             counts.filter(|counts| *counts).count() + rests
         };
         let kept: usize = logs.iter().enumerate().zip(&near).map(counted).sum();
@@ -255,13 +258,13 @@ impl LeftOut {
     pub(super) fn counts(
         &self,
         NumberedLog { number, log }: NumberedLog<'_>,
-        joint: usize,
-        first: usize,
+        joint: JointIndex,
+        first: SampleIndex,
         samples: usize,
     ) -> Option<Vec<bool>> {
-        let left_out = self.rows[number][joint].as_ref()?;
+        let left_out = self.rows[number.0][joint.0].as_ref()?;
         let mut counts = log.counts(left_out, first, samples);
-        if let Some(awake) = &self.awake[number][joint] {
+        if let Some(awake) = &self.awake[number.0][joint.0] {
             let rests = log.counts(awake, first, samples);
             counts.iter_mut().zip(rests).for_each(|(counts, rests)| *counts |= rests);
         }

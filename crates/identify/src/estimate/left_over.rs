@@ -6,6 +6,7 @@ use super::rows::BlockMaker;
 use super::unexplained::{ShownLogs, samples_of};
 use crate::policy::left_over::NO_NOISE;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
 use std::collections::VecDeque;
 
@@ -85,7 +86,7 @@ impl LeftOut {
         let own: Vec<Vec<f64>> = (0..model.joints.len()).map(of_joint).collect();
         let of_log = |(number, log): (usize, &Conditioned)| {
             let apart = samples_of(log, 0.5);
-            let numbered = NumberedLog { number, log };
+            let numbered = NumberedLog { number: LogIndex(number), log };
             let rests = self.all_rests(numbered);
             let mut maker = BlockMaker::resting(model, log, &rests);
             let mut left: Vec<Left> = (0..own.len())
@@ -98,8 +99,11 @@ impl LeftOut {
             let mut recent = vec![VecDeque::new(); left.len()];
             maker.for_each(|block| {
                 for (joint, (left, recent)) in left.iter_mut().zip(&mut recent).enumerate() {
-                    let Some(all) = block.residual(joint, &own[joint]) else { continue };
-                    let counts = self.counts(numbered, joint, block.first, block.samples);
+                    let Some(all) = block.residual(JointIndex(joint), &own[joint]) else {
+                        continue;
+                    };
+                    let counts =
+                        self.counts(numbered, JointIndex(joint), block.first, block.samples);
                     for (k, one) in all.into_iter().enumerate() {
                         let one = counts.as_ref().is_none_or(|counts| counts[k]).then_some(one);
                         left.add(one, recent);
@@ -122,7 +126,7 @@ pub(crate) fn no_noise(
     let ShownLogs { logs, shown } = shown_logs;
     let left = found.left_out.left(model, logs, found.solution.phi.as_slice());
     let of_joint = |joint: usize| {
-        let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log][joint]));
+        let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log.0][joint]));
         all.is_no_noise().then(|| (joint, all.mean_square().sqrt()))
     };
     (0..model.joints.len()).filter_map(of_joint).collect()

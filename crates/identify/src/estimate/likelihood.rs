@@ -9,6 +9,7 @@ use super::rows::Block;
 use super::weights::ByLog;
 use crate::policy::likelihood::LEAST_TORQUE_SHARE;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionModel, RegressionRows};
 
 /// Samples in a block.
@@ -57,13 +58,14 @@ impl Variance {
     /// 1 over the deviation of each row.
     pub(super) fn factors(
         &self,
-        log: usize,
-        joint: usize,
+        log: LogIndex,
+        joint: JointIndex,
         block: &Block,
         torque_noise: &ByLog,
     ) -> Vec<f64> {
-        let rows = &self.of_positions[log][joint][block.first..block.first + block.samples];
-        let own = torque_noise[log][joint].powi(2);
+        let first = block.first.0;
+        let rows = &self.of_positions[log.0][joint.0][first..first + block.samples];
+        let own = torque_noise[log.0][joint.0].powi(2);
         rows.iter().map(|variance| 1.0 / (own + variance).sqrt().max(f64::MIN_POSITIVE)).collect()
     }
 }
@@ -115,7 +117,7 @@ fn of_log(
         model.pattern().iter().map(|places| places.iter().map(|&at| phi[at]).collect()).collect();
     for first in (0..samples).step_by(BLOCK * every) {
         let count = BLOCK.min(samples - first);
-        log.motion_at(first, count, &mut motion);
+        log.motion_at(SampleIndex(first), count, &mut motion);
         for joint in 0..n {
             let deviation = deviations.get(joint).copied().unwrap_or(0.0);
             if deviation == 0.0 {

@@ -7,13 +7,14 @@
 //! what is of second order in it, which is N, and nothing of first order, which standard errors
 //! show.
 
-use super::condensed::Rows;
+use super::condensed::{RowFactors, Rows};
 use super::least_squares::Estimate;
 use super::left_out::{LeftOut, NumberedLog};
 use super::rows::{Block, BlockMaker};
 use super::solve::{Solution, solve};
 use super::validate::validate;
 use denavit_measure::condition::{Conditioned, Piece};
+use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_numerics::Random;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use nalgebra::{DMatrix, DVector};
@@ -27,9 +28,6 @@ const BLOCK: usize = 512;
 
 /// What the noise begins with: the same log has the same answer.
 const SEED: u64 = 1;
-
-/// The factors of a block's rows of a joint, beside the joint's weight: log, block, joint.
-pub(super) type RowFactors<'a> = &'a dyn Fn(usize, &Block, usize) -> Vec<f64>;
 
 /// What noise of the positions makes.
 pub(super) struct NoiseBias {
@@ -67,7 +65,8 @@ pub(super) fn noise_bias(
     let mut random = Random::new(SEED);
     let longest = SAMPLES / logs.len();
     let of_log = |(number, log): (usize, &Conditioned)| {
-        let (own, weights) = (NumberedLog { number, log }, &found.weights[number]);
+        let (own, weights) =
+            (NumberedLog { number: LogIndex(number), log }, &found.weights[number]);
         Noise::of_log(model, own, left_out, weights, longest, factors, &mut random)
     };
     let of_joints: Vec<Vec<DMatrix<f64>>> = logs.iter().enumerate().map(of_log).collect();
@@ -129,10 +128,11 @@ pub(super) fn noise_squares(
     let mut random = Random::new(SEED);
     with_noise(model, log, SAMPLES, rests, &mut random, |first, block, noisy, of_all| {
         for (joint, sum) in squares.iter_mut().enumerate() {
-            let Some(clean) = block.residual(joint, &phi[joint]) else { continue };
+            let (joint, phi) = (JointIndex(joint), &phi[joint]);
+            let Some(clean) = block.residual(joint, phi) else { continue };
             let counts = left_out.counts(own, joint, first, block.samples);
             let counts = counts.unwrap_or_else(|| vec![true; clean.len()]);
-            for noisy in noisy.iter().filter_map(|block| block.residual(joint, &phi[joint])) {
+            for noisy in noisy.iter().filter_map(|block| block.residual(joint, phi)) {
                 let both = noisy.iter().zip(&clean).zip(&counts).filter(|(_, counts)| **counts);
                 *sum += 0.5 * of_all * both.map(|((a, b), _)| (a - b).powi(2)).sum::<f64>();
             }
@@ -149,7 +149,7 @@ pub(crate) fn noise_in_torques(
     phi: &[f64],
 ) -> Vec<f64> {
     let all = LeftOut::none(std::slice::from_ref(log));
-    let own = NumberedLog { number: 0, log };
+    let own = NumberedLog { number: LogIndex(0), log };
     let noise = noise_squares(model, own, &all, &DVector::from_column_slice(phi));
     let left = validate(model, phi, &[log]);
     let share = |(joint, noise): (&RegressionJoint, f64)| {
@@ -168,13 +168,13 @@ fn with_noise(
     longest: usize,
     rests: &[Vec<Range<usize>>],
     random: &mut Random,
-    mut visit: impl FnMut(usize, &Block, [&Block; 2], f64),
+    mut visit: impl FnMut(SampleIndex, &Block, [&Block; 2], f64),
 ) {
     let pieces = log.pieces(longest);
     let seen: usize = pieces.iter().map(|piece| piece.samples).sum();
     let of_all = log.samples() as f64 / seen.max(1) as f64;
     for piece in pieces {
-        let Piece { first, samples } = piece;
+        let Piece { first: SampleIndex(first), samples } = piece;
         let both = log.piece_with_noise(piece, random);
         // means of rests of the piece alone, so that they differ by nothing but noise
         let within = |from: usize| -> Vec<Vec<Range<usize>>> {
@@ -189,9 +189,10 @@ fn with_noise(
         let mut makers = both.each_ref().map(|piece| BlockMaker::resting(model, piece, &within(0)));
         for from in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - from);
-            let block = straight.at(first + from, count);
-            let noisy = makers.each_mut().map(|maker| maker.at(from, count));
-            visit(first + from, block, noisy, of_all);
+            let sample = SampleIndex(first + from);
+            let block = straight.at(sample, count);
+            let noisy = makers.each_mut().map(|maker| maker.at(SampleIndex(from), count));
+            visit(sample, block, noisy, of_all);
         }
     }
 }
@@ -228,6 +229,7 @@ impl Noise {
         with_noise(model, log, longest, rests, random, |first, block, noisy, of_all| {
             let count = block.samples;
             for (joint, weight) in weights.iter().enumerate().filter(|(_, one)| **one > 0.0) {
+                let joint = JointIndex(joint);
                 let mut squares = vec![weight * weight * of_all; count];
                 if let Some(factors) = factors {
                     let factors = factors(number, block, joint);
@@ -236,7 +238,7 @@ impl Noise {
                 let counts = left_out.counts(own, joint, first, count);
                 let all = squares.iter_mut().zip(counts.unwrap_or_default());
                 all.filter(|(_, counts)| !counts).for_each(|(square, _)| *square = 0.0);
-                add(&mut noise[joint], model, joint, block, noisy, &squares);
+                add(&mut noise[joint.0], model, joint, block, noisy, &squares);
             }
         });
         noise
@@ -288,13 +290,13 @@ impl Noise {
 fn add(
     sum: &mut DMatrix<f64>,
     model: &RegressionModel,
-    joint: usize,
+    joint: JointIndex,
     straight: &Block,
     both: [&Block; 2],
     squares: &[f64],
 ) {
     let Some(clean) = straight.with_target(joint) else { return };
-    let places = &model.pattern()[joint];
+    let places = &model.pattern()[joint.0];
     for noisy in both.into_iter().filter_map(|block| block.with_target(joint)) {
         for (at, (noise, clean)) in noisy.iter().zip(&clean).enumerate() {
             let place = places.get(at).copied().unwrap_or(model.rank());

@@ -5,6 +5,7 @@ use super::condensed::Condensed;
 use super::errors::{FEWEST_PARTS, Problem, long_run};
 use super::solve::{DEAD, Solution, solve, stacked};
 use super::triangle::Triangle;
+use denavit_measure::{JointIndex, LogIndex};
 use nalgebra::{DMatrix, DVector};
 
 /// Times that the weights of a log's own estimate are found anew.
@@ -30,7 +31,7 @@ pub(super) struct Own {
 }
 
 impl<'a> Tested<'a> {
-    pub(super) fn new(condensed: &Condensed, log: usize, weights: &'a [f64]) -> Self {
+    pub(super) fn new(condensed: &Condensed, log: LogIndex, weights: &'a [f64]) -> Self {
         let condensed = condensed.of_logs(&[log]);
         let triangles = condensed.whole().remove(0);
         Self { condensed, triangles, weights }
@@ -82,20 +83,20 @@ impl<'a> Tested<'a> {
 
     /// What a constant beside that of other logs, of mean `mean`, leaves of a joint's torque, of
     /// whose squares phi leaves `left`.
-    pub(super) fn constant(&self, left: f64, joint: usize, phi: &[f64], mean: f64) -> Own {
-        let phi = &of_joint(&self.condensed.pattern[joint], phi);
+    pub(super) fn constant(&self, left: f64, joint: JointIndex, phi: &[f64], mean: f64) -> Own {
+        let phi = &of_joint(&self.condensed.pattern[joint.0], phi);
         let sums = |triangle: &Triangle| [triangle.rows() as f64, triangle.sum(phi)];
         let independent = self.independent();
-        let [rows, sum] = sums(&self.triangles[joint]);
+        let [rows, sum] = sums(&self.triangles[joint.0]);
         let own = sum / rows.max(1.0);
         let by = own - mean;
         let squares = left - by * (2.0 * sum - by * rows);
         let variance = squares * independent / (independent * rows - 1.0).max(f64::MIN_POSITIVE);
-        let parts = self.condensed.parts.iter().map(|part| sums(&part[joint]));
+        let parts = self.condensed.parts.iter().map(|part| sums(&part[joint.0]));
         let apart = parts.map(|[rows, sum]| DVector::from_element(1, sum - own * rows));
         let apart: Vec<DVector<f64>> = apart.collect();
         let by_parts = match self.has_parts() {
-            true => long_run(&apart, &vec![0; apart.len()])[(0, 0)] / rows.max(1.0),
+            true => long_run(&apart, &vec![LogIndex(0); apart.len()])[(0, 0)] / rows.max(1.0),
             false => 0.0,
         };
         Own { squares, variance, chance: by_parts.max(variance / independent) }

@@ -5,6 +5,7 @@ use super::least_squares::Estimate;
 use super::solve::solve;
 pub(crate) use crate::policy::report::BIASING;
 use crate::policy::report::{DEAD_SHARE, LIKELY, SURE};
+use denavit_measure::PartIndex;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DVector;
 
@@ -172,7 +173,7 @@ pub fn convergence(model: &RegressionModel, found: &Estimate) -> Vec<Convergence
     let mut points = Vec::new();
     let mut before_s = 0.0;
     for part in 0..count {
-        condensed.merge(part, &mut merged);
+        condensed.merge(PartIndex(part), &mut merged);
         let is_last_of_log =
             condensed.log_of_part.get(part + 1) != Some(&condensed.log_of_part[part]);
         let time_s = before_s + condensed.end_s[part];

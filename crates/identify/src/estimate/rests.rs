@@ -12,6 +12,7 @@ use super::nominal::nominal_values;
 use super::rows::BlockMaker;
 use crate::policy::rests::{ALIKE, HELD, OF_FRICTION, WORST};
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use std::ops::Range;
 
@@ -27,7 +28,8 @@ impl LeftOut {
                 Some(rests.into_iter().map(|rests| !rests).collect())
             };
             self.awake[number] = (0..log.joints()).map(awake).collect();
-            let follows = self.follows(model, NumberedLog { number, log }, &values);
+            let follows =
+                self.follows(model, NumberedLog { number: LogIndex(number), log }, &values);
             for (awake, follows) in self.awake[number].iter_mut().zip(follows) {
                 awake.take_if(|_| !follows);
             }
@@ -44,7 +46,7 @@ impl LeftOut {
             let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
             for rest in rests {
                 maker.for_each_of(rest.clone(), |block| {
-                    let Some(left) = block.residual(joint, &own) else { return };
+                    let Some(left) = block.residual(JointIndex(joint), &own) else { return };
                     let Some([_, torque]) = &block.torque[joint] else { return };
                     for (left, torque) in left.iter().zip(torque) {
                         let load = torque - left;
@@ -64,11 +66,11 @@ impl LeftOut {
     pub(super) fn rests(
         &self,
         NumberedLog { number, log }: NumberedLog<'_>,
-        joint: usize,
+        joint: JointIndex,
     ) -> Vec<Range<usize>> {
-        let Some(awake) = &self.awake[number][joint] else { return Vec::new() };
+        let Some(awake) = &self.awake[number.0][joint.0] else { return Vec::new() };
         let mut rests: Vec<Range<usize>> = Vec::new();
-        let counts = log.counts(awake, 0, log.samples());
+        let counts = log.counts(awake, SampleIndex(0), log.samples());
         for at in (0..counts.len()).filter(|&at| counts[at]) {
             match rests.last_mut().filter(|last| last.end == at) {
                 Some(last) => last.end = at + 1,
@@ -80,7 +82,9 @@ impl LeftOut {
 
     /// The same of all joints.
     pub(super) fn all_rests(&self, log: NumberedLog<'_>) -> Vec<Vec<Range<usize>>> {
-        (0..self.awake[log.number].len()).map(|joint| self.rests(log, joint)).collect()
+        (0..self.awake[log.number.0].len())
+            .map(|joint| self.rests(log, JointIndex(joint)))
+            .collect()
     }
 
     /// The same with rests left out.
@@ -130,7 +134,7 @@ impl LeftOut {
                 fewer.awake[log][joint] = None;
             }
         }
-        (0..logs.len()).for_each(|log| fewer.keep_enough(log, logs));
+        (0..logs.len()).map(LogIndex).for_each(|log| fewer.keep_enough(log, logs));
         (fewer != *self).then_some(fewer)
     }
 }

@@ -9,6 +9,7 @@ use super::solve::solve;
 use super::weights::ByLog;
 use crate::policy::robust::{BISQUARE, HUBER, LEAST_SLOPE};
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 
@@ -70,9 +71,9 @@ pub(super) fn influences(
 ) -> Vec<Influence> {
     let mut sums = vec![[0.0; 3]; model.joints.len()];
     for (number, scales) in scales.iter().enumerate() {
-        counted_residuals(model, number, rows, phi, |joint, _, residual| {
-            let sums = &mut sums[joint];
-            let deviations = residual / scales[joint].max(f64::MIN_POSITIVE);
+        counted_residuals(model, LogIndex(number), rows, phi, |joint, _, residual| {
+            let sums = &mut sums[joint.0];
+            let deviations = residual / scales[joint.0].max(f64::MIN_POSITIVE);
             let weight = loss.factor(deviations).powi(2);
             sums[0] += weight;
             sums[1] += loss.slope(deviations);
@@ -127,36 +128,37 @@ impl Problem<'_> {
 pub(super) fn scales(model: &RegressionModel, rows: Rows<'_>, phi: &[f64]) -> ByLog {
     let samples: usize = rows.0.iter().map(Conditioned::samples).sum();
     let stride = samples.div_ceil(SCALE_SAMPLES).max(1);
-    let of_log = |number: usize| {
+    let of_log = |number: LogIndex| {
         let mut found: Vec<Vec<f64>> = vec![Vec::new(); model.joints.len()];
         counted_residuals(model, number, rows, phi, |joint, sample, residual| {
-            if sample % stride == 0 {
-                found[joint].push(residual.abs());
+            if sample.0.is_multiple_of(stride) {
+                found[joint.0].push(residual.abs());
             }
         });
         found.into_iter().map(deviation).collect()
     };
-    (0..rows.0.len()).map(of_log).collect()
+    (0..rows.0.len()).map(LogIndex).map(of_log).collect()
 }
 
 /// Calls `visit` with the joint, the sample and the residual of every row of a log that counts:
 /// those that are left out are no noise.
 fn counted_residuals(
     model: &RegressionModel,
-    number: usize,
+    number: LogIndex,
     (logs, left_out): Rows<'_>,
     phi: &[f64],
-    mut visit: impl FnMut(usize, usize, f64),
+    mut visit: impl FnMut(JointIndex, SampleIndex, f64),
 ) {
-    let own = NumberedLog { number, log: &logs[number] };
+    let own = NumberedLog { number, log: &logs[number.0] };
     let of_joint = |places: &Vec<usize>| places.iter().map(|&at| phi[at]).collect();
     let phi: Vec<Vec<f64>> = model.pattern().iter().map(of_joint).collect();
     BlockMaker::resting(model, own.log, &left_out.all_rests(own)).for_each(|block| {
         for (joint, phi) in phi.iter().enumerate() {
+            let joint = JointIndex(joint);
             let counts = left_out.counts(own, joint, block.first, block.samples);
             let left = block.residual(joint, phi).unwrap_or_default().into_iter().enumerate();
             for (at, left) in left.filter(|(at, _)| counts.as_ref().is_none_or(|one| one[*at])) {
-                visit(joint, block.first + at, left);
+                visit(joint, SampleIndex(block.first.0 + at), left);
             }
         }
     });

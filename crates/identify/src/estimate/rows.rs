@@ -1,6 +1,7 @@
 //! The rows of a regression, block by block, after both sides went through the same decimator.
 
 use denavit_measure::condition::{Conditioned, Decimator};
+use denavit_measure::{JointIndex, SampleIndex};
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use std::ops::Range;
 
@@ -11,7 +12,7 @@ const BLOCK: usize = 512;
 #[derive(Clone, Debug, Default)]
 pub struct Block {
     /// The number of the first sample among those that are left after decimation.
-    pub first: usize,
+    pub first: SampleIndex,
     /// Number of samples.
     pub samples: usize,
     /// For each joint its columns, as its pattern lists them, one entry for each sample.
@@ -23,17 +24,17 @@ pub struct Block {
 
 impl Block {
     /// The columns of a joint and what they are to give.
-    pub fn with_target(&self, joint: usize) -> Option<Vec<&[f64]>> {
-        let [_, target] = self.torque[joint].as_ref()?;
-        let columns = self.columns[joint].iter().map(Vec::as_slice);
+    pub fn with_target(&self, joint: JointIndex) -> Option<Vec<&[f64]>> {
+        let [_, target] = self.torque[joint.0].as_ref()?;
+        let columns = self.columns[joint.0].iter().map(Vec::as_slice);
         Some(columns.chain([target.as_slice()]).collect())
     }
 
     /// Target - Y phi of a joint, one for each sample; none where no torque was measured.
-    pub fn residual(&self, joint: usize, phi: &[f64]) -> Option<Vec<f64>> {
-        let [_, target] = self.torque[joint].as_ref()?;
+    pub fn residual(&self, joint: JointIndex, phi: &[f64]) -> Option<Vec<f64>> {
+        let [_, target] = self.torque[joint.0].as_ref()?;
         let mut residual = target.clone();
-        for (column, factor) in self.columns[joint].iter().zip(phi) {
+        for (column, factor) in self.columns[joint.0].iter().zip(phi) {
             for (sum, entry) in residual.iter_mut().zip(column) {
                 *sum -= factor * entry;
             }
@@ -119,7 +120,7 @@ impl<'a> BlockMaker<'a> {
         let mut maker = Self::new(model, data);
         let mut all = Vec::new();
         for (joint, rests) in rests.iter().enumerate() {
-            let of = |samples: &Range<usize>| maker.rest(joint, samples.clone());
+            let of = |samples: &Range<usize>| maker.rest(JointIndex(joint), samples.clone());
             all.push(rests.iter().filter_map(of).collect());
         }
         maker.rests = all;
@@ -127,7 +128,7 @@ impl<'a> BlockMaker<'a> {
     }
 
     /// A rest of a joint, with the means of its rows; none of a joint without rows.
-    fn rest(&mut self, joint: usize, samples: Range<usize>) -> Option<Rest> {
+    fn rest(&mut self, joint: JointIndex, samples: Range<usize>) -> Option<Rest> {
         let mut means: Vec<f64> = Vec::new();
         let count = samples.len() as f64;
         self.for_each_of(samples.clone(), |block| {
@@ -145,9 +146,9 @@ impl<'a> BlockMaker<'a> {
         let block = &mut self.block;
         for (joint, rests) in self.rests.iter().enumerate() {
             for Rest { samples, means } in rests {
-                let last = block.first + block.samples;
+                let first = block.first.0;
                 let [from, to] = [samples.start, samples.end]
-                    .map(|at| at.clamp(block.first, last) - block.first);
+                    .map(|at| at.clamp(first, first + block.samples) - first);
                 let target = block.torque[joint].iter_mut().map(|[_, target]| target);
                 let columns = block.columns[joint].iter_mut().chain(target);
                 for (column, mean) in columns.zip(means) {
@@ -175,19 +176,19 @@ impl<'a> BlockMaker<'a> {
     /// The same with those of given samples alone.
     pub(super) fn for_each_of(&mut self, samples: Range<usize>, mut visit: impl FnMut(&Block)) {
         for first in samples.clone().step_by(BLOCK) {
-            visit(self.at(first, BLOCK.min(samples.end - first)));
+            visit(self.at(SampleIndex(first), BLOCK.min(samples.end - first)));
         }
     }
 
     /// The block of given samples.
-    pub(super) fn at(&mut self, first: usize, samples: usize) -> &Block {
+    pub(super) fn at(&mut self, first: SampleIndex, samples: usize) -> &Block {
         self.fill(first, samples);
         &self.block
     }
 
-    fn fill(&mut self, first: usize, samples: usize) {
+    fn fill(&mut self, first: SampleIndex, samples: usize) {
         let (factor, reach) = (self.decimator.factor(), self.decimator.reach());
-        let start = self.data.range.start + first * factor;
+        let start = self.data.range.start + first.0 * factor;
         let range = start..start + (samples - 1) * factor + 2 * reach + 1;
         self.data.motion(range.clone(), &mut self.motion);
         let motion: Vec<&[f64]> = self.motion.iter().map(Vec::as_slice).collect();

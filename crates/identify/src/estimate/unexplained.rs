@@ -9,6 +9,7 @@ use crate::policy::unexplained::{
     ALIKE, AT_REST, LEFT, LEFT_ALIKE, LEFT_AT_REST, OF_NOISE, STICTION,
 };
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::fmt;
 
@@ -25,7 +26,7 @@ pub(super) fn moves(model: &RegressionModel, logs: &[&Conditioned]) -> Vec<bool>
         let step = samples.div_ceil(BLOCKS).max(BLOCK);
         for first in (0..samples).step_by(step) {
             let mut motion = Vec::new();
-            log.motion_at(first, BLOCK.min(samples - first), &mut motion);
+            log.motion_at(SampleIndex(first), BLOCK.min(samples - first), &mut motion);
             for ([low, high], positions) in ranges.iter_mut().zip(&motion) {
                 *low = positions.iter().copied().fold(*low, f64::min);
                 *high = positions.iter().copied().fold(*high, f64::max);
@@ -107,7 +108,7 @@ pub struct ShownLogs<'a> {
     /// All of them.
     pub logs: &'a [Conditioned],
     /// The numbers of the others, which show what the model says.
-    pub shown: &'a [usize],
+    pub shown: &'a [LogIndex],
 }
 
 /// What joints are judged by.
@@ -132,7 +133,7 @@ pub fn unexplained_joints(
 ) -> Vec<Unexplained> {
     let ShownLogs { logs, shown } = shown_logs;
     let phi = judged.found.solution.phi.as_slice();
-    let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log]).collect();
+    let together: Vec<&Conditioned> = shown.iter().map(|&log| &logs[log.0]).collect();
     // a joint that moves may be left with nothing but noise of the positions
     let noise = noise_of_positions(model, &together, phi);
     let least: Vec<f64> = noise.iter().map(|noise| (OF_NOISE * noise).max(LEFT)).collect();
@@ -259,7 +260,7 @@ fn at_rest(
         let places: Vec<usize> = log.places(block.first, block.samples).collect();
         for (joint, rests) in rests.iter().enumerate().filter(|(_, rests)| !rests.is_empty()) {
             let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-            let left = block.residual(joint, &own).unwrap_or_default();
+            let left = block.residual(JointIndex(joint), &own).unwrap_or_default();
             let rests = places.iter().map(|place| rests[place - log.range.start]);
             joints[joint].left.extend(left.into_iter().zip(rests));
         }

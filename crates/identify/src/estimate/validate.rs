@@ -2,6 +2,7 @@
 
 use super::rows::BlockMaker;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, SampleIndex};
 use denavit_plants::regression::RegressionModel;
 use std::borrow::Borrow;
 use std::collections::VecDeque;
@@ -82,12 +83,13 @@ pub fn validate(
         BlockMaker::new(model, log).for_each(|block| {
             for (joint, sums) in sums.iter_mut().enumerate() {
                 let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| phi[at]).collect();
-                let Some(residual) = block.residual(joint, &own) else { continue };
+                let Some(residual) = block.residual(JointIndex(joint), &own) else { continue };
                 let Some([torque, _]) = &block.torque[joint] else { continue };
                 for (k, (residual, torque)) in residual.into_iter().zip(torque).enumerate() {
                     sums.add(residual, *torque);
-                    if (block.first + k) % stride == 0 {
-                        let time = log.time_s(block.first + k);
+                    let sample = SampleIndex(block.first.0 + k);
+                    if sample.0.is_multiple_of(stride) {
+                        let time = log.time_s(sample);
                         sums.drawn.push([time, *torque, torque - residual]);
                     }
                 }

@@ -11,6 +11,7 @@ use super::solve::Solution;
 use super::triangle::Triangle;
 pub(super) use crate::policy::weights::SETTLED;
 use crate::policy::weights::{LEAST_FREE, SHARED};
+use denavit_measure::JointIndex;
 
 /// Times that weights are found anew.
 pub(super) const MAX_REWEIGHTING: usize = 30;
@@ -129,13 +130,13 @@ impl Condensed {
     pub(super) fn counted_rows(&self) -> f64 {
         let counts = self.of_rows_alike();
         let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
-        (0..self.parts.len()).map(|part| counts[self.log_of_part[part]] * rows(part)).sum()
+        (0..self.parts.len()).map(|part| counts[self.log_of_part[part].0] * rows(part)).sum()
     }
 
     /// Rows that are independent of each other.
     pub(super) fn independent_rows(&self) -> f64 {
         let rows = |part: usize| self.parts[part].iter().map(Triangle::rows).sum::<usize>() as f64;
-        let of_part = |part: usize| self.independent[self.log_of_part[part]] * rows(part);
+        let of_part = |part: usize| self.independent[self.log_of_part[part].0] * rows(part);
         (0..self.parts.len()).map(of_part).sum()
     }
 
@@ -165,7 +166,7 @@ impl Condensed {
     pub(super) fn squares(&self, triangles: &[Vec<Triangle>], phi: &[f64]) -> ByLog {
         let of_log = |triangles: &Vec<Triangle>| {
             let all = triangles.iter().enumerate();
-            all.map(|(joint, one)| one.squares(&self.of_joint(joint, phi))).collect()
+            all.map(|(joint, one)| one.squares(&self.of_joint(JointIndex(joint), phi))).collect()
         };
         triangles.iter().map(of_log).collect()
     }
@@ -219,7 +220,7 @@ impl Condensed {
         for (part, &log) in self.parts.iter().zip(&self.log_of_part) {
             for (joint, sum) in sums.iter_mut().enumerate() {
                 let rows = part[joint].rows() as f64;
-                *sum = [sum[0] + rows, sum[1] + rows * noise[log][joint].powi(2)];
+                *sum = [sum[0] + rows, sum[1] + rows * noise[log.0][joint].powi(2)];
             }
         }
         sums.iter().map(|[rows, squares]| (squares / rows.max(1.0)).sqrt()).collect()

@@ -9,6 +9,7 @@ use super::errors::Errors;
 use super::least_squares::{Estimate, EstimateError, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
 use crate::policy::widening::{LEAST, SURE};
+use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
@@ -89,7 +90,7 @@ impl Fit<'_> {
         }
         let mut left_out = fitted.left_out;
         left_out.awake = asked.awake;
-        (0..logs.len()).for_each(|log| left_out.keep_enough(log, logs));
+        (0..logs.len()).map(LogIndex).for_each(|log| left_out.keep_enough(log, logs));
         self.fitted(model, logs, left_out)
     }
 

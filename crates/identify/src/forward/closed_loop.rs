@@ -4,6 +4,7 @@ use super::{
     Compared, Controller, Forward, ForwardError, ForwardJoint, ForwardKind, LONGEST_S, MotionLog,
     column, names, rms, simulation,
 };
+use denavit_measure::SampleIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
@@ -57,7 +58,7 @@ pub fn closed_loop(
         });
     }
     let (file, kind) = (log.file.clone(), ForwardKind::ClosedLoop);
-    let t_s = kept.map(|sample| log.time_s(from + sample)).collect();
+    let t_s = kept.map(|sample| log.time_s(SampleIndex(from + sample))).collect();
     Ok(Forward { file, kind, t_s, joints })
 }
 
@@ -96,8 +97,8 @@ fn run(
 ) -> Result<Log, ForwardError> {
     names(plant.model())?;
     let control = following(plant, controller, log)?;
-    let initial = log.state(plant.model(), from, true);
-    let end_s = log.time_s(from + rows - 1);
+    let initial = log.state(plant.model(), SampleIndex(from), true);
+    let end_s = log.time_s(SampleIndex(from + rows - 1));
     let how = simulation(DriveModelling::Model, end_s, log);
     let run = simulate_believing(plant, believed, &control, &initial, &how);
     let run = run.map_err(ForwardError::Start)?;
@@ -124,7 +125,7 @@ fn following(
         }
         let missing = || ForwardError::NoReference(joint.name.clone());
         let logged = log.reference[index].clone().ok_or_else(missing)?;
-        let times = (0..logged.len()).map(|sample| log.time_s(sample)).collect();
+        let times = (0..logged.len()).map(|sample| log.time_s(SampleIndex(sample))).collect();
         let spline = CubicSpline::new(times, logged, [EndCondition::Natural; 2]);
         let spline = spline.map_err(|_| ForwardError::BadReference(joint.name.clone()))?;
         own.reference = Some(Reference::Cubic(spline));

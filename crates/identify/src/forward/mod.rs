@@ -13,6 +13,7 @@ mod windows;
 pub use closed_loop::{closed_loop, simulated_log};
 pub use windows::{Windows, in_windows};
 
+use denavit_measure::SampleIndex;
 use denavit_measure::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::short;
@@ -145,8 +146,8 @@ impl MotionLog {
     }
 
     /// The time of a sample \[s\].
-    pub fn time_s(&self, sample: usize) -> f64 {
-        self.start_s + self.step_s * sample as f64
+    pub fn time_s(&self, sample: SampleIndex) -> f64 {
+        self.start_s + self.step_s * sample.0 as f64
     }
 
     fn samples(&self) -> usize {
@@ -155,10 +156,11 @@ impl MotionLog {
 
     /// The state at a sample; motors as they move or were logged, or with the elongation of springs
     /// that the torque makes, and turning with their joints.
-    fn state(&self, model: &PlantModel, sample: usize, has_motors: bool) -> State {
+    fn state(&self, model: &PlantModel, sample: SampleIndex, has_motors: bool) -> State {
+        let SampleIndex(sample) = sample;
         let at = sample.clamp(self.range.start, self.range.end - 1);
         let mut state = State {
-            t_s: self.time_s(sample),
+            t_s: self.time_s(SampleIndex(sample)),
             q: self.q.iter().map(|q| q[sample]).collect(),
             qd: self.qd.iter().map(|qd| qd[at]).collect(),
             laws: self.law_states.iter().map(|state| state[sample]).collect(),

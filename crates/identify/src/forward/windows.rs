@@ -7,6 +7,7 @@ use super::{
     ACCURACY, Compared, Forward, ForwardError, ForwardJoint, ForwardKind, MotionLog, column, names,
     rms, simulation,
 };
+use denavit_measure::SampleIndex;
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
 use denavit_simulate::integrate::Method;
@@ -54,8 +55,8 @@ pub fn in_windows(
     let mut went = vec![Vec::new(); n];
     let mut t_s = Vec::new();
     for from in (0..count).map(begin) {
-        let initial = log.state(&model, from, has_motors);
-        let how = simulation(drives, log.time_s(from + steps), log);
+        let initial = log.state(&model, SampleIndex(from), has_motors);
+        let how = simulation(drives, log.time_s(SampleIndex(from + steps)), log);
         // Friction that is a steep line at rest makes explicit steps short, with light links most.
         let how = Simulation { method: Method::Radau(ACCURACY), ..how };
         let run = simulate(plant, &torques, &initial, &how).map_err(ForwardError::Start)?;
@@ -63,7 +64,7 @@ pub fn in_windows(
             return Err(ForwardError::Stopped { t_s: run.end.t_s, stop: run.stop });
         }
         let samples = from + 1..from + steps + 1;
-        t_s.extend(samples.clone().map(|sample| log.time_s(sample)));
+        t_s.extend(samples.clone().map(|sample| log.time_s(SampleIndex(sample))));
         for (index, joint) in model.joints.iter().enumerate() {
             let [q, simulated_q, qd, simulated_qd] = &mut signals[index];
             q.extend_from_slice(&log.q[index][samples.clone()]);
@@ -95,7 +96,7 @@ pub fn in_windows(
 /// The measured torques, to be fed forward.
 fn given(plant: &dyn Plant, log: &MotionLog) -> Result<Control, ForwardError> {
     let mut control = Control::passive(plant.model().joints.len());
-    let times: Vec<f64> = log.range.clone().map(|sample| log.time_s(sample)).collect();
+    let times: Vec<f64> = log.range.clone().map(|sample| log.time_s(SampleIndex(sample))).collect();
     for (index, joint) in plant.model().joints.iter().enumerate() {
         let missing = || ForwardError::NoTorque(joint.name.clone());
         let torque = log.torque[index].as_ref().ok_or_else(missing)?;

@@ -20,6 +20,7 @@ pub use noise::Encoder;
 pub use pieces::Piece;
 
 use super::log::{JointSignals, MeasuredLog};
+use crate::SampleIndex;
 use denavit_numerics::short;
 use std::fmt;
 use std::ops::Range;
@@ -366,10 +367,8 @@ impl Conditioned {
     }
 
     /// The time of a sample that is left \[s\].
-    pub fn time_s(&self, sample: usize) -> f64 {
-        let reach = Decimator::reach_of(self.decimation);
-        let at = self.range.start + reach + sample * self.decimation;
-        self.start_s + self.step_s * at as f64
+    pub fn time_s(&self, sample: SampleIndex) -> f64 {
+        self.start_s + self.step_s * self.first_place(sample) as f64
     }
 
     /// q, qd and qdd of every joint at samples of the log, 3 n columns; `range` must lie within
@@ -398,7 +397,7 @@ impl Conditioned {
     }
 
     /// q, qd and qdd at so many samples that are left, from `first` on.
-    pub fn motion_at(&self, first: usize, samples: usize, columns: &mut Vec<Vec<f64>>) {
+    pub fn motion_at(&self, first: SampleIndex, samples: usize, columns: &mut Vec<Vec<f64>>) {
         let from = self.first_place(first);
         self.motion(from..from + (samples - 1) * self.decimation + 1, columns);
         if self.decimation > 1 {
@@ -409,12 +408,16 @@ impl Conditioned {
     }
 
     /// Where a sample that is left stands among all.
-    fn first_place(&self, sample: usize) -> usize {
-        self.range.start + Decimator::reach_of(self.decimation) + sample * self.decimation
+    fn first_place(&self, sample: SampleIndex) -> usize {
+        self.range.start + Decimator::reach_of(self.decimation) + sample.0 * self.decimation
     }
 
     /// Where so many samples that are left stand among all, from `first` on.
-    pub fn places(&self, first: usize, samples: usize) -> impl Iterator<Item = usize> + Clone {
+    pub fn places(
+        &self,
+        first: SampleIndex,
+        samples: usize,
+    ) -> impl Iterator<Item = usize> + Clone {
         let from = self.first_place(first);
         let decimation = self.decimation;
         (0..samples).map(move |sample| from + sample * decimation)

@@ -1,6 +1,7 @@
 //! Pieces of a log: enough of a long one to see what is alike all along it.
 
 use super::{Conditioned, Decimator, STENCIL};
+use crate::SampleIndex;
 
 /// Pieces of a log that is too long to be looked at as a whole.
 const PIECES: usize = 12;
@@ -9,7 +10,7 @@ const PIECES: usize = 12;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
     /// The first.
-    pub first: usize,
+    pub first: SampleIndex,
     /// Their number.
     pub samples: usize,
 }
@@ -20,16 +21,16 @@ impl Conditioned {
         let (samples, most) = (self.samples(), most / self.decimation.max(1));
         let length = most / PIECES;
         if samples <= most.max(PIECES) || length == 0 {
-            return vec![Piece { first: 0, samples }];
+            return vec![Piece { first: SampleIndex(0), samples }];
         }
-        let first = |piece: usize| piece * (samples - length) / (PIECES - 1);
+        let first = |piece: usize| SampleIndex(piece * (samples - length) / (PIECES - 1));
         (0..PIECES).map(|piece| Piece { first: first(piece), samples: length }).collect()
     }
 
     /// A piece as a log of its own, whose sample 0 is the piece's first one.
     pub fn piece(&self, Piece { first, samples }: Piece) -> Self {
         let edge = self.range.start;
-        let start = first * self.decimation;
+        let start = first.0 * self.decimation;
         let inner = 2 * Decimator::reach_of(self.decimation) + (samples - 1) * self.decimation + 1;
         let end = (start + edge + inner + edge).min(self.q[0].len());
         let part = |column: &Vec<f64>| column[start..end].to_vec();

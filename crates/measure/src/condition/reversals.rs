@@ -2,6 +2,7 @@
 //! functions of a rate that pass the filter as the torque does.
 
 use super::{Butterworth, Conditioned, Decimator, STENCIL, acceleration, rate};
+use crate::SampleIndex;
 use crate::policy::reversals::{NOISE, STEPS, STILL, WEIGHED};
 use std::ops::Range;
 
@@ -167,7 +168,7 @@ impl Conditioned {
 
     /// For each of so many samples that are left, from `first` on, whether it has its weight from
     /// samples of [`Conditioned::range`] that are not among `left_out`.
-    pub fn counts(&self, left_out: &[bool], first: usize, samples: usize) -> Vec<bool> {
+    pub fn counts(&self, left_out: &[bool], first: SampleIndex, samples: usize) -> Vec<bool> {
         let (factor, reach) = (self.decimation.max(1), Decimator::reach_of(self.decimation));
         let half = (WEIGHED * factor as f64).ceil() as usize;
         let half = half.min(reach);
@@ -175,6 +176,6 @@ impl Conditioned {
             let middle = reach + sample * factor;
             !left_out[middle - half..=middle + half].contains(&true)
         };
-        (first..first + samples).map(counts).collect()
+        (first.0..first.0 + samples).map(counts).collect()
     }
 }

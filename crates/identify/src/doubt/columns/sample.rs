@@ -4,6 +4,7 @@ use super::line::Line;
 use super::reading::Reading;
 use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
+use denavit_measure::SampleIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use nalgebra::{DMatrix, DVector};
@@ -85,7 +86,7 @@ impl<'a> Sample<'a> {
             let every = samples.div_ceil(BLOCK * blocks).max(1);
             for first in (0..samples).step_by(BLOCK * every) {
                 let count = BLOCK.min(samples - first);
-                windows.push(Window::new(log, &counts, [first, count], latest));
+                windows.push(Window::new(log, &counts, SampleIndex(first), count, latest));
             }
         }
         let (mut evaluator, rows) = (model.evaluator(), RegressionRows::default());

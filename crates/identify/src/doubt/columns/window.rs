@@ -2,6 +2,7 @@
 
 use super::super::policy::SIGNED as LEAST;
 use super::reading::Source;
+use denavit_measure::SampleIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::CoulombLaw;
 use std::ops::Range;
@@ -9,7 +10,7 @@ use std::ops::Range;
 /// Samples of a log.
 pub(super) struct Window<'a> {
     log: &'a Conditioned,
-    first: usize,
+    first: SampleIndex,
     count: usize,
     /// q, qd and qdd of every joint.
     motion: Vec<Vec<f64>>,
@@ -48,7 +49,8 @@ impl<'a> Window<'a> {
     pub(super) fn new(
         log: &'a Conditioned,
         all: &[Option<Vec<bool>>],
-        [first, count]: [usize; 2],
+        first: SampleIndex,
+        count: usize,
         latest: isize,
     ) -> Self {
         let mut motion = Vec::new();

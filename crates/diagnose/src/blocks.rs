@@ -13,7 +13,7 @@ pub(super) fn blocks(data: &Data<'_>) -> (Vec<usize>, usize) {
         let rows = signals.rows();
         let by_time = (rows as f64 * signals.row_step_s() / BLOCK_S) as usize;
         let count = by_time.max(LEAST_BLOCKS).min(rows.max(1));
-        for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
+        for stretch in data.stretches.iter().filter(|stretch| stretch.log.0 == log) {
             for row in 0..stretch.rows {
                 of_row[stretch.first + row] = first + row * count / stretch.rows;
             }

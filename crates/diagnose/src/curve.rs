@@ -23,7 +23,7 @@ pub struct Curve {
 /// The curves of all logs, joint by joint, from what is left in the rows.
 pub(super) fn curves(data: &Data<'_>, before: &[f64], after: &[f64]) -> Vec<Curve> {
     let of_stretch = |stretch: &super::Stretch| {
-        let signals = &data.signals[stretch.log];
+        let signals = &data.signals[stretch.log.0];
         let rows = stretch.first..stretch.first + stretch.rows;
         Curve {
             file: signals.file.clone(),

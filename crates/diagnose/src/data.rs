@@ -8,13 +8,14 @@ use super::signals::Signals;
 use super::turning::{PER_JOINT, settle, unnamed};
 pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
+use denavit_measure::LogIndex;
 use denavit_plants::effect::Drive;
 
 /// A stretch of rows: those of one equation in one log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
     /// The log.
-    pub log: usize,
+    pub log: LogIndex,
     /// The joint.
     pub joint: usize,
     /// The equation: of the torque of that joint, or after all joints that of its spring.
@@ -99,7 +100,13 @@ impl<'a> Data<'a> {
                 let Some(target) = &rows.target[joint] else { continue };
                 let (first, count) = (data.residual.len(), target.len());
                 let equation = joint;
-                data.stretches.push(Stretch { log, joint, equation, first, rows: count });
+                data.stretches.push(Stretch {
+                    log: LogIndex(log),
+                    joint,
+                    equation,
+                    first,
+                    rows: count,
+                });
                 let computed = rows.torque(nominal, joint, &given.axes);
                 data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
                 data.torque.extend(data.signals[log].torque[joint].iter().flatten());
@@ -134,7 +141,13 @@ impl<'a> Data<'a> {
                 let Some([deflection, _]) = self.signals[log].deflection(joint) else { continue };
                 let deflection = self.signals[log].rows_of(&deflection);
                 let (first, count) = (self.residual.len(), deflection.len());
-                self.stretches.push(Stretch { log, joint, equation, first, rows: count });
+                self.stretches.push(Stretch {
+                    log: LogIndex(log),
+                    joint,
+                    equation,
+                    first,
+                    rows: count,
+                });
                 let passed: Vec<f64> = deflection.iter().map(|d| spring.stiffness * d).collect();
                 let computed = rows.torque(nominal, joint, &given.loads);
                 let left = rows.unknown(joint, passed.clone());
@@ -158,7 +171,7 @@ impl<'a> Data<'a> {
     /// Lets drives before springs move with their motors.
     fn move_drives(&mut self, given: &Phi, directions: &[Phi]) {
         for stretch in self.stretches.clone() {
-            let signals = &self.signals[stretch.log];
+            let signals = &self.signals[stretch.log.0];
             if signals.motor[stretch.joint].is_none() {
                 continue;
             }
@@ -210,7 +223,7 @@ impl<'a> Data<'a> {
     }
 
     /// What a response to the motion of one log is in the rows: of the equations that have rows.
-    pub fn in_rows(&self, log: usize, signals: &Signals, response: &Response) -> RowResponse {
+    pub fn in_rows(&self, log: LogIndex, signals: &Signals, response: &Response) -> RowResponse {
         let mut found = RowResponse::default();
         for (place, &equation) in response.equations.iter().enumerate() {
             let is_own = |stretch: &&Stretch| stretch.log == log && stretch.equation == equation;

@@ -20,6 +20,7 @@ use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
+use denavit_measure::LogIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
@@ -366,7 +367,7 @@ fn rows_of(data: &Data<'_>, fitted: &Fitted<'_>, torques: &[ModelTorques]) -> Ve
         let signals = &data.signals[log];
         let motion = torques.motion(data.nominal, signals);
         let response = fitted.law.response(motion, &fitted.values);
-        data.in_rows(log, signals, &response).subtract_from(&mut rows);
+        data.in_rows(LogIndex(log), signals, &response).subtract_from(&mut rows);
     }
     rows.iter_mut().for_each(|row| *row = -*row);
     rows

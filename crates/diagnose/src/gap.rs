@@ -20,7 +20,7 @@ impl Gap {
 
     /// The gap that noise alone leaves.
     pub fn of_floor(data: &Data<'_>, floors: &[NoiseFloor]) -> Self {
-        Self::of(data, |_, stretch| floors[stretch.log].deviation[stretch.equation].powi(2))
+        Self::of(data, |_, stretch| floors[stretch.log.0].deviation[stretch.equation].powi(2))
     }
 
     fn of(data: &Data<'_>, left: impl Fn(usize, &Stretch) -> f64) -> Self {

@@ -9,6 +9,7 @@ use super::held::Held;
 use super::law::Law;
 use super::signals::Signals;
 use crate::policy::problem::{INDEPENDENT, SETTLED, STUCK};
+use denavit_measure::LogIndex;
 use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 
@@ -136,7 +137,7 @@ impl<'a> Problem<'a> {
                 let signals = &self.signals[log];
                 let motion = torques.motion(self.data.nominal, signals);
                 let response = fitted.law.response(motion, &fitted.values);
-                all.append(self.data.in_rows(log, signals, &response));
+                all.append(self.data.in_rows(LogIndex(log), signals, &response));
             }
             all
         };

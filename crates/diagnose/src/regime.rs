@@ -128,10 +128,10 @@ pub(super) fn where_left(
         };
         let (left, torque) = (squares(residual), squares(&data.torque));
         let noise: f64 =
-            own.iter().map(|s| s.rows as f64 * floors[s.log].deviation[equation].powi(2)).sum();
+            own.iter().map(|s| s.rows as f64 * floors[s.log.0].deviation[equation].powi(2)).sum();
         let mut sums: Vec<(Regime, f64, usize)> = Vec::new();
         for stretch in &own {
-            let flags = regimes(data, &torques[stretch.log], stretch, filter_s);
+            let flags = regimes(data, &torques[stretch.log.0], stretch, filter_s);
             for (regime, is_in) in flags {
                 let part = is_in.iter().zip(&residual[all(stretch)]).filter(|(is_in, _)| **is_in);
                 let (square, count) =
@@ -176,7 +176,7 @@ fn regimes(
     stretch: &Stretch,
     filter_s: f64,
 ) -> Vec<(Regime, Vec<bool>)> {
-    let (signals, joint) = (&data.signals[stretch.log], stretch.joint);
+    let (signals, joint) = (&data.signals[stretch.log.0], stretch.joint);
     let [q, qd, qdd] =
         [&signals.q, &signals.qd, &signals.qdd].map(|all| signals.at_rows(&all[joint]));
     let load = signals.at_rows(&torques.load[joint]);
@@ -226,7 +226,7 @@ fn window(data: &Data<'_>, residual: &[f64], own: &[Stretch]) -> ([f64; 2], f64)
         .sum();
     let mut best = ([0.0; 2], 0.0);
     for stretch in own {
-        let signals = &data.signals[stretch.log];
+        let signals = &data.signals[stretch.log.0];
         let times = signals.at_rows(&signals.t);
         let length = ((1.0 / signals.row_step_s()) as usize).clamp(1, stretch.rows);
         let part = &residual[stretch.first..stretch.first + stretch.rows];

@@ -57,7 +57,7 @@ impl Spectra {
             let weights = (0..data.stretches.len()).map(|place| data.weights_of(place));
             spectra.weights.push(weights.collect());
             let line_hz = |stretch: &Stretch| {
-                0.5 / (stretch.rows as f64 * data.signals[stretch.log].row_step_s())
+                0.5 / (stretch.rows as f64 * data.signals[stretch.log.0].row_step_s())
             };
             spectra.line_hz.push(data.stretches.iter().map(line_hz).collect());
             for (place, stretch) in data.stretches.iter().enumerate() {

@@ -10,7 +10,7 @@ use super::search::{Search, SearchOptions};
 use super::weighing::{Placed, Weighing};
 pub(super) use crate::policy::state::MOST_Z;
 use denavit_evidence::{Terms, policy};
-use denavit_measure::Split;
+use denavit_measure::{LogIndex, Split};
 
 /// An effect that was taken into the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,7 +151,7 @@ impl Data<'_> {
                 let signals = &self.signals[log];
                 let motion = torques.motion(self.nominal, signals);
                 let response = fitted.law.response(motion, &fitted.values);
-                self.in_rows(log, signals, &response).subtract_from(&mut residual);
+                self.in_rows(LogIndex(log), signals, &response).subtract_from(&mut residual);
             }
         }
         residual

@@ -73,11 +73,11 @@ impl Rows {
         for stretch in data.stretches.iter().filter(|stretch| stretch.equation == equation) {
             let range = stretch.first..stretch.first + stretch.rows;
             all_left.extend(&left[range]);
-            let signals = &data.signals[stretch.log];
+            let signals = &data.signals[stretch.log.0];
             let names = data.nominal.model.joints.iter().map(|one| one.name.as_str());
             let names: Vec<&str> = names.collect();
             let joint = stretch.joint;
-            let library = library(signals, &torques[stretch.log].load[joint], joint, &names);
+            let library = library(signals, &torques[stretch.log.0].load[joint], joint, &names);
             columns.resize(library.len(), Vec::new());
             rows.names = library.iter().map(|(name, _)| name.clone()).collect();
             for (column, (_, values)) in columns.iter_mut().zip(&library) {

@@ -54,7 +54,7 @@ pub(super) fn turning(
         };
         let bends = bends(signals, all);
         let rests = [-0.5, 0.5].map(|by| Some(all(&signals.with_rests_bent(by)?)));
-        for stretch in data.stretches.iter().filter(|stretch| stretch.log == log) {
+        for stretch in data.stretches.iter().filter(|stretch| stretch.log.0 == log) {
             let sizes: Vec<f64> =
                 bends[stretch.equation].iter().map(|b| BETWEEN * b.abs()).collect();
             let apart = signals.rows_of(&sizes);

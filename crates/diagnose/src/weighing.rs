@@ -7,6 +7,7 @@ use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
+use denavit_measure::LogIndex;
 
 /// An effect near values of its parameters, with what is believed of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +102,7 @@ impl<'a> Weighing<'a> {
             for (log, torques) in torques.iter().enumerate() {
                 let signals = &data.signals[log];
                 let response = law.response(torques.motion(data.nominal, signals), &taken.values);
-                all.append(data.in_rows(log, signals, &response));
+                all.append(data.in_rows(LogIndex(log), signals, &response));
             }
             all
         };

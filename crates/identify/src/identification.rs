@@ -13,8 +13,8 @@ use super::no_bodies::no_bodies;
 use super::noisy_logs::{MOST, NoisyLog, biased_alone, biasing_logs, noisy_logs, shown_logs};
 use super::odd_log::odd_log;
 use crate::policy::identification::{NOISY, SHORT, SMEARED};
-use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel, StandardParameter};
 
 /// What is to be identified, from what.
@@ -441,7 +441,7 @@ fn reversals(
         return Vec::new();
     }
     let without = left_out(model, logs, found, &[]);
-    let of = |(joint, share): (usize, f64)| (model.joints[joint].name.clone(), share);
+    let of = |(joint, share): (JointIndex, f64)| (model.joints[joint.0].name.clone(), share);
     let biased = biased_frictions(model, logs, &found.solution.phi, &found.covariance);
     let counted = biased.into_iter().map(of);
     counted.filter(|(name, _)| without.iter().all(|one| one.joint != *name)).collect()

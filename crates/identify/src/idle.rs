@@ -9,10 +9,10 @@ use denavit_plants::regression::RegressionModel;
 /// Takes the torques of motors that do not carry their joints out of a log, and says which: the
 /// joint rests, and its torque does not change as the load does that the model's own values make of
 /// the motion of the others. Nothing is known there but that something else holds the joint.
-pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> Vec<usize> {
+pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> Vec<JointIndex> {
     let Some(values) = nominal_values(model) else { return Vec::new() };
-    let rests = |joint: &usize| log.resting[*joint] && !model.joints[*joint].is_base;
-    let resting: Vec<usize> = (0..model.joints.len()).filter(rests).collect();
+    let rests = |joint: &JointIndex| log.resting[joint.0] && !model.joints[joint.0].is_base;
+    let resting: Vec<JointIndex> = (0..model.joints.len()).map(JointIndex).filter(rests).collect();
     if resting.is_empty() {
         return resting;
     }
@@ -20,9 +20,9 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
     let mut sums = vec![[0.0; 6]; resting.len()];
     BlockMaker::new(model, log).for_each(|block| {
         for (&joint, sums) in resting.iter().zip(&mut sums) {
-            let own: Vec<f64> = model.pattern()[joint].iter().map(|&at| values[at]).collect();
-            let Some(left) = block.residual(JointIndex(joint), &own) else { continue };
-            let Some([_, target]) = &block.torque[joint] else { continue };
+            let own: Vec<f64> = model.pattern()[joint.0].iter().map(|&at| values[at]).collect();
+            let Some(left) = block.residual(joint, &own) else { continue };
+            let Some([_, target]) = &block.torque[joint.0] else { continue };
             for (left, torque) in left.into_iter().zip(target) {
                 let load = torque - left;
                 let own = [1.0, *torque, load, torque * torque, load * load, torque * load];
@@ -38,7 +38,7 @@ pub fn leave_out_idle_motors(model: &RegressionModel, log: &mut Conditioned) -> 
         torques < FOLLOWS.powi(2) * loads && !is_alike
     };
     let idle = resting.into_iter().zip(sums).filter(|(_, sums)| is_idle(*sums));
-    let idle: Vec<usize> = idle.map(|(joint, _)| joint).collect();
-    idle.iter().for_each(|&joint| log.torque[joint] = None);
+    let idle: Vec<JointIndex> = idle.map(|(joint, _)| joint).collect();
+    idle.iter().for_each(|&joint| log.torque[joint.0] = None);
     idle
 }

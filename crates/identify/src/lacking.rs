@@ -13,8 +13,8 @@ pub(super) fn lacking(
     torques: &[f64],
 ) -> Vec<(String, f64)> {
     let left = no_noise(model, logs, found).into_iter();
-    left.filter(|&(joint, left)| left > SAID * torques[joint])
-        .map(|(joint, left)| (model.joints[joint].name.clone(), left / torques[joint]))
+    left.filter(|&(joint, left)| left > SAID * torques[joint.0])
+        .map(|(joint, left)| (model.joints[joint.0].name.clone(), left / torques[joint.0]))
         .collect()
 }
 

@@ -12,6 +12,6 @@ pub struct PartIndex(pub usize);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SampleIndex(pub usize);
 
-/// The place of a joint in its model.
+/// The place of a joint in its model, and of its signals in a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JointIndex(pub usize);

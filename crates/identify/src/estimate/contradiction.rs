@@ -241,10 +241,10 @@ impl Claim<'_> {
     ) -> Option<ContradictingLog> {
         let log = &logs[at.0];
         let named = |Told { joint, left, own, .. }: Told| ContradictingJoint {
-            joint: self.model.joints[joint].name.clone(),
+            joint: self.model.joints[joint.0].name.clone(),
             left,
             own,
-            like: likeness(self.model, log, JointIndex(joint), self.phi.as_slice()),
+            like: likeness(self.model, log, joint, self.phi.as_slice()),
         };
         let joints: Vec<_> = self.told(at, logs, one).into_iter().map(named).collect();
         let (file, standing) = (log.file.clone(), Standing::Undecided);
@@ -257,17 +257,18 @@ impl Claim<'_> {
     fn told(&self, at: LogIndex, logs: &[Conditioned], one: &Tested<'_>) -> Vec<Told> {
         let log = &logs[at.0];
         // where the sign of a rate is not known, a constant may be friction
-        let is_known = |joint: usize| !log.resting[joint] && log.unsure_signs(joint).is_none();
+        let is_known =
+            |joint: usize| !log.resting[joint] && log.unsure_signs(JointIndex(joint)).is_none();
         let signs: Vec<bool> = (0..self.model.joints.len()).map(is_known).collect();
         let mut told = self.joints(one, &signs);
         let noise =
             noise_squares(self.model, NumberedLog { number: at, log }, self.left_out, self.phi);
-        told.retain(|told| told.explained > OF_BEATS * noise[told.joint]);
+        told.retain(|told| told.explained > OF_BEATS * noise[told.joint.0]);
         let is_noisy = |joint: usize| {
             let torque = one.triangles[joint].target_squares();
             OF_BEATS * noise[joint] > OF_TORQUE.powi(2) * torque
         };
-        let is_open = |joint: usize| is_noisy(joint) && told.iter().all(|one| one.joint != joint);
+        let is_open = |joint: usize| is_noisy(joint) && told.iter().all(|one| one.joint.0 != joint);
         let open: Vec<usize> = (0..signs.len()).filter(|&joint| is_open(joint)).collect();
         let piece = log.pieces(SAMPLES)[0];
         let halved = if open.is_empty() { None } else { log.halved(piece) };
@@ -279,7 +280,7 @@ impl Claim<'_> {
             let condensed = Condensed::counted(self.model, (lower, left_out));
             let one = Tested::new(&condensed, LogIndex(0), one.weights);
             let lower = Claim { left_out, ..*self }.told(LogIndex(0), lower, &one);
-            told.extend(lower.into_iter().filter(|one| open.contains(&one.joint)));
+            told.extend(lower.into_iter().filter(|one| open.contains(&one.joint.0)));
         }
         told
     }
@@ -305,7 +306,7 @@ impl Claim<'_> {
                     && explained > of_own.powi(2) * variance * rows
                     && explained > OF_CHANCE * chance;
                 let [left, own] = [left, variance * rows].map(|one| (one / all).sqrt());
-                is_much.then_some(Told { joint, left, own, explained })
+                is_much.then_some(Told { joint: JointIndex(joint), left, own, explained })
             };
             let both = std::iter::once(&own[joint]).chain(&constant).filter_map(told);
             both.max_by(|a, b| a.explained.total_cmp(&b.explained))
@@ -316,7 +317,7 @@ impl Claim<'_> {
 
 /// A joint that tells a contradiction.
 struct Told {
-    joint: usize,
+    joint: JointIndex,
     /// The shares of its torque that phi and parameters of the log's own leave,
     left: f64,
     own: f64,

@@ -39,8 +39,8 @@ pub(crate) fn exceeding_joints(
     let noise = found.noise_of_joints();
     let weight = |noise: &f64| if *noise > 0.0 { 1.0 / noise } else { 0.0 };
     let weights: Vec<f64> = noise.iter().map(weight).collect();
-    let of_log = |at: usize| {
-        let one = Tested::new(&condensed, LogIndex(at), &weights);
+    let of_log = |at: LogIndex| {
+        let one = Tested::new(&condensed, at, &weights);
         let phi = one.with_own(&found.solution);
         let held_out = HeldOut { model, logs, at, phi: &phi, left_out };
         let share = |joint: usize| {
@@ -60,7 +60,7 @@ pub(crate) fn exceeding_joints(
         }
         let made = held_out.made(&one.triangles);
         let is_noise = held_out.is_noise();
-        let moves = moves(model, &[&logs[at]]);
+        let moves = moves(model, &[&logs[at.0]]);
         let is_told = |&joint: &usize| {
             let (torque, left, known) = all[joint];
             let is_enough = one.triangles[joint].rows() >= MIN_PART;
@@ -70,21 +70,21 @@ pub(crate) fn exceeding_joints(
         let told = (0..model.joints.len()).filter(is_told);
         let unexplained = told.map(|joint| Unexplained {
             joint: model.joints[joint].name.clone(),
-            file: Some(logs[at].file.clone()),
+            file: Some(logs[at.0].file.clone()),
             share: (all[joint].1 / all[joint].0).sqrt(),
             rest_s: None,
             beside: Some(counted[joint]),
         });
         unexplained.collect::<Vec<_>>()
     };
-    (0..logs.len()).flat_map(of_log).collect()
+    (0..logs.len()).map(LogIndex).flat_map(of_log).collect()
 }
 
 /// A log for validation.
 struct HeldOut<'a> {
     model: &'a RegressionModel,
     logs: &'a [Conditioned],
-    at: usize,
+    at: LogIndex,
     phi: &'a DVector<f64>,
     left_out: &'a LeftOut,
 }
@@ -99,13 +99,9 @@ impl HeldOut<'_> {
     /// What noise of the positions and the filter make of a row of each joint, in mean square.
     fn made(&self, triangles: &[Triangle]) -> Vec<f64> {
         let Self { model, logs, at, phi, left_out } = *self;
-        let smeared = filter_errors(model, &logs[at..=at], phi.as_slice());
-        let noise = noise_squares(
-            model,
-            NumberedLog { number: LogIndex(at), log: &logs[at] },
-            left_out,
-            phi,
-        );
+        let smeared = filter_errors(model, &logs[at.0..=at.0], phi.as_slice());
+        let noise =
+            noise_squares(model, NumberedLog { number: at, log: &logs[at.0] }, left_out, phi);
         let of = |((triangle, noise), share): ((&Triangle, f64), f64)| {
             let squares = OF_NOISE * noise + share * share * triangle.target_squares();
             squares / triangle.rows().max(1) as f64
@@ -117,12 +113,12 @@ impl HeldOut<'_> {
     /// short to tell.
     fn is_noise(&self) -> Vec<bool> {
         let Self { model, logs, at, left_out, .. } = *self;
-        let log = &logs[at];
+        let log = &logs[at.0];
         let piece = log.pieces(SAMPLES)[0];
         let Some(both) = log.halved(piece) else { return vec![false; model.joints.len()] };
         let first = piece.first.0 * log.decimation + both[0].range.start - log.range.start;
         let place = first..first + both[0].range.len();
-        let left_out = &left_out.of_places(&[(LogIndex(at), place)], |_| 0);
+        let left_out = &left_out.of_places(&[(at, place)], |_| 0);
         let both = both.map(|one| Condensed::counted(model, (&[one], left_out)).whole().remove(0));
         let of = |joint: usize| {
             let [before, after] = both.each_ref().map(|one| self.left(&one[joint], joint));

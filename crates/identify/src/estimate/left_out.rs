@@ -44,7 +44,7 @@ fn wider(all: &[bool], beside: usize) -> Vec<bool> {
 }
 
 /// For each log the samples near reversals of a joint.
-fn near(logs: &[Conditioned], joint: usize, times: f64) -> Vec<Vec<bool>> {
+fn near(logs: &[Conditioned], joint: JointIndex, times: f64) -> Vec<Vec<bool>> {
     let of_log = |log: &Conditioned| {
         log.near_reversals(joint, times).unwrap_or_else(|| vec![false; log.range.len()])
     };
@@ -53,7 +53,7 @@ fn near(logs: &[Conditioned], joint: usize, times: f64) -> Vec<Vec<bool>> {
 
 /// Samples of all logs near reversals of a joint, of those in which its rate has a sign, and the
 /// number of these: a rest is no reversal.
-fn near_of_moving(logs: &[Conditioned], joint: usize) -> (usize, usize) {
+fn near_of_moving(logs: &[Conditioned], joint: JointIndex) -> (usize, usize) {
     let of_log = |(log, near): (&Conditioned, Vec<bool>)| {
         let unsure = log.unsure_signs(joint).unwrap_or_else(|| vec![false; near.len()]);
         let moving = near.into_iter().zip(unsure).filter(|(_, unsure)| !unsure);
@@ -70,7 +70,7 @@ pub(crate) fn biased_frictions(
     logs: &[Conditioned],
     phi: &DVector<f64>,
     covariance: &DMatrix<f64>,
-) -> Vec<(usize, f64)> {
+) -> Vec<(JointIndex, f64)> {
     if model.law != CoulombLaw::Sign {
         return Vec::new();
     }
@@ -80,9 +80,9 @@ pub(crate) fn biased_frictions(
             return None; // it has no column
         }
         let at = model.pattern()[joint][place];
-        let (near, all) = near_of_moving(logs, joint);
+        let (near, all) = near_of_moving(logs, JointIndex(joint));
         let share = near as f64 / all.max(1) as f64;
-        is_biased(share, phi[at], covariance[(at, at)]).then_some((joint, share))
+        is_biased(share, phi[at], covariance[(at, at)]).then_some((JointIndex(joint), share))
     };
     model.coulomb().iter().filter_map(biased).collect()
 }
@@ -103,7 +103,7 @@ pub(super) struct LeftOut {
     /// beside a constant, though they are left out else; none where there is no such rest.
     pub(super) awake: Vec<Vec<Option<Vec<bool>>>>,
     /// Joints whose rows near reversals are left out, and the times they were widened to.
-    widened: Vec<(usize, f64)>,
+    widened: Vec<(JointIndex, f64)>,
 }
 
 impl LeftOut {
@@ -127,8 +127,9 @@ impl LeftOut {
                         let mut frictions = model.coulomb().iter();
                         model.law == CoulombLaw::Sign && frictions.any(|(of, _)| of == joint)
                     };
-                    let unsure =
-                        |joint: usize| log.unsure_signs(joint).filter(|_| has_sign(&joint));
+                    let unsure = |joint: usize| {
+                        log.unsure_signs(JointIndex(joint)).filter(|_| has_sign(&joint))
+                    };
                     return (0..log.joints()).map(unsure).collect();
                 }
                 SlowRows::Kept => return vec![None; log.joints()],
@@ -139,7 +140,7 @@ impl LeftOut {
                     (0..log.joints()).map(|at| of_rate * noise(at).unwrap_or(0.0)).collect()
                 }
             };
-            let slow = |joint: usize| Some(log.slow(joint, slowest[joint], 1));
+            let slow = |joint: usize| Some(log.slow(JointIndex(joint), slowest[joint], 1));
             (0..log.joints()).map(slow).collect()
         };
         let mut asked = Self::of(logs.iter().map(of_log).collect());
@@ -192,8 +193,8 @@ impl LeftOut {
         let coulomb = model.coulomb().iter().filter(|_| model.law == CoulombLaw::Sign);
         for &(joint, _) in coulomb {
             for (log, rows) in logs.iter().zip(&mut sure.rows) {
-                let Some(mut unsure) = log.near_reversals(joint, 1.0) else { continue };
-                for all in rows[joint].iter().chain(&log.unsure_signs(joint)) {
+                let Some(mut unsure) = log.near_reversals(JointIndex(joint), 1.0) else { continue };
+                for all in rows[joint].iter().chain(&log.unsure_signs(JointIndex(joint))) {
                     unsure.iter_mut().zip(all).for_each(|(unsure, one)| *unsure |= one);
                 }
                 rows[joint] = Some(wider(&unsure, 2 * smear(log)));
@@ -229,16 +230,16 @@ impl LeftOut {
     }
 
     /// Leaves out a joint's rows near reversals; not if that leaves too few.
-    pub(super) fn widen(&mut self, logs: &[Conditioned], joint: usize, times: f64) -> bool {
+    pub(super) fn widen(&mut self, logs: &[Conditioned], joint: JointIndex, times: f64) -> bool {
         let mut near = near(logs, joint, times);
         for (near, before) in near.iter_mut().zip(&self.rows) {
-            let before = before[joint].iter().flatten();
+            let before = before[joint.0].iter().flatten();
             near.iter_mut().zip(before).for_each(|(near, before)| *near |= before);
         }
         let counted = |((number, log), near): ((usize, &Conditioned), &Vec<bool>)| {
             let counts = log.counts(near, SampleIndex(0), log.samples()).into_iter();
             let own = NumberedLog { number: LogIndex(number), log };
-            let rests: usize = self.rests(own, JointIndex(joint)).iter().map(Range::len).sum();
+            let rests: usize = self.rests(own, joint).iter().map(Range::len).sum();
             counts.filter(|counts| *counts).count() + rests
         };
         let kept: usize = logs.iter().enumerate().zip(&near).map(counted).sum();
@@ -246,7 +247,7 @@ impl LeftOut {
         let is_enough = kept as f64 >= LEAST * all as f64;
         if is_enough {
             for (of_log, near) in self.rows.iter_mut().zip(near) {
-                of_log[joint] = Some(near);
+                of_log[joint.0] = Some(near);
             }
             self.widened.push((joint, times));
         }

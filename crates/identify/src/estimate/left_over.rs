@@ -92,7 +92,7 @@ impl LeftOut {
             let mut left: Vec<Left> = (0..own.len())
                 .map(|joint| Left {
                     apart: apart as f64,
-                    friction: maker.coulomb_friction(joint, phi),
+                    friction: maker.coulomb_friction(JointIndex(joint), phi),
                     ..Left::default()
                 })
                 .collect();
@@ -122,12 +122,12 @@ pub(crate) fn no_noise(
     model: &RegressionModel,
     shown_logs: ShownLogs<'_>,
     found: &Estimate,
-) -> Vec<(usize, f64)> {
+) -> Vec<(JointIndex, f64)> {
     let ShownLogs { logs, shown } = shown_logs;
     let left = found.left_out.left(model, logs, found.solution.phi.as_slice());
     let of_joint = |joint: usize| {
         let all = shown.iter().fold(Left::default(), |sum, &log| sum.with(&left[log.0][joint]));
-        all.is_no_noise().then(|| (joint, all.mean_square().sqrt()))
+        all.is_no_noise().then(|| (JointIndex(joint), all.mean_square().sqrt()))
     };
     (0..model.joints.len()).filter_map(of_joint).collect()
 }

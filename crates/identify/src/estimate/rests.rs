@@ -24,7 +24,7 @@ impl LeftOut {
         for (number, log) in logs.iter().enumerate() {
             let awake = |joint: usize| {
                 self.rows[number][joint].as_ref().filter(|_| log.torque[joint].is_some())?;
-                let rests = log.counted_rests(joint)?;
+                let rests = log.counted_rests(JointIndex(joint))?;
                 Some(rests.into_iter().map(|rests| !rests).collect())
             };
             self.awake[number] = (0..log.joints()).map(awake).collect();

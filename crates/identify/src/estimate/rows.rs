@@ -67,7 +67,7 @@ struct Rest {
 
 /// A column of Coulomb friction.
 pub(crate) struct Coulomb {
-    pub(crate) joint: usize,
+    pub(crate) joint: JointIndex,
     pub(crate) place: usize,
     /// Times the law of the rate.
     pub(crate) factor: f64,
@@ -86,7 +86,7 @@ pub(crate) fn coulomb(
     evaluator.evaluate(&motion, &mut rows).expect("there is a column for each joint");
     let at_one = model.law.of(1.0);
     let of = |&(joint, place): &(usize, usize)| Coulomb {
-        joint,
+        joint: JointIndex(joint),
         place,
         factor: rows.column(joint, place)[0] / at_one,
     };
@@ -154,7 +154,7 @@ impl<'a> BlockMaker<'a> {
                 for (column, mean) in columns.zip(means) {
                     column[from..to].iter_mut().for_each(|entry| *entry -= mean);
                 }
-                for friction in self.coulomb.iter().filter(|one| one.joint == joint) {
+                for friction in self.coulomb.iter().filter(|one| one.joint.0 == joint) {
                     block.columns[joint][friction.place][from..to].fill(0.0);
                 }
             }
@@ -162,9 +162,9 @@ impl<'a> BlockMaker<'a> {
     }
 
     /// The Coulomb friction of a joint by phi \[N m, N\].
-    pub(super) fn coulomb_friction(&self, joint: usize, phi: &[f64]) -> f64 {
+    pub(super) fn coulomb_friction(&self, joint: JointIndex, phi: &[f64]) -> f64 {
         let of_joint = self.coulomb.iter().filter(|one| one.joint == joint);
-        let at = |one: &Coulomb| phi[self.model.pattern()[joint][one.place]];
+        let at = |one: &Coulomb| phi[self.model.pattern()[joint.0][one.place]];
         of_joint.map(|one| (one.factor * at(one)).abs()).sum()
     }
 
@@ -204,12 +204,12 @@ impl<'a> BlockMaker<'a> {
             for (place, column) in block.columns[joint].iter_mut().enumerate() {
                 column.resize(samples, 0.0);
                 let friction =
-                    self.coulomb.iter().find(|one| (one.joint, one.place) == (joint, place));
+                    self.coulomb.iter().find(|one| (one.joint.0, one.place) == (joint, place));
                 match friction {
                     None => decimator.apply(rows.column(joint, place), column),
                     Some(one) => {
                         let law = |rate: f64| one.factor * self.model.law.of(rate);
-                        decimator.apply(&self.data.of_rate(joint, range.clone(), law), column);
+                        decimator.apply(&self.data.of_rate(one.joint, range.clone(), law), column);
                     }
                 }
             }

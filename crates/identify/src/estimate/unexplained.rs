@@ -189,7 +189,7 @@ fn resting(
     let rests: Vec<Vec<bool>> = (0..model.joints.len())
         .map(|joint| match moving[joint] {
             _ if model.joints[joint].is_base || log.torque[joint].is_none() => Vec::new(),
-            true => log.rests(joint),
+            true => log.rests(JointIndex(joint)),
             false => vec![true; log.range.len()],
         })
         .collect();
@@ -252,7 +252,7 @@ fn at_rest(
     let is_shown = rows.map(|row| f64::from(u8::from(row.norm() > 0.0)));
     let shown: Vec<f64> = phi.iter().zip(is_shown).map(|(phi, is_shown)| phi * is_shown).collect();
     let mut maker = BlockMaker::new(model, log);
-    let held = |joint: usize| STICTION * maker.coulomb_friction(joint, &shown);
+    let held = |joint: usize| STICTION * maker.coulomb_friction(JointIndex(joint), &shown);
     let mut joints: Vec<RestingJoint> = (0..rests.len())
         .map(|joint| RestingJoint { left: Vec::new(), held: held(joint) })
         .collect();

@@ -9,8 +9,8 @@ use super::errors::Errors;
 use super::least_squares::{Estimate, EstimateError, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
 use crate::policy::widening::{LEAST, SURE};
-use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
 
@@ -43,12 +43,12 @@ impl Fit<'_> {
         loop {
             let (phi, covariance) = (&fitted.found.solution.phi, &fitted.covariance);
             let biased = biased_frictions(model, logs, phi, covariance).into_iter();
-            let joints = biased.map(|(joint, _)| joint).filter(|&joint| !tried[joint]);
-            let joints: Vec<usize> = joints.collect();
+            let joints = biased.map(|(joint, _)| joint).filter(|&joint| !tried[joint.0]);
+            let joints: Vec<JointIndex> = joints.collect();
             if joints.is_empty() {
                 return Ok((fitted.found, fitted.left_out));
             }
-            joints.iter().for_each(|&joint| tried[joint] = true);
+            joints.iter().for_each(|&joint| tried[joint.0] = true);
             fitted = self.widened(model, logs, fitted, joints);
         }
     }
@@ -64,7 +64,7 @@ impl Fit<'_> {
     ) -> Result<Fitted, EstimateError> {
         let mut asked = fitted.left_out.clone();
         for &(joint, _) in model.coulomb() {
-            asked.widen(logs, joint, 1.0);
+            asked.widen(logs, JointIndex(joint), 1.0);
         }
         let of_motion = |asked: &LeftOut| {
             let motion = asked.clone().without_rests();
@@ -111,7 +111,7 @@ impl Fit<'_> {
         model: &RegressionModel,
         logs: &[Conditioned],
         mut fitted: Fitted,
-        mut joints: Vec<usize>,
+        mut joints: Vec<JointIndex>,
     ) -> Fitted {
         for doublings in 0..=MOST_DOUBLINGS {
             let times = f64::from(1 << doublings);
@@ -137,10 +137,10 @@ impl Fit<'_> {
 }
 
 /// Whether Coulomb friction of a joint changes by more than chance as more rows are left out.
-fn has_moved(model: &RegressionModel, joint: usize, [before, after]: [&Fitted; 2]) -> bool {
-    let friction = model.coulomb().iter().find(|(of, _)| *of == joint);
+fn has_moved(model: &RegressionModel, joint: JointIndex, [before, after]: [&Fitted; 2]) -> bool {
+    let friction = model.coulomb().iter().find(|(of, _)| *of == joint.0);
     friction.is_some_and(|&(_, place)| {
-        let at = model.pattern()[joint][place];
+        let at = model.pattern()[joint.0][place];
         let of = |one: &Fitted| (one.found.solution.phi[at], one.covariance[(at, at)].max(0.0));
         let ((value, variance), (other, larger)) = (of(before), of(after));
         let of_change = (larger - variance).max(LEAST * variance);

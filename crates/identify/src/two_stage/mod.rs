@@ -21,6 +21,7 @@ mod readings;
 pub use fault::TwoStageError;
 
 use super::estimate::{self, SlowRows, estimate};
+use denavit_measure::JointIndex;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
@@ -224,12 +225,12 @@ impl Motion {
     /// joints: motors turn so many times as fast.
     fn friction(&self, place: usize, law: CoulombLaw, turns: f64) -> Vec<f64> {
         let (motor, range) = (self.positions.len() + place, self.conditioned.range.clone());
-        self.conditioned.of_rate(motor, range, |rate| law.of(rate / turns))
+        self.conditioned.of_rate(JointIndex(motor), range, |rate| law.of(rate / turns))
     }
 
     /// Samples in which a motor does not show its friction; none if they are to count.
     fn slow(&self, place: usize, slow: SlowRows, turns: f64) -> Option<Vec<bool>> {
-        let motor = self.positions.len() + place;
+        let motor = JointIndex(self.positions.len() + place);
         match slow {
             SlowRows::Kept => None,
             SlowRows::Below(rate) => Some(self.conditioned.slow(motor, rate * turns, 1)),

@@ -3,6 +3,7 @@
 use super::INERTIAL;
 use super::estimate::{Experiment, bare};
 use denavit_identify::estimate::{BlockMaker, Condensed, Method, Options, estimate, parameters};
+use denavit_measure::JointIndex;
 use denavit_measure::condition::{Averaging, ConditionError, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
@@ -191,7 +192,7 @@ fn samples_near_reversals_are_counted() {
     let names = ["a", "b"].map(str::to_owned);
     let conditioned = Conditioned::new(log, &names, &how).expect("long enough");
     let share = |joint: usize| {
-        let near = conditioned.near_reversals(joint, 1.0).expect("there is a filter");
+        let near = conditioned.near_reversals(JointIndex(joint), 1.0).expect("there is a filter");
         near.iter().filter(|near| **near).count() as f64 / near.len() as f64
     };
     assert!((share(0) - 0.2).abs() < 0.01, "{}", share(0));

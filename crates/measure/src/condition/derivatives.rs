@@ -5,6 +5,7 @@
 //! its own has no influence.
 
 use super::{ConditionError, Conditioned, STENCIL, acceleration, rate};
+use crate::JointIndex;
 use crate::policy::derivatives::{DELAY, FACTOR, NOISE};
 
 impl Conditioned {
@@ -16,7 +17,9 @@ impl Conditioned {
             for (order, prefix) in [(1, "qd"), (2, "qdd")] {
                 let column = &rates[order - 1][joint];
                 let noise = gains[order][order] * self.position_noise[joint].powi(2);
-                if let Some([factor, late_s]) = self.compared(joint, order, column, noise) {
+                if let Some([factor, late_s]) =
+                    self.compared(JointIndex(joint), order, column, noise)
+                {
                     let column = format!("{prefix}_{name}");
                     return Err(ConditionError::NotTheDerivative { column, factor, late_s });
                 }
@@ -27,8 +30,14 @@ impl Conditioned {
 
     /// Factor and delay \[s\] of a column against the derivative of a joint's position, if they are
     /// too large, by least squares: column = a own + b own', a delay being -b / a.
-    fn compared(&self, joint: usize, order: usize, column: &[f64], noise: f64) -> Option<[f64; 2]> {
-        let (q, h) = (&self.q[joint], self.step_s);
+    fn compared(
+        &self,
+        joint: JointIndex,
+        order: usize,
+        column: &[f64],
+        noise: f64,
+    ) -> Option<[f64; 2]> {
+        let (q, h) = (&self.q[joint.0], self.step_s);
         let own = |k: usize| match order {
             1 => rate(q, k) / h,
             _ => acceleration(q, k) / (h * h),

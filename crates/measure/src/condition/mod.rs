@@ -20,7 +20,7 @@ pub use noise::Encoder;
 pub use pieces::Piece;
 
 use super::log::{JointSignals, MeasuredLog};
-use crate::SampleIndex;
+use crate::{JointIndex, SampleIndex};
 use denavit_numerics::short;
 use std::fmt;
 use std::ops::Range;
@@ -378,7 +378,7 @@ impl Conditioned {
         columns.resize(3 * n, Vec::new());
         for (place, column) in columns.iter_mut().enumerate() {
             column.clear();
-            column.extend(range.clone().map(|at| self.moved(place % n, place / n, at)));
+            column.extend(range.clone().map(|at| self.moved(JointIndex(place % n), place / n, at)));
         }
     }
 }
@@ -386,11 +386,11 @@ impl Conditioned {
 impl Conditioned {
     /// The position of a joint (order 0), its rate or its acceleration at a place within
     /// [`Conditioned::range`].
-    pub fn moved(&self, joint: usize, order: usize, place: usize) -> f64 {
-        let q = &self.q[joint];
+    pub fn moved(&self, joint: JointIndex, order: usize, place: usize) -> f64 {
+        let q = &self.q[joint.0];
         match (order, &self.rates) {
             (0, _) => q[place],
-            (_, Some(rates)) => rates[order - 1][joint][place],
+            (_, Some(rates)) => rates[order - 1][joint.0][place],
             (1, None) => rate(q, place) / self.step_s,
             (_, None) => acceleration(q, place) / (self.step_s * self.step_s),
         }

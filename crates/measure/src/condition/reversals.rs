@@ -2,8 +2,8 @@
 //! functions of a rate that pass the filter as the torque does.
 
 use super::{Butterworth, Conditioned, Decimator, STENCIL, acceleration, rate};
-use crate::SampleIndex;
 use crate::policy::reversals::{NOISE, STEPS, STILL, WEIGHED};
+use crate::{JointIndex, SampleIndex};
 use std::ops::Range;
 
 /// Periods of the filter's cutoff that a rest takes, at least; and that are left of one whose rows
@@ -12,19 +12,19 @@ const RESTS: usize = 6;
 const COUNTED: usize = 2;
 
 impl Conditioned {
-    fn rate_at(&self, joint: usize, k: usize) -> f64 {
+    fn rate_at(&self, joint: JointIndex, k: usize) -> f64 {
         match &self.rates {
-            Some([rates, _]) => rates[joint][k],
-            None => rate(&self.q[joint], k) / self.step_s,
+            Some([rates, _]) => rates[joint.0][k],
+            None => rate(&self.q[joint.0], k) / self.step_s,
         }
     }
 
     /// Root of the mean square of a joint's acceleration [rad/s^2, m/s^2].
-    fn usual_acceleration(&self, joint: usize) -> f64 {
+    fn usual_acceleration(&self, joint: JointIndex) -> f64 {
         let squares = self.range.clone().map(|k| {
             let own = match &self.rates {
-                Some([_, accelerations]) => accelerations[joint][k],
-                None => acceleration(&self.q[joint], k) / (self.step_s * self.step_s),
+                Some([_, accelerations]) => accelerations[joint.0][k],
+                None => acceleration(&self.q[joint.0], k) / (self.step_s * self.step_s),
             };
             own * own
         });
@@ -32,7 +32,7 @@ impl Conditioned {
     }
 
     /// Root of the mean square of a joint's rate [rad/s, m/s].
-    fn usual_rate(&self, joint: usize) -> f64 {
+    fn usual_rate(&self, joint: JointIndex) -> f64 {
         let squares = self.range.clone().map(|at| self.rate_at(joint, at).powi(2)).sum::<f64>();
         (squares / self.range.len().max(1) as f64).sqrt()
     }
@@ -43,14 +43,14 @@ impl Conditioned {
     /// as friction does, is smeared over by the filter of the torque, and must be alike.
     pub fn of_rate(
         &self,
-        joint: usize,
+        joint: JointIndex,
         range: Range<usize>,
         function: impl Fn(f64) -> f64,
     ) -> Vec<f64> {
         let settling = self.filter.as_ref().map_or(0, Butterworth::settling);
         let stencil = if self.rates.is_some() { 0 } else { STENCIL };
         let first = range.start.saturating_sub(settling).max(stencil);
-        let last = (range.end + settling).min(self.q[joint].len() - stencil);
+        let last = (range.end + settling).min(self.q[joint.0].len() - stencil);
         let mut values: Vec<f64> =
             (first..last).map(|k| function(self.rate_at(joint, k))).collect();
         if let Some(filter) = &self.filter {
@@ -63,7 +63,7 @@ impl Conditioned {
 
     /// For each sample of [`Conditioned::range`] whether a joint is not faster than `slowest`
     /// [rad/s, m/s], or turns round within so many samples.
-    pub fn slow(&self, joint: usize, slowest: f64, around: usize) -> Vec<bool> {
+    pub fn slow(&self, joint: JointIndex, slowest: f64, around: usize) -> Vec<bool> {
         let first = self.range.start;
         let rates = self.range.clone().map(|k| self.rate_at(joint, k));
         let mut is_slow: Vec<bool> = rates.map(|rate| rate.abs() <= slowest).collect();
@@ -84,7 +84,7 @@ impl Conditioned {
     /// reversal of a joint, or slower than so many `times` what its usual acceleration makes of it
     /// in that time: where what depends on the sign of the rate is smeared over. None without a
     /// filter.
-    pub fn near_reversals(&self, joint: usize, times: f64) -> Option<Vec<bool>> {
+    pub fn near_reversals(&self, joint: JointIndex, times: f64) -> Option<Vec<bool>> {
         let smear = self.filter.as_ref()?.smear();
         let slowest = times * self.usual_acceleration(joint) * self.step_s * smear as f64;
         Some(self.slow(joint, slowest, smear))
@@ -95,8 +95,8 @@ impl Conditioned {
     /// or than two steps of its encoder in a period of the filter's cutoff, for such a period at
     /// least; and a period before and after, where the filter smears that over. Where it turns
     /// round faster than that, the filter smears the sign over alike.
-    pub fn unsure_signs(&self, joint: usize) -> Option<Vec<bool>> {
-        let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
+    pub fn unsure_signs(&self, joint: JointIndex) -> Option<Vec<bool>> {
+        let filter = self.filter.as_ref().filter(|_| !self.resting[joint.0])?;
         let (period, samples) = (2 * filter.smear(), self.range.len());
         let mut is_unsure = vec![false; samples];
         for Range { start, end } in self.slow_spells(joint, filter, 0.0) {
@@ -109,7 +109,7 @@ impl Conditioned {
     /// For each sample of [`Conditioned::range`] whether a joint that moves in between rests there:
     /// while the sign of its rate is not known, for some periods of the filter's cutoff, without
     /// the first and the last, into which the filter smears what is beside.
-    pub fn rests(&self, joint: usize) -> Vec<bool> {
+    pub fn rests(&self, joint: JointIndex) -> Vec<bool> {
         let Some(filter) = &self.filter else { return vec![false; self.range.len()] };
         let least = STILL * self.usual_rate(joint);
         let period = 2 * filter.smear();
@@ -121,8 +121,8 @@ impl Conditioned {
     /// need not be slower than the sign of its rate is known. Unseen by its encoder it creeps for a
     /// while before it stands still, and rubs: as long as it takes to stop, by its usual rate and
     /// acceleration, is none of the rest either.
-    pub fn counted_rests(&self, joint: usize) -> Option<Vec<bool>> {
-        let filter = self.filter.as_ref().filter(|_| !self.resting[joint])?;
+    pub fn counted_rests(&self, joint: JointIndex) -> Option<Vec<bool>> {
+        let filter = self.filter.as_ref().filter(|_| !self.resting[joint.0])?;
         let period = 2 * filter.smear();
         let stops_s = self.usual_rate(joint) / self.usual_acceleration(joint);
         let stops = (stops_s / self.step_s).ceil().min(self.range.len() as f64) as usize;
@@ -146,10 +146,15 @@ impl Conditioned {
     /// The samples of [`Conditioned::range`] in which a joint is no faster than noise of its
     /// position makes it, than two steps of its encoder in a period of the filter's cutoff, or than
     /// another rate, for such a period or longer.
-    fn slow_spells(&self, joint: usize, filter: &Butterworth, least: f64) -> Vec<Range<usize>> {
-        let of_steps = self.encoders[joint]
+    fn slow_spells(
+        &self,
+        joint: JointIndex,
+        filter: &Butterworth,
+        least: f64,
+    ) -> Vec<Range<usize>> {
+        let of_steps = self.encoders[joint.0]
             .map_or(0.0, |one| STEPS * one.step * filter.cutoff() / self.step_s);
-        let of_noise = NOISE * self.filter_gains()[1][1].sqrt() * self.position_noise[joint];
+        let of_noise = NOISE * self.filter_gains()[1][1].sqrt() * self.position_noise[joint.0];
         let slowest = of_steps.max(of_noise).max(least);
         let mut spells = Vec::new();
         let mut from = 0;

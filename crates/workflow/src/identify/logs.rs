@@ -194,7 +194,8 @@ impl<'a> Reader<'a> {
         take_out(&mut conditioned, model, laws);
         self.note(&file, &conditioned);
         for joint in leave_out_idle_motors(model, &mut conditioned) {
-            self.remarks.push((file.clone(), LogRemark::Idle { joint: self.names[joint].clone() }));
+            self.remarks
+                .push((file.clone(), LogRemark::Idle { joint: self.names[joint.0].clone() }));
         }
         Ok(conditioned)
     }

@@ -4,8 +4,8 @@ use super::line::Line;
 use super::reading::Reading;
 use super::window::{Window, with_sign};
 use crate::estimate::{Coulomb, coulomb};
-use denavit_measure::SampleIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, SampleIndex};
 use denavit_plants::regression::{RegressionEvaluator, RegressionModel, RegressionRows};
 use nalgebra::{DMatrix, DVector};
 
@@ -81,7 +81,8 @@ impl<'a> Sample<'a> {
         let blocks = (samples / BLOCK / logs.len().max(1)).max(1);
         let mut windows = Vec::new();
         for &log in logs {
-            let counts: Vec<_> = (0..log.joints()).map(|joint| with_sign(log, joint)).collect();
+            let counts: Vec<_> =
+                (0..log.joints()).map(|joint| with_sign(log, JointIndex(joint))).collect();
             let samples = log.samples();
             let every = samples.div_ceil(BLOCK * blocks).max(1);
             for first in (0..samples).step_by(BLOCK * every) {
@@ -130,8 +131,8 @@ impl<'a> Sample<'a> {
         let motion: Vec<&[f64]> = motion.iter().map(Vec::as_slice).collect();
         self.evaluator.evaluate(&motion, &mut self.rows).expect("every joint has its columns");
         for one in &self.coulomb {
-            let law = window.law(&reading.positions[one.joint], reading.time, self.model.law);
-            let column = self.rows.column_mut(one.joint, one.place).iter_mut();
+            let law = window.law(&reading.positions[one.joint.0], reading.time, self.model.law);
+            let column = self.rows.column_mut(one.joint.0, one.place).iter_mut();
             column.zip(law).for_each(|(entry, law)| *entry = one.factor * law);
         }
     }

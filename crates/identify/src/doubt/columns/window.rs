@@ -2,8 +2,8 @@
 
 use super::super::policy::SIGNED as LEAST;
 use super::reading::Source;
-use denavit_measure::SampleIndex;
 use denavit_measure::condition::Conditioned;
+use denavit_measure::{JointIndex, SampleIndex};
 use denavit_plants::regression::CoulombLaw;
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ pub(super) struct Window<'a> {
 
 /// Whether samples of a joint in [`Conditioned::range`] count: those in which the sign of its rate
 /// is known, and its friction with it. None where all do, or too few would.
-pub(super) fn with_sign(log: &Conditioned, joint: usize) -> Option<Vec<bool>> {
+pub(super) fn with_sign(log: &Conditioned, joint: JointIndex) -> Option<Vec<bool>> {
     let both = [log.near_reversals(joint, 1.0), log.unsure_signs(joint)];
     let mut counts = vec![true; log.range.len()];
     for unsure in both.iter().flatten() {
@@ -103,7 +103,8 @@ impl<'a> Window<'a> {
             let column = &self.motion[order * self.log.joints() + source.column];
             return column.iter().map(|value| scale * value + offset).collect();
         }
-        let at = |place: usize| scale * self.log.moved(source.column, order, place) + offset;
+        let at =
+            |place: usize| scale * self.log.moved(JointIndex(source.column), order, place) + offset;
         self.places(source.late).map(at).collect()
     }
 
@@ -116,7 +117,7 @@ impl<'a> Window<'a> {
         let is_known = |one: &Law| one.column == column && one.scale == scale;
         let known = self.laws.iter().position(is_known).unwrap_or_else(|| {
             let of_rate = |rate: f64| law.of(scale * rate);
-            let values = self.log.of_rate(column, self.span.clone(), of_rate);
+            let values = self.log.of_rate(JointIndex(column), self.span.clone(), of_rate);
             self.laws.push(Law { column, scale, values });
             self.laws.len() - 1
         });

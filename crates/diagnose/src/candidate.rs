@@ -4,6 +4,7 @@ use super::law::Law;
 use crate::policy::candidate::{LIMITS, PLACES};
 use denavit_codegen::effect::Occurrence;
 use denavit_evidence::policy;
+use denavit_measure::JointIndex;
 use denavit_plants::effect::LawParameter;
 use std::f64::consts::TAU;
 
@@ -16,7 +17,7 @@ pub struct Candidate {
     /// The joint, link or pair of joints where it acts, or `model`.
     pub at: String,
     /// The joint that it acts on; none for what acts on the whole robot.
-    pub joint: Option<usize>,
+    pub joint: Option<JointIndex>,
     /// Whether it adds to the inertial parameters of a body, as the model's numbers may be off.
     pub is_body: bool,
     /// How often such an effect is met before any log is looked at.

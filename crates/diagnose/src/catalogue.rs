@@ -11,6 +11,7 @@ use denavit_codegen::effect::{
     Channel, Effect, EffectSite, Law as EffectKindLaw, ModelTerm, with_term,
 };
 use denavit_codegen::model::{EffectPlace, JointKind, Robot};
+use denavit_measure::JointIndex;
 use denavit_plants::effect::{EffectLaw, RobotEffect};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 
@@ -23,16 +24,22 @@ pub fn candidates(effects: &[Effect], robot: &Robot, model: &RegressionModel) ->
             all.extend(on_robot(effect, robot, model));
             continue;
         }
-        for (joint, described) in joints.iter().enumerate().filter(|(_, joint)| !joint.is_base) {
+        for (place, described) in joints.iter().enumerate().filter(|(_, joint)| !joint.is_base) {
+            let joint = JointIndex(place);
             match effect.at {
                 EffectSite::Joint => all.extend(on_joint(effect, described, joint, None)),
                 EffectSite::JointPair => {
                     // What couples joints is in the wrist or belt between neighbours.
-                    let before = joint.checked_sub(1).filter(|_| !effect.has_no_order());
-                    let beside = [before, Some(joint + 1)].into_iter().flatten();
+                    let before = place.checked_sub(1).filter(|_| !effect.has_no_order());
+                    let beside = [before, Some(place + 1)].into_iter().flatten();
                     let beside = beside.filter(|&other| other < joints.len());
                     all.extend(beside.filter_map(|other| {
-                        on_joint(effect, described, joint, Some((other, &joints[other])))
+                        on_joint(
+                            effect,
+                            described,
+                            joint,
+                            Some((JointIndex(other), &joints[other])),
+                        )
                     }));
                 }
                 // springs are not the model's any more: they have candidates of their own
@@ -53,20 +60,21 @@ pub fn spring_candidates(
     let of_effect = |effect| springs.iter().map(move |spring| (effect, spring.joint));
     let effects = effects.iter().filter(|effect| effect.at == EffectSite::Spring);
     let all = effects.flat_map(of_effect);
-    all.filter_map(|(effect, joint)| on_joint(effect, &model.joints[joint], joint, None)).collect()
+    all.filter_map(|(effect, joint)| on_joint(effect, &model.joints[joint.0], joint, None))
+        .collect()
 }
 
 /// An effect that changes the model: on each moving link, or on the whole.
 fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Candidate> {
     let joints = &model.joints;
     let numbers: Vec<String> = model.parameters.iter().map(|one| one.name.clone()).collect();
-    let places: Vec<(EffectPlace, String, Option<usize>)> = match effect.at {
+    let places: Vec<(EffectPlace, String, Option<JointIndex>)> = match effect.at {
         EffectSite::Model => vec![(EffectPlace::Model, "model".to_owned(), None)],
         EffectSite::Joint | EffectSite::Link => {
             let moving = robot.joints().map(|(link, _)| {
                 let name = robot.links[link].name.clone();
                 let joint = joints.iter().position(|joint| joint.name == name);
-                (EffectPlace::Link(link), name, joint)
+                (EffectPlace::Link(link), name, joint.map(JointIndex))
             });
             moving.collect()
         }
@@ -79,7 +87,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
     }
     let is_of_drives =
         matches!(effect.law, EffectKindLaw::Term(ModelTerm::Rotor | ModelTerm::Friction));
-    let of = |(at, name, joint): (EffectPlace, String, Option<usize>)| {
+    let of = |(at, name, joint): (EffectPlace, String, Option<JointIndex>)| {
         let law = RobotEffect::new(robot, effect, at, &numbers).ok()?;
         Some(Candidate {
             effect: effect.name.clone(),
@@ -95,7 +103,7 @@ fn on_robot(effect: &Effect, robot: &Robot, model: &RegressionModel) -> Vec<Cand
 }
 
 /// A law of one joint, as it acts on the torques of a log.
-pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<dyn Law> {
+pub(super) fn law_of(law: EffectLaw, joint: JointIndex, other: Option<JointIndex>) -> Box<dyn Law> {
     match law.channel() {
         None if law.at == EffectSite::Spring => Box::new(SpringLaw { law, joint }),
         Some(Channel::Torque) if law.has_play() => Box::new(DriveLaw { law, joint }),
@@ -112,8 +120,8 @@ pub(super) fn law_of(law: EffectLaw, joint: usize, other: Option<usize>) -> Box<
 fn on_joint(
     effect: &Effect,
     described: &RegressionJoint,
-    joint: usize,
-    other: Option<(usize, &RegressionJoint)>,
+    joint: JointIndex,
+    other: Option<(JointIndex, &RegressionJoint)>,
 ) -> Option<Candidate> {
     let kind = if described.slides { JointKind::Prismatic } else { JointKind::Revolute };
     let law = EffectLaw::new(effect, kind).ok()?;

@@ -8,7 +8,7 @@ use super::signals::Signals;
 use super::turning::{PER_JOINT, settle, unnamed};
 pub(super) use crate::policy::data::SPRING_ZERO;
 use denavit_evidence::policy;
-use denavit_measure::LogIndex;
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::effect::Drive;
 
 /// A stretch of rows: those of one equation in one log.
@@ -17,7 +17,7 @@ pub struct Stretch {
     /// The log.
     pub log: LogIndex,
     /// The joint.
-    pub joint: usize,
+    pub joint: JointIndex,
     /// The equation: of the torque of that joint, or after all joints that of its spring.
     pub equation: usize,
     /// The first of its rows.
@@ -102,17 +102,17 @@ impl<'a> Data<'a> {
                 let equation = joint;
                 data.stretches.push(Stretch {
                     log: LogIndex(log),
-                    joint,
+                    joint: JointIndex(joint),
                     equation,
                     first,
                     rows: count,
                 });
-                let computed = rows.torque(nominal, joint, &given.axes);
+                let computed = rows.torque(nominal, JointIndex(joint), &given.axes);
                 data.residual.extend(target.iter().zip(computed).map(|(a, b)| a - b));
                 data.torque.extend(data.signals[log].torque[joint].iter().flatten());
                 data.weights.extend(&weights[log][joint]);
                 for (column, direction) in data.columns.iter_mut().zip(&directions) {
-                    column.extend(rows.torque(nominal, joint, &direction.axes));
+                    column.extend(rows.torque(nominal, JointIndex(joint), &direction.axes));
                 }
                 data.columns[directions.len()].extend(&time[log][joint]);
                 for (place, column) in data.columns[directions.len() + 1..].iter_mut().enumerate() {
@@ -172,7 +172,7 @@ impl<'a> Data<'a> {
     fn move_drives(&mut self, given: &Phi, directions: &[Phi]) {
         for stretch in self.stretches.clone() {
             let signals = &self.signals[stretch.log.0];
-            if signals.motor[stretch.joint].is_none() {
+            if signals.motor[stretch.joint.0].is_none() {
                 continue;
             }
             let more = |phi: &Phi| -> Option<Vec<f64>> {

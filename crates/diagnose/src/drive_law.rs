@@ -3,6 +3,7 @@
 use super::floor::rms;
 use super::law::{Law, Motion, Response};
 use crate::policy::drive_law::{LEAST_LOAD, LEAST_PASSED};
+use denavit_measure::JointIndex;
 use denavit_plants::effect::{EffectLaw, JointSamples, LawParameter};
 
 /// A transmission that gives way.
@@ -15,7 +16,7 @@ pub(super) struct DriveLaw {
     /// The law.
     pub(super) law: EffectLaw,
     /// Its joint.
-    pub(super) joint: usize,
+    pub(super) joint: JointIndex,
 }
 
 impl Law for DriveLaw {
@@ -31,22 +32,22 @@ impl Law for DriveLaw {
         let (joint, whole) = (self.joint, motion.signals);
         let nothing = || vec![vec![0.0; motion.signals.samples()]];
         let mut response = Response {
-            equations: vec![joint],
+            equations: vec![joint.0],
             torque: nothing(),
             gradient: values.iter().map(|_| nothing()).collect(),
         };
         // a motor that is measured is where it is
-        let is_loaded = rms(&motion.load[joint]) >= LEAST_LOAD * rms(&motion.total[joint]);
-        let is_seen = is_loaded && whole.motor[joint].is_none();
+        let is_loaded = rms(&motion.load[joint.0]) >= LEAST_LOAD * rms(&motion.total[joint.0]);
+        let is_seen = is_loaded && whole.motor[joint.0].is_none();
         let measured = whole.measured_within(joint).filter(|_| is_seen);
         let Some(measured) = measured else { return response };
         let samples = JointSamples {
             t: &whole.t,
-            q: &whole.q[joint],
-            qd: &whole.qd[joint],
-            qdd: &whole.qdd[joint],
+            q: &whole.q[joint.0],
+            qd: &whole.qd[joint.0],
+            qdd: &whole.qdd[joint.0],
             tau: &measured,
-            drive: motion.drives[joint],
+            drive: motion.drives[joint.0],
             ..JointSamples::default()
         };
         let through = self.law.through(&samples, values);

@@ -10,6 +10,7 @@
 //! times the stiffness.
 
 use denavit_codegen::model::Robot;
+use denavit_measure::JointIndex;
 use denavit_measure::log::MeasuredLog;
 use denavit_plants::regression::{RegressionJoint, SpringStiffness};
 
@@ -26,7 +27,7 @@ pub struct BeforeSprings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesSpring {
     /// The joint.
-    pub joint: usize,
+    pub joint: JointIndex,
     /// What the model says of its stiffness.
     pub stiffness: SpringStiffness,
 }
@@ -64,7 +65,9 @@ pub fn before_springs(
         let BeforeSprings { robot: moved, springs } = moved
             .get_or_insert_with(|| BeforeSprings { robot: robot.clone(), springs: Vec::new() });
         let stiffness = joints[place].spring.clone().filter(|spring| spring.value > 0.0);
-        springs.extend(stiffness.map(|stiffness| SeriesSpring { joint: place, stiffness }));
+        springs.extend(
+            stiffness.map(|stiffness| SeriesSpring { joint: JointIndex(place), stiffness }),
+        );
         let Some(drive) = &mut moved.links[link].drive else { continue };
         if let Some(spring) = drive.series_elastic.take() {
             let gear = drive.gear_ratio.unwrap_or_else(|| moved.dag.integer(1));

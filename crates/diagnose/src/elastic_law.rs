@@ -14,6 +14,7 @@
 use super::law::{Law, Motion, Response};
 use super::signals::Signals;
 use crate::policy::elastic_law::DIFFERENCE;
+use denavit_measure::JointIndex;
 use denavit_measure::condition::Butterworth;
 use denavit_plants::effect::{Drive, EffectLaw, GivesWay, LawParameter};
 
@@ -25,7 +26,7 @@ pub(super) struct ElasticLaw {
     /// The law, without play.
     pub(super) law: EffectLaw,
     /// Its joint.
-    pub(super) joint: usize,
+    pub(super) joint: JointIndex,
 }
 
 impl ElasticLaw {
@@ -42,7 +43,7 @@ impl ElasticLaw {
         let lag_s = 2.0 * damping * swing_s;
         let ahead = deflections(load, stiffness, lag_s / signals.log_step_s);
         let [rates, accelerations] = signals.derivatives(&ahead);
-        let moves = rates.iter().zip(&accelerations).zip(&signals.qd[self.joint]);
+        let moves = rates.iter().zip(&accelerations).zip(&signals.qd[self.joint.0]);
         let side = |rate: f64| if rate == 0.0 { 0.0 } else { rate.signum() };
         let of = |((rate, acceleration), joint): ((&f64, &f64), &f64)| {
             let friction = side(joint + rate) - side(*joint);
@@ -77,15 +78,15 @@ impl Law for ElasticLaw {
         let (joint, signals) = (self.joint, motion.signals);
         let nothing = || vec![0.0; signals.samples()];
         // A motor that is measured is where it is.
-        if signals.motor[joint].is_some() {
+        if signals.motor[joint.0].is_some() {
             let gradient = values.iter().map(|_| vec![nothing()]).collect();
-            return Response { equations: vec![joint], torque: vec![nothing()], gradient };
+            return Response { equations: vec![joint.0], torque: vec![nothing()], gradient };
         }
-        let mut load = signals.cell_means(&motion.load[joint]);
+        let mut load = signals.cell_means(&motion.load[joint.0]);
         if let Some(filter) = Butterworth::new(ORDER, signals.driven_hz(), signals.log_step_s) {
             filter.zero_phase(&mut load);
         }
-        let of = |values: &[f64]| self.torque(signals, motion.drives[joint], &load, values);
+        let of = |values: &[f64]| self.torque(signals, motion.drives[joint.0], &load, values);
         let torque = of(values);
         let by = |place: usize| {
             let start = self.law.parameters[place].start.first().copied().unwrap_or(1.0);
@@ -96,7 +97,7 @@ impl Law for ElasticLaw {
             vec![slope.collect()]
         };
         let gradient = (0..values.len()).map(by).collect();
-        Response { equations: vec![joint], torque: vec![torque], gradient }
+        Response { equations: vec![joint.0], torque: vec![torque], gradient }
     }
 }
 

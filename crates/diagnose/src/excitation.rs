@@ -5,6 +5,7 @@ use super::search::Search;
 use super::state::Setting;
 use crate::policy::excitation::{LARGE, LEAST_RANGE, NEVER};
 use denavit_evidence::policy;
+use denavit_measure::JointIndex;
 
 /// An effect of one parameter, and how large it must be to be seen in a joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Visible {
     /// The candidate.
     pub candidate: usize,
     /// Its joint.
-    pub joint: usize,
+    pub joint: JointIndex,
     /// The least value of its parameter that would have been named: it has the odds for that and is
     /// worth a name. Infinite where the motion has nothing of it.
     pub least: f64,
@@ -26,7 +27,7 @@ pub(super) enum Unseen {
     /// Of so many effects so many would not be seen though they were half of its torque.
     Effects {
         /// The joint.
-        joint: usize,
+        joint: JointIndex,
         /// Those that would not be seen.
         unseen: usize,
         /// Those that were looked at.
@@ -35,12 +36,12 @@ pub(super) enum Unseen {
     /// It does not move.
     Rest {
         /// The joint.
-        joint: usize,
+        joint: JointIndex,
     },
     /// It covers a small share of what its limits let it.
     Range {
         /// The joint.
-        joint: usize,
+        joint: JointIndex,
         /// The share of its positions, or of its speed.
         share: f64,
         /// Whether it is that of its speed.
@@ -71,10 +72,10 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> 
     let joints = &setting.data.train.nominal.model.joints;
     let mut found = Vec::new();
     for (joint, described) in joints.iter().enumerate() {
-        let own = || visible.iter().filter(|one| one.joint == joint);
+        let own = || visible.iter().filter(|one| one.joint.0 == joint);
         let (unseen, of) = (own().filter(|one| one.share > LARGE).count(), own().count());
         if 2 * unseen > of {
-            found.push(Unseen::Effects { joint, unseen, of });
+            found.push(Unseen::Effects { joint: JointIndex(joint), unseen, of });
         }
         let signals = || setting.data.train.signals.iter();
         let range = |values: &mut dyn Iterator<Item = f64>| {
@@ -85,7 +86,7 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> 
         let [least, most] =
             range(&mut signals().flat_map(|log| log.position_noise[joint].iter().copied()));
         if high - low <= most - least {
-            found.push(Unseen::Rest { joint });
+            found.push(Unseen::Rest { joint: JointIndex(joint) });
         }
         let fastest =
             signals().flat_map(|log| &log.qd[joint]).fold(0.0, |a: f64, v| a.max(v.abs()));
@@ -93,7 +94,11 @@ pub(super) fn unseen(setting: &Setting<'_>, visible: &[Visible]) -> Vec<Unseen> 
         let of_speed = described.velocity_limit.map(|limit| (fastest / limit, true));
         let shares = [of_range, of_speed].into_iter().flatten();
         let small = shares.filter(|(share, _)| *share < LEAST_RANGE);
-        found.extend(small.map(|(share, is_speed)| Unseen::Range { joint, share, is_speed }));
+        found.extend(small.map(|(share, is_speed)| Unseen::Range {
+            joint: JointIndex(joint),
+            share,
+            is_speed,
+        }));
     }
     found
 }
@@ -106,14 +111,14 @@ impl Unseen {
             Self::Effects { joint, unseen, of } => format!(
                 "too little excitation: of {of} effects {unseen} would not be seen at {} though \
                  they were half of its torque",
-                names[*joint]
+                names[joint.0]
             ),
             Self::Rest { joint } => {
-                format!("too little excitation: {} does not move", names[*joint])
+                format!("too little excitation: {} does not move", names[joint.0])
             }
             Self::Range { joint, share, is_speed } => format!(
                 "too little excitation: {} covers {} of {}",
-                names[*joint],
+                names[joint.0],
                 percent(*share),
                 if *is_speed { "its speed" } else { "its range" }
             ),

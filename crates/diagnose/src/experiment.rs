@@ -20,8 +20,8 @@ use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
-use denavit_measure::LogIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
+use denavit_measure::{JointIndex, LogIndex};
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use serde_json::{Value, json};
@@ -132,7 +132,8 @@ impl Ambiguity<'_> {
     ) -> Result<Experiment, NoExperiment> {
         let nominal = self.nominal;
         let is_lost = |joint: &usize| {
-            self.log.motor[*joint].is_some() && nominal.spring_equation(*joint).is_none()
+            self.log.motor[*joint].is_some()
+                && nominal.spring_equation(JointIndex(*joint)).is_none()
         };
         if let Some(joint) = (0..nominal.model.joints.len()).find(is_lost) {
             return Err(NoExperiment::NoStiffness(nominal.model.joints[joint].name.clone()));

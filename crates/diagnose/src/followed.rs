@@ -8,6 +8,7 @@ use super::problem::Fitted;
 use super::rows::PerJoint;
 use super::signals::Signals;
 use crate::policy::followed::SETTLED;
+use denavit_measure::JointIndex;
 use denavit_plants::trajectory::Reference;
 
 /// A robot that follows motions: the nominal model with z, and effects that it has.
@@ -37,10 +38,10 @@ impl Follower<'_> {
         let zeros = self.nominal.zeros_of_springs(self.z);
         let mut found = vec![None; references.len()];
         for (spring, zero) in self.nominal.springs.iter().zip(zeros) {
-            let [angle, ..] = signals.motor[spring.joint].as_ref()?;
+            let [angle, ..] = signals.motor[spring.joint.0].as_ref()?;
             // A sample of a log is in the middle of its cell.
             let cells = angle.iter().skip(within / 2).step_by(within);
-            found[spring.joint] = Some(cells.map(|angle| angle + zero).collect());
+            found[spring.joint.0] = Some(cells.map(|angle| angle + zero).collect());
         }
         Some(found)
     }
@@ -63,7 +64,7 @@ impl Follower<'_> {
         });
         signals.motor = (0..references.len())
             .map(|joint| {
-                self.nominal.spring_equation(joint)?;
+                self.nominal.spring_equation(JointIndex(joint))?;
                 Some([&q, &qd, &qdd].map(|all| all[joint].clone()))
             })
             .collect();
@@ -106,11 +107,11 @@ impl Follower<'_> {
 
 /// Moves a motor further ahead; whether that hardly changed its deflection. None without a motor,
 /// or without a finite change.
-fn move_motor(signals: &mut Signals, joint: usize, change: &[f64]) -> Option<bool> {
+fn move_motor(signals: &mut Signals, joint: JointIndex, change: &[f64]) -> Option<bool> {
     let step_s = signals.step_s;
     let rate = derivative(change, step_s);
     let acceleration = derivative(&rate, step_s);
-    let motor = signals.motor[joint].as_mut()?;
+    let motor = signals.motor[joint.0].as_mut()?;
     for (own, more) in motor.iter_mut().zip([change, &rate, &acceleration]) {
         own.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
     }

@@ -8,6 +8,7 @@ use super::nominal::Uncertainty;
 use super::state::Taken;
 use crate::policy::given::MOST;
 use denavit_codegen::effect::{Channel, Occurrence};
+use denavit_measure::JointIndex;
 use denavit_plants::effect::{AddedLaw, LawParameter};
 
 /// What a model says of a parameter of an effect.
@@ -67,7 +68,12 @@ pub fn given_candidates(
             parameter.bounds = [within(value - MOST * std), within(value + MOST * std)];
         }
         let effect = law.name.clone();
-        let law = Box::new(GivenLaw { law: law_of(law, joint, second), parameters, beliefs });
+        let joint = JointIndex(joint);
+        let law = Box::new(GivenLaw {
+            law: law_of(law, joint, second.map(JointIndex)),
+            parameters,
+            beliefs,
+        });
         let (joint, occurrence) = (Some(joint), Occurrence::default());
         (
             Candidate { effect, title, at, joint, is_body: false, occurrence, law },

@@ -5,6 +5,7 @@ use super::law::{Law, Motion, Response};
 use crate::policy::joint_law::{ALL_GIVEN, OF_NOISE};
 use denavit_codegen::effect::SpringSide;
 use denavit_evidence::Unpredicted;
+use denavit_measure::JointIndex;
 use denavit_plants::effect::{AddedTorques, EffectLaw, JointSamples, LawParameter, RobotEffect};
 
 /// An effect that adds to the torque of one joint, or of a pair, or changes the log of a torque.
@@ -12,34 +13,34 @@ pub(super) struct JointLaw {
     /// The law.
     pub(super) law: EffectLaw,
     /// Its joint.
-    pub(super) joint: usize,
+    pub(super) joint: JointIndex,
     /// The other joint, for laws of a pair.
-    pub(super) other: Option<usize>,
+    pub(super) other: Option<JointIndex>,
 }
 
 /// The samples of a joint in a motion: of its drive, which may be before a spring.
 pub(super) fn samples<'m>(
     motion: &Motion<'m>,
-    joint: usize,
-    other: Option<usize>,
+    joint: JointIndex,
+    other: Option<JointIndex>,
 ) -> JointSamples<'m> {
     let signals = motion.signals;
     let [qd, qdd] = signals.of_drive(joint);
     let mut samples = JointSamples {
         t: &signals.t,
-        q: &signals.q[joint],
+        q: &signals.q[joint.0],
         qd,
         qdd,
-        tau_load: &motion.load[joint],
-        tau_load_rate: &motion.load_rate[joint],
-        tau: &motion.total[joint],
+        tau_load: &motion.load[joint.0],
+        tau_load_rate: &motion.load_rate[joint.0],
+        tau: &motion.total[joint.0],
         ..JointSamples::default()
     };
     if let Some(other) = other {
-        samples.q_2 = &signals.q[other];
+        samples.q_2 = &signals.q[other.0];
         [samples.qd_2, samples.qdd_2] = signals.of_drive(other).map(Vec::as_slice);
-        samples.tau_load_2 = &motion.load[other];
-        samples.tau_load_rate_2 = &motion.load_rate[other];
+        samples.tau_load_2 = &motion.load[other.0];
+        samples.tau_load_rate_2 = &motion.load_rate[other.0];
     }
     samples
 }
@@ -55,20 +56,20 @@ impl Law for JointLaw {
 
     fn response(&self, motion: Motion<'_>, values: &[f64]) -> Response {
         let mut response = Response::default();
-        let mut add = |law: &EffectLaw, joint: usize, other: Option<usize>| {
+        let mut add = |law: &EffectLaw, joint: JointIndex, other: Option<JointIndex>| {
             let mut samples = samples(&motion, joint, other);
             let creep = motion.signals.creeping(joint);
             samples.creep = &creep;
-            let mut equations = vec![joint];
+            let mut equations = vec![joint.0];
             if let Some(spring) = motion.model.0.spring_equation(joint)
                 && law.channel().is_none()
                 && law.side == SpringSide::Link
             {
                 let signals = motion.signals;
-                (samples.qd, samples.qdd) = (&signals.qd[joint], &signals.qdd[joint]);
+                (samples.qd, samples.qdd) = (&signals.qd[joint.0], &signals.qdd[joint.0]);
                 samples.creep = samples.qd;
                 if let Some(other) = other {
-                    (samples.qd_2, samples.qdd_2) = (&signals.qd[other], &signals.qdd[other]);
+                    (samples.qd_2, samples.qdd_2) = (&signals.qd[other.0], &signals.qdd[other.0]);
                 }
                 // What the link feels the spring passes on.
                 equations.push(spring);
@@ -95,7 +96,7 @@ pub(super) struct SpringLaw {
     /// The law.
     pub(super) law: EffectLaw,
     /// The joint of the spring.
-    pub(super) joint: usize,
+    pub(super) joint: JointIndex,
 }
 
 impl Law for SpringLaw {
@@ -129,7 +130,7 @@ pub(super) struct DemandLaw {
     /// The law.
     pub(super) law: EffectLaw,
     /// Its joint.
-    pub(super) joint: usize,
+    pub(super) joint: JointIndex,
 }
 
 impl DemandLaw {
@@ -161,13 +162,13 @@ impl Law for DemandLaw {
         let mut torque = self.law.torque(&samples, values);
         let mut gradient = self.law.gradient(&samples, values);
         let lacks: Vec<f64> = torque.iter().copied().filter(|lack| *lack != 0.0).collect();
-        let noise = motion.signals.torque_noise[self.joint];
+        let noise = motion.signals.torque_noise[self.joint.0];
         if rms(&lacks) < OF_NOISE * noise {
             torque.fill(0.0);
             gradient.iter_mut().for_each(|column| column.fill(0.0));
         }
         Response {
-            equations: vec![self.joint],
+            equations: vec![self.joint.0],
             torque: vec![torque],
             gradient: gradient.into_iter().map(|column| vec![column]).collect(),
         }
@@ -199,7 +200,7 @@ impl Law for DelayLaw {
             let [added, rate] = motion.signals.undelayed_within(joint, delay_s)?;
             let by = |slope: &f64| vec![rate.iter().map(|rate| -slope * rate).collect()];
             let gradient = gradient.iter().map(by).collect();
-            Some(Response { equations: vec![joint], torque: vec![added], gradient })
+            Some(Response { equations: vec![joint.0], torque: vec![added], gradient })
         });
         undone.unwrap_or_else(|| self.law.response(motion, values))
     }
@@ -232,7 +233,7 @@ impl Law for RobotLaw {
         if !self.is_of_drives {
             for spring in &motion.model.0.springs {
                 let all = gradient.iter_mut().chain([&mut torque]);
-                all.for_each(|joints| joints.push(joints[spring.joint].clone()));
+                all.for_each(|joints| joints.push(joints[spring.joint.0].clone()));
             }
         }
         Response { equations: (0..torque.len()).collect(), torque, gradient }

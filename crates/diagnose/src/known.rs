@@ -11,6 +11,7 @@ use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
 use crate::policy::known::{CREEP, RINGING};
 use denavit_evidence::policy;
+use denavit_measure::JointIndex;
 
 /// For each joint what each row of a log counts, from 0 to 1.
 pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
@@ -20,8 +21,10 @@ pub(super) fn weights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Pe
         let weight = |unknown: &f64| {
             if *unknown == 0.0 { 1.0 } else { level / level.hypot(*unknown) }
         };
-        let late: Vec<f64> = late(signals, joint, heights).iter().map(|by| by.abs()).collect();
-        let [late, resting] = [signals.rows_of(&late), resting(signals, joint, heights)];
+        let late: Vec<f64> =
+            late(signals, JointIndex(joint), heights).iter().map(|by| by.abs()).collect();
+        let [late, resting] =
+            [signals.rows_of(&late), resting(signals, JointIndex(joint), heights)];
         let unknown: Vec<f64> = late.iter().zip(resting).map(|(a, b)| a.hypot(b)).collect();
         even(with_ringing(&unknown).iter().map(weight).collect())
     };
@@ -36,7 +39,7 @@ fn even(weights: Vec<f64>) -> Vec<f64> {
 
 /// What friction of some height lacks at the samples of the motion where it turns around later.
 /// What a drive holds with at rest is unknown itself, and has no side.
-fn late(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
+fn late(signals: &Signals, joint: JointIndex, heights: &[f64]) -> Vec<f64> {
     let side = |rate: f64| if rate == 0.0 { 0.0 } else { rate.signum() };
     let sides = heights.iter().zip(signals.creeping(joint));
     let step: Vec<f64> = sides.map(|(height, rate)| height * side(rate)).collect();
@@ -46,14 +49,18 @@ fn late(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
 /// For each joint what its friction lacks where all its reversals are late by the same time.
 pub(super) fn late_reversals(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let heights = heights(nominal, signals, phi);
-    heights.iter().enumerate().map(|(joint, heights)| late(signals, joint, heights)).collect()
+    heights
+        .iter()
+        .enumerate()
+        .map(|(joint, heights)| late(signals, JointIndex(joint), heights))
+        .collect()
 }
 
 /// What friction of some height may differ by in the rows, since the drive rests: up to where it
 /// needs all that it slides with, for what it needs beyond that is to be told.
-fn resting(signals: &Signals, joint: usize, heights: &[f64]) -> Vec<f64> {
+fn resting(signals: &Signals, joint: JointIndex, heights: &[f64]) -> Vec<f64> {
     let mut resting = vec![0.0; heights.len()];
-    for rest in &signals.rests[joint] {
+    for rest in &signals.rests[joint.0] {
         let samples = rest.held(&signals.t);
         resting[samples.clone()].copy_from_slice(&heights[samples]);
     }
@@ -74,7 +81,7 @@ fn heights(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> PerJoint {
     let creeping = |direction: f64| {
         let mut moved = signals.clone();
         for joint in 0..signals.joints() {
-            moved.drive_mut(joint)[0].fill(direction * CREEP);
+            moved.drive_mut(JointIndex(joint))[0].fill(direction * CREEP);
             moved.qd[joint].fill(direction * CREEP);
         }
         torques_of(nominal, &moved, phi)

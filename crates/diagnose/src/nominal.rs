@@ -10,6 +10,7 @@ use super::floor::rms;
 use super::signals::Signals;
 use super::turning::PER_JOINT;
 use denavit_codegen::model::JointEntry;
+use denavit_measure::JointIndex;
 use denavit_plants::regression::{ModelParameter, RegressionModel, StandardParameter};
 
 /// How far numbers of a model may be off that say nothing of it, as a share of their value.
@@ -75,7 +76,7 @@ pub(super) struct NominalAt<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// Its joint.
-    pub joint: usize,
+    pub joint: JointIndex,
     /// The name of its stiffness.
     pub name: String,
     /// Its stiffness [N m/rad, N/m].
@@ -151,7 +152,7 @@ impl<'a> Nominal<'a> {
         for (joint, usual) in self.usual.iter_mut().enumerate() {
             let torques = logs.iter().filter_map(|log| log.torque[joint].as_ref());
             let torques: Vec<f64> = torques.flatten().copied().collect();
-            let rates = logs.iter().flat_map(|log| log.of_drive(joint)[0]);
+            let rates = logs.iter().flat_map(|log| log.of_drive(JointIndex(joint))[0]);
             *usual = [rms(&torques), rms(&rates.copied().collect::<Vec<f64>>())];
         }
         self
@@ -172,20 +173,20 @@ impl<'a> Nominal<'a> {
     }
 
     /// The joint of an equation.
-    pub fn joint_of(&self, equation: usize) -> usize {
+    pub fn joint_of(&self, equation: usize) -> JointIndex {
         let spring = equation.checked_sub(self.model.joints.len());
-        spring.map_or(equation, |spring| self.springs[spring].joint)
+        spring.map_or(JointIndex(equation), |spring| self.springs[spring].joint)
     }
 
     /// The equation of the spring of a joint.
-    pub fn spring_equation(&self, joint: usize) -> Option<usize> {
+    pub fn spring_equation(&self, joint: JointIndex) -> Option<usize> {
         let place = self.springs.iter().position(|spring| spring.joint == joint)?;
         Some(self.model.joints.len() + place)
     }
 
     /// What an equation is of, in words: a joint, or the spring of one.
     pub fn equation_name(&self, equation: usize) -> String {
-        let joint = &self.model.joints[self.joint_of(equation)].name;
+        let joint = &self.model.joints[self.joint_of(equation).0].name;
         match equation < self.model.joints.len() {
             true => joint.clone(),
             false => format!("spring of {joint}"),

@@ -19,6 +19,7 @@ use super::signals::Signals;
 use crate::policy::joint_law::DIFFERENCE;
 use crate::policy::reading_law::REACH;
 use denavit_codegen::effect::Channel;
+use denavit_measure::JointIndex;
 use denavit_plants::effect::{EffectLaw, JointSamples, LawParameter};
 
 /// An effect that stands between a position or velocity and its log: the model was given what is
@@ -27,7 +28,7 @@ pub(super) struct ReadingLaw {
     /// The law.
     law: EffectLaw,
     /// Its joint.
-    joint: usize,
+    joint: JointIndex,
     /// Whether the joint crosses a gap behind its drive: what it is behind is not in proportion to
     /// its load. A spring is taken to follow its load, slower than it swings.
     has_gap: bool,
@@ -35,7 +36,7 @@ pub(super) struct ReadingLaw {
 
 impl ReadingLaw {
     /// The law of a joint.
-    pub(super) fn new(mut law: EffectLaw, joint: usize) -> Self {
+    pub(super) fn new(mut law: EffectLaw, joint: JointIndex) -> Self {
         let has_gap = law.is_read_at_drive() && {
             let starts = law.parameters.iter().map(|one| one.start.first().copied().unwrap_or(1.0));
             let under = deflections(&law, &starts.collect::<Vec<f64>>(), &[1.0, 2.0]);
@@ -50,20 +51,20 @@ impl ReadingLaw {
     fn torques(&self, motion: &Motion<'_>, values: &[f64]) -> PerJoint {
         let (joint, logged) = (self.joint, motion.signals);
         let mut signals: Signals = logged.clone();
-        let is_drive = self.law.is_read_at_drive() && logged.motor[joint].is_none();
+        let is_drive = self.law.is_read_at_drive() && logged.motor[joint.0].is_none();
         let truth: Vec<f64> = if is_drive && self.has_gap {
             let deflection = self.deflection(motion, values);
-            logged.q[joint].iter().zip(deflection).map(|(read, by)| read - by).collect()
+            logged.q[joint.0].iter().zip(deflection).map(|(read, by)| read - by).collect()
         } else {
             self.law.corrected(&samples(motion, joint, None), values)
         };
         if is_drive {
-            let [q, qd, qdd] = [&logged.q, &logged.qd, &logged.qdd].map(|all| all[joint].clone());
-            signals.motor[joint] = Some([q, qd, qdd]);
+            let [q, qd, qdd] = [&logged.q, &logged.qd, &logged.qdd].map(|all| all[joint.0].clone());
+            signals.motor[joint.0] = Some([q, qd, qdd]);
         }
         match self.law.channel() {
             Some(Channel::Position) => signals.move_joint(joint, &truth),
-            _ => signals.qd[joint] = truth,
+            _ => signals.qd[joint.0] = truth,
         }
         let mut torques = motion.torques_of(&signals);
         for (torque, own) in torques.iter_mut().flatten().zip(motion.total.iter().flatten()) {
@@ -77,7 +78,7 @@ impl ReadingLaw {
     /// How far the joint is behind its drive at each sample [rad, m].
     fn deflection(&self, motion: &Motion<'_>, values: &[f64]) -> Vec<f64> {
         let (joint, signals) = (self.joint, motion.signals);
-        let load = &motion.load[joint];
+        let load = &motion.load[joint.0];
         let most = load.iter().fold(0.0_f64, |most, load| most.max(load.abs()));
         let loads: Vec<f64> =
             (0..=2 * LOADS).map(|k| REACH * most * (k as f64 / LOADS as f64 - 1.0)).collect();
@@ -89,11 +90,11 @@ impl ReadingLaw {
     /// The inertia of the bodies about the joint at each sample [kg m^2, kg].
     fn inertia(&self, motion: &Motion<'_>) -> Vec<f64> {
         let mut faster = motion.signals.clone();
-        faster.qdd[self.joint].iter_mut().for_each(|acceleration| *acceleration += 1.0);
-        let torques = motion.torques_of(&faster).swap_remove(self.joint);
-        let rotor = motion.drives[self.joint].inertia;
+        faster.qdd[self.joint.0].iter_mut().for_each(|acceleration| *acceleration += 1.0);
+        let torques = motion.torques_of(&faster).swap_remove(self.joint.0);
+        let rotor = motion.drives[self.joint.0].inertia;
         let of = |(more, total): (&f64, &f64)| (more - total - rotor).max(0.0);
-        torques.iter().zip(&motion.total[self.joint]).map(of).collect()
+        torques.iter().zip(&motion.total[self.joint.0]).map(of).collect()
     }
 }
 

@@ -178,8 +178,8 @@ fn regimes(
 ) -> Vec<(Regime, Vec<bool>)> {
     let (signals, joint) = (&data.signals[stretch.log.0], stretch.joint);
     let [q, qd, qdd] =
-        [&signals.q, &signals.qd, &signals.qdd].map(|all| signals.at_rows(&all[joint]));
-    let load = signals.at_rows(&torques.load[joint]);
+        [&signals.q, &signals.qd, &signals.qdd].map(|all| signals.at_rows(&all[joint.0]));
+    let load = signals.at_rows(&torques.load[joint.0]);
     let torque = &data.torque[stretch.first..stretch.first + stretch.rows];
     let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let (low, high) = q.iter().fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));

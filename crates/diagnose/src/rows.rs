@@ -3,6 +3,7 @@
 
 use super::nominal::{Nominal, Phi};
 use super::signals::Signals;
+use denavit_measure::JointIndex;
 use denavit_plants::regression::{RegressionEvaluator, RegressionRows};
 
 /// Samples that are evaluated at once.
@@ -48,26 +49,32 @@ impl LogRows {
             known.into_iter().map(|known| Some(signals.rows_of(&known?))).collect();
         let mut rows = Self { columns, target: Vec::new(), known };
         let target = |(joint, torque): (usize, &Option<Vec<f64>>)| {
-            torque.clone().map(|torque| rows.unknown(joint, torque))
+            torque.clone().map(|torque| rows.unknown(JointIndex(joint), torque))
         };
         rows.target = signals.torque.iter().enumerate().map(target).collect();
         rows
     }
 
     /// A torque of a joint less what is known of it.
-    pub(super) fn unknown(&self, joint: usize, mut torque: Vec<f64>) -> Vec<f64> {
-        let known = self.known[joint].iter().flatten();
+    pub(super) fn unknown(&self, joint: JointIndex, mut torque: Vec<f64>) -> Vec<f64> {
+        let known = self.known[joint.0].iter().flatten();
         torque.iter_mut().zip(known).for_each(|(torque, known)| *torque -= known);
         torque
     }
 
     /// The torque of a joint that phi adds on the joint axes, in the rows; drives move with their
     /// joints.
-    pub(super) fn torque(&self, nominal: &Nominal<'_>, joint: usize, axes: &[f64]) -> Vec<f64> {
+    pub(super) fn torque(
+        &self,
+        nominal: &Nominal<'_>,
+        joint: JointIndex,
+        axes: &[f64],
+    ) -> Vec<f64> {
         // A joint that carries nothing has no columns.
-        let samples = self.target[joint].as_ref().map_or(0, Vec::len);
+        let samples = self.target[joint.0].as_ref().map_or(0, Vec::len);
         let mut torque = vec![0.0; samples];
-        for (column, &place) in self.columns[joint].iter().zip(&nominal.model.pattern()[joint]) {
+        for (column, &place) in self.columns[joint.0].iter().zip(&nominal.model.pattern()[joint.0])
+        {
             let factor = axes[place];
             if factor != 0.0 {
                 torque.iter_mut().zip(column).for_each(|(sum, entry)| *sum += factor * entry);
@@ -88,7 +95,7 @@ pub(super) fn torques(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Pe
     let all = torques.iter_mut().flatten().zip(loads.iter().flatten());
     all.for_each(|(torque, load)| *torque += load);
     for (spring, stiffness) in nominal.springs.iter().zip(&phi.springs) {
-        let mut missed = loads[spring.joint].clone();
+        let mut missed = loads[spring.joint.0].clone();
         if let Some([deflection, _]) = signals.deflection(spring.joint) {
             let both = missed.iter_mut().zip(deflection);
             both.for_each(|(missed, deflection)| *missed -= stiffness * deflection);
@@ -116,7 +123,7 @@ pub(super) fn behind_springs(
     nominal: &Nominal<'_>,
     signals: &Signals,
     phi: &Phi,
-) -> Vec<(usize, Vec<f64>)> {
+) -> Vec<(JointIndex, Vec<f64>)> {
     let sprung: Vec<usize> =
         (0..signals.joints()).filter(|&joint| signals.motor[joint].is_some()).collect();
     if sprung.is_empty() || phi.drives.iter().all(|value| *value == 0.0) {
@@ -125,7 +132,7 @@ pub(super) fn behind_springs(
     let there = drives(nominal, signals, phi);
     let here = of_axes(nominal, signals, &phi.drives, false);
     let more = |joint: usize| there[joint].iter().zip(&here[joint]).map(|(a, b)| a - b).collect();
-    sprung.into_iter().map(|joint| (joint, more(joint))).collect()
+    sprung.into_iter().map(|joint| (JointIndex(joint), more(joint))).collect()
 }
 
 /// The torque of every joint by phi on the joint axes, and by what is known if that is asked for.

@@ -342,7 +342,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             let precision = glance.see(&part.terms).precision[0];
-            let share = self.weighing.spectra.share(&part.terms.columns[0], joint);
+            let share = self.weighing.spectra.share(&part.terms.columns[0], joint.0);
             let error = precision.sqrt().recip();
             all.push((candidate, error * part.placed.deviations[0], error * share));
         }

@@ -12,6 +12,7 @@ use super::spectra::{cosine_lines, last_driven};
 use super::standstill::{self, Rest};
 use crate::policy::signals::{ENOUGH_ROWS, LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
 use denavit_evidence::policy;
+use denavit_measure::JointIndex;
 use denavit_measure::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
@@ -209,7 +210,7 @@ impl Signals {
             [fine(motor[kept.clone()].to_vec()), rates, accelerations]
         }));
         self.q.push(fine(q[kept.clone()].to_vec()));
-        self.rest(self.rests.len() - 1);
+        self.rest(JointIndex(self.rests.len() - 1));
         let measured = tau.map(|tau| tau[kept].to_vec());
         let rows = measured.clone().map(|tau| self.row_samples(&self.filtered(tau)));
         self.torque.push(rows);
@@ -218,10 +219,10 @@ impl Signals {
     }
 
     /// Rate and acceleration of a joint's drive, on the joint's side.
-    pub(super) fn drive_mut(&mut self, joint: usize) -> [&mut Vec<f64>; 2] {
-        match &mut self.motor[joint] {
+    pub(super) fn drive_mut(&mut self, joint: JointIndex) -> [&mut Vec<f64>; 2] {
+        match &mut self.motor[joint.0] {
             Some([_, rates, accelerations]) => [rates, accelerations],
-            None => [&mut self.qd[joint], &mut self.qdd[joint]],
+            None => [&mut self.qd[joint.0], &mut self.qdd[joint.0]],
         }
     }
 
@@ -247,19 +248,19 @@ impl Signals {
             let noise = Some(&self.motor_noise[joint]).filter(|noise| !noise.is_empty());
             let noise = noise.into_iter().flat_map(|noise| added(noise));
             motor.zip(noise).for_each(|(signal, noise)| add(signal, &noise));
-            other.rest(joint);
+            other.rest(JointIndex(joint));
         }
         other
     }
 
     /// Gives a joint other positions, with the rates and accelerations that the difference adds.
-    pub fn move_joint(&mut self, joint: usize, positions: &[f64]) {
-        let cells: Vec<f64> = positions.iter().zip(&self.q[joint]).map(|(a, b)| a - b).collect();
+    pub fn move_joint(&mut self, joint: JointIndex, positions: &[f64]) {
+        let cells: Vec<f64> = positions.iter().zip(&self.q[joint.0]).map(|(a, b)| a - b).collect();
         let cells = self.cell_means(&cells);
         let [rates, accelerations] = self.derivatives(&cells);
-        add(&mut self.qd[joint], &rates);
-        add(&mut self.qdd[joint], &accelerations);
-        self.q[joint] = positions.to_vec();
+        add(&mut self.qd[joint.0], &rates);
+        add(&mut self.qdd[joint.0], &accelerations);
+        self.q[joint.0] = positions.to_vec();
         self.rest(joint);
     }
 
@@ -291,18 +292,18 @@ impl Signals {
 
     /// Rate and acceleration of a joint's drive, on the joint's side: those of the joint, unless a
     /// spring is between them.
-    pub fn of_drive(&self, joint: usize) -> [&Vec<f64>; 2] {
-        match &self.motor[joint] {
+    pub fn of_drive(&self, joint: JointIndex) -> [&Vec<f64>; 2] {
+        match &self.motor[joint.0] {
             Some([_, rates, accelerations]) => [rates, accelerations],
-            None => [&self.qd[joint], &self.qdd[joint]],
+            None => [&self.qd[joint.0], &self.qdd[joint.0]],
         }
     }
 
     /// How far the motor of a joint behind a spring is ahead of it, and the rate of that.
-    pub fn deflection(&self, joint: usize) -> Option<[Vec<f64>; 2]> {
-        let [position, rates, _] = self.motor[joint].as_ref()?;
+    pub fn deflection(&self, joint: JointIndex) -> Option<[Vec<f64>; 2]> {
+        let [position, rates, _] = self.motor[joint.0].as_ref()?;
         let less = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
-        Some([less((position, &self.q[joint])), less((rates, &self.qd[joint]))])
+        Some([less((position, &self.q[joint.0])), less((rates, &self.qd[joint.0]))])
     }
 
     /// Number of joints.
@@ -361,14 +362,18 @@ impl Signals {
     }
 
     /// The torque of a joint as it was measured, at the samples of the motion.
-    pub(super) fn measured_within(&self, joint: usize) -> Option<Vec<f64>> {
-        Some(self.in_cells(self.measured.get(joint)?.as_ref()?))
+    pub(super) fn measured_within(&self, joint: JointIndex) -> Option<Vec<f64>> {
+        Some(self.in_cells(self.measured.get(joint.0)?.as_ref()?))
     }
 
     /// What the measured torque of a joint has more than before a delay \[s\], and the rate of the
     /// torque without it, at the samples of the motion; none where none was measured.
-    pub(super) fn undelayed_within(&self, joint: usize, delay_s: f64) -> Option<[Vec<f64>; 2]> {
-        let measured = self.measured.get(joint)?.as_ref()?;
+    pub(super) fn undelayed_within(
+        &self,
+        joint: JointIndex,
+        delay_s: f64,
+    ) -> Option<[Vec<f64>; 2]> {
+        let measured = self.measured.get(joint.0)?.as_ref()?;
         let (late, last) = (delay_s / self.log_step_s, measured.len() as f64 - 1.0);
         let at = |k: f64| {
             let place = (k + late).clamp(0.0, last);
@@ -431,7 +436,7 @@ mod tests {
         let (file, joints) = ("made".to_owned(), vec![joint]);
         let log = MeasuredLog { file, step_s, joints, ..MeasuredLog::default() };
         let signals = Signals::new(log, Filters::new(step_s, 0.05)).expect("long enough");
-        let [added, slope] = signals.undelayed_within(0, delay_s).expect("measured");
+        let [added, slope] = signals.undelayed_within(JointIndex(0), delay_s).expect("measured");
         let [q, added, slope] = [&signals.q[0], &added, &slope].map(|all| signals.at_rows(all));
         let t = signals.at_rows(&signals.t);
         for (k, t) in t.iter().enumerate() {

@@ -215,7 +215,7 @@ fn with_springs(mut robot: Robot, at: NominalAt<'_>) -> Option<Robot> {
     for (spring, stiffness) in nominal.springs.iter().zip(nominal.phi(z).springs) {
         let share = stiffness / spring.stiffness;
         let exact = parse_decimal(&format!("{share:?}")).ok().filter(|_| share > 0.0)?;
-        let drive = robot.links[links[spring.joint]].drive.as_mut()?;
+        let drive = robot.links[links[spring.joint.0]].drive.as_mut()?;
         let elastic = drive.series_elastic.as_mut()?;
         let share = robot.dag.constant(exact);
         elastic.stiffness = robot.dag.mul(elastic.stiffness, share);
@@ -241,10 +241,10 @@ fn drive_by_motors(
     }
     let mut zeros = vec![0.0; links.len()];
     for (spring, zero) in nominal.springs.iter().zip(nominal.zeros_of_springs(z)) {
-        zeros[spring.joint] = zero;
+        zeros[spring.joint.0] = zero;
     }
     for (joint, link) in links.into_iter().enumerate() {
-        let has_spring = nominal.springs.iter().any(|spring| spring.joint == joint);
+        let has_spring = nominal.springs.iter().any(|spring| spring.joint.0 == joint);
         let drive = robot.links[link].drive.as_mut();
         match drive.filter(|drive| drive.series_elastic.is_some()) {
             Some(drive) if !is_measured(joint) => drive.rotor_inertia = None,

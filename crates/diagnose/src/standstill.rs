@@ -13,6 +13,7 @@ use super::signals::Signals;
 use crate::policy::standstill::{
     ANOTHER, CREEPS, EDGE, LEAVES, POWER, SAME, SLIDES, UNSEEN, UNSURE,
 };
+use denavit_measure::JointIndex;
 use std::ops::Range;
 
 /// Samples of the shortest rest.
@@ -163,7 +164,7 @@ pub(super) fn rests(positions: &[f64], step: f64, times: [f64; 2]) -> Vec<Rest> 
 
 impl Signals {
     /// Has the drive of a joint rest where it does.
-    pub(super) fn rest(&mut self, joint: usize) {
+    pub(super) fn rest(&mut self, joint: JointIndex) {
         self.bend_rests(joint, 0.0);
     }
 
@@ -172,25 +173,25 @@ impl Signals {
     pub(super) fn with_rests_bent(&self, by: f64) -> Option<Self> {
         self.rests.iter().any(|rests| !rests.is_empty()).then(|| {
             let mut other = self.clone();
-            (0..self.joints()).for_each(|joint| other.bend_rests(joint, by));
+            (0..self.joints()).map(JointIndex).for_each(|joint| other.bend_rests(joint, by));
             other
         })
     }
 
-    fn bend_rests(&mut self, joint: usize, by: f64) {
-        let (t, rests) = (self.t.clone(), self.rests[joint].clone());
+    fn bend_rests(&mut self, joint: JointIndex, by: f64) {
+        let (t, rests) = (self.t.clone(), self.rests[joint.0].clone());
         alternate(self.drive_mut(joint)[0], &t, &rests, by);
     }
 
     /// The rests of a joint's drive.
-    pub(super) fn rests_mut(&mut self, joint: usize) -> &mut [Rest] {
-        &mut self.rests[joint]
+    pub(super) fn rests_mut(&mut self, joint: JointIndex) -> &mut [Rest] {
+        &mut self.rests[joint.0]
     }
 
     /// Rates of a joint's drive that creeps where it rests, for laws of sticking [rad/s, m/s].
-    pub(super) fn creeping(&self, joint: usize) -> Vec<f64> {
+    pub(super) fn creeping(&self, joint: JointIndex) -> Vec<f64> {
         let mut rates = self.of_drive(joint)[0].clone();
-        for rest in &self.rests[joint] {
+        for rest in &self.rests[joint.0] {
             rates[rest.samples(&self.t)].fill(0.0);
             let leaves = within(&self.t, &(rest.leaves_s..rest.time_s.end));
             rates[leaves].fill(rest.directions[1] * rest.creep);

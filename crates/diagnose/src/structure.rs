@@ -5,6 +5,7 @@ use super::data::{Data, ModelTorques};
 use super::signals::Signals;
 use super::state::{Setting, State};
 use crate::policy::structure::LEAST_SHARE;
+use denavit_measure::JointIndex;
 use nalgebra::{DMatrix, DVector};
 
 /// What one joint leaves, described.
@@ -77,7 +78,7 @@ impl Rows {
             let names = data.nominal.model.joints.iter().map(|one| one.name.as_str());
             let names: Vec<&str> = names.collect();
             let joint = stretch.joint;
-            let library = library(signals, &torques[stretch.log.0].load[joint], joint, &names);
+            let library = library(signals, &torques[stretch.log.0].load[joint.0], joint, &names);
             columns.resize(library.len(), Vec::new());
             rows.names = library.iter().map(|(name, _)| name.clone()).collect();
             for (column, (_, values)) in columns.iter_mut().zip(&library) {
@@ -123,7 +124,7 @@ impl Rows {
 fn library(
     signals: &Signals,
     load: &[f64],
-    joint: usize,
+    joint: JointIndex,
     names: &[&str],
 ) -> Vec<(String, Vec<f64>)> {
     let mut all: Vec<(String, Vec<f64>)> = Vec::new();
@@ -134,7 +135,7 @@ fn library(
         a.iter().zip(b).map(|(a, b)| of(*a, *b)).collect()
     };
     let [rates, accelerations] = signals.of_drive(joint);
-    let (q, name) = (&signals.q[joint], names[joint]);
+    let (q, name) = (&signals.q[joint.0], names[joint.0]);
     all.push(("1".to_owned(), vec![1.0; q.len()]));
     let powers: [(&str, &dyn Fn(f64) -> f64); 5] = [
         ("q", &|q| q),
@@ -161,8 +162,8 @@ fn library(
     all.push((format!("q qd_{name}"), product(q, rates, &|a, v| a * v)));
     all.push(("t".to_owned(), signals.t.clone()));
     all.push((format!("t sgn qd_{name}"), product(&signals.t, rates, with_sign)));
-    for other in (0..names.len()).filter(|other| *other != joint) {
-        let [v, a] = signals.of_drive(other);
+    for other in (0..names.len()).filter(|other| *other != joint.0) {
+        let [v, a] = signals.of_drive(JointIndex(other));
         let text = names[other];
         all.push((format!("q_{text}"), signals.q[other].clone()));
         all.push((format!("qd_{text}"), v.clone()));

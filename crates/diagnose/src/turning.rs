@@ -14,6 +14,7 @@ use super::rows::{PerJoint, torques as torques_of};
 use super::signals::Signals;
 use crate::policy::turning::{BETWEEN, CORNER};
 use denavit_evidence::policy;
+use denavit_measure::JointIndex;
 use std::ops::Range;
 
 /// How far a torque is not known [N m, N].
@@ -75,9 +76,9 @@ pub(super) fn turning(
 /// Tells drives at rest which friction balances their torques by the model, as long as what they
 /// slide with is enough for that.
 pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
-    for joint in 0..signals.joints() {
+    for joint in (0..signals.joints()).map(JointIndex) {
         let Some(measured) = signals.measured_within(joint) else { continue };
-        let (t, rests) = (&signals.t, &signals.rests[joint]);
+        let (t, rests) = (&signals.t, &signals.rests[joint.0]);
         let Some(creep) = rests.first().map(|rest| rest.creep) else { continue };
         let ranges: Vec<Range<usize>> = rests.iter().map(|rest| rest.samples(t)).collect();
         let resting: Vec<usize> = ranges.iter().cloned().flatten().collect();
@@ -85,7 +86,7 @@ pub(super) fn settle(nominal: &Nominal<'_>, signals: &mut Signals, phi: &Phi) {
         let [back, forth] = [-creep, creep].map(|rate| {
             let mut moved = at_rest.clone();
             moved.drive_mut(joint)[0].fill(rate);
-            torques_of(nominal, &moved, phi).swap_remove(joint)
+            torques_of(nominal, &moved, phi).swap_remove(joint.0)
         });
         let side = |(k, (back, forth)): (&usize, (&f64, &f64))| {
             let friction = 0.5 * (forth - back);
@@ -113,7 +114,7 @@ pub(super) const PER_JOINT: usize = 4;
 pub(super) fn unnamed(nominal: &Nominal<'_>, signals: &Signals, phi: &Phi) -> Vec<PerJoint> {
     let late = late_reversals(nominal, signals, phi);
     let of_joint = |joint: usize| {
-        let rates = &signals.of_drive(joint)[0];
+        let rates = &signals.of_drive(JointIndex(joint))[0];
         let [torque, rate] = nominal.usual[joint];
         let size = policy::UNNAMED * torque;
         let slope = if rate > 0.0 { size / rate } else { 0.0 };
@@ -135,12 +136,12 @@ fn bends(signals: &Signals, torques: impl Fn(&Signals) -> PerJoint) -> PerJoint 
     let moved = |sign: f64| {
         let mut moved = signals.clone();
         for joint in 0..signals.joints() {
-            let by = sign * corner_s * rms(signals.of_drive(joint)[1]);
+            let by = sign * corner_s * rms(signals.of_drive(JointIndex(joint))[1]);
             let motor = moved.motor[joint].iter_mut().map(|[_, rates, _]| rates);
             for rates in motor.chain([&mut moved.qd[joint]]) {
                 rates.iter_mut().for_each(|rate| *rate += by);
             }
-            moved.rest(joint);
+            moved.rest(JointIndex(joint));
         }
         torques(&moved)
     };

@@ -7,7 +7,7 @@ use super::nominal::Nominal;
 use super::spectra::Spectra;
 use super::state::{Effects, Taken};
 use denavit_evidence::{Base, Spectrum, Terms, Unpredicted, policy};
-use denavit_measure::LogIndex;
+use denavit_measure::{JointIndex, LogIndex};
 
 /// An effect near values of its parameters, with what is believed of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -286,16 +286,16 @@ pub(super) fn add(to: &mut Spectrum, other: &Spectrum, factor: f64) {
 }
 
 /// The largest measured torque of a joint.
-fn largest(sets: &[&Data<'_>], joint: usize) -> Option<f64> {
+fn largest(sets: &[&Data<'_>], joint: JointIndex) -> Option<f64> {
     let of_set = |data: &&Data<'_>| {
-        let logs = data.signals.iter().filter_map(|log| log.measured[joint].as_ref());
+        let logs = data.signals.iter().filter_map(|log| log.measured[joint.0].as_ref());
         logs.flatten().map(|torque| torque.abs()).max_by(f64::total_cmp)
     };
     sets.iter().filter_map(of_set).max_by(f64::total_cmp)
 }
 
 /// The least and the largest position of a joint.
-fn range(sets: &[&Data<'_>], joint: usize) -> [f64; 2] {
-    let all = sets.iter().flat_map(|data| &data.signals).flat_map(|signals| &signals.q[joint]);
+fn range(sets: &[&Data<'_>], joint: JointIndex) -> [f64; 2] {
+    let all = sets.iter().flat_map(|data| &data.signals).flat_map(|signals| &signals.q[joint.0]);
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)])
 }

@@ -6,6 +6,7 @@ use denavit_codegen::regressor::{RegressorOptions, Unknowns};
 use denavit_diagnose::{
     Candidate, Gap, Gaps, Nominal, Request, SearchOptions, Uncertainty, diagnose, share_closed,
 };
+use denavit_measure::JointIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
@@ -93,7 +94,7 @@ fn candidates(model: &RegressionModel) -> Vec<Candidate> {
                 effect: name.to_owned(),
                 title: name.to_owned(),
                 at: described.name.clone(),
-                joint: Some(joint),
+                joint: Some(JointIndex(joint)),
                 is_body: false,
                 occurrence: Occurrence::Common,
                 law: Box::new(Handwritten {

@@ -75,7 +75,7 @@ const WORST: usize = 3;
 fn visible(out: &mut String, shown: &Diagnosed) -> fmt::Result {
     for (joint, described) in shown.model.joints.iter().enumerate() {
         let mut own: Vec<&Visible> =
-            shown.found.visible.iter().filter(|one| one.joint == joint).collect();
+            shown.found.visible.iter().filter(|one| one.joint.0 == joint).collect();
         own.sort_by(|a, b| b.share.total_cmp(&a.share));
         let worst = own.iter().take(WORST).map(|one| {
             let Candidate { effect, law, .. } = &shown.candidates[one.candidate];

@@ -10,6 +10,7 @@ use super::least_squares::{Estimate, EstimateError};
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
 use crate::policy::instruments::{MOVES, OTHER};
+use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
@@ -33,7 +34,7 @@ pub(super) fn instrumental(
         let differ = other_motion(log, instrument);
         if differ > OTHER {
             let percent = (100.0 * differ).min(1e6) as usize;
-            return Err(EstimateError::OtherMotion(number, percent));
+            return Err(EstimateError::OtherMotion(LogIndex(number), percent));
         }
     }
     let condensed = paired(model, rows, instruments);

@@ -81,7 +81,7 @@ pub enum EstimateError {
     Instruments,
     /// Instruments of another motion: their number, from 0, and the share of a joint's variance by
     /// which its positions differ, in percent.
-    OtherMotion(usize, usize),
+    OtherMotion(LogIndex, usize),
     /// Weights that do not settle.
     NotSettled,
 }
@@ -115,7 +115,7 @@ impl fmt::Display for EstimateError {
                 f,
                 "instruments must be of the motion of their log, without its noise: in log {} \
                  positions of a joint differ by {percent} % of its variance",
-                number + 1
+                number.0 + 1
             ),
             Self::NotSettled => write!(f, "the weights do not settle"),
         }

@@ -4,6 +4,7 @@
 use super::estimate::{Experiment, bare};
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_identify::doubt::{ExchangedColumns, Misreading, misread_columns};
+use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_plants::regression::RegressionModel;
 use std::f64::consts::FRAC_PI_2;
@@ -27,16 +28,16 @@ fn told(model: &RegressionModel, log: &Conditioned) -> Vec<(Misreading, bool)> {
 /// A log with columns multiplied, exchanged and shifted: what makes it needs the opposite to mend.
 fn misread(log: &Conditioned, how: Misreading) -> Conditioned {
     let mut log = log.clone();
-    let mut torques = |joints: &[usize], factor: f64| {
+    let mut torques = |joints: &[JointIndex], factor: f64| {
         for &joint in joints {
-            let column = log.torque[joint].as_mut().expect("measured");
+            let column = log.torque[joint.0].as_mut().expect("measured");
             column.iter_mut().for_each(|torque| *torque /= factor);
         }
     };
-    let all: Vec<usize> = (0..log.q.len()).collect();
+    let all: Vec<JointIndex> = (0..log.q.len()).map(JointIndex).collect();
     match how {
         Misreading::LateTorque(joint, samples) => {
-            log.torque[joint].as_mut().expect("measured").rotate_right(samples.unsigned_abs());
+            log.torque[joint.0].as_mut().expect("measured").rotate_right(samples.unsigned_abs());
             log.range = samples.unsigned_abs()..log.range.end;
         }
         Misreading::Torques(factor) => torques(&all, factor),
@@ -64,25 +65,25 @@ fn misread(log: &Conditioned, how: Misreading) -> Conditioned {
             values.for_each(|value| *value /= factor);
         }
         Misreading::Zero(joint, offset) => {
-            orders[0][joint].iter_mut().for_each(|value| *value -= offset);
+            orders[0][joint.0].iter_mut().for_each(|value| *value -= offset);
         }
         Misreading::LatePosition(joint, samples) => {
             for columns in orders {
-                columns[joint].rotate_right(samples.unsigned_abs());
+                columns[joint.0].rotate_right(samples.unsigned_abs());
             }
             log.range = samples.unsigned_abs()..log.range.end;
         }
         Misreading::Position(joint, factor) => {
             for columns in orders {
-                columns[joint].iter_mut().for_each(|value| *value /= factor);
+                columns[joint.0].iter_mut().for_each(|value| *value /= factor);
             }
         }
         Misreading::Exchanged([a, b], columns) => {
             if columns != ExchangedColumns::Torques {
-                orders.iter_mut().for_each(|columns| columns.swap(a, b));
+                orders.iter_mut().for_each(|columns| columns.swap(a.0, b.0));
             }
             if columns != ExchangedColumns::Positions {
-                log.torque.swap(a, b);
+                log.torque.swap(a.0, b.0);
             }
         }
         _ => {}
@@ -107,14 +108,15 @@ fn nothing_is_told_of_good_logs() {
 fn slides_and_single_logs_are_told() {
     let (model, log) = made("stanford", 4, true);
     let slide = model.joints.iter().position(|joint| joint.slides).expect("it has one");
-    let in_mm = misread(&log, Misreading::Position(slide, 1e-3));
+    let in_mm = misread(&log, Misreading::Position(JointIndex(slide), 1e-3));
     assert_eq!(told(&model, &in_mm), [(Misreading::Lengths(1e-3), true)]);
     let (model, log) = made("planar_2r", 4, true);
-    let mut turned = misread(&made("planar_2r", 5, true).1, Misreading::Torque(1, -1.0));
+    let mut turned =
+        misread(&made("planar_2r", 5, true).1, Misreading::Torque(JointIndex(1), -1.0));
     turned.file = "turned".to_owned();
     let found = misread_columns(&model, &[&log, &turned], None);
     let told: Vec<_> = found.iter().map(|one| (one.misreading, one.file.as_deref())).collect();
-    assert_eq!(told, [(Misreading::Torque(1, -1.0), Some("turned"))]);
+    assert_eq!(told, [(Misreading::Torque(JointIndex(1), -1.0), Some("turned"))]);
 }
 
 #[test]
@@ -123,28 +125,28 @@ fn misread_columns_are_told() {
         Angles, Exchanged, Late, LatePosition, LateTorque, Position, Time, Torque, Torques, Zero,
     };
     let degree = 1.0_f64.to_radians();
-    let both = [0, 1];
+    let both = [JointIndex(0), JointIndex(1)];
     let cases = [
         Time(10.0),
         Time(0.01),
         Time(1e-3),
         Torques(1e-3),
         Torques(-1.0),
-        Torque(1, 1e-3),
-        Torque(0, 100.0),
-        Torque(1, -1.0),
+        Torque(JointIndex(1), 1e-3),
+        Torque(JointIndex(0), 100.0),
+        Torque(JointIndex(1), -1.0),
         Angles(degree),
-        Position(1, degree),
-        Position(1, -1.0),
+        Position(JointIndex(1), degree),
+        Position(JointIndex(1), -1.0),
         Exchanged(both, ExchangedColumns::Positions),
         Exchanged(both, ExchangedColumns::Torques),
         Exchanged(both, ExchangedColumns::Both),
         Late(5),
-        LateTorque(1, 8),
-        LatePosition(0, 8),
-        Zero(0, 0.1),
-        Zero(1, 0.1),
-        Zero(1, FRAC_PI_2),
+        LateTorque(JointIndex(1), 8),
+        LatePosition(JointIndex(0), 8),
+        Zero(JointIndex(0), 0.1),
+        Zero(JointIndex(1), 0.1),
+        Zero(JointIndex(1), FRAC_PI_2),
     ];
     let mut missed = Vec::new();
     for name in ["planar_2r", "puma560", "tulip_leg6"] {
@@ -171,8 +173,8 @@ fn misread_columns_are_told() {
             // the last body turns with the zero of its joint, which values may tell all the same,
             // and all bodies with that of a vertical axis
             let is_hidden = match how {
-                Zero(0, _) => name != "planar_2r",
-                Zero(1, _) => name == "planar_2r",
+                Zero(JointIndex(0), _) => name != "planar_2r",
+                Zero(JointIndex(1), _) => name == "planar_2r",
                 _ => false,
             };
             assert!(!is_hidden || found.is_empty() || is_told, "{name}: {how:?} {found:?}");
@@ -189,8 +191,8 @@ fn misread_columns_are_told() {
 #[test]
 fn zeros_that_no_estimate_sees_are_told_by_values_that_are_true() {
     let (model, log) = made("planar_2r", 4, false);
-    let off = misread(&log, Misreading::Zero(1, 0.2));
-    let [(Misreading::Zero(1, offset), false)] = told(&model, &off)[..] else {
+    let off = misread(&log, Misreading::Zero(JointIndex(1), 0.2));
+    let [(Misreading::Zero(JointIndex(1), offset), false)] = told(&model, &off)[..] else {
         panic!("{:?}", told(&model, &off));
     };
     assert!((offset - 0.2).abs() < 0.005, "{offset}");

@@ -3,16 +3,17 @@
 
 use super::super::policy;
 use super::misreading::Misreading;
+use denavit_measure::JointIndex;
 
 /// A mistake whose size is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Line {
     Late,
-    LateTorque(usize),
-    LatePosition(usize),
-    Zero(usize),
-    Offset(usize),
-    Gain(usize),
+    LateTorque(JointIndex),
+    LatePosition(JointIndex),
+    Zero(JointIndex),
+    Offset(JointIndex),
+    Gain(JointIndex),
 }
 
 impl Line {
@@ -48,7 +49,7 @@ impl Line {
         match self {
             Self::Late | Self::LateTorque(_) | Self::LatePosition(_) => policy::LATE_S / step_s,
             Self::Zero(_) => policy::ZERO,
-            Self::Offset(joint) => policy::OFFSET * torque[joint],
+            Self::Offset(joint) => policy::OFFSET * torque[joint.0],
             Self::Gain(_) => policy::GAIN,
         }
     }

@@ -1,6 +1,7 @@
 //! The ways in which columns can be other ones than they are taken for, and how each is said.
 
 use super::reading::{OF_ANGLES, Signal};
+use denavit_measure::JointIndex;
 use denavit_measure::log::ColumnMapping;
 use denavit_plants::regression::RegressionJoint;
 use std::fmt;
@@ -16,8 +17,7 @@ pub enum ExchangedColumns {
     Both,
 }
 
-/// One way in which columns can be other ones than they are taken for. Joints are numbers of the
-/// model's; factors are what columns are to be multiplied with.
+/// One way in which columns can be other ones than they are taken for. Factors are what columns are to be multiplied with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Misreading {
     /// The time is in another unit.
@@ -28,27 +28,27 @@ pub enum Misreading {
     TorquesOfMotors(bool),
     /// The torque of a joint is in another unit, of the other side of its gear, or of the other
     /// sign.
-    Torque(usize, f64),
+    Torque(JointIndex, f64),
     /// All positions of joints that turn are in another unit, or all positions of the other sign.
     Angles(f64),
     /// All positions of joints that slide are in another unit.
     Lengths(f64),
     /// The position of a joint is in another unit, or of the other sign.
-    Position(usize, f64),
+    Position(JointIndex, f64),
     /// The position of a joint is counted from another zero: what is to be added to it [rad, m].
-    Zero(usize, f64),
+    Zero(JointIndex, f64),
     /// The torque of a joint is off by a constant: what is to be added to it [N m, N].
-    TorqueOffset(usize, f64),
+    TorqueOffset(JointIndex, f64),
     /// The torque of a joint is scaled: what it is to be multiplied with.
-    TorqueGain(usize, f64),
+    TorqueGain(JointIndex, f64),
     /// Columns of two joints have each other's names.
-    Exchanged([usize; 2], ExchangedColumns),
+    Exchanged([JointIndex; 2], ExchangedColumns),
     /// Torques are so many samples late.
     Late(isize),
     /// The torque of a joint is so many samples late.
-    LateTorque(usize, isize),
+    LateTorque(JointIndex, isize),
     /// The position of a joint is so many samples late.
-    LatePosition(usize, isize),
+    LatePosition(JointIndex, isize),
 }
 
 impl Misreading {
@@ -77,7 +77,7 @@ impl Misreading {
     }
 
     /// The joints whose positions alone it is of.
-    pub(super) fn positions_of(self) -> Vec<usize> {
+    pub(super) fn positions_of(self) -> Vec<JointIndex> {
         match self {
             Self::Position(joint, _) => vec![joint],
             Self::Exchanged(both, ExchangedColumns::Positions) => both.to_vec(),
@@ -118,7 +118,7 @@ impl Misreading {
             false => format!("{what} seem"),
         };
         let of_joint =
-            |what: &str, joint: usize| format!("the {what} of {} seems", joints[joint].name);
+            |what: &str, joint: JointIndex| format!("the {what} of {} seems", joints[joint.0].name);
         let what = match self {
             Self::Time(_) => "the time seems".to_owned(),
             Self::Torques(factor) => of_all("torques", factor),
@@ -138,7 +138,7 @@ impl Misreading {
                     ExchangedColumns::Torques => "the torques",
                     ExchangedColumns::Both => "positions and torques",
                 };
-                format!("{what} of {} and {} seem", joints[a].name, joints[b].name)
+                format!("{what} of {} and {} seem", joints[a.0].name, joints[b.0].name)
             }
         };
         write!(f, "{what} to {}", self.predicate(joints, step_s))
@@ -162,7 +162,7 @@ impl Misreading {
             Self::TorquesOfMotors(false) => "be those of the joints, not of the motors",
             Self::Exchanged(..) => "be exchanged",
             Self::Zero(joint, offset) => {
-                let size = match joints[joint].slides {
+                let size = match joints[joint.0].slides {
                     true => format!("{:.4} m", offset.abs()),
                     false => {
                         let degrees = offset.abs().to_degrees();
@@ -173,7 +173,7 @@ impl Misreading {
                 return format!("be {size} {side} its true value, all the time");
             }
             Self::TorqueOffset(joint, offset) => {
-                let unit = if joints[joint].slides { "N" } else { "N m" };
+                let unit = if joints[joint.0].slides { "N" } else { "N m" };
                 let side = if offset < 0.0 { "above" } else { "below" };
                 let size = offset.abs();
                 return format!("be {size:.4} {unit} {side} its true value, all the time");
@@ -225,8 +225,9 @@ impl Misreading {
             let own = given.source(column).map_or(0.0, |own| own.offset);
             mends(column, "offset", format!("{:.5}", own + by))
         };
-        let of =
-            |signal: Signal, joint: usize| format!("{}{}", signal.prefix(), joints[joint].name);
+        let of = |signal: Signal, joint: JointIndex| {
+            format!("{}{}", signal.prefix(), joints[joint.0].name)
+        };
         match self {
             Self::Time(factor) => scale("t", factor),
             Self::Torques(factor) => scale("tau_JOINT", factor),

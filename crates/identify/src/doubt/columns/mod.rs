@@ -23,6 +23,7 @@ pub use weigh::GivenValues;
 use super::policy;
 use crate::estimate::noise_of_positions;
 use denavit_evidence::policy::NOTHING_LIKE;
+use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::log::ColumnMapping;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
@@ -173,7 +174,7 @@ fn misread_as_filtered(
     let [fewest, most] = policy::SAMPLES;
     let samples = (policy::SAMPLES_READ / readings).clamp(fewest, most);
     let sample = Sample::new(model, logs, 2 * latest + 1, samples);
-    if (0..joints).all(|joint| !sample.is_measured(joint)) {
+    if (0..joints).map(JointIndex).all(|joint| !sample.is_measured(joint)) {
         return Vec::new();
     }
     let noise = [noise.unwrap_or_default(), Vec::new()];

@@ -1,6 +1,7 @@
 //! How columns of a log are read, and how they could have to be read instead.
 
 use super::misreading::{ExchangedColumns, Misreading};
+use denavit_measure::JointIndex;
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::f64::consts::PI;
 
@@ -80,7 +81,7 @@ impl Reading {
                 }
             }
             Misreading::Torque(joint, factor) | Misreading::TorqueGain(joint, factor) => {
-                new.torques[joint].scale(factor);
+                new.torques[joint.0].scale(factor);
             }
             Misreading::Angles(factor) => {
                 let is_meant = |joint: &usize| factor == -1.0 || !joints[*joint].slides;
@@ -90,20 +91,20 @@ impl Reading {
                 all.filter(|&joint| joints[joint].slides)
                     .for_each(|joint| new.positions[joint].scale(factor));
             }
-            Misreading::Position(joint, factor) => new.positions[joint].scale(factor),
-            Misreading::Zero(joint, offset) => new.positions[joint].offset += offset,
-            Misreading::TorqueOffset(joint, offset) => new.torques[joint].offset += offset,
+            Misreading::Position(joint, factor) => new.positions[joint.0].scale(factor),
+            Misreading::Zero(joint, offset) => new.positions[joint.0].offset += offset,
+            Misreading::TorqueOffset(joint, offset) => new.torques[joint.0].offset += offset,
             Misreading::Exchanged([a, b], columns) => {
                 if columns != ExchangedColumns::Torques {
-                    new.positions.swap(a, b);
+                    new.positions.swap(a.0, b.0);
                 }
                 if columns != ExchangedColumns::Positions {
-                    new.torques.swap(a, b);
+                    new.torques.swap(a.0, b.0);
                 }
             }
             Misreading::Late(samples) => all.for_each(|joint| new.torques[joint].late += samples),
-            Misreading::LateTorque(joint, samples) => new.torques[joint].late += samples,
-            Misreading::LatePosition(joint, samples) => new.positions[joint].late += samples,
+            Misreading::LateTorque(joint, samples) => new.torques[joint.0].late += samples,
+            Misreading::LatePosition(joint, samples) => new.positions[joint.0].late += samples,
         }
         new
     }
@@ -135,7 +136,7 @@ fn is_geared(joint: &RegressionJoint) -> bool {
 /// All that is tried but what differs by degrees, of joints whose torques are measured or not.
 pub(super) fn hypotheses(
     model: &RegressionModel,
-    is_measured: &dyn Fn(usize) -> bool,
+    is_measured: &dyn Fn(JointIndex) -> bool,
 ) -> Vec<Misreading> {
     use Misreading::{
         Angles, Exchanged, Lengths, Position, Time, Torque, Torques, TorquesOfMotors,
@@ -146,8 +147,9 @@ pub(super) fn hypotheses(
     if joints.iter().any(is_geared) {
         tried.extend([true, false].map(TorquesOfMotors));
     }
-    let real: Vec<usize> = (0..joints.len()).filter(|&joint| !joints[joint].is_base).collect();
-    let count = |slides: bool| real.iter().filter(|&&joint| joints[joint].slides == slides).count();
+    let all = (0..joints.len()).map(JointIndex);
+    let real: Vec<JointIndex> = all.filter(|joint| !joints[joint.0].is_base).collect();
+    let count = |slides: bool| real.iter().filter(|joint| joints[joint.0].slides == slides).count();
     tried.push(Angles(-1.0));
     if count(false) > 0 {
         tried.extend(OF_ANGLES.map(Angles));
@@ -159,15 +161,15 @@ pub(super) fn hypotheses(
         if is_measured(joint) {
             tried.extend(POWERS.into_iter().chain([-1.0]).map(|factor| Torque(joint, factor)));
         }
-        if is_measured(joint) && is_geared(&joints[joint]) {
-            let ratio = joints[joint].gear_ratio;
+        if is_measured(joint) && is_geared(&joints[joint.0]) {
+            let ratio = joints[joint.0].gear_ratio;
             tried.extend([ratio, 1.0 / ratio].map(|factor| Torque(joint, factor)));
         }
-        let slides = joints[joint].slides;
+        let slides = joints[joint.0].slides;
         let units = if slides { &OF_LENGTHS[..] } else { &OF_ANGLES[..] };
         let units = units.iter().copied().filter(|_| count(slides) > 1);
         tried.extend(units.chain([-1.0]).map(|factor| Position(joint, factor)));
-        for &other in real[..place].iter().filter(|&&other| joints[other].slides == slides) {
+        for &other in real[..place].iter().filter(|other| joints[other.0].slides == slides) {
             use ExchangedColumns::{Both, Positions, Torques};
             tried.push(Exchanged([other, joint], Positions));
             if is_measured(joint) && is_measured(other) {

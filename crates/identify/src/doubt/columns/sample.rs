@@ -96,13 +96,13 @@ impl<'a> Sample<'a> {
     }
 
     /// Whether a joint moves in some of the logs.
-    pub(super) fn moves(&self, joint: usize) -> bool {
-        self.windows.iter().any(|window| window.log().resting.get(joint) != Some(&true))
+    pub(super) fn moves(&self, joint: JointIndex) -> bool {
+        self.windows.iter().any(|window| window.log().resting.get(joint.0) != Some(&true))
     }
 
     /// Whether the torque of a joint is measured in some of the logs.
-    pub(super) fn is_measured(&self, joint: usize) -> bool {
-        self.windows.iter().any(|window| window.log().torque[joint].is_some())
+    pub(super) fn is_measured(&self, joint: JointIndex) -> bool {
+        self.windows.iter().any(|window| window.log().torque[joint.0].is_some())
     }
 
     /// The root of the mean square of each torque.
@@ -118,7 +118,8 @@ impl<'a> Sample<'a> {
             let measured = |window: &&Window<'_>| window.log().torque[column].is_some();
             self.windows.iter().filter(measured).map(Window::independent).sum()
         };
-        let columns = (0..self.model.joints.len()).filter(|&column| self.is_measured(column));
+        let columns =
+            (0..self.model.joints.len()).filter(|&column| self.is_measured(JointIndex(column)));
         columns.map(of).collect()
     }
 
@@ -161,7 +162,7 @@ impl<'a> Sample<'a> {
     fn rows_with(
         &mut self,
         reading: &Reading,
-        more: &mut dyn FnMut(usize, usize) -> Vec<Vec<f64>>,
+        more: &mut dyn FnMut(usize, JointIndex) -> Vec<Vec<f64>>,
         count: usize,
     ) -> Vec<Option<JointRows>> {
         let of_joint = |places: &Vec<usize>| JointRows::new(places.len() + count);
@@ -184,11 +185,11 @@ impl<'a> Sample<'a> {
                         .column_mut(BEFORE + place)
                         .copy_from_slice(self.rows.column(joint, place));
                 }
-                for (place, column) in more(window, joint).iter().enumerate() {
+                for (place, column) in more(window, JointIndex(joint)).iter().enumerate() {
                     columns.column_mut(BEFORE + width + place).copy_from_slice(column);
                 }
                 let mut counted = torque.len();
-                if let Some(counts) = self.windows[window].counts(joint) {
+                if let Some(counts) = self.windows[window].counts(JointIndex(joint)) {
                     for at in (0..counts.len()).filter(|&at| !counts[at]) {
                         columns.row_mut(at).fill(0.0);
                         counted -= 1;
@@ -222,7 +223,9 @@ impl<'a> Sample<'a> {
                 let [above, below] = [step, -step].map(|by| {
                     let other = reading.with(line.at(by), &self.model.joints);
                     self.read(window, &other);
-                    (0..n).map(|joint| self.left(window, &other, joint, phi)).collect::<Vec<_>>()
+                    (0..n)
+                        .map(|joint| self.left(window, &other, JointIndex(joint), phi))
+                        .collect::<Vec<_>>()
                 });
                 for (own, (above, below)) in own.iter_mut().zip(above.into_iter().zip(below)) {
                     let slope = |(above, below): (f64, f64)| (below - above) / (2.0 * step);
@@ -231,34 +234,40 @@ impl<'a> Sample<'a> {
                 if let Line::Gain(joint) = *line {
                     // of the torque that phi makes: the measured one times 0 would explain all
                     self.read(window, reading);
-                    let measured = self.windows[window].torque(&reading.torques[joint]);
+                    let measured = self.windows[window].torque(&reading.torques[joint.0]);
                     let left = self.left(window, reading, joint, phi);
                     let made = left.iter().zip(measured.iter().flatten());
-                    *own[joint].last_mut().expect("it was pushed") =
+                    *own[joint.0].last_mut().expect("it was pushed") =
                         made.map(|(left, measured)| left - measured).collect();
                 }
             }
             slopes.push(own);
         }
-        self.rows_with(reading, &mut |window, joint| slopes[window][joint].clone(), lines.len())
+        self.rows_with(reading, &mut |window, joint| slopes[window][joint.0].clone(), lines.len())
     }
 
     /// What phi leaves of the torque of a joint, of the rows that were made last; nothing of one
     /// that is not measured.
-    fn left(&self, window: usize, reading: &Reading, joint: usize, phi: &DVector<f64>) -> Vec<f64> {
-        let Some(measured) = self.windows[window].torque(&reading.torques[joint]) else {
+    fn left(
+        &self,
+        window: usize,
+        reading: &Reading,
+        joint: JointIndex,
+        phi: &DVector<f64>,
+    ) -> Vec<f64> {
+        let Some(measured) = self.windows[window].torque(&reading.torques[joint.0]) else {
             return Vec::new();
         };
-        let own: Vec<f64> = self.model.pattern()[joint].iter().map(|&at| phi[at]).collect();
+        let own: Vec<f64> = self.model.pattern()[joint.0].iter().map(|&at| phi[at]).collect();
         let mut left = vec![0.0; measured.len()];
-        self.rows.torque(joint, &own, &mut left);
+        self.rows.torque(joint.0, &own, &mut left);
         left.iter_mut().zip(&measured).for_each(|(left, torque)| *left = torque - *left);
         self.count(window, joint, &mut left);
         left
     }
 
     /// Makes 0 of what does not count.
-    fn count(&self, window: usize, joint: usize, values: &mut [f64]) {
+    fn count(&self, window: usize, joint: JointIndex, values: &mut [f64]) {
         let counts = self.windows[window].counts(joint).unwrap_or_default();
         let left_out = values.iter_mut().zip(counts).filter(|(_, counts)| !**counts);
         left_out.for_each(|(value, _)| *value = 0.0);
@@ -271,6 +280,7 @@ impl<'a> Sample<'a> {
             self.read(window, reading);
             for (joint, [left, all]) in sums.iter_mut().enumerate() {
                 let source = &reading.torques[joint];
+                let joint = JointIndex(joint);
                 let mut torque = self.windows[window].torque(source).unwrap_or_default();
                 self.count(window, joint, &mut torque);
                 let square = |values: &[f64]| values.iter().map(|one| one * one).sum::<f64>();
@@ -291,7 +301,7 @@ impl<'a> Sample<'a> {
         for window in 0..self.windows.len() {
             self.read(window, reading);
             for joint in 0..n {
-                let left = self.left(window, reading, joint, phi);
+                let left = self.left(window, reading, JointIndex(joint), phi);
                 rows[joint] += left.iter().filter(|left| **left != 0.0).count() as f64;
                 for (lag, sum) in alike[joint].iter_mut().enumerate().take(left.len()) {
                     *sum += left.iter().zip(&left[lag..]).map(|(a, b)| a * b).sum::<f64>();

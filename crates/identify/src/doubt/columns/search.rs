@@ -8,6 +8,7 @@ use super::sample::Sample;
 use super::weigh::{Beliefs, Believed, Noise, Shares, Trust, together};
 use crate::estimate::noise_of_positions;
 use denavit_evidence::policy::NAMED;
+use denavit_measure::JointIndex;
 use denavit_measure::condition::Conditioned;
 
 /// What search and answers have in common.
@@ -122,7 +123,7 @@ impl Search<'_> {
     /// The mistakes of no size that are worth an estimate.
     fn tried(&mut self, reading: &Reading, fit: &Shares, is_noisy: bool) -> Vec<Misreading> {
         let model = self.sample.model;
-        let mut tried = hypotheses(model, &|joint| fit[joint].is_some());
+        let mut tried = hypotheses(model, &|joint| fit[joint.0].is_some());
         tried.retain(|one| reading.with(*one, &model.joints) != *reading);
         tried.retain(|one| !(is_noisy && one.hides_noise()));
         tried.retain(|one| !self.is_lower || one.makes_noise());
@@ -151,10 +152,11 @@ impl Search<'_> {
     /// gains. Noise of the positions makes parameters smaller, which gains and delays resemble.
     fn lines(&self, reading: &Reading, is_noisy: bool) -> Vec<Line> {
         let joints = &self.sample.model.joints;
-        let real = (0..joints.len()).filter(|&joint| !joints[joint].is_base);
+        let real = (0..joints.len()).map(JointIndex).filter(|joint| !joints[joint.0].is_base);
         let several = real.clone().count() > 1;
-        let measured = |joint: &usize| self.sample.is_measured(*joint);
-        let moving: Vec<usize> = real.clone().filter(|&joint| self.sample.moves(joint)).collect();
+        let measured = |joint: &JointIndex| self.sample.is_measured(*joint);
+        let moving: Vec<JointIndex> =
+            real.clone().filter(|&joint| self.sample.moves(joint)).collect();
         let mut lines = Vec::new();
         if self.latest > 0 && !reading.is_shifted() && !is_noisy {
             lines.push(Line::Late);

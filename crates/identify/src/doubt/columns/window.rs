@@ -73,8 +73,8 @@ impl<'a> Window<'a> {
     }
 
     /// Whether samples of a joint count; none where all do.
-    pub(super) fn counts(&self, joint: usize) -> Option<&[bool]> {
-        self.counts[joint].as_deref()
+    pub(super) fn counts(&self, joint: JointIndex) -> Option<&[bool]> {
+        self.counts[joint.0].as_deref()
     }
 
     /// Samples that are independent of each other.

@@ -108,7 +108,7 @@ fn verbose_says_what_took_how_long() {
     let run = run_in(&directory.path, &["-v", "simulate", "bouncing_ball"]);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let lines: Vec<&str> = run.stderr.lines().collect();
-    let begins = ["time: simulating bouncing_ball: ", "time: altogether: "];
+    let begins = ["time: simulating: ", "time: altogether: "];
     assert_eq!(lines.len(), begins.len(), "{lines:?}");
     for (line, begin) in lines.iter().zip(begins) {
         assert!(line.starts_with(begin) && line.ends_with(" s"), "{line}");

@@ -17,7 +17,8 @@ pub enum ExchangedColumns {
     Both,
 }
 
-/// One way in which columns can be other ones than they are taken for. Factors are what columns are to be multiplied with.
+/// One way in which columns can be other ones than they are taken for. Factors are what columns are
+/// to be multiplied with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Misreading {
     /// The time is in another unit.

@@ -1,5 +1,6 @@
 //! Simulation: plants against each other, runs against closed forms and published walkers.
 
+mod added_friction;
 mod before_springs;
 mod closed_forms;
 mod contact;

@@ -1,12 +1,18 @@
 use denavit_excite::ExciteOptions;
 use denavit_simulate::Stop;
+use denavit_simulate::scenario::RunScheme;
 use denavit_workflow::{ErrorKind, Files, Progress, RobotFile, Silent, Stage, excite, simulate};
 use std::path::Path;
 
 #[test]
 fn a_run_that_is_stopped_is_the_beginning_of_the_whole() {
-    for name in ["double_pendulum", "planar_biped_dropped"] {
-        let read = || Files::new().scenario(Path::new(name)).expect("shipped");
+    for scheme in [RunScheme::Event, RunScheme::TimeStepping] {
+        let read = || {
+            let mut scenario =
+                Files::new().scenario(Path::new("double_pendulum")).expect("shipped");
+            scenario.scheme = scheme;
+            scenario
+        };
         let whole = simulate(&mut read(), &mut Silent).expect("it runs");
         let mut shares = Vec::new();
         let mut watch = |at: &Progress<'_>| {
@@ -15,14 +21,17 @@ fn a_run_that_is_stopped_is_the_beginning_of_the_whole() {
             at.share.is_none_or(|share| share < 0.4)
         };
         let run = simulate(&mut read(), &mut watch).expect("it begins");
-        assert_eq!((&whole.stop, &run.stop), (&Stop::End, &Stop::Watcher), "{name}");
-        assert!(shares.is_sorted() && shares.len() > 2, "{name}: {shares:?}");
+        assert_eq!((&whole.stop, &run.stop), (&Stop::End, &Stop::Watcher), "{scheme:?}");
+        assert!(shares.is_sorted() && shares.len() > 2, "{scheme:?}: {shares:?}");
         let share = run.end.t_s / whole.end.t_s;
-        assert!((0.4..0.9).contains(&share), "{name}: {share}");
+        assert!((0.4..0.9).contains(&share), "{scheme:?}: {share}");
         // the rows of both are the same, but for the last of the run that was stopped
         let common = run.log.rows().count() - 1;
         assert!(common > 2);
-        assert!(run.log.rows().zip(whole.log.rows()).take(common).all(|(a, b)| a == b), "{name}");
+        assert!(
+            run.log.rows().zip(whole.log.rows()).take(common).all(|(a, b)| a == b),
+            "{scheme:?}"
+        );
     }
 }
 

@@ -138,7 +138,8 @@ impl Rotor {
                     reaches = stiffness * beyond + damping * (rate - joint[1]);
                 }
                 let free = rate + h * (torque - viscous * rate - reaches) / inertia;
-                let most = h * coulomb / inertia;
+                // an estimate may be below 0, and friction pushes nothing
+                let most = (h * coulomb / inertia).max(0.0);
                 rate = free - free.clamp(-most, most);
                 position += h * rate;
                 sum += reaches;

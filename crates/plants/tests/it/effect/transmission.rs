@@ -53,12 +53,16 @@ fn what_an_elastic_transmission_passes_on_is_its_transfer_function() {
     };
     let swing = 0.015;
     let (soft, rigid) = (passed(swing), passed(0.002));
-    let found = law.torque(&samples, &[swing, zeta]);
-    for (t, found) in t.iter().zip(found).skip(4000) {
-        let (sine, cosine) = (w * t).sin_cos();
-        let at = |[re, im]: [f64; 2]| re * sine + im * cosine;
-        let expected = at(rigid) - at(soft);
-        assert!((found - expected).abs() < 0.01 * p, "{t}: {found} is not {expected}");
+    // friction whose estimate is below 0 pushes nothing
+    for coulomb in [0.0, -0.1] {
+        let drive = Drive { coulomb, ..samples.drive };
+        let found = law.torque(&JointSamples { drive, ..samples }, &[swing, zeta]);
+        for (t, found) in t.iter().zip(found).skip(4000) {
+            let (sine, cosine) = (w * t).sin_cos();
+            let at = |[re, im]: [f64; 2]| re * sine + im * cosine;
+            let expected = at(rigid) - at(soft);
+            assert!((found - expected).abs() < 0.01 * p, "{t}: {found} is not {expected}");
+        }
     }
 }
 

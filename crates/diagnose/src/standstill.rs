@@ -37,6 +37,8 @@ pub(super) struct Rest {
 }
 
 impl Rest {
+    /// A rest in readings of an encoder's step, the first at a time, and the others at equal
+    /// distances \[s\]. It begins and ends where the drive, as it moves beside, was last seen to.
     fn new(still: Still, step: f64, [start_s, step_s]: [f64; 2]) -> Self {
         let Still { samples, moves, off } = still;
         let count = samples.len() as f64;

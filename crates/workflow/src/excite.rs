@@ -4,6 +4,7 @@ use crate::error::{Cause, Error};
 use crate::observer::{Observer, Progress, Stage, Watched};
 use denavit_codegen::model::Robot;
 use denavit_excite::{self as excite, ExciteOptions, Excited};
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -31,13 +32,17 @@ pub fn excite(
             };
             excite::excite(robot, options, &tell)
         });
-        let mut starts = vec![None; options.starts];
+        let (mut evaluations, mut condition) = (BTreeMap::new(), None);
         for progress in heard {
-            if let Some(own) = starts.get_mut(progress.start) {
-                *own = Some(progress);
+            evaluations.insert(progress.start, progress.evaluations);
+            // the share is that of all evaluations that may be made
+            let most = options.evaluations.saturating_mul(options.starts).max(1);
+            let share = Some((evaluations.values().sum::<usize>() as f64 / most as f64).min(1.0));
+            if progress.iterate.excess <= 0.0 {
+                let here = progress.iterate.condition;
+                condition = Some(condition.map_or(here, |best: f64| best.min(here)));
             }
-            let come_so_far = come_so_far(&starts, options);
-            if !watched.progress(&come_so_far) {
+            if !watched.progress(&Progress { stage, share, condition, ..Progress::default() }) {
                 is_stopped.store(true, Ordering::Relaxed);
             }
         }
@@ -45,18 +50,4 @@ pub fn excite(
     });
     let found = found.unwrap_or_else(|panicked| std::panic::resume_unwind(panicked));
     Ok(found.map_err(Cause::Excite)?)
-}
-
-/// The share is that of all evaluations that may be made.
-fn come_so_far(starts: &[Option<excite::Progress>], options: &ExciteOptions) -> Progress<'static> {
-    let begun = || starts.iter().flatten();
-    let evaluations: usize = begun().map(|one| one.evaluations).sum();
-    let most = options.evaluations.saturating_mul(starts.len()).max(1);
-    let within = begun().filter(|one| one.iterate.excess <= 0.0);
-    Progress {
-        stage: Stage::Exciting(options.starts),
-        share: Some((evaluations as f64 / most as f64).min(1.0)),
-        condition: within.map(|one| one.iterate.condition).min_by(f64::total_cmp),
-        ..Progress::default()
-    }
 }

@@ -4,7 +4,7 @@ mod completed;
 
 use crate::error::{Cause, Error};
 use crate::logs::Logs;
-use crate::observer::{Observer, Progress, Stage, Watched};
+use crate::observer::{Observer, Progress, Reading, Stage, Watched};
 use crate::robot_file::{EffectUse, RobotFile, Treatment};
 pub use completed::{Completed, NamedEffect};
 use denavit_codegen::effect::{self, Channel, Effect};
@@ -85,7 +85,10 @@ pub fn diagnose(
     if !watched.begins(Stage::ReadingLogs) {
         return Err(Cause::Stopped.into());
     }
-    let Subject { robot, model, springs, logs } = subject(file, logs, &mut remarks)?;
+    let count = logs.train.len() + logs.held_out.len();
+    // one whose time is over while logs are read gets the answer that nothing was compared
+    let mut reading = Reading::needed(&mut watched, Stage::ReadingLogs, count);
+    let Subject { robot, model, springs, logs } = subject(file, logs, &mut reading, &mut remarks)?;
     let laws = &file.apart.laws;
     let effects = with_own(&file.own);
     let kept = laws.iter().filter(|law| law.law.channel() != Some(Channel::Rate));
@@ -153,11 +156,18 @@ struct Subject {
 fn subject(
     file: &RobotFile,
     logs: &Logs,
+    reading: &mut Reading<'_, '_>,
     remarks: &mut Vec<(String, LogRemark)>,
 ) -> Result<Subject, Error> {
     let ApartEffects { robot, .. } = &file.apart;
     let model = regression(robot)?;
-    let mut logs = read(logs, robot, &model, remarks)?;
+    let paths = logs.train.iter().chain(&logs.held_out);
+    let measured = paths.map(|path| {
+        reading.next()?;
+        logs.measured(path, robot, &model)
+    });
+    let all = Error::of_any_log(measured)?;
+    let mut logs = checked(all, logs.train.len(), robot, &model, remarks)?;
     let before = before_springs(robot, &model.joints, &mut [&mut logs.train, &mut logs.held_out]);
     let (robot, model, springs) = match before {
         Some(BeforeSprings { robot, springs }) => {
@@ -205,18 +215,17 @@ fn regression(robot: &Robot) -> Result<RegressionModel, Error> {
     Ok(model.map_err(|error| Cause::Regression(Box::new(error)))?)
 }
 
-/// Reads the logs that are searched and those that judge.
-fn read(
-    logs: &Logs,
+/// The logs that are searched, the first ones, and those that judge; none says the same as another
+/// for the search, and loads of the ground are known.
+fn checked(
+    mut all: Vec<MeasuredLog>,
+    searched: usize,
     robot: &Robot,
     model: &RegressionModel,
     remarks: &mut Vec<(String, LogRemark)>,
 ) -> Result<Split<Vec<MeasuredLog>>, Error> {
     let failed = |error| Cause::Plant(model.model.clone(), error);
     let mut ground = Ground::under(robot, model).map_err(failed)?;
-    let paths = logs.train.iter().chain(&logs.held_out);
-    let read = paths.map(|path| logs.measured(path, robot, model));
-    let mut all = Error::of_any_log(read)?;
     for log in &mut all {
         for remark in std::mem::take(&mut log.remarks) {
             let remark = (log.file.clone(), remark);
@@ -226,7 +235,7 @@ fn read(
             }
         }
     }
-    let held_out = all.split_off(logs.train.len());
+    let held_out = all.split_off(searched);
     let mut sets = Split { train: all, held_out };
     let train = &sets.train;
     let same = train.iter().enumerate().find_map(|(at, log)| {

@@ -24,6 +24,7 @@ use denavit_measure::log::LogRemark;
 use denavit_plants::effect::{AddedLaw, ApartEffects};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use estimation::Estimation;
+use forward::Again;
 pub use forward::{Controlled, NotMoved, SimulationGap};
 pub use statics::{StaticsFound, identify_statics};
 use std::path::PathBuf;
@@ -111,6 +112,14 @@ struct Work<'a> {
     model: &'a RegressionModel,
 }
 
+impl Work<'_> {
+    /// How many files are read.
+    fn files(self) -> usize {
+        let Self { logs, options, .. } = self;
+        logs.train.len() + options.instruments.len() + logs.held_out.len()
+    }
+}
+
 /// What becomes of laws beside the equations.
 const TAKEN_OUT: Treatment = Treatment {
     name: "taken_out",
@@ -131,12 +140,9 @@ pub fn identify(
     let mut watched = Watched::new(observer);
     let ApartEffects { robot, laws, .. } = &file.apart;
     let model = regression(robot, options)?;
-    if !watched.begins(Stage::ReadingLogs) {
-        return Err(Cause::Stopped.into());
-    }
     let work = Work { logs, options, robot, laws, model: &model };
     let estimation = Estimation { work, own: &file.own, source: &file.source };
-    let mut read = estimation.read(&[])?;
+    let mut read = estimation.read_first(&mut watched)?;
     let same = read.same();
     let how = options.estimate(&model, read.position_noise.clone())?;
     if how.method == Method::Instrumental && read.instruments.is_empty() {
@@ -155,8 +161,9 @@ pub fn identify(
     }
     let simulates = !read.motions.is_empty() && watched.begins(Stage::SimulatingLogs);
     let simulated = simulates.then(|| {
-        let controller = options.controller.as_ref();
-        SimulationGap::new(&file.whole, &updated, controller, &read.motions, options.window_s)
+        let controlled = options.controller.as_ref();
+        let again = Again { controlled, logs: &read.motions, window_s: options.window_s };
+        again.gap(&file.whole, &updated, &mut watched)
     });
     if let (Some(gap), true) = (&simulated, options.controller.is_some()) {
         gap.check()?;

@@ -1,5 +1,6 @@
 //! Who watches long work, and may stop it.
 
+use crate::error::{Cause, Error};
 use std::fmt;
 
 /// What work is doing.
@@ -60,8 +61,8 @@ impl fmt::Display for Stage {
 pub struct Progress<'a> {
     /// What is being done.
     pub stage: Stage,
-    /// The share of the stage that is done, from 0 to 1, where that is known: where effects are
-    /// evaluated, a scenario is simulated, or trajectories are searched.
+    /// The share of the stage that is done, from 0 to 1, where that is known: where logs are read
+    /// or simulated again, effects evaluated, a scenario simulated, or trajectories searched.
     pub share: Option<f64>,
     /// The best answer so far: effects that are missing, each with its place.
     pub best: &'a [[String; 2]],
@@ -104,6 +105,11 @@ impl<'a> Watched<'a> {
         Self { observer, is_stopped: false }
     }
 
+    /// A stage has come so far; whether to go on.
+    pub(crate) fn share(&mut self, stage: Stage, share: f64) -> bool {
+        self.progress(&Progress { stage, share: Some(share), ..Progress::default() })
+    }
+
     /// A stage begins; whether to go on. Work that was stopped stays so.
     pub(crate) fn begins(&mut self, stage: Stage) -> bool {
         self.progress(&Progress { stage, ..Progress::default() })
@@ -113,5 +119,38 @@ impl<'a> Watched<'a> {
     pub(crate) fn progress(&mut self, progress: &Progress<'_>) -> bool {
         self.is_stopped = self.is_stopped || !self.observer.progress(progress);
         !self.is_stopped
+    }
+}
+
+/// Logs that are read one after the other.
+pub(crate) struct Reading<'w, 'o> {
+    watched: &'w mut Watched<'o>,
+    stage: Stage,
+    done: usize,
+    count: usize,
+    /// Whether one who stops the work now gets no answer. Else all logs are read to the end, since
+    /// the answer needs them.
+    may_end: bool,
+}
+
+impl<'w, 'o> Reading<'w, 'o> {
+    /// Logs of which nothing is there yet.
+    pub(crate) fn first(watched: &'w mut Watched<'o>, count: usize) -> Self {
+        Self { watched, stage: Stage::ReadingLogs, done: 0, count, may_end: true }
+    }
+
+    /// Logs that are needed even if the work is to stop.
+    pub(crate) fn needed(watched: &'w mut Watched<'o>, stage: Stage, count: usize) -> Self {
+        Self { watched, stage, done: 0, count, may_end: false }
+    }
+
+    /// A log begins to be read.
+    pub(crate) fn next(&mut self) -> Result<(), Error> {
+        let share = self.done as f64 / self.count.max(1) as f64;
+        self.done += 1;
+        match self.watched.share(self.stage, share) || !self.may_end {
+            true => Ok(()),
+            false => Err(Cause::Stopped.into()),
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::Work;
 use super::conditions::Halvings;
 use super::logs::{self, Read};
 use crate::error::{Cause, Error};
-use crate::observer::{Stage, Watched};
+use crate::observer::{Reading, Stage, Watched};
 use denavit_codegen::effect::{self, Effect};
 use denavit_identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit_identify::{
@@ -24,8 +24,20 @@ pub(super) struct Estimation<'a> {
 pub(super) type Found = (Identification, Result<UpdatedModel, UpdateError>);
 
 impl Estimation<'_> {
-    pub(super) fn read(&self, halvings: &[u32]) -> Result<Read, Error> {
-        logs::read(self.work, halvings)
+    /// All logs, for the first time.
+    pub(super) fn read_first(&self, watched: &mut Watched<'_>) -> Result<Read, Error> {
+        logs::read(self.work, &[], &mut Reading::first(watched, self.work.files()))
+    }
+
+    /// All logs again, with these halvings of their cutoffs.
+    fn read_again(
+        &self,
+        halvings: &[u32],
+        stage: Stage,
+        watched: &mut Watched<'_>,
+    ) -> Result<Read, Error> {
+        let mut reading = Reading::needed(watched, stage, self.work.files());
+        logs::read(self.work, halvings, &mut reading)
     }
 
     fn request<'a>(&'a self, read: &'a Read, options: &'a Options) -> Request<'a> {
@@ -74,11 +86,12 @@ impl Estimation<'_> {
         let allows_for_noise = options.method == Method::Instrumental;
         while !allows_for_noise && let Some((lower, most)) = self.lower(&read, &halvings, &found) {
             let times = lower.iter().copied().max().unwrap_or(0);
-            if !watched.begins(Stage::ReadingLogsAgain(times)) {
+            let again = Stage::ReadingLogsAgain(times);
+            if !watched.begins(again) {
                 break;
             }
             drop(read); // logs are large: not all of them twice
-            read = self.read(&lower)?;
+            read = self.read_again(&lower, again, watched)?;
             let next = match watched.begins(Stage::EstimatingAgain(times)) {
                 true => Some(self.estimated(&read, options)?),
                 false => None,
@@ -90,7 +103,7 @@ impl Estimation<'_> {
             let Some(better) = better else {
                 // worse than the noise that it takes away, or stopped
                 drop(read);
-                read = self.read(&halvings)?;
+                read = self.read_again(&halvings, again, watched)?;
                 break;
             };
             (found, halvings) = (better, lower);
@@ -124,7 +137,7 @@ impl Estimation<'_> {
             if !watched.begins(Stage::ReadingHeldOutAgain) {
                 return Ok(());
             }
-            read.held_out(self.work, &lower[train..])?;
+            self.read_held_out(read, &lower[train..], watched)?;
             for (at, is_open) in is_open.iter_mut().enumerate().filter(|(_, is_open)| **is_open) {
                 let is_lowered = lower[train + at] != halvings[train + at];
                 if is_lowered && found.is_smeared(self.work.model, &read.validate[at]) {
@@ -133,10 +146,21 @@ impl Estimation<'_> {
                 }
             }
             if is_open.contains(&false) {
-                read.held_out(self.work, &lower[train..])?;
+                self.read_held_out(read, &lower[train..], watched)?;
             }
             halvings = lower;
         }
+    }
+
+    fn read_held_out(
+        &self,
+        read: &mut Read,
+        halvings: &[u32],
+        watched: &mut Watched<'_>,
+    ) -> Result<(), Error> {
+        let count = self.work.logs.held_out.len();
+        let mut reading = Reading::needed(watched, Stage::ReadingHeldOutAgain, count);
+        read.held_out(self.work, halvings, &mut reading)
     }
 
     /// The next lower filters of logs, if noise of the positions asks for them, and how errors may

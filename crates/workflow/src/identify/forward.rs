@@ -5,6 +5,7 @@ use super::logs::Read;
 use crate::error::{Cause, Error};
 use crate::files::Files;
 use crate::mistaken::FileKind;
+use crate::observer::{Stage, Watched};
 use denavit_codegen::model::Robot;
 use denavit_identify::forward::{
     Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
@@ -12,7 +13,7 @@ use denavit_identify::forward::{
 use denavit_identify::{UpdateError, UpdatedModel};
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::short;
-use denavit_plants::{Plant, PlantError, plant_of, shipped};
+use denavit_plants::{PlantError, plant_of, shipped};
 use denavit_simulate::scenario::{Controller, read_controller};
 use std::fmt;
 use std::path::Path;
@@ -81,6 +82,8 @@ pub enum NotMoved {
     Plant(PlantError),
     /// A log cannot be simulated; holds its file.
     Forward(String, ForwardError),
+    /// The observer stopped the work before.
+    Stopped,
 }
 
 impl fmt::Display for NotMoved {
@@ -89,6 +92,7 @@ impl fmt::Display for NotMoved {
             Self::Update(error) => write!(f, "{error}"),
             Self::Plant(error) => write!(f, "{error}"),
             Self::Forward(file, error) => write!(f, "{file}: {error}"),
+            Self::Stopped => write!(f, "stopped before"),
         }
     }
 }
@@ -102,27 +106,67 @@ pub struct SimulationGap {
     pub after: Result<Forward, NotMoved>,
 }
 
-impl SimulationGap {
-    pub(super) fn new(
+/// Logs that are to be simulated again.
+#[derive(Clone, Copy)]
+pub(super) struct Again<'a> {
+    pub(super) controlled: Option<&'a Controlled>,
+    pub(super) logs: &'a [MotionLog],
+    pub(super) window_s: f64,
+}
+
+impl Again<'_> {
+    /// With the values that the model had, and with those that were found.
+    pub(super) fn gap(
+        self,
         robot: &Robot,
         updated: &Result<UpdatedModel, UpdateError>,
-        controlled: Option<&Controlled>,
-        logs: &[MotionLog],
-        window_s: f64,
-    ) -> Self {
-        let moved = |robot: &Robot, believed: Option<&Robot>| {
-            let plant = |robot: &Robot| plant_of(robot, &[]).map_err(NotMoved::Plant);
-            let mut plants = (plant(robot)?, believed.map(plant).transpose()?);
-            all(&mut plants, controlled, logs, window_s)
-        };
-        let before = moved(robot, None);
+        watched: &mut Watched<'_>,
+    ) -> SimulationGap {
+        let before =
+            self.moved(robot, None, &mut |share| watched.share(Stage::SimulatingLogs, 0.5 * share));
         let after = match updated {
-            Ok(updated) => moved(&updated.robot, Some(robot)),
+            Ok(updated) => self.moved(&updated.robot, Some(robot), &mut |share| {
+                watched.share(Stage::SimulatingLogs, 0.5 + 0.5 * share)
+            }),
             Err(error) => Err(NotMoved::Update(error.clone())),
         };
-        Self { before, after }
+        SimulationGap { before, after }
     }
 
+    /// All logs, one after the other. `goes_on` hears the share that is done.
+    fn moved(
+        self,
+        robot: &Robot,
+        believed: Option<&Robot>,
+        goes_on: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<Forward, NotMoved> {
+        let plant = |robot: &Robot| plant_of(robot, &[]).map_err(NotMoved::Plant);
+        let (mut plant, mut believed) = (plant(robot)?, believed.map(plant).transpose()?);
+        let mut joined: Option<Forward> = None;
+        for (done, log) in self.logs.iter().enumerate() {
+            if !goes_on(done as f64 / self.logs.len() as f64) {
+                return Err(NotMoved::Stopped);
+            }
+            let made = match self.controlled {
+                Some(Controlled { controller, .. }) => {
+                    closed_loop(plant.as_mut(), believed.as_deref_mut(), controller, log)
+                }
+                None => {
+                    let windows = Windows { length_s: self.window_s, ..Windows::default() };
+                    in_windows(plant.as_mut(), log, windows)
+                }
+            };
+            let made = made.map_err(|error| NotMoved::Forward(log.file.clone(), error))?;
+            match &mut joined {
+                Some(joined) => joined.append(made),
+                None => joined = Some(made),
+            }
+        }
+        Ok(joined.expect("there is a log"))
+    }
+}
+
+impl SimulationGap {
     /// A controller that does not fit its log is the user's fault, and no result.
     pub(super) fn check(&self) -> Result<(), Error> {
         match &self.after {
@@ -130,7 +174,7 @@ impl SimulationGap {
             Err(NotMoved::Forward(file, error)) => {
                 Err(Cause::Forward(file.clone(), error.clone()).into())
             }
-            Err(NotMoved::Plant(_) | NotMoved::Update(_)) => Ok(()),
+            Err(NotMoved::Plant(_) | NotMoved::Update(_) | NotMoved::Stopped) => Ok(()),
         }
     }
 
@@ -163,33 +207,4 @@ impl SimulationGap {
             });
         before.into_iter().chain(after).collect()
     }
-}
-
-type Plants = (Box<dyn Plant>, Option<Box<dyn Plant>>);
-
-/// All logs, one after the other.
-fn all(
-    (plant, believed): &mut Plants,
-    controlled: Option<&Controlled>,
-    logs: &[MotionLog],
-    window_s: f64,
-) -> Result<Forward, NotMoved> {
-    let mut joined: Option<Forward> = None;
-    for log in logs {
-        let made = match controlled {
-            Some(Controlled { controller, .. }) => {
-                closed_loop(plant.as_mut(), believed.as_deref_mut(), controller, log)
-            }
-            None => {
-                let windows = Windows { length_s: window_s, ..Windows::default() };
-                in_windows(plant.as_mut(), log, windows)
-            }
-        };
-        let made = made.map_err(|error| NotMoved::Forward(log.file.clone(), error))?;
-        match &mut joined {
-            Some(joined) => joined.append(made),
-            None => joined = Some(made),
-        }
-    }
-    Ok(joined.expect("there is a log"))
 }

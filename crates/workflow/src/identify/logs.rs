@@ -2,6 +2,7 @@
 
 use super::Work;
 use crate::error::{Cause, Error};
+use crate::observer::Reading;
 use denavit_identify::estimate::Method;
 use denavit_identify::forward::{LONGEST_S, MotionLog};
 use denavit_identify::{
@@ -29,10 +30,14 @@ pub(super) struct Read {
 }
 
 /// All logs, with these halvings of their cutoffs.
-pub(super) fn read(work: Work<'_>, halvings: &[u32]) -> Result<Read, Error> {
+pub(super) fn read(
+    work: Work<'_>,
+    halvings: &[u32],
+    reading: &mut Reading<'_, '_>,
+) -> Result<Read, Error> {
     let Work { logs, options, .. } = work;
     let (of_train, of_others) = halvings.split_at(logs.train.len().min(halvings.len()));
-    let mut reader = Reader::new(work)?;
+    let mut reader = Reader::new(work, reading)?;
     // Logs for validation are simulated again; with a controller, if there are none, the others.
     let controlled = options.controller.is_some();
     let needs_instruments =
@@ -60,19 +65,24 @@ pub(super) fn read(work: Work<'_>, halvings: &[u32]) -> Result<Read, Error> {
     let (remarks, position_noise) = (Split { train: remarks, held_out: Vec::new() }, noise);
     let validate = Vec::new();
     let mut read = Read { train, validate, instruments, motions, whole, remarks, position_noise };
-    read.held_out(work, of_others)?;
+    read.held_out(work, of_others, reading)?;
     Ok(read)
 }
 
 impl Read {
     /// Reads the logs for validation, again perhaps, with these halvings of their cutoffs.
-    pub(super) fn held_out(&mut self, work: Work<'_>, halvings: &[u32]) -> Result<(), Error> {
+    pub(super) fn held_out(
+        &mut self,
+        work: Work<'_>,
+        halvings: &[u32],
+        reading: &mut Reading<'_, '_>,
+    ) -> Result<(), Error> {
         let Work { logs, options, model, .. } = work;
         if logs.held_out.is_empty() {
             return Ok(());
         }
         self.validate.clear();
-        let mut reader = Reader::new(work)?;
+        let mut reader = Reader::new(work, reading)?;
         let is_fixed = model.joints.iter().all(|joint| !joint.is_base);
         let simulates = is_fixed || options.controller.is_some();
         let longest_s = simulates.then_some(LONGEST_S);
@@ -110,8 +120,9 @@ impl Read {
     }
 }
 
-struct Reader<'a> {
+struct Reader<'a, 'r, 'w, 'o> {
     work: Work<'a>,
+    reading: &'r mut Reading<'w, 'o>,
     ground: Option<Ground>,
     names: Vec<String>,
     remarks: Vec<(String, LogRemark)>,
@@ -120,13 +131,14 @@ struct Reader<'a> {
     motions: Option<Vec<MotionLog>>,
 }
 
-impl<'a> Reader<'a> {
-    fn new(work: Work<'a>) -> Result<Self, Error> {
+impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
+    fn new(work: Work<'a>, reading: &'r mut Reading<'w, 'o>) -> Result<Self, Error> {
         let Work { robot, model, .. } = work;
         let ground = Ground::under(robot, model)
             .map_err(|error| Cause::Plant(model.model.clone(), error))?;
         Ok(Self {
             work,
+            reading,
             ground,
             names: model.joints.iter().map(|joint| joint.name.clone()).collect(),
             remarks: Vec::new(),
@@ -154,6 +166,7 @@ impl<'a> Reader<'a> {
         halvings: u32,
         longest_s: Option<f64>,
     ) -> Result<Conditioned, Error> {
+        self.reading.next()?;
         let file = path.display().to_string();
         let Work { logs, options, robot, laws, model } = self.work;
         let mut log = logs.measured(path, robot, model)?;

@@ -35,15 +35,27 @@ fn an_identification_that_is_stopped_has_what_was_estimated() {
     let folder = Folder::new("stopped_identification");
     let (robot, logs) = (RobotFile::open("planar_2r").unwrap(), logs(&folder));
     let options = IdentifyOptions::default();
-    let mut stages = Vec::new();
+    let (mut stages, mut shares) = (Vec::new(), Vec::new());
     let mut heard = |at: &Progress<'_>| {
         stages.push(at.stage);
+        shares.extend(at.share.map(|share| (at.stage, share)));
         true
     };
     let whole = identify(&robot, &logs, &options, &mut heard).unwrap();
     assert!(!whole.is_stopped && whole.simulated.is_some() && whole.is_good(false));
+    stages.dedup();
     assert_eq!(stages[..2], [Stage::ReadingLogs, Stage::Estimating]);
     assert_eq!(stages.last(), Some(&Stage::SimulatingLogs));
+    // two logs; one of them moves with two sets of values
+    let told = [Stage::ReadingLogs, Stage::SimulatingLogs].map(|of| {
+        let all = shares.iter().filter(|(stage, _)| *stage == of);
+        all.map(|(_, share)| *share).collect::<Vec<_>>()
+    });
+    assert_eq!(told, [vec![0.0, 0.5], vec![0.0, 0.5]]);
+
+    let mut one_log = |at: &Progress<'_>| at.share != Some(0.5);
+    let none = identify(&robot, &logs, &options, &mut one_log).unwrap_err();
+    assert_eq!(none.kind(), ErrorKind::Stopped);
 
     let until =
         |last: Stage| identify(&robot, &logs, &options, &mut |at: &Progress<'_>| at.stage != last);

@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// Take the chain to this link alone, with what is fixed to it
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
-    /// Make contact points of the collision boxes and spheres of this link; may be repeated
+    /// Make contact points of the collision shapes of this link (meshes apart); may be repeated
     #[arg(long, value_name = "LINK")]
     contacts: Vec<String>,
     /// What becomes of joints that follow others, which a model file has not

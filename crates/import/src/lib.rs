@@ -11,6 +11,7 @@
 
 mod body;
 mod chain;
+mod contact;
 mod exact;
 mod export;
 mod fault;
@@ -21,6 +22,7 @@ mod model;
 mod names;
 mod options;
 mod place;
+mod solid;
 mod tree;
 mod urdf;
 mod xml;

@@ -10,7 +10,7 @@ use crate::options::BaseChoice;
 use crate::place::{Pose, matrix};
 use crate::tree::{MAX_LINKS, Tree, TreeLink};
 use crate::xml::Element;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What holds where an element stands: the class, and frames around it.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Scope<'s> {
 pub(crate) struct Contents<'s> {
     pub(crate) inertial: Option<Element<'s>>,
     pub(crate) joints: Vec<(Element<'s>, Scope<'s>)>,
-    geoms: Vec<(Element<'s>, Scope<'s>)>,
+    pub(crate) geoms: Vec<(Element<'s>, Scope<'s>)>,
     pub(crate) bodies: Vec<(Element<'s>, Scope<'s>)>,
 }
 
@@ -62,7 +62,16 @@ pub(crate) struct Reader<'s, 'f> {
     pub(crate) base: BaseChoice,
     pub(crate) notes: MassNotes,
     pub(crate) snapped: Snapped,
+    /// What each body with a name touches others with: its place in the tree, and its geoms.
+    pub(crate) touching: BTreeMap<String, Touching<'s>>,
     unnamed: usize,
+}
+
+/// A body that touches others.
+pub(crate) struct Touching<'s> {
+    pub(crate) link: usize,
+    pub(crate) at: usize,
+    pub(crate) geoms: Vec<(Element<'s>, Scope<'s>)>,
 }
 
 impl<'s, 'f> Reader<'s, 'f> {
@@ -75,7 +84,8 @@ impl<'s, 'f> Reader<'s, 'f> {
         faults: &'f mut Faults,
     ) -> Self {
         let (notes, snapped) = (MassNotes::default(), Vec::new());
-        Self { settings, faults, tree, driven, base, notes, snapped, unnamed: 0 }
+        let touching = BTreeMap::new();
+        Self { settings, faults, tree, driven, base, notes, snapped, touching, unnamed: 0 }
     }
 
     /// What is in a body, through frames and included files.
@@ -170,6 +180,8 @@ impl<'s, 'f> Reader<'s, 'f> {
             self.tree.links.push(TreeLink { body, ..link });
         }
         let own = self.tree.links.len() - 1;
+        let touching = Touching { link: own, at: element.at(), geoms: contents.geoms };
+        self.touching.insert(name, touching);
         for (child, scope) in contents.bodies {
             self.push(child, Some(own), &scope);
         }

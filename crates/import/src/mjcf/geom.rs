@@ -1,11 +1,12 @@
-//! Masses of shapes.
+//! Shapes of bodies, and their masses.
 
 use super::frame::{Snapped, pose};
 use super::settings::{Attributes, Settings};
-use crate::exact::{Matrix, Vector, pi, product, root, transposed};
+use crate::exact::{Matrix, Vector, product, root, transformed, transposed};
 use crate::fault::{Cause, Faults, clip};
 use crate::place::{Pose, matrix, shortest};
-use denavit_codegen::number::{Rational, integer, ratio};
+use crate::solid::Solid;
+use denavit_codegen::number::{Rational, integer};
 use num_traits::{Signed, Zero};
 
 /// Mass, centre and tensor about it, in the axes of the body.
@@ -13,12 +14,6 @@ pub(crate) struct Lump {
     pub(crate) mass: Rational,
     pub(crate) com: Vector,
     pub(crate) inertia: Matrix,
-}
-
-/// A shape about its own centre: volume, and the moments of a mass of 1.
-struct Shape {
-    volume: Rational,
-    moments: Vector,
 }
 
 /// The mass of a geom; nothing where it has none.
@@ -51,6 +46,38 @@ pub(crate) fn lump(
         faults.push(geom.at, Cause::with_hint(said, "give the body an <inertial>"));
         return None;
     }
+    let (place, solid) = placed(geom, settings, outer, body, snapped, faults)?;
+    let (volume, moments) = solid.volume_and_moments();
+    let mass = mass.unwrap_or_else(|| &density * &volume);
+    if mass.is_negative() {
+        let said = format!("a geom of body `{}` has a negative mass", clip(body));
+        faults.push(geom.at, Cause::new(said));
+        return None;
+    }
+    let turn = matrix(&place.turns);
+    let mut own = crate::exact::identity();
+    (0..3).for_each(|k| own[k][k] = &moments[k] * &mass);
+    let inertia = product(&product(&turn, &own), &transposed(&turn));
+    Some(Lump { mass, com: place.at, inertia })
+}
+
+/// Whether a geom touches others at all.
+pub(crate) fn touches(geom: &Attributes<'_>, faults: &mut Faults) -> bool {
+    let mut is_on = |key| geom.number(key, faults).is_none_or(|bits| !bits.is_zero());
+    let of_type = is_on("contype");
+    is_on("conaffinity") || of_type
+}
+
+/// A geom as a solid, and its pose in the body; nothing where it is none.
+pub(crate) fn placed(
+    geom: &Attributes<'_>,
+    settings: &Settings<'_>,
+    outer: &Pose,
+    body: &str,
+    snapped: &mut Snapped,
+    faults: &mut Faults,
+) -> Option<(Pose, Solid)> {
+    let kind = geom.get("type").map_or("sphere", |kind| kind.text);
     let mut place = pose(geom, settings, body, snapped, faults);
     let mut half_length = None;
     if let Some(ends) = geom.numbers::<6>("fromto", faults) {
@@ -65,31 +92,18 @@ pub(crate) fn lump(
         place.turns = turns;
         half_length = Some(root(&along.iter().map(|x| x * x).sum()) / integer(2));
     }
-    let shape = shape(kind, geom, half_length, faults)?;
-    let mass = mass.unwrap_or_else(|| &density * &shape.volume);
-    if mass.is_negative() {
-        faults.push(
-            geom.at,
-            Cause::new(format!("a geom of body `{}` has a negative mass", clip(body))),
-        );
-        return None;
-    }
-    let whole = [&outer.turns[..], &place.turns].concat();
-    let turn = matrix(&whole);
-    let mut own = crate::exact::identity();
-    (0..3).for_each(|k| own[k][k] = &shape.moments[k] * &mass);
-    let inertia = product(&product(&turn, &own), &transposed(&turn));
-    let moved = crate::exact::transformed(&matrix(&outer.turns), &place.at);
-    let com = std::array::from_fn(|k| &outer.at[k] + &moved[k]);
-    Some(Lump { mass, com, inertia })
+    let solid = solid(kind, geom, half_length, faults)?;
+    let moved = transformed(&matrix(&outer.turns), &place.at);
+    let at = std::array::from_fn(|k| &outer.at[k] + &moved[k]);
+    Some((Pose { at, turns: [&outer.turns[..], &place.turns].concat() }, solid))
 }
 
-fn shape(
+fn solid(
     kind: &str,
     geom: &Attributes<'_>,
     half_length: Option<Rational>,
     faults: &mut Faults,
-) -> Option<Shape> {
+) -> Option<Solid> {
     let given: Vec<Rational> = match geom.get("size") {
         None => Vec::new(),
         Some(size) => {
@@ -122,46 +136,15 @@ fn shape(
         faults.push(geom.at, Cause::new(said));
         return None;
     }
-    Some(solid(kind, &size))
-}
-
-/// Volume and moments of a solid of mass 1.
-fn solid(kind: &str, size: &[Rational]) -> Shape {
-    let square = |k: usize| &size[k] * &size[k];
-    let (r, rr) = (&size[0], square(0));
-    match kind {
-        "sphere" => {
-            let moment = &rr * ratio(2, 5);
-            let moments = [moment.clone(), moment.clone(), moment];
-            Shape { volume: pi() * ratio(4, 3) * &rr * r, moments }
-        }
-        "capsule" => {
-            let height = &size[1] * integer(2);
-            let volume = pi() * &rr * (&height + r * ratio(4, 3));
-            let ends = r * integer(4) / (r * integer(4) + &height * integer(3));
-            let middle = integer(1) - &ends;
-            let round = &ends * &rr * ratio(2, 5);
-            let away = &ends * &height * (r * integer(3) + &height * integer(2)) / integer(8);
-            let across = &middle * (&rr * integer(3) + &height * &height) / integer(12);
-            let across = across + &round + away;
-            let along = middle * &rr / integer(2) + round;
-            Shape { volume, moments: [across.clone(), across, along] }
-        }
-        "cylinder" => {
-            let height = &size[1] * integer(2);
-            let across = (&rr * integer(3) + &height * &height) / integer(12);
-            let along = &rr / integer(2);
-            Shape { volume: pi() * &rr * height, moments: [across.clone(), across, along] }
-        }
-        _ => {
-            let is_box = kind == "box";
-            let part = if is_box { ratio(1, 3) } else { ratio(1, 5) };
-            let whole = &size[0] * &size[1] * &size[2];
-            let volume = if is_box { whole * integer(8) } else { whole * pi() * ratio(4, 3) };
-            let sum = |a: usize, b: usize| (square(a) + square(b)) * &part;
-            Shape { volume, moments: [sum(1, 2), sum(0, 2), sum(0, 1)] }
-        }
-    }
+    let mut size = size.into_iter();
+    let mut next = || size.next().unwrap_or_default();
+    Some(match kind {
+        "sphere" => Solid::Sphere(next()),
+        "capsule" => Solid::Capsule { radius: next(), half: next() },
+        "cylinder" => Solid::Cylinder { radius: next(), half: next() },
+        "box" => Solid::Box([next(), next(), next()]),
+        _ => Solid::Ellipsoid([next(), next(), next()]),
+    })
 }
 
 /// All lumps as one.

@@ -1,6 +1,7 @@
 //! MJCF: bodies in bodies, with what rigid-body trees have of it.
 
 mod body;
+mod contacts;
 mod frame;
 mod geom;
 mod joint;
@@ -54,7 +55,7 @@ pub(crate) fn tree<'s>(
     };
     let mut reader = Reader::new(&settings, tree, driven, options.base, faults);
     bodies(&mut reader, root, &of("worldbody").collect::<Vec<_>>());
-    let (snapped, notes) = (reader.snapped, reader.notes);
+    let (snapped, notes, touching) = (reader.snapped, reader.notes, reader.touching);
     let mut tree = reader.tree;
     mass::scale(&mut tree, &settings);
     let mut note = |said: &str, names: &[String]| {
@@ -77,12 +78,9 @@ pub(crate) fn tree<'s>(
             .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
     }
     settle(&mut tree, faults);
+    contacts::find(&mut tree, &touching, &settings, options, faults);
     if let Some(tip) = &options.tip {
         chain::cut(&mut tree, tip, root.at(), faults);
-    }
-    if !options.contacts.is_empty() {
-        let said = "`options.contacts` is for URDF: an MJCF has no collision shapes apart";
-        faults.push(root.at(), Cause::with_hint(said, "write \"contacts\" into the model file"));
     }
     if tree.links.iter().all(|link| link.joint.is_none()) && !tree.floats {
         faults.push(root.at(), Cause::new("nothing moves: no body has a joint"));

@@ -1,16 +1,16 @@
-//! Contact points of links, from their collision boxes and spheres.
+//! Contact points of links, from their collision shapes.
 
 use super::raw::{Raw, RawLink};
 use super::values::{Snapped, numbers, pose, wrong};
-use crate::exact::{Vector, rounded, transformed};
+use crate::contact::{NO_SHAPE, touch};
 use crate::fault::{Cause, Faults, clip};
-use crate::names::identifier;
 use crate::options::Options;
-use crate::place::{Pose, is_quarter, matrix};
-use crate::tree::{Tree, TreeContact};
-use crate::xml::Element;
+use crate::place::Pose;
+use crate::solid::Solid;
+use crate::tree::Tree;
+use crate::xml::{Element, Text};
 use denavit_codegen::number::{Rational, integer};
-use num_traits::Zero;
+use num_traits::Signed;
 use std::collections::BTreeMap;
 
 /// Adds the points of the links that were asked for.
@@ -29,86 +29,48 @@ pub(crate) fn find(
             faults.push(0, Cause::new(said));
             continue;
         };
-        let down = down_in(tree, place);
-        let points = points(link, &down, faults);
-        if points.is_empty() {
-            let said = format!("link `{}` has no collision box or sphere", clip(wanted));
-            let hint = "meshes are not read: write \"contacts\" into the model file";
-            faults.push(link.name.at, Cause::with_hint(said, hint));
-        }
-        for (at, point) in points.into_iter().enumerate() {
-            let name = format!("{}_{}", identifier(wanted), at + 1);
-            tree.contacts.push(TreeContact { name, link: place, at: point });
+        let before = faults.count();
+        let solids = solids(link, faults);
+        if !touch(tree, wanted, place, &solids) && faults.count() == before {
+            let said = format!("link `{}` has no collision box, sphere or cylinder", clip(wanted));
+            faults.push(link.name.at, Cause::with_hint(said, NO_SHAPE));
         }
     }
 }
 
-/// The direction of free fall in the frame of a link where all joints are at 0.
-fn down_in(tree: &Tree, link: usize) -> Vector {
-    let mut turns = Vec::new();
-    let mut at = Some(link);
-    while let Some(link) = at.map(|at| &tree.links[at]) {
-        let mut own: Vec<_> = link.before.iter().flat_map(|pose| pose.turns.clone()).collect();
-        own.extend(link.after.iter().flat_map(|pose| pose.turns.clone()));
-        own.extend(turns);
-        turns = own;
-        at = link.parent;
-    }
-    transformed(&crate::exact::transposed(&matrix(&turns)), &tree.gravity)
-}
-
-fn points(link: &RawLink<'_>, down: &Vector, faults: &mut Faults) -> Vec<Vector> {
+fn solids(link: &RawLink<'_>, faults: &mut Faults) -> Vec<(Pose, Solid)> {
     let mut found = Vec::new();
     for collision in link.element.all("collision") {
         let mut news = Snapped::default();
         let place = pose(collision.first("origin"), link.name.text, &mut news, faults);
         let Some((geometry, place)) = collision.first("geometry").zip(place) else { continue };
-        let turn = matrix(&place.turns);
-        let own_down = transformed(&crate::exact::transposed(&turn), down);
-        let inside = shape_points(geometry, &own_down, faults);
-        found.extend(inside.into_iter().map(|point| in_link(&place, &point)));
+        found.extend(solid(geometry, faults).map(|solid| (place, solid)));
     }
     found
 }
 
-fn in_link(place: &Pose, point: &Vector) -> Vector {
-    let moved = transformed(&matrix(&place.turns), point);
-    let is_exact = is_quarter(&place.turns);
-    std::array::from_fn(|k| {
-        let sum = &place.at[k] + &moved[k];
-        if is_exact { sum } else { rounded(&sum) }
-    })
-}
-
-/// The four corners of a box that are lowest, or the lowest point of a sphere.
-fn shape_points(geometry: Element<'_>, down: &Vector, faults: &mut Faults) -> Vec<Vector> {
+fn solid(geometry: Element<'_>, faults: &mut Faults) -> Option<Solid> {
     let half = |value: &Rational| value / integer(2);
-    let axis = (0..3).max_by_key(|&k| &down[k] * &down[k]).unwrap_or(2);
-    let sign = integer(if down[axis] < Rational::zero() { -1 } else { 1 });
     if let Some(size) = geometry.first("box").and_then(|shape| shape.get("size")) {
-        let Some(size) = numbers::<3>(size, "`size`", faults) else { return Vec::new() };
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        return [(1, 1), (1, -1), (-1, -1), (-1, 1)]
-            .map(|(a, b)| {
-                let mut point: Vector = std::array::from_fn(|_| Rational::zero());
-                point[axis] = half(&size[axis]) * &sign;
-                point[u] = half(&size[u]) * integer(a);
-                point[v] = half(&size[v]) * integer(b);
-                point
-            })
-            .to_vec();
+        let size = numbers::<3>(size, "`size`", faults)?;
+        return Some(Solid::Box(size.each_ref().map(half)));
     }
     if let Some(given) = geometry.first("sphere").and_then(|shape| shape.get("radius")) {
-        let Some([radius]) = numbers::<1>(given, "`radius`", faults) else { return Vec::new() };
-        if radius < Rational::zero() {
-            wrong(given, "`radius`", "0 or more", faults);
-            return Vec::new();
-        }
-        let length = crate::exact::root(&down.iter().map(|x| x * x).sum());
-        if length.is_zero() {
-            return Vec::new();
-        }
-        return vec![down.each_ref().map(|x| rounded(&(x / &length * &radius)))];
+        return Some(Solid::Sphere(length(given, "`radius`", faults)?));
     }
-    Vec::new()
+    let cylinder = geometry.first("cylinder")?;
+    let (radius, whole) = (cylinder.get("radius")?, cylinder.get("length")?);
+    let radius = length(radius, "`radius`", faults);
+    let whole = length(whole, "`length`", faults);
+    Some(Solid::Cylinder { radius: radius?, half: half(&whole?) })
+}
+
+/// A length that is not below 0.
+fn length(given: Text<'_>, what: &str, faults: &mut Faults) -> Option<Rational> {
+    let [value] = numbers::<1>(given, what, faults)?;
+    if value.is_negative() {
+        wrong(given, what, "0 or more", faults);
+        return None;
+    }
+    Some(value)
 }

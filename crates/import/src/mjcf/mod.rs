@@ -43,6 +43,7 @@ pub(crate) fn tree<'s>(
         .filter_map(|actuator| actuator.get("joint").or(actuator.get("jointinparent")))
         .map(|joint| joint.text);
     let driven: BTreeSet<&str> = driven.collect();
+    let acting = refused::acting(&settings, &of("actuator").collect::<Vec<_>>());
     let name = root.get("model").map_or("robot", |name| name.text);
     let tree = Tree {
         name: name.to_owned(),
@@ -72,6 +73,8 @@ pub(crate) fn tree<'s>(
         &notes.bodies.rounded,
     );
     note("moments of inertia that no body has are kept as they are", &notes.bodies.accepted);
+    note("forces of the fluid around it are no part of a model, and are left out", &settings.fluid);
+    note("what actuators do by themselves is for a controller file, and is left out", &acting);
     if notes.shaped > 0 {
         let count = notes.shaped;
         tree.notes

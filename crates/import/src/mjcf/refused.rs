@@ -1,4 +1,4 @@
-//! What is no rigid-body tree: refused by name, with the reason.
+//! What is no rigid-body tree: refused by name, with the reason, or left out with a note.
 
 use super::settings::Settings;
 use crate::fault::{Cause, Faults, clip};
@@ -54,4 +54,21 @@ fn tendon<'s>(settings: &Settings<'s>, tendon: Element<'s>, faults: &mut Faults)
             faults.push(tendon.at(), Cause::with_hint(said, "remove it from the file"));
         }
     }
+}
+
+/// Actuators with gains of their own, which act on positions and velocities.
+const CONTROLLERS: [&str; 5] = ["position", "velocity", "intvelocity", "damper", "muscle"];
+
+/// Names of the actuators that do more than pass a torque on.
+pub(crate) fn acting<'s>(settings: &Settings<'s>, sections: &[Element<'s>]) -> Vec<String> {
+    let all = sections.iter().flat_map(|section| settings.children(*section));
+    let acts = |one: &Element<'s>| {
+        let has_bias = || one.get("biastype").is_some_and(|bias| bias.text != "none");
+        CONTROLLERS.contains(&one.name()) || one.name() == "general" && has_bias()
+    };
+    let name = |one: Element<'s>| {
+        let name = one.get("name").or(one.get("joint"));
+        name.map_or_else(|| one.name().to_owned(), |name| name.text.to_owned())
+    };
+    all.filter(acts).map(name).collect()
 }

@@ -5,6 +5,7 @@ use crate::fault::{Cause, Faults, clip};
 use crate::urdf::{number, numbers, wrong};
 use crate::xml::{Element, Text};
 use denavit_codegen::number::{Rational, integer, ratio};
+use num_traits::Zero;
 use std::collections::BTreeMap;
 
 /// Attributes of elements that a class gives where an element has none: by element and attribute.
@@ -30,6 +31,8 @@ pub(crate) struct Settings<'s> {
     pub(crate) bounds: [Rational; 2],
     pub(crate) total: Option<Rational>,
     pub(crate) gravity: Vector,
+    /// Forces of a fluid that the file has and a model has not.
+    pub(crate) fluid: Vec<String>,
     classes: BTreeMap<&'s str, Class<'s>>,
     included: BTreeMap<String, Element<'s>>,
 }
@@ -55,6 +58,7 @@ impl<'s> Settings<'s> {
             bounds: [zero(), zero()],
             total: None,
             gravity: [zero(), zero(), ratio(-981, 100)],
+            fluid: Vec::new(),
             classes: BTreeMap::from([(MAIN, Class::new())]),
             included,
         };
@@ -133,6 +137,12 @@ impl<'s> Settings<'s> {
         let flag = element.first("flag").and_then(|flag| flag.get("gravity"));
         if flag.is_some_and(|flag| flag.text == "disable") {
             self.gravity = std::array::from_fn(|_| integer(0));
+        }
+        for key in ["density", "viscosity"] {
+            let value = element.get(key).and_then(|value| number(value, key, faults));
+            if value.is_some_and(|value| !value.is_zero()) {
+                self.fluid.push(key.to_owned());
+            }
         }
     }
 

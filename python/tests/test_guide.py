@@ -3,15 +3,20 @@
 import re
 from pathlib import Path
 
-GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guide" / "python.md"
+import pytest
+
+PAGES = Path(__file__).resolve().parents[2] / "docs" / "guide"
+GUIDE = PAGES / "python.md"
 
 
-def test_the_guide_runs():
-    blocks = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
-    assert len(blocks) >= 5
-    names: dict[str, object] = {}
+@pytest.mark.parametrize(("page", "least"), [("python", 5), ("studies", 2)])
+def test_the_guide_runs(page, least):
+    file = PAGES / f"{page}.md"
+    blocks = re.findall(r"```python\n(.*?)```", file.read_text(), re.DOTALL)
+    assert len(blocks) >= least
+    names: dict[str, object] = {"__name__": "guide"}
     for block in blocks:
-        exec(compile(block, str(GUIDE), "exec"), names)
+        exec(compile(block, str(file), "exec"), names)
 
 
 def test_the_guide_lists_every_function():

@@ -1,0 +1,117 @@
+"""``python -m denavit``: what runs Python. Everything else is the command ``denavit``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from .errors import Error
+
+
+def _range(text: str) -> range:
+    start, colon, stop = text.partition(":")
+    if not (colon and start.isdigit() and stop.isdigit() and int(start) <= int(stop)):
+        raise argparse.ArgumentTypeError(f"{text!r} is no range of indices: 0:1000")
+    return range(int(start), int(stop))
+
+
+def _share(text: str) -> tuple[int, int]:
+    part, slash, parts = text.partition("/")
+    if not (slash and part.isdigit() and parts.isdigit() and int(part) < int(parts)):
+        raise argparse.ArgumentTypeError(f"{text!r} is no part of parts, from 0: 3/100")
+    return int(part), int(parts)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("python -m denavit", description=__doc__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    study = commands.add_parser("study", help="run studies, and merge their parts")
+    parts = study.add_subparsers(required=True, metavar="COMMAND")
+
+    run = parts.add_parser("run", help="compute rows of a study")
+    run.add_argument("study", type=Path, help="study file")
+    run.add_argument("-o", "--output", type=Path, required=True, help="Parquet file of the rows")
+    chosen = run.add_mutually_exclusive_group()
+    chosen.add_argument("--range", type=_range, metavar="A:B", help="indices from A, below B")
+    chosen.add_argument(
+        "--part", type=_share, metavar="K/N", help="part K, from 0, of N: for arrays of jobs"
+    )
+    where = run.add_mutually_exclusive_group()
+    where.add_argument("--workers", type=int, default=1, metavar="N", help="processes, here")
+    where.add_argument(
+        "--ray", nargs="?", const="local", metavar="ADDRESS",
+        help="on Ray: of this address, `auto` for the cluster that runs here, or started here",
+    )  # fmt: skip
+    run.set_defaults(run=_run)
+
+    merge = parts.add_parser("merge", help="write the rows of all parts as one file")
+    merge.add_argument("parts", type=Path, nargs="+")
+    merge.add_argument("-o", "--output", type=Path, required=True, help="Parquet file of all rows")
+    merge.set_defaults(run=_merge)
+
+    missing = parts.add_parser("missing", help="say which indices no part has")
+    missing.add_argument("study", type=Path, help="study file")
+    missing.add_argument("parts", type=Path, nargs="*")
+    missing.set_defaults(run=_missing)
+    return parser
+
+
+def _run(given: argparse.Namespace) -> int:
+    from . import studies
+    from .studies.here import in_process, in_processes
+    from .studies.on_ray import on_ray
+
+    study = studies.read_study(given.study)
+    indices: range | None = given.range
+    if given.part is not None:
+        part, parts = given.part
+        indices = range(study.count * part // parts, study.count * (part + 1) // parts)
+    runner = in_process if given.workers <= 1 else in_processes(given.workers)
+    if given.ray is not None:
+        runner = on_ray(None if given.ray == "local" else given.ray)
+    all_rows = study.count if indices is None else len(indices)
+
+    def show(done: int, count: int) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{done} of {count} rows", end="", file=sys.stderr, flush=True)
+
+    computed = studies.run(study, given.output, indices, runner=runner, progress=show)
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    print(f"{given.output}: {all_rows} rows, {computed} computed now")
+    return 0
+
+
+def _merge(given: argparse.Namespace) -> int:
+    from . import studies
+
+    print(f"{given.output}: {studies.merge(given.parts, given.output)} rows")
+    return 0
+
+
+def _missing(given: argparse.Namespace) -> int:
+    from . import studies
+
+    found = studies.missing(given.parts, studies.read_study(given.study).count)
+    for start, stop in found:
+        print(f"{start}:{stop}")
+    return 1 if found else 0
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs a command; 2 where something is wrong with what was given."""
+    given = _parser().parse_args(arguments)
+    try:
+        code: int = given.run(given)
+    except Error as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except (ValueError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,79 @@
+"""What a study computes for one index, and the columns of its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+import numpy as np
+
+Row = Mapping[str, Any]
+"""The values of one index by column; None where there is none."""
+
+Function = Callable[["Case"], Row]
+F = TypeVar("F", bound=Function)
+
+COLUMN_TYPES: dict[Any, str] = {
+    float: "double",
+    int: "int64",
+    bool: "bool",
+    str: "string",
+    list[float]: "list<double>",
+    list[str]: "list<string>",
+}
+"""Types of columns, and what Arrow calls them."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One index of a study, and all that its row may depend on."""
+
+    index: int
+    seed: int
+    """Of the study, the same for all of its indices."""
+    inputs: Mapping[str, bytes] = field(repr=False)
+    """The content of the study's files."""
+    options: Mapping[str, Any] = field(repr=False)
+
+    def random(self) -> np.random.Generator:
+        """Random numbers of this index: the same ones wherever and whenever it is computed."""
+        return np.random.default_rng(np.random.SeedSequence([self.seed, self.index]))
+
+
+def rows(**columns: Any) -> Callable[[F], F]:
+    """Says which columns a function's rows have: names and types (``float``, ``int``, ``bool``,
+    ``str``, ``list[float]``, ``list[str]``).
+    """
+    unknown = [name for name, kind in columns.items() if kind not in COLUMN_TYPES]
+    if unknown:
+        raise TypeError(f"columns of a type that no row has: {', '.join(unknown)}")
+    taken = {"index", "failure"} & columns.keys()
+    if taken:
+        raise TypeError(f"every row has a column of that name: {', '.join(sorted(taken))}")
+
+    def marked(function: F) -> F:
+        function.__dict__["study_columns"] = dict(columns)
+        return function
+
+    return marked
+
+
+def columns_of(function: Function) -> dict[str, Any]:
+    """The columns that a function said its rows have."""
+    found = getattr(function, "study_columns", None)
+    if found is None:
+        name = getattr(function, "__qualname__", str(function))
+        raise TypeError(f"{name} says no columns: put @denavit.studies.rows(..) above it")
+    assert isinstance(found, dict)
+    return found
+
+
+def plain(kind: Any, value: Any) -> Any:
+    """A value of a column as one of Python's own, whatever numpy calls it."""
+    if value is None:
+        return None
+    if kind in (float, int, bool, str):
+        return kind(value)
+    own = str if kind == list[str] else float
+    return [own(one) for one in value]

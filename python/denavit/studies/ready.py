@@ -1,0 +1,91 @@
+"""Studies that are ready to be named by a study file."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from .. import walk
+from ..identify import identify
+from ..model import Model, load
+from ..simulate import Run, simulate
+from .cases import Case, Row, rows
+
+
+@lru_cache(maxsize=4)
+def _moved(scenario: bytes) -> Run:
+    """A run without noise; the same for all indices, and so computed once a process."""
+    return simulate(json.loads(scenario))
+
+
+@lru_cache(maxsize=4)
+def _model(scenario: bytes) -> Model:
+    return load(json.loads(scenario)["model"])
+
+
+def _noisy(run: Run, case: Case, random: np.random.Generator) -> dict[str, Any]:
+    """The log of a run with white noise of positions and torques."""
+    q_std, tau_std = (float(case.options.get(name, 0.0)) for name in ("q_std", "tau_std"))
+    found = {}
+    for name, column in zip(run.columns, run.values.T):
+        std = {"q": q_std, "tau": tau_std}.get(name.split("_")[0], 0.0)
+        if name == "t" or name.startswith(("q_", "tau_")):
+            found[name] = column + std * random.standard_normal(len(column))
+    return found
+
+
+@rows(
+    identified=int,
+    inside=int,
+    largest_deviation=float,
+    residual_share=float,
+    values=list[float],
+    stds=list[float],
+    names=list[str],
+)
+def coverage(case: Case) -> Row:
+    """Identifies a robot from logs with noise of this index. Says how many intervals of 95 % hold
+    the true values, which are those of the model.
+
+    Inputs: ``train`` and ``validate``, scenarios that name a shipped model. Options: ``q_std`` and
+    ``tau_std``, standard deviations of the noise [rad, m; N m, N]; ``method`` and ``errors`` as of
+    :func:`denavit.identify`.
+    """
+    random = case.random()
+    logs = [_noisy(_moved(case.inputs[name]), case, random) for name in ("train", "validate")]
+    chosen = {name: case.options[name] for name in ("method", "errors") if name in case.options}
+    found = identify(_model(case.inputs["train"]), logs[0], logs[1], update=False, **chosen)
+    told = [one for one in found.parameters if one.identifiable and one.std]
+    off = [abs(one.value - (one.model_value or 0.0)) / (one.std or 1.0) for one in told]
+    bounds = [(one.interval, one.model_value or 0.0) for one in told]
+    inside = [low_high is not None and low_high[0] <= true <= low_high[1] for low_high, true in bounds]
+    return {
+        "identified": len(told),
+        "inside": sum(inside),
+        "largest_deviation": max(off, default=0.0),
+        "residual_share": found.residual.validate,
+        "values": [one.value for one in told],
+        "stds": [one.std for one in told],
+        "names": [one.name for one in told],
+    }
+
+
+@rows(walks=bool, outcome=str)
+def basin(case: Case) -> Row:
+    """Walks from a start near the cycle of a gait, drawn by this index.
+
+    Input: ``scenario``, one that walks. Options: ``noise_rad_s`` of the start's velocities, and
+    ``steps`` that count as walking on.
+    """
+    found = walk.basin(
+        json.loads(case.inputs["scenario"]),
+        noise=float(case.options.get("noise_rad_s", 0.1)),
+        starts=1,
+        seed=int(case.random().integers(1 << 31)),
+        steps=int(case.options.get("steps", 10)),
+    )
+    outcome = max(found.outcomes, key=lambda name: found.outcomes[name])
+    return {"walks": found.walks == 1, "outcome": outcome}

@@ -1,0 +1,192 @@
+"""Studies: the same rows however they are run, and none lost where a run is broken off."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from denavit import studies
+from denavit.__main__ import main
+from denavit.studies.here import in_processes
+from denavit.studies.parts import Part, journal, noted
+
+pytest.importorskip("pyarrow")
+
+OWN = """
+import time
+import denavit
+from denavit import studies
+
+@studies.rows(square=int, angle=float, parts=list[float], word=str, whole=bool)
+def squares(case):
+    time.sleep(case.options.get("wait_s", 0.0))
+    if case.index == 5:
+        denavit.load("no such model")
+    drawn = case.random().uniform(-1.0, 1.0, 2)
+    return {"square": case.index**2, "angle": drawn[0], "parts": drawn, "word": "so",
+            "whole": drawn[0] > 0}
+"""
+
+
+@pytest.fixture
+def study_file(tmp_path, monkeypatch):
+    """A study of ten rows, of a function beside it."""
+    name = f"own_study_{os.getpid()}"
+    (tmp_path / f"{name}.py").write_text(OWN)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    content = {"format": "denavit-study/1", "name": "squares", "count": 10, "seed": 4}
+    content |= {"function": f"{name}:squares", "options": {}}
+    file = tmp_path / "squares.json"
+    file.write_text(json.dumps(content))
+    return file
+
+
+def changed(study_file, **more):
+    content = json.loads(study_file.read_text()) | more
+    study_file.write_text(json.dumps(content))
+    return studies.read_study(study_file)
+
+
+def test_rows_are_those_of_their_indices(study_file):
+    rows = studies.computed(studies.read_study(study_file))
+    assert [row["square"] for row in rows if row["failure"] is None] == [
+        0, 1, 4, 9, 16, 36, 49, 64, 81,
+    ]  # fmt: skip
+    assert "no such model" in rows[5]["failure"] and rows[5]["angle"] is None
+    assert len({row["angle"] for row in rows}) == 10
+    # of any order and number, and not of another seed
+    study = studies.read_study(study_file)
+    assert studies.computed(study, [7, 2]) == [rows[7], rows[2]]
+    other = studies.computed(changed(study_file, seed=5))
+    assert all(one["angle"] != two["angle"] for one, two in zip(rows, other) if one["angle"])
+
+
+def test_parts_of_any_size_merge_to_the_same_bytes(study_file, tmp_path, capsys):
+    study = studies.read_study(study_file)
+    studies.run(study, tmp_path / "whole.parquet")
+    place = str(study_file)
+    for part in range(3):
+        out = str(tmp_path / f"part-{part}.parquet")
+        assert main(["study", "run", place, "--part", f"{part}/3", "-o", out]) == 0
+    parts = [str(tmp_path / f"part-{part}.parquet") for part in (2, 0, 1)]
+    assert main(["study", "missing", place, parts[0], parts[1]]) == 1
+    assert "3:6" in capsys.readouterr().out
+    assert main(["study", "merge", *parts, "-o", str(tmp_path / "merged.parquet")]) == 0
+    studies.run(study, tmp_path / "two.parquet", runner=in_processes(2))
+    contents = {(tmp_path / f"{name}.parquet").read_bytes() for name in ("whole", "merged", "two")}
+    assert len(contents) == 1
+    table = studies.read_part(tmp_path / "merged.parquet")
+    assert table.column("index").to_pylist() == list(range(10))
+    assert table.to_pylist() == studies.computed(study)
+
+
+def test_a_killed_run_repeats_only_the_row_it_was_at(study_file, tmp_path):
+    study = changed(study_file, options={"wait_s": 0.2})
+    out = tmp_path / "rows.parquet"
+    command = [sys.executable, "-m", "denavit", "study", "run", str(study_file), "-o", str(out)]
+    process = subprocess.Popen(command)
+    part = Part(study, 0, 10, out)
+    until = time.monotonic() + 60
+    while not (part.journal.exists() and part.journal.read_text().count("\n") > 3):
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.02)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert not out.exists()
+    done = part.journal.read_text().count("\n") - 1
+    assert studies.run(study, out) == 10 - done < 8
+    assert studies.read_part(out).to_pylist() == studies.computed(study)
+    assert not part.journal.exists() and studies.run(study, out) == 0
+
+
+def test_a_cut_line_of_a_journal_is_computed_again(study_file, tmp_path):
+    study = studies.read_study(study_file)
+    part = Part(study, 0, 10, tmp_path / "rows.parquet")
+    rows = studies.computed(study)
+    with journal(part) as (done, file):
+        assert done == {}
+        for row in rows[:4]:
+            noted(file, row)
+        with pytest.raises(studies.StudyError, match="another process"), journal(part):
+            pass
+    text = part.journal.read_text()
+    part.journal.write_text(text[:-7])
+    assert studies.run(study, part.path) == 7
+    assert studies.read_part(part.path).to_pylist() == rows
+
+
+def test_what_does_not_fit_is_refused(study_file, tmp_path, capsys):
+    study = studies.read_study(study_file)
+    out = tmp_path / "rows.parquet"
+    studies.run(study, out, range(0, 4))
+    with pytest.raises(studies.StudyError, match="another study"):
+        studies.run(changed(study_file, seed=9), out, range(0, 4))
+    other = tmp_path / "other.parquet"
+    studies.run(studies.read_study(study_file), other, range(4, 10))
+    with pytest.raises(studies.StudyError, match="another study"):
+        studies.merge([out, other], tmp_path / "merged.parquet")
+    with pytest.raises(studies.StudyError, match="no part of a study"):
+        studies.read_part(study_file)
+    content = json.loads(study_file.read_text())
+    study_file.write_text(json.dumps(content | {"count": -1, "sed": 2, "function": "os:nothing"}))
+    assert main(["study", "run", str(study_file), "-o", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert "`sed`" in said and "below 0" in said
+    study_file.write_text(json.dumps(content | {"function": "os:getcwd"}))
+    assert main(["study", "run", str(study_file), "-o", str(out)]) == 2
+    assert "says no columns" in capsys.readouterr().err
+    with pytest.raises(TypeError, match="type that no row has"):
+        studies.rows(value=complex)
+
+
+def test_intervals_of_an_identification_hold_as_often_as_they_say(tmp_path):
+    """The count of intervals that hold is binomial, whatever the estimator."""
+
+    def sines(first, second):
+        def reference(amplitude, frequency):
+            terms = {"sines": [amplitude, 0.2], "cosines": [0.1, 0.2]}
+            return {"fourier": {"frequency_rad_s": frequency} | terms}
+
+        joints = {
+            "link1": {"kp": 300, "kd": 30, "reference": reference(first, 2)},
+            "link2": {"kp": 300, "kd": 30, "reference": reference(second, 3)},
+        }
+        scenario = {"format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 8}
+        return json.dumps(scenario | {"control": {"joints": joints}, "log_period_s": 0.004})
+
+    inputs = {"train": sines(0.4, 0.5).encode(), "validate": sines(0.3, -0.6).encode()}
+    options = {"tau_std": 0.05, "q_std": 0.0}
+    study = studies.Study("coverage", studies.ready.coverage, 20, inputs=inputs, options=options)
+    rows = studies.computed(study)
+    told = sum(row["identified"] for row in rows)
+    inside = sum(row["inside"] for row in rows)
+    assert all(row["failure"] is None for row in rows) and told >= 60
+    deviation = math.sqrt(0.95 * 0.05 / told)
+    # parameters of a row are correlated: twice the deviation of independent ones, three of these
+    assert abs(inside / told - 0.95) < 6 * deviation, (inside, told)
+
+
+def test_starts_near_the_cycle_of_a_gait_walk_on():
+    scenario = (Path(__file__).parents[2] / "models/scenarios/compass_gait.json").read_bytes()
+    options = {"noise_rad_s": 1e-3, "steps": 3}
+    study = studies.Study(
+        "basin", studies.ready.basin, 2, inputs={"scenario": scenario}, options=options
+    )
+    assert [row["walks"] for row in studies.computed(study)] == [True, True]
+
+
+def test_a_study_of_ray_has_the_same_rows(study_file, tmp_path):
+    pytest.importorskip("ray")
+    from denavit.studies.on_ray import on_ray
+
+    study = studies.read_study(study_file)
+    studies.run(study, tmp_path / "ray.parquet", runner=on_ray())
+    studies.run(study, tmp_path / "here.parquet")
+    assert Path(tmp_path / "ray.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()

@@ -37,6 +37,10 @@ def _noisy(run: Run, case: Case, random: np.random.Generator) -> dict[str, Any]:
     return found
 
 
+def _holds(interval: tuple[float, float] | None, value: float) -> bool:
+    return interval is not None and interval[0] <= value <= interval[1]
+
+
 @rows(
     identified=int,
     inside=int,
@@ -60,8 +64,7 @@ def coverage(case: Case) -> Row:
     found = identify(_model(case.inputs["train"]), logs[0], logs[1], update=False, **chosen)
     told = [one for one in found.parameters if one.identifiable and one.std]
     off = [abs(one.value - (one.model_value or 0.0)) / (one.std or 1.0) for one in told]
-    bounds = [(one.interval, one.model_value or 0.0) for one in told]
-    inside = [low_high is not None and low_high[0] <= true <= low_high[1] for low_high, true in bounds]
+    inside = [_holds(one.interval, one.model_value or 0.0) for one in told]
     return {
         "identified": len(told),
         "inside": sum(inside),

@@ -18,7 +18,8 @@ fn mjcf(geom: &str, degrees: f64) -> String {
     format!(
         "<mujoco><worldbody><body name=\"leg\"><joint name=\"hip\" axis=\"0 1 0\"/>\
          <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>\
-         <body name=\"foot\" pos=\"0.1 0.2 1\"><geom pos=\"0 0 0.05\" euler=\"{degrees} 0 0\" {geom}/>\
+         <body name=\"foot\" pos=\"0.1 0.2 1\">\
+         <geom pos=\"0 0 0.05\" euler=\"{degrees} 0 0\" {geom}/>\
          </body></body></worldbody></mujoco>"
     )
 }
@@ -26,7 +27,8 @@ fn mjcf(geom: &str, degrees: f64) -> String {
 fn urdf(shape: &str, roll: &str) -> String {
     format!(
         "<robot name=\"r\"><link name=\"base\"/><link name=\"foot\"><collision>\
-         <origin xyz=\"0 0 0.05\" rpy=\"{roll} 0 0\"/><geometry>{shape}</geometry></collision></link>\
+         <origin xyz=\"0 0 0.05\" rpy=\"{roll} 0 0\"/><geometry>{shape}</geometry>\
+         </collision></link>\
          <joint name=\"hip\" type=\"revolute\"><origin xyz=\"0.1 0.2 1\"/><axis xyz=\"0 1 0\"/>\
          <limit effort=\"1\" velocity=\"1\" lower=\"-1\" upper=\"1\"/>\
          <parent link=\"base\"/><child link=\"foot\"/></joint></robot>"

@@ -214,8 +214,8 @@ fn read(
 ) -> Result<Split<Vec<MeasuredLog>>, Error> {
     let failed = |error| Cause::Plant(model.model.clone(), error);
     let mut ground = Ground::under(robot, model).map_err(failed)?;
-    let paths = logs.train.iter().chain(&logs.held_out);
-    let read = paths.map(|path| logs.measured(path, robot, model));
+    let sources = logs.train.iter().chain(&logs.held_out);
+    let read = sources.map(|source| logs.measured(source, robot, model));
     let mut all = Error::of_any_log(read)?;
     for log in &mut all {
         for remark in std::mem::take(&mut log.remarks) {

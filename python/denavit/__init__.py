@@ -39,6 +39,8 @@ from .model import (
     load,
 )
 from .simulate import Run, simulate
+from .statics import Statics, identify_statics
+from .two_stage import TwoStageIdentification, identify_two_stage
 
 __all__ = [
     "Answer",
@@ -69,12 +71,16 @@ __all__ = [
     "Regressor",
     "Run",
     "SimulateError",
+    "Statics",
+    "TwoStageIdentification",
     "WalkError",
     "__version__",
     "base_parameters",
     "diagnose",
     "excite",
     "identify",
+    "identify_statics",
+    "identify_two_stage",
     "load",
     "shipped_gaits",
     "shipped_models",

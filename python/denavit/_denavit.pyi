@@ -11,7 +11,9 @@ from ._arrays import Array
 __version__: str
 
 def run(
-    arguments: list[str], progress: Callable[[str, float | None], bool | None] | None = None
+    arguments: list[str],
+    progress: Callable[[str, float | None], bool | None] | None = None,
+    logs: list[tuple[str, int, str, list[tuple[str, Array]]]] = ...,
 ) -> tuple[str, bool, list[str]]: ...
 def simulate(
     arguments: list[str], progress: Callable[[str, float | None], bool | None] | None = None

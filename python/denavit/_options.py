@@ -10,14 +10,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Protocol
 
+import numpy as np
+
 from . import _denavit
-from .errors import _argument
+from ._arrays import Array
+from .errors import Error, _argument
 
 Progress = Callable[[str, "float | None"], "bool | None"]
 """Hears the stage of a run, and the share of it that is done (0 to 1) where that is known. An
 answer of ``False`` stops the run."""
 
 PathLike = str | os.PathLike[str]
+
+Columns = tuple[str, int, str, list[tuple[str, Array]]]
+"""A log in memory: its option, which of the logs of this it is, its name, its columns."""
 
 
 class HasSource(Protocol):
@@ -74,16 +80,19 @@ def flags(**options: object) -> list[str]:
 
 @contextmanager
 def folder() -> Iterator[Path]:
-    """A folder for files of one run."""
+    """A folder for files of one run. Faults do not name it: nobody has seen it."""
     with tempfile.TemporaryDirectory(prefix="denavit-") as path:
-        yield Path(path)
+        try:
+            yield Path(path)
+        except Error as error:
+            raise error._without(path + os.sep) from None
 
 
 def file_of(value: object, what: str, inside: Path) -> str:
     """A path of something: itself, or a new file in a folder of a model, or of a dict."""
     if isinstance(value, Mapping):
         path = inside / f"{what}.json"
-        path.write_text(json.dumps(_referring(dict(value), inside)))
+        path.write_text(json.dumps(_referring(dict(value), inside), default=_plain))
         return str(path)
     source, name = getattr(value, "source", None), getattr(value, "name", None)
     if isinstance(source, str) and isinstance(name, str):
@@ -91,6 +100,13 @@ def file_of(value: object, what: str, inside: Path) -> str:
         path.write_text(source)
         return str(path)
     return place(value, what)
+
+
+def _plain(value: object) -> object:
+    """Numbers and arrays of numpy as JSON has them."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise _argument(f"JSON has no {type(value).__name__}")
 
 
 def _referring(content: dict[str, Any], inside: Path) -> dict[str, Any]:
@@ -106,7 +122,8 @@ def _referring(content: dict[str, Any], inside: Path) -> dict[str, Any]:
 def answered(
     arguments: list[str],
     progress: Progress | None,
+    logs: Iterable[Columns] = (),
 ) -> tuple[dict[str, Any], bool, list[str]]:
-    """The JSON of a command, whether its answer is good, and notes."""
-    text, is_good, notes = _denavit.run([*arguments, "--json"], progress)
+    """The JSON of a command, whether its answer is good, and notes. ``logs`` are in memory."""
+    text, is_good, notes = _denavit.run([*arguments, "--json"], progress, list(logs))
     return json.loads(text), is_good, notes

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from . import _options
+from . import _logs, _options
+from ._logs import Logs
 from ._options import PathLike, Progress
 from ._results import Answer, answer, of
 from .model import Model, as_place
-from .simulate import Log, log_places
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,8 +121,8 @@ class Diagnosis(Answer):
 
 def diagnose(
     model: Model | PathLike,
-    train: Log | list[Log],
-    validate: Log | list[Log],
+    train: Logs,
+    validate: Logs,
     *,
     most: int = 6,
     seed: int = 1,
@@ -142,8 +142,8 @@ def diagnose(
     """
     with _options.folder() as inside:
         effects, place = as_place(model, inside)
-        arguments = ["diagnose", place, *effects, "--train", *log_places(train, "train", inside)]
-        arguments += ["--validate", *log_places(validate, "validate", inside)]
+        logs, memory = _logs.given(train=train, validate=validate)
+        arguments = ["diagnose", place, *effects, *logs]
         if columns is not None:
             arguments += ["--columns", _options.file_of(columns, "columns", inside)]
         out = inside / "found"
@@ -152,7 +152,7 @@ def diagnose(
             accept_suspicious=accept_suspicious, accept_cut=accept_cut,
             out=out if report else None,
         )  # fmt: skip
-        found = _options.answered(arguments, progress)
+        found = _options.answered(arguments, progress, memory)
         page = (out / "report.html").read_text() if report else None
         completed = _completed(out)
     return answer(Diagnosis, found, completed=completed, report=page)

@@ -6,7 +6,7 @@ Every exception of the package is an :class:`Error`. Its fields are those of the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,18 @@ class Error(Exception):
     def __init__(self, faults: list[Fault]) -> None:
         super().__init__("\n".join(str(fault) for fault in faults))
         self.faults = tuple(faults)
+
+    def _without(self, folder: str) -> Error:
+        """The same, where files of a folder have their names alone."""
+
+        def bare(text: str | None) -> str | None:
+            return None if text is None else text.replace(folder, "")
+
+        def renamed(fault: Fault) -> Fault:
+            cause = fault.cause.replace(folder, "")
+            return replace(fault, file=bare(fault.file), cause=cause, hint=bare(fault.hint))
+
+        return type(self)([renamed(fault) for fault in self.faults])
 
     @property
     def file(self) -> str | None:

@@ -107,10 +107,12 @@ def excite(
     grid: int | None = None,
     threads: int | None = None,
     check: PathLike | Mapping[str, Any] | None = None,
+    svg: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Excitation:
     """Looks for a motion within the limits of the model that shows the parameters, or judges the
-    trajectory ``check``. The options are those of ``denavit excite``.
+    trajectory ``check``. The options are those of ``denavit excite``; ``svg`` is where a picture of
+    the motion that was found goes.
     """
     with _options.folder() as inside:
         effects, place = as_place(model, inside)
@@ -120,6 +122,7 @@ def excite(
             parameters=parameters, keep=keep, hold=hold, weights=weights,
             clearance_m="none" if clearance_m is None else clearance_m, seed=seed,
             starts=starts, reach=reach, evaluations=evaluations, grid=grid, threads=threads,
+            svg=svg,
             **{"with": joint_parameters},
         )  # fmt: skip
         out = inside / "trajectory.json"

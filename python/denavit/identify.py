@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from . import _options
-from ._options import PathLike, Progress
+from . import _logs, _options
+from ._logs import Logs
+from ._options import Columns, PathLike, Progress
 from ._results import Answer, Latex, answer, of
 from .base import JointParameters
 from .errors import IdentifyError
 from .model import Model, as_place
-from .simulate import Log, log_places
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,8 +127,8 @@ class Identification(Answer):
 
 def identify(
     model: Model | PathLike,
-    train: Log | list[Log],
-    validate: Log | list[Log] = (),  # type: ignore[assignment]
+    train: Logs,
+    validate: Logs = (),
     *,
     method: Literal["ols", "wls", "huber", "bisquare", "tls", "iv", "ml"] = "wls",
     errors: Literal["correlated", "classical", "bootstrap"] = "correlated",
@@ -143,7 +143,7 @@ def identify(
     rates: Literal["differences", "logged"] = "differences",
     prior: bool = False,
     resolution: float | None = None,
-    instruments: Log | list[Log] = (),  # type: ignore[assignment]
+    instruments: Logs = (),
     controller: PathLike | dict[str, Any] | None = None,
     window_s: float | None = None,
     columns: PathLike | dict[str, Any] | None = None,
@@ -151,6 +151,8 @@ def identify(
     accept_cut: bool = False,
     update: bool = True,
     report: bool = False,
+    svg: PathLike | None = None,
+    motion_svg: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Identification:
     """Identifies base parameters from logs of motion and torque.
@@ -159,14 +161,14 @@ def identify(
     :func:`simulate`, data frames or dicts of columns. The options are those of
     ``denavit identify``: ``filter_hz`` is the cutoff of the zero-phase filter, with its order
     behind a colon perhaps ("20:2"), or "none"; ``columns`` maps columns of the logs to ours.
-    ``update`` makes the model with the values that were found, ``report`` a page of HTML.
+    ``update`` makes the model with the values that were found, ``report`` a page of HTML. ``svg``
+    and ``motion_svg`` are where pictures go: of measured and computed torques, and of measured and
+    simulated positions.
     """
     with _options.folder() as inside:
         effects, place = as_place(model, inside)
-        arguments = ["identify", place, *effects, "--train", *log_places(train, "train", inside)]
-        for flag, logs in (("validate", validate), ("instruments", instruments)):
-            if not isinstance(logs, (list, tuple)) or logs:
-                arguments += [f"--{flag}", *log_places(logs, flag, inside)]
+        logs, memory = _logs.given(train=train, validate=validate, instruments=instruments)
+        arguments = ["identify", place, *effects, *logs]
         for flag, file in (("controller", controller), ("columns", columns)):
             if file is not None:
                 arguments += [f"--{flag}", _options.file_of(file, flag, inside)]
@@ -175,34 +177,36 @@ def identify(
             skip_slow=skip_slow, filter=filter_hz, decimate=decimate, average=average,
             rates=rates, prior=prior, resolution=resolution, window=window_s,
             accept_suspicious=accept_suspicious, accept_cut=accept_cut,
+            svg=svg, motion_svg=motion_svg,
             html=inside / "report.html" if report else None,
             **{"with": joint_parameters},
         )  # fmt: skip
         out = inside / "updated.json" if update else None
-        found, refused = _answered(arguments, out, progress)
-        updated = None if out is None or refused else _model(out, model)
+        found, refused = answered_with_model(arguments, out, progress, memory)
+        updated = None if out is None or refused else updated_model(out, model)
         page = (inside / "report.html").read_text() if report else None
     return answer(
         Identification, found, updated=updated, update_refused=refused, report=page
     )
 
 
-def _answered(
-    arguments: list[str], out: Path | None, progress: Progress | None
+def answered_with_model(
+    arguments: list[str], out: Path | None, progress: Progress | None, logs: list[Columns]
 ) -> tuple[tuple[dict[str, Any], bool, list[str]], str | None]:
     """The answer, and why what was found makes no model."""
     if out is None:
-        return _options.answered(arguments, progress), None
+        return _options.answered(arguments, progress, logs), None
     try:
-        return _options.answered([*arguments, "--output", str(out)], progress), None
+        return _options.answered([*arguments, "--output", str(out)], progress, logs), None
     except IdentifyError as error:
         if error.file != "the identified model":
             raise
         # parameters are an answer without a model, too
-        return _options.answered(arguments, progress), str(error)
+        return _options.answered(arguments, progress, logs), str(error)
 
 
-def _model(path: Path, model: object) -> Model:
+def updated_model(path: Path, model: object) -> Model:
+    """The model that was written, with the effects of the one that was given."""
     effects = getattr(model, "_effects", None)
     text = path.read_text()
     return Model._made(path.stem, text, None if effects is None else Path(effects))

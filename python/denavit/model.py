@@ -126,11 +126,7 @@ class Model(_denavit.Model):
         ``mimic`` says what becomes of joints that follow others.
         """
         with _options.folder() as inside:
-            source = robot
-            if isinstance(robot, str) and robot.lstrip().startswith("<"):
-                source = inside / "robot.urdf"
-                source.write_text(robot)
-            arguments = ["import", _options.place(source, "a robot")]
+            arguments = ["import", _described(robot, "a robot", inside)]
             arguments += _options.flags(base=base, tip=tip, mimic=mimic)
             for contact in contacts:
                 arguments += ["--contacts", contact]
@@ -148,6 +144,31 @@ class Model(_denavit.Model):
     def save(self, path: PathLike) -> None:
         """Writes the model file."""
         Path(path).write_text(self.source)
+
+    def to_urdf(self, *, into: PathLike | None = None) -> str:
+        """The robot as URDF; or, ``into`` the URDF that it was made of (a path, or its text), its
+        masses, centres of mass, inertias and joint friction: every other byte stays.
+        """
+        if into is None:
+            return self._exported("exported.urdf", "urdf", None)
+        return self._exported("exported.urdf", None, into)
+
+    def to_mjcf(self) -> str:
+        """The robot as MJCF."""
+        return self._exported("exported.xml", "mjcf", None)
+
+    def _exported(self, name: str, format: str | None, into: PathLike | None) -> str:
+        with _options.folder() as inside:
+            effects, place = as_place(self, inside)
+            out = inside / name
+            arguments = ["export", place, *effects]
+            if into is not None:
+                arguments += ["--into", _described(into, "into", inside)]
+            arguments += _options.flags(format=format, out=out)
+            _, _, notes = _denavit.run(arguments, None)
+            for note in notes:
+                warnings.warn(note, ModelWarning, stacklevel=3)
+            return out.read_bytes().decode()
 
     def evaluate(self, function: str, *, link: str | None = None, **arguments: ArrayLike) -> Any:
         """Any function by its name in ``denavit evaluate``, with arguments by theirs: ``q``,
@@ -192,7 +213,8 @@ class Model(_denavit.Model):
     def inspect(self) -> dict[str, Any]:
         """What the model says, as ``denavit inspect --json``: rows, bodies, drives, limits."""
         with _options.folder() as inside:
-            arguments = ["inspect", _options.file_of(self, "model", inside)]
+            effects, place = as_place(self, inside)
+            arguments = ["inspect", place, *effects]
             return _options.answered(arguments, None)[0]
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -229,6 +251,16 @@ def _unpickled(name: str, source: str, effects: str | None) -> Model:
 def load(model: PathLike | Mapping[str, Any], *, effects: PathLike | None = None) -> Model:
     """A model: of a path, a shipped name or a dict. See :class:`Model`."""
     return Model(model, effects=effects)
+
+
+def _described(robot: PathLike, what: str, inside: Path) -> str:
+    """The path of a URDF or MJCF: itself, or a new file of its text."""
+    if isinstance(robot, str) and robot.lstrip().startswith("<"):
+        path = inside / "robot.urdf"
+        # its ends of lines are its own
+        path.write_bytes(robot.encode())
+        return str(path)
+    return _options.place(robot, what)
 
 
 def as_place(model: object, inside: Path) -> tuple[list[str], str]:

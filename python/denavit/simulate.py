@@ -9,8 +9,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
 from . import _denavit, _options
 from ._arrays import Array
 from ._options import PathLike, Progress
@@ -155,42 +153,3 @@ def simulate(
         columns=tuple(columns),
         values=values,
     )
-
-
-Log = PathLike | Run | Mapping[str, Any]
-"""A log: a file, a run, or a dict (or a data frame) of columns: ``t``, ``q_JOINT``, ``tau_JOINT``
-and, if there are any, ``qd_JOINT``, ``f_CONTACT_x|y|z``."""
-
-
-def log_place(log: Log | Any, name: str, inside: Path) -> str:
-    """The path of a log: of its file, or of a new one of what is in memory."""
-    if isinstance(log, Run):
-        return _written(inside / f"{name}.csv", log.columns, log.values)
-    if hasattr(log, "columns") and hasattr(log, "to_numpy"):
-        frame: Any = log
-        log = {str(column): frame[column] for column in frame.columns}
-    if not isinstance(log, Mapping):
-        return _options.place(log, "a log")
-    columns = [np.asarray(column, dtype=np.float64) for column in log.values()]
-    if "t" not in log or any(column.shape != columns[0].shape for column in columns):
-        raise _argument(
-            "a log in memory has a column `t`, and all columns are of one length",
-            '{"t": t, "q_knee": q, "tau_knee": tau}',
-        )
-    return _written(inside / f"{name}.csv", tuple(log), np.column_stack(columns))
-
-
-def _written(path: Path, columns: tuple[str, ...], values: Array) -> str:
-    with path.open("w") as out:
-        out.write(",".join(columns) + "\n")
-        for row in values.tolist():
-            # an empty cell has no value
-            out.write(",".join("" if cell != cell else repr(cell) for cell in row) + "\n")
-    return str(path)
-
-
-def log_places(logs: Any, name: str, inside: Path) -> list[str]:
-    """The paths of several logs; one alone stands for a list of it."""
-    if isinstance(logs, (list, tuple)):
-        return [log_place(one, f"{name}_{at + 1}", inside) for at, one in enumerate(logs)]
-    return [log_place(logs, name, inside)]

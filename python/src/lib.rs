@@ -10,6 +10,7 @@ mod arrays;
 mod failure;
 mod formula;
 mod function;
+mod keyword;
 mod model;
 mod run;
 

@@ -2,10 +2,12 @@
 //! and an interrupt stops them.
 
 use crate::failure::{Failure, Wrong, internal};
-use denavit::cli::embedded::{self, Answered, Observer, Unanswered};
+use crate::keyword::{in_python, usage};
+use denavit::cli::embedded::{self, Answered, GivenLog, Observer, Unanswered};
+use denavit::logs::MemoryLog;
 use denavit::model::Robot;
 use denavit::simulate::Log;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::ffi::OsString;
@@ -61,6 +63,7 @@ impl<T: Send> Observer for Ear<T> {
 /// done, if that is known; an answer of `False` stops the run, as an exception does.
 fn observed<T: Send + 'static>(
     py: Python<'_>,
+    command: &str,
     progress: Option<&Bound<'_, PyAny>>,
     run: impl FnOnce(Arc<dyn Observer>) -> Result<T, Unanswered> + Send + 'static,
 ) -> PyResult<(T, Vec<String>)> {
@@ -82,7 +85,10 @@ fn observed<T: Send + 'static>(
         let next = py
             .detach(|| told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PATIENCE));
         let heard = match next {
-            Ok(Told::Done(answer)) => return Ok((answer.map_err(raised)?, ear.notes())),
+            Ok(Told::Done(answer)) => {
+                let answer = answer.map_err(|why| raised(why, command))?;
+                return Ok((answer, ear.notes()));
+            }
             Ok(Told::Progress(stage, share)) => hear(progress, &stage, share),
             Err(RecvTimeoutError::Timeout) => Ok(true),
             Err(RecvTimeoutError::Disconnected) => {
@@ -95,7 +101,7 @@ fn observed<T: Send + 'static>(
             // the run unwinds at its next stage; nobody waits for it
             Ok(false) => {
                 ear.is_stopped.store(true, Ordering::Relaxed);
-                return Err(raised(Unanswered::Stopped));
+                return Err(stopped());
             }
             Err(error) => {
                 ear.is_stopped.store(true, Ordering::Relaxed);
@@ -111,22 +117,26 @@ fn hear(progress: Option<&Bound<'_, PyAny>>, stage: &str, share: Option<f64>) ->
     Ok(answer.is_none() || answer.is_truthy()?)
 }
 
-/// The exception of a run without an answer.
-fn raised(why: Unanswered) -> PyErr {
+/// The exception of a run of a command without an answer.
+fn raised(why: Unanswered, command: &str) -> PyErr {
     match why {
-        Unanswered::Usage(text) => Failure::argument(usage(&text)).into(),
-        Unanswered::Input(command, all) => {
+        Unanswered::Usage(text) => Failure::argument(usage(&text, command)).into(),
+        Unanswered::Input(class_of, all) => {
             let all = all.into_iter().map(|one| Wrong {
                 file: one.file,
                 place: one.line.map(|line| (line, one.column)),
-                cause: in_python(&one.cause),
-                hint: one.hint.as_deref().map(in_python),
+                cause: in_python(&one.cause, command),
+                hint: one.hint.as_deref().map(|hint| in_python(hint, command)),
             });
-            Failure::all(class(command), all.collect()).into()
+            Failure::all(class(class_of), all.collect()).into()
         }
-        Unanswered::Stopped => PyKeyboardInterrupt::new_err("the run was stopped"),
+        Unanswered::Stopped => stopped(),
         Unanswered::Internal(why) => internal(why),
     }
+}
+
+fn stopped() -> PyErr {
+    PyKeyboardInterrupt::new_err("the run was stopped")
 }
 
 fn class(command: &str) -> &'static str {
@@ -140,60 +150,33 @@ fn class(command: &str) -> &'static str {
     }
 }
 
-/// What a usage error of the command says, without what is only of the command.
-fn usage(text: &str) -> Wrong {
-    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
-    let said: Vec<&str> = lines.map(str::trim).filter(|line| !line.is_empty()).collect();
-    let said = said.join("; ");
-    Wrong::new(in_python(said.strip_prefix("error: ").unwrap_or(&said)))
-}
+/// A log in memory: its option, which of the logs of this it is, its name, its columns.
+type Columns<'py> = (String, usize, String, Vec<(String, PyReadonlyArray1<'py, f64>)>);
 
-/// Flags whose keywords have a unit, or another name since `with` is a word of Python.
-const KEYWORDS: [(&str, &str); 5] = [
-    ("filter", "filter_hz"),
-    ("step", "step_s"),
-    ("time-limit", "time_limit_s"),
-    ("window", "window_s"),
-    ("with", "joint_parameters"),
-];
-
-/// Flags of the command as the keywords of Python: `--accept-suspicious` as `accept_suspicious`.
-fn in_python(text: &str) -> String {
-    let mut found = String::new();
-    let mut rest = text;
-    while let Some(at) = rest.find("--") {
-        let (before, flag) = rest.split_at(at);
-        let flag = &flag[2..];
-        let end = flag.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(flag.len());
-        found.push_str(before);
-        let (flag, others) = flag.split_at(end);
-        let keyword = KEYWORDS.iter().find(|(own, _)| *own == flag);
-        match (flag, keyword) {
-            ("", _) => found.push_str("--"),
-            (_, Some((_, keyword))) => found.push_str(keyword),
-            (flag, None) => found.push_str(&flag.replace('-', "_")),
-        }
-        rest = others;
-    }
-    found.push_str(rest);
-    found
+fn given((option, at, name, columns): Columns<'_>) -> GivenLog {
+    let columns = columns.into_iter().map(|(name, array)| (name, array.as_array().to_vec()));
+    GivenLog { option, at, name, log: MemoryLog { columns: columns.collect() } }
 }
 
 fn words(arguments: Vec<String>) -> Vec<OsString> {
     arguments.into_iter().map(OsString::from).collect()
 }
 
-/// Runs a command: its JSON, whether its answer is good, and notes.
+/// Runs a command, with logs in memory in place of some that its arguments name: its JSON, whether
+/// its answer is good, and notes.
 #[pyfunction]
-#[pyo3(signature = (arguments, progress=None))]
+#[pyo3(signature = (arguments, progress=None, logs=Vec::new()))]
 pub(crate) fn run(
     py: Python<'_>,
     arguments: Vec<String>,
     progress: Option<&Bound<'_, PyAny>>,
+    logs: Vec<Columns<'_>>,
 ) -> PyResult<(String, bool, Vec<String>)> {
-    let arguments = words(arguments);
-    let (answered, notes) =
-        observed(py, progress, move |observer| embedded::answer(&arguments, observer))?;
+    let command = arguments.first().cloned().unwrap_or_default();
+    let (arguments, logs) = (words(arguments), logs.into_iter().map(given).collect());
+    let (answered, notes) = observed(py, &command, progress, move |observer| {
+        embedded::answer_of_logs(&arguments, logs, observer)
+    })?;
     let Answered { output, is_good } = answered;
     Ok((String::from_utf8(output).map_err(internal)?, is_good, notes))
 }
@@ -210,8 +193,9 @@ pub(crate) fn simulate<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Simulated<'py>> {
     let arguments = words(arguments);
-    let ((answered, log), notes) =
-        observed(py, progress, move |observer| embedded::simulate(&arguments, observer))?;
+    let ((answered, log), notes) = observed(py, "simulate", progress, move |observer| {
+        embedded::simulate(&arguments, observer)
+    })?;
     let Log { columns, values, .. } = log;
     let shape = [values.len() / columns.len().max(1), columns.len()];
     // the array takes the memory over
@@ -228,7 +212,7 @@ pub(crate) fn open_model(
     effects: Option<PathBuf>,
 ) -> PyResult<(Robot, String, Vec<String>)> {
     let place = place.to_owned();
-    let (opened, notes) = observed(py, None, move |observer| {
+    let (opened, notes) = observed(py, "inspect", None, move |observer| {
         let effects = effects.as_deref();
         match text {
             Some(text) => embedded::open_model_text(&place, &text, effects, observer),

@@ -108,3 +108,34 @@ def test_a_urdf_that_is_wrong():
     assert caught.value.line is not None
     with pytest.raises(denavit.ModelError):
         denavit.Model.from_urdf("<robot")
+
+
+def test_values_go_into_the_urdf_that_a_model_was_made_of():
+    model = denavit.Model.from_urdf(PENDULUM)
+    content = model.to_dict()
+    assert model.to_urdf(into=PENDULUM) == PENDULUM
+    bodies = [link["body"] for link in content["links"] if "body" in link]
+    heavy = next(body for body in bodies if body.get("mass"))
+    heavy["mass"] = 3
+    updated = denavit.load(content).to_urdf(into=PENDULUM)
+    assert updated == PENDULUM.replace('<mass value="2"/>', '<mass value="3"/>')
+    again = denavit.Model.from_urdf(updated)
+    # I + m c^2
+    assert_allclose(again.mass_matrix([0.3]), [[0.1 + 3 * 0.25]], rtol=1e-12)
+
+
+@pytest.mark.filterwarnings("ignore::denavit.ModelWarning")
+def test_robots_are_exported(tmp_path):
+    model = denavit.load("panda")
+    q, qd, qdd = np.random.default_rng(3).uniform(-0.5, 0.5, (3, model.dof))
+    expected = model.inverse_dynamics(q, qd, qdd)
+    for text in (model.to_urdf(), model.to_mjcf()):
+        again = denavit.Model.from_urdf(text)
+        assert again.dof == model.dof
+        assert_allclose(again.mass_matrix(q), model.mass_matrix(q), rtol=1e-9, atol=1e-12)
+        assert_allclose(again.gravity_vector(q), model.gravity_vector(q), rtol=1e-9, atol=1e-9)
+        assert_allclose(again.inverse_dynamics(q, qd, qdd), expected, rtol=1e-9, atol=1e-9)
+    with pytest.raises(denavit.ModelError, match="no such file"):
+        model.to_urdf(into=tmp_path / "none.urdf")
+    with pytest.raises(denavit.ModelError):
+        model.to_urdf(into="<robot name='other'/>")

@@ -4,15 +4,16 @@ mod page;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{FILES, effects_folder, mapping, read_file, read_robot};
+use super::files::{effects_folder, mapping, read_file, read_robot};
 use super::flags::by_flag;
 use super::json::write_json;
+use super::logs::{log_source, note_logs};
 use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
-use clap::Args;
+use clap::{Args, ValueHint};
 use denavit::effect;
 use denavit::report::answer::{DIAGNOSIS_FILES, DiagnosisFolder, diagnosed_json, diagnosed_text};
-use denavit::workflow::{self, DiagnoseOptions, Diagnosed, Logs, diagnose};
+use denavit::workflow::{self, DiagnoseOptions, Diagnosed, LogSource, Logs, diagnose};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -35,11 +36,13 @@ pub(crate) struct Arguments {
     #[arg(value_name = "MODEL")]
     model: PathBuf,
     /// Logs to search
-    #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
-    train: Vec<PathBuf>,
+    #[arg(long, value_name = "LOG", num_args = 1.., required = true, value_parser = log_source(),
+        value_hint = ValueHint::AnyPath)]
+    train: Vec<LogSource>,
     /// Logs to judge with: another motion
-    #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
-    validate: Vec<PathBuf>,
+    #[arg(long, value_name = "LOG", num_args = 1.., required = true, value_parser = log_source(),
+        value_hint = ValueHint::AnyPath)]
+    validate: Vec<LogSource>,
     /// Which columns of the logs are ours: {"q_knee": {"column": "a", "scale": 1, "offset": 0},
     /// "q_{joint}": "/joint_states/{joint}/position"}
     #[arg(long, value_name = "MAP.json")]
@@ -80,9 +83,20 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+impl Arguments {
+    /// The logs of an option.
+    pub(crate) fn logs_of(&mut self, option: &str) -> Option<&mut Vec<LogSource>> {
+        match option {
+            "train" => Some(&mut self.train),
+            "validate" => Some(&mut self.validate),
+            _ => None,
+        }
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let _made = arguments.out.as_deref().map(NewDirectory::make).transpose()?;
-    arguments.train.iter().chain(&arguments.validate).for_each(|path| FILES.note(path));
+    note_logs(arguments.train.iter().chain(&arguments.validate));
     if let Some(folder) = &arguments.out {
         let files = DIAGNOSIS_FILES.map(|name| folder.join(name));
         check_outputs(&files.each_ref().map(Some))?;
@@ -107,6 +121,7 @@ pub(super) fn of_motions(
     folder: &Path,
     progress: &Progress,
 ) -> Result<(Diagnosed, DiagnosisFolder), Failure> {
+    let logs: Vec<LogSource> = logs.iter().cloned().map(LogSource::from).collect();
     let (train, validate) = logs.split_at(1.min(logs.len()));
     let arguments = Arguments {
         model: PathBuf::from(model),

@@ -10,9 +10,10 @@ use super::printed::Printed;
 use super::said::{Loudness, set_loudness};
 use super::{Answer, Cli, Command};
 use denavit::import::nothing_included;
+use denavit::logs::MemoryLog;
 use denavit::model::Robot;
 use denavit::simulate::Log;
-use denavit::workflow::{WholeRobot, described};
+use denavit::workflow::{LogSource, WholeRobot, described};
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -117,7 +118,37 @@ pub(super) fn is_embedded() -> bool {
 /// # Errors
 /// What would end the command with exit code 2.
 pub fn answer(arguments: &[OsString], observer: Arc<dyn Observer>) -> Result<Answered, Unanswered> {
-    let Cli { command, loudness } = parsed(arguments)?;
+    answer_of_logs(arguments, Vec::new(), observer)
+}
+
+/// A log in memory, in place of a file of an option.
+#[derive(Clone, Debug)]
+pub struct GivenLog {
+    /// The option, `train` of `--train`.
+    pub option: String,
+    /// Which of its files, from 0.
+    pub at: usize,
+    /// What messages call it.
+    pub name: String,
+    /// Its columns.
+    pub log: MemoryLog,
+}
+
+/// The same with logs in memory, each in place of a file that the arguments name.
+///
+/// # Errors
+/// As of [`answer`].
+pub fn answer_of_logs(
+    arguments: &[OsString],
+    logs: Vec<GivenLog>,
+    observer: Arc<dyn Observer>,
+) -> Result<Answered, Unanswered> {
+    let Cli { mut command, loudness } = parsed(arguments)?;
+    for GivenLog { option, at, name, log } in logs {
+        let place = command.logs_of(&option).and_then(|all| all.get_mut(at));
+        let nowhere = || Unanswered::Internal(format!("no log {at} of --{option}"));
+        *place.ok_or_else(nowhere)? = LogSource::Memory { name, log: Arc::new(log) };
+    }
     let mut out = Printed::new(Vec::new());
     let ran = observed_run(command.name(), observer, || {
         set_loudness(loudness);
@@ -230,6 +261,11 @@ fn wrongs(printed: &str) -> Vec<Wrong> {
     let mut all: Vec<Wrong> = Vec::new();
     for line in printed.lines() {
         match (line.strip_prefix("  hint: "), all.last_mut()) {
+            // several ways out
+            (Some(hint), Some(Wrong { hint: Some(before), .. })) => {
+                before.push('\n');
+                before.push_str(hint);
+            }
             (Some(hint), Some(last)) => last.hint = Some(hint.to_owned()),
             // what goes on below a hint goes on with it
             (None, Some(last)) if line.starts_with("  ") => {
@@ -318,6 +354,22 @@ mod tests {
     }
 
     #[test]
+    fn logs_in_memory_stand_in_place_of_files() {
+        let words = ["identify", "planar_2r", "--train", "here.csv", "train[1]"];
+        let arguments = words.map(OsString::from);
+        let given = |at| {
+            let log = MemoryLog { columns: vec![("t".to_owned(), vec![0.0, 1.0])] };
+            GivenLog { option: "train".to_owned(), at, name: "the log".to_owned(), log }
+        };
+        let found = answer_of_logs(&arguments, vec![given(1)], Arc::new(Heard::default()));
+        let Err(Unanswered::Input("identify", wrong)) = found else { panic!("{found:?}") };
+        let files: Vec<_> = wrong.iter().filter_map(|one| one.file.as_deref()).collect();
+        assert!(files.contains(&"the log") && !files.contains(&"train[1]"), "{wrong:?}");
+        let found = answer_of_logs(&arguments, vec![given(2)], Arc::new(Heard::default()));
+        assert!(matches!(found, Err(Unanswered::Internal(_))), "{found:?}");
+    }
+
+    #[test]
     fn an_observer_stops_a_run() {
         let heard = Heard { stops_at: Some("reading"), ..Heard::default() };
         let (found, heard) = run("identify tulip_leg --train none.csv --json", heard);
@@ -328,7 +380,8 @@ mod tests {
     #[test]
     fn places_are_read_as_they_are_printed() {
         let printed = "a/b.json:2:20: /x: nothing\n  hint: declare it:\n  more\nc.csv:7: a gap\n\
-                       --prior: no\ntulip: none: of it\nthe model:3:4: wrong\nit is: so";
+                       --prior: no\ntulip: none: of it\nthe model:3:4: wrong\nit is: so\n  \
+                       hint: one way\n  hint: another";
         let found = wrongs(printed);
         let places: Vec<_> = found.iter().map(|one| (one.file.as_deref(), one.line)).collect();
         let expected = [
@@ -343,5 +396,6 @@ mod tests {
         assert_eq!(found[0].column, Some(20));
         assert_eq!(found[0].hint.as_deref(), Some("declare it:\nmore"));
         assert_eq!(found[3].cause, "none: of it");
+        assert_eq!(found[5].hint.as_deref(), Some("one way\nanother"));
     }
 }

@@ -44,6 +44,7 @@ mod walk;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+use denavit::workflow::LogSource;
 use failure::Failure;
 use printed::{Printed, shown};
 use said::{Loudness, say_error, say_note, say_time, set_loudness};
@@ -173,6 +174,15 @@ impl Command {
                 | Self::Identify(_)
                 | Self::Diagnose(_)
         )
+    }
+
+    /// The logs of an option, if the subcommand has logs.
+    fn logs_of(&mut self, option: &str) -> Option<&mut Vec<LogSource>> {
+        match self {
+            Self::Identify(arguments) => arguments.logs_of(option),
+            Self::Diagnose(arguments) => arguments.logs_of(option),
+            _ => None,
+        }
     }
 
     /// The name of the subcommand.

@@ -21,6 +21,8 @@ pub enum FileFault {
     RepeatedColumn { column: String },
     /// A row with another number of cells than there are columns.
     RowLength { line: usize, expected: usize, found: usize },
+    /// A column in memory with another number of rows than the first.
+    ColumnLength { column: String, rows: usize, other: String, expected: usize },
     /// A cell that is no number.
     NotANumber { line: usize, column: String, cell: String },
     /// A format that this build does not read; its name and that of the feature that reads it.
@@ -121,6 +123,9 @@ impl fmt::Display for FileFault {
             Self::RepeatedColumn { column } => write!(f, "two columns `{column}`"),
             Self::RowLength { expected, found, .. } => {
                 write!(f, "{found} cells, where there are {expected} columns")
+            }
+            Self::ColumnLength { column, rows, other, expected } => {
+                write!(f, "column `{column}` has {rows} rows, and `{other}` has {expected}")
             }
             Self::NotANumber { column, cell, .. } => not_a_number(f, column, cell),
             Self::NoFeature { format, feature } => write!(

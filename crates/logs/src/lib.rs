@@ -2,6 +2,7 @@
 //!
 //! - [`open`]: a log of any format: CSV, MCAP, Parquet, Arrow, a folder of a ROS 2 bag
 //! - [`open_csv`]: text alone, from any source
+//! - [`MemoryLog`]: columns that a program has
 //! - [`Log`]: what a log says of itself and which columns it has; [`Log::read`] reads some
 //! - `write_mcap`: a table as messages of ROS 2
 
@@ -16,6 +17,7 @@ mod format;
 mod intake;
 #[cfg(feature = "mcap")]
 mod mcap;
+mod memory;
 #[cfg(feature = "mcap")]
 mod message;
 mod opening;
@@ -30,6 +32,7 @@ pub use fault::FileFault;
 pub use format::open;
 #[cfg(feature = "mcap")]
 pub use mcap::{Rows as McapRows, write_mcap};
+pub use memory::MemoryLog;
 pub use opening::Opening;
 pub use remark::FileRemark;
 pub use source::{Column, Found, Known, Log};

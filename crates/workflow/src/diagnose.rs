@@ -161,10 +161,10 @@ fn subject(
 ) -> Result<Subject, Error> {
     let ApartEffects { robot, .. } = &file.apart;
     let model = regression(robot)?;
-    let paths = logs.train.iter().chain(&logs.held_out);
-    let measured = paths.map(|path| {
+    let sources = logs.train.iter().chain(&logs.held_out);
+    let measured = sources.map(|source| {
         reading.next()?;
-        logs.measured(path, robot, &model)
+        logs.measured(source, robot, &model)
     });
     let all = Error::of_any_log(measured)?;
     let mut logs = checked(all, logs.train.len(), robot, &model, remarks)?;

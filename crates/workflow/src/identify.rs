@@ -11,7 +11,7 @@ mod statics;
 mod two_stage;
 
 use crate::error::{Cause, Error};
-use crate::logs::Logs;
+use crate::logs::{LogSource, Logs};
 use crate::observer::{Observer, Stage, Watched};
 use crate::robot_file::{EffectUse, RobotFile, Treatment};
 pub use conditions::{Conditions, FilterChoice};
@@ -27,7 +27,6 @@ use estimation::Estimation;
 use forward::Again;
 pub use forward::{Controlled, NotMoved, SimulationGap};
 pub use statics::{StaticsFound, identify_statics};
-use std::path::PathBuf;
 pub use two_stage::{TwoStageFound, identify_two_stage};
 
 /// How parameters are identified.
@@ -49,7 +48,7 @@ pub struct IdentifyOptions {
     /// How logs are conditioned.
     pub conditions: Conditions,
     /// Logs of the same motion without its noise, for [`Method::Instrumental`], sample by sample.
-    pub instruments: Vec<PathBuf>,
+    pub instruments: Vec<LogSource>,
     /// What drove the robot: logs are simulated again in closed loop.
     pub controller: Option<Controlled>,
     /// Without a controller, logs are simulated again in windows of this length \[s\].

@@ -1,7 +1,7 @@
 //! Use cases as single calls: a robot and data in, an answer out.
 //!
 //! - [`Files`]: reads robots ([`RobotFile`]) and what they refer to
-//! - [`Logs`]: which logs, and how they are read
+//! - [`Logs`]: which logs, and how they are read; a [`LogSource`] is a file, or in memory
 //! - [`identify()`]: parameters from logs, by [`IdentifyOptions`]; [`identify_two_stage`] and
 //!   [`identify_statics`] for springs, and for measurements at rest
 //! - [`diagnose()`]: what a model lacks, by [`DiagnoseOptions`]
@@ -33,7 +33,7 @@ pub use identify::{
     Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, NotMoved, SimulationGap,
     StaticsFound, TwoStageFound, identify, identify_statics, identify_two_stage,
 };
-pub use logs::Logs;
+pub use logs::{LogSource, Logs};
 pub use mistaken::{FileKind, Mistaken};
 pub use observer::{Observer, Progress, Silent, Stage};
 pub use robot_file::{EffectUse, RobotFile, WholeRobot};

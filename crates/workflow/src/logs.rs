@@ -4,19 +4,60 @@ use crate::error::{Cause, Error};
 use crate::files::MAX_MODEL_BYTES;
 use crate::mistaken::{FileKind, Mistaken};
 use denavit_codegen::model::Robot;
-use denavit_logs::{self as logs, Opening};
+use denavit_logs::{self as logs, MemoryLog, Opening};
 use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
 use denavit_plants::regression::RegressionModel;
+use std::fmt;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Files of logs, of any format, and how they are read.
+/// Where a log is.
+#[derive(Clone, Debug)]
+pub enum LogSource {
+    /// In a file of any format, or the folder of a bag.
+    File(PathBuf),
+    /// In memory; its name is for messages alone.
+    Memory {
+        /// What messages call it.
+        name: String,
+        /// Its columns.
+        log: Arc<MemoryLog>,
+    },
+}
+
+impl LogSource {
+    /// The file, if it is in one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Memory { .. } => None,
+        }
+    }
+}
+
+impl fmt::Display for LogSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path) => write!(f, "{}", path.display()),
+            Self::Memory { name, .. } => f.write_str(name),
+        }
+    }
+}
+
+impl From<PathBuf> for LogSource {
+    fn from(path: PathBuf) -> Self {
+        Self::File(path)
+    }
+}
+
+/// Logs, in files of any format or in memory, and how they are read.
 #[derive(Clone, Debug, Default)]
 pub struct Logs {
     /// Those that an answer is from.
-    pub train: Vec<PathBuf>,
+    pub train: Vec<LogSource>,
     /// Those that judge it: another motion.
-    pub held_out: Vec<PathBuf>,
+    pub held_out: Vec<LogSource>,
     /// Which of their columns are ours.
     pub columns: ColumnMapping,
     /// Whether logs are taken as they are, however wrong they look.
@@ -26,20 +67,20 @@ pub struct Logs {
 }
 
 impl Logs {
-    /// Logs that an answer is from, and those that judge it.
+    /// Files that an answer is from, and those that judge it.
     pub fn new<P: Into<PathBuf>>(
         train: impl IntoIterator<Item = P>,
         held_out: impl IntoIterator<Item = P>,
     ) -> Self {
-        let train = train.into_iter().map(P::into).collect();
-        let held_out = held_out.into_iter().map(P::into).collect();
+        let train = train.into_iter().map(|path| LogSource::File(path.into())).collect();
+        let held_out = held_out.into_iter().map(|path| LogSource::File(path.into())).collect();
         Self { train, held_out, ..Self::default() }
     }
 
     /// One of them, as a log of this robot.
     pub(crate) fn measured(
         &self,
-        path: &Path,
+        source: &LogSource,
         robot: &Robot,
         model: &RegressionModel,
     ) -> Result<MeasuredLog, Error> {
@@ -50,11 +91,24 @@ impl Logs {
             contacts: &contacts,
             accepts_suspicious: self.accepts_suspicious,
         };
-        let log = self.opened(path, of)?;
-        Ok(log)
+        match source {
+            LogSource::File(path) => self.of_file(path, of),
+            LogSource::Memory { name, log } => self.of_memory(name, log, of),
+        }
     }
 
-    fn opened(&self, path: &Path, robot: LogOf<'_>) -> Result<MeasuredLog, Error> {
+    fn of_memory(
+        &self,
+        name: &str,
+        log: &MemoryLog,
+        robot: LogOf<'_>,
+    ) -> Result<MeasuredLog, Error> {
+        let opened = log.open().map_err(|faults| of_file(name, faults));
+        let read = opened.and_then(|log| read_opened(name, log, robot, &self.columns));
+        Ok(read.map_err(|faults| Cause::Logs(vec![faults]))?)
+    }
+
+    fn of_file(&self, path: &Path, robot: LogOf<'_>) -> Result<MeasuredLog, Error> {
         let file = path.display().to_string();
         // a folder is opened by its metadata
         let opened = match path.is_dir() {

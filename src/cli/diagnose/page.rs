@@ -1,24 +1,20 @@
 //! A diagnosis as a page of HTML.
 
 use super::Arguments;
+use crate::cli::logs::listed;
 use denavit::report::DiagnosisPage;
 use denavit::report::answer::DiagnosisFolder;
 use denavit::report::html::{Fact, Page};
 use denavit::workflow::Diagnosed;
-use std::path::PathBuf;
 
 pub(super) fn of(arguments: &Arguments, shown: &Diagnosed, folder: &DiagnosisFolder) -> Page {
-    let list = |paths: &[PathBuf]| {
-        let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-        names.join(", ")
-    };
     let filters = shown.found.filters;
     let facts = [
         ("verdict", shown.found.verdict.word().replace('_', " ")),
         ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
         ("model", format!("{}, content {:016x}", shown.robot.name, shown.robot.hash)),
-        ("searched", list(&arguments.train)),
-        ("judged with", list(&arguments.validate)),
+        ("searched", listed(&arguments.train)),
+        ("judged with", listed(&arguments.validate)),
         ("effects tried", format!("{} in all places", shown.candidates.len())),
         (
             "filters",

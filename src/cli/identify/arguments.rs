@@ -3,13 +3,16 @@
 use crate::cli::base::{With, regressor_options};
 use crate::cli::failure::Failure;
 use crate::cli::files::{self, FILES, mapping};
+use crate::cli::logs::{log_source, note_logs};
 use crate::cli::options::EffectsOption;
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use denavit::identify::estimate::{Errors, Loss, Method, SlowRows};
 use denavit::measure::condition::{Averaging, Derivatives, Filter};
 use denavit::plants::regression::CoulombLaw;
 use denavit::simulate::STICTION_RATE;
-use denavit::workflow::{Conditions, Controlled, FilterChoice, IdentifyOptions, Logs, RobotFile};
+use denavit::workflow::{
+    Conditions, Controlled, FilterChoice, IdentifyOptions, LogSource, Logs, RobotFile,
+};
 use std::path::PathBuf;
 
 /// Identify parameters: base parameters with standard errors, from logs of motion and torque
@@ -39,15 +42,18 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pub(super) effects: EffectsOption,
     /// Logs to estimate from
-    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "statics")]
-    pub(super) train: Vec<PathBuf>,
+    #[arg(long, value_name = "LOG", num_args = 1.., value_parser = log_source(),
+        value_hint = ValueHint::AnyPath, required_unless_present = "statics")]
+    pub(super) train: Vec<LogSource>,
     /// Logs to judge the estimate with
-    #[arg(long, value_name = "LOG", num_args = 1..)]
-    pub(super) validate: Vec<PathBuf>,
+    #[arg(long, value_name = "LOG", num_args = 1.., value_parser = log_source(),
+        value_hint = ValueHint::AnyPath)]
+    pub(super) validate: Vec<LogSource>,
     /// Logs of the same motion without its noise, for --method iv: simulated, sample by sample.
     /// With --controller they are simulated with what least squares finds
-    #[arg(long, value_name = "LOG", num_args = 1..)]
-    pub(super) instruments: Vec<PathBuf>,
+    #[arg(long, value_name = "LOG", num_args = 1.., value_parser = log_source(),
+        value_hint = ValueHint::AnyPath)]
+    pub(super) instruments: Vec<LogSource>,
     /// What drove the robot, as a controller file or the name of a shipped one: simulate the logs
     /// for validation (or, without any, those of the estimate) again in closed loop
     #[arg(long, value_name = "FILE")]
@@ -258,11 +264,19 @@ impl Arguments {
         files::read_robot(&self.model, self.effects.effects.as_deref())
     }
 
+    /// The logs of an option.
+    pub(crate) fn logs_of(&mut self, option: &str) -> Option<&mut Vec<LogSource>> {
+        match option {
+            "train" => Some(&mut self.train),
+            "validate" => Some(&mut self.validate),
+            "instruments" => Some(&mut self.instruments),
+            _ => None,
+        }
+    }
+
     /// The logs.
     pub(super) fn logs(&self) -> Result<Logs, Failure> {
-        [&self.train, &self.validate, &self.instruments].into_iter().flatten().for_each(|path| {
-            FILES.note(path);
-        });
+        note_logs([&self.train, &self.validate, &self.instruments].into_iter().flatten());
         Ok(Logs {
             train: self.train.clone(),
             held_out: self.validate.clone(),

@@ -2,12 +2,12 @@
 
 use super::arguments::{Arguments, ErrorsName, MethodName};
 use crate::cli::failure::{Failure, Misuse};
+use crate::cli::logs::listed;
 use clap::ValueEnum;
 use denavit::model::Robot;
 use denavit::report::html::Fact;
 use denavit::report::{IdentificationPage, SimulationPart};
 use denavit::workflow::{Identified, Logs};
-use std::path::PathBuf;
 
 /// The words by which method, errors and seed are given.
 pub(super) type Words = [String; 3];
@@ -24,15 +24,11 @@ pub(super) fn default_words() -> Words {
 
 /// What an identification is made of.
 pub(super) fn facts(robot: &Robot, logs: &Logs, [method, errors, seed]: Words) -> Vec<Fact> {
-    let list = |paths: &[PathBuf]| {
-        let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-        names.join(", ")
-    };
     let facts = [
         ("denavit", env!("CARGO_PKG_VERSION").to_owned()),
         ("model", format!("{}, content {:016x}", robot.name, robot.hash)),
-        ("estimated from", list(&logs.train)),
-        ("judged with", list(&logs.held_out)),
+        ("estimated from", listed(&logs.train)),
+        ("judged with", listed(&logs.held_out)),
         ("method", method),
         ("standard errors", errors),
         ("seed", seed),

@@ -2,6 +2,7 @@
 
 use super::Work;
 use crate::error::{Cause, Error};
+use crate::logs::LogSource;
 use crate::observer::Reading;
 use denavit_identify::estimate::Method;
 use denavit_identify::forward::{LONGEST_S, MotionLog};
@@ -12,7 +13,6 @@ use denavit_measure::Split;
 use denavit_measure::condition::{Conditioned, Conditioning, Filter};
 use denavit_measure::log::LogRemark;
 use denavit_plants::regression::CoulombLaw;
-use std::path::{Path, PathBuf};
 
 /// All logs of a run.
 pub(super) struct Read {
@@ -150,26 +150,26 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
     /// Reads logs, whose cutoffs are halved so often, and keeps their motion for so long \[s\].
     fn kept(
         &mut self,
-        paths: &[PathBuf],
+        sources: &[LogSource],
         halvings: &[u32],
         longest_s: Option<f64>,
     ) -> Result<Vec<Conditioned>, Error> {
         self.motions = longest_s.map(|_| Vec::new());
         let halvings = halvings.iter().copied().chain(std::iter::repeat(0));
-        let all = paths.iter().zip(halvings);
-        Error::of_any_log(all.map(|(path, own)| self.one(path, own, longest_s)))
+        let all = sources.iter().zip(halvings);
+        Error::of_any_log(all.map(|(source, own)| self.one(source, own, longest_s)))
     }
 
     fn one(
         &mut self,
-        path: &Path,
+        source: &LogSource,
         halvings: u32,
         longest_s: Option<f64>,
     ) -> Result<Conditioned, Error> {
         self.reading.next()?;
-        let file = path.display().to_string();
+        let file = source.to_string();
         let Work { logs, options, robot, laws, model } = self.work;
-        let mut log = logs.measured(path, robot, model)?;
+        let mut log = logs.measured(source, robot, model)?;
         let required = log.require_joint_torques(&model.joints, logs.accepts_suspicious);
         required.map_err(|faults| Cause::Logs(vec![faults]))?;
         undo_readings(&mut log, laws);

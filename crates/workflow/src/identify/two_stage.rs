@@ -57,7 +57,7 @@ pub fn identify_two_stage(
     observer: &mut dyn Observer,
 ) -> Result<TwoStageFound, Error> {
     let mut watched = Watched::new(observer);
-    let [path] = &logs.train[..] else { return Err(Cause::OneLog.into()) };
+    let [searched] = &logs.train[..] else { return Err(Cause::OneLog.into()) };
     let robot = file.whole.clone();
     let (_, source) = file.without_laws()?;
     // inertias of rotors are known here (thesis 3.3.1)
@@ -67,7 +67,7 @@ pub fn identify_two_stage(
     let model = regression(&robot, &options)?;
     let stopped = || Error::from(Cause::Stopped);
     watched.begins(Stage::ReadingLogs).then_some(()).ok_or_else(stopped)?;
-    let log = logs.measured(path, &robot, &model)?;
+    let log = logs.measured(searched, &robot, &model)?;
     watched.begins(Stage::Estimating).then_some(()).ok_or_else(stopped)?;
     let plant = plant_of(&robot, &[]).map_err(|error| Cause::Plant(robot.name.clone(), error))?;
     let plant = plant.model();
@@ -86,8 +86,8 @@ pub fn identify_two_stage(
     let own = conditioned(plant, &log, &stages.springs, &of_load)?;
     let mut held_out = Vec::new();
     let mut is_searched_again = false;
-    for path in &logs.held_out {
-        let log = logs.measured(path, &robot, &model)?;
+    for judging in &logs.held_out {
+        let log = logs.measured(judging, &robot, &model)?;
         let new = named(&log).into_iter().filter(|one| !remarks.contains(one));
         remarks.extend(new.collect::<Vec<String>>());
         let loads = conditioned(plant, &log, &stages.springs, &conditions(&log))?;

@@ -1,0 +1,82 @@
+"""Logs of a call: files, or columns in memory, which are read as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _options
+from ._arrays import Array
+from ._options import Columns, PathLike
+from .errors import _argument
+from .simulate import Run
+
+Log = PathLike | Run | Mapping[str, Any]
+"""A log: a file, a run, or a dict (or a data frame) of columns: ``t``, ``q_JOINT``, ``tau_JOINT``
+and, if there are any, ``qd_JOINT``, ``f_CONTACT_x|y|z``. A named index of a data frame is a column,
+too."""
+
+Logs = Log | list[Log] | tuple[Log, ...]
+"""Logs; one alone stands for a list of it."""
+
+
+def given(**options: Any) -> tuple[list[str], list[Columns]]:
+    """Arguments of the command for the logs of each option, and those that are in memory."""
+    arguments: list[str] = []
+    memory: list[Columns] = []
+    for option, logs in options.items():
+        is_list = isinstance(logs, (list, tuple))
+        all_logs = list(logs) if is_list else [logs]
+        if all_logs:
+            arguments.append(f"--{option}")
+        for at, log in enumerate(all_logs):
+            name = f"{option}[{at}]" if is_list else option
+            columns = _columns(log)
+            if columns is None:
+                arguments.append(_options.place(log, f"`{name}`"))
+            else:
+                named = [(column, _column(name, column, values)) for column, values in columns]
+                # the name stands for what is in memory
+                arguments.append(name)
+                memory.append((option, at, name, named))
+    return arguments, memory
+
+
+def _columns(log: Any) -> Iterator[tuple[str, Any]] | None:
+    """Names and values of what is in memory; None of a file."""
+    if isinstance(log, Run):
+        return zip(log.columns, log.values.T)
+    if isinstance(log, Mapping):
+        return ((str(name), values) for name, values in log.items())
+    if hasattr(log, "columns") and hasattr(log, "to_numpy"):
+        return _of_frame(log)
+    return None
+
+
+def _of_frame(frame: Any) -> Iterator[tuple[str, Any]]:
+    index = getattr(frame, "index", None)
+    name = getattr(index, "name", None)
+    if name is not None and name not in frame.columns:
+        yield str(name), index
+    for column in frame.columns:
+        yield str(column), frame[column]
+
+
+def _column(log: str, name: str, values: Any) -> Array:
+    """The numbers of a column, bit by bit; no value is NaN."""
+    what = f'`{log}["{name}"]`'
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind == "O":
+            array = array.astype(np.float64)
+    except (TypeError, ValueError) as error:
+        raise _argument(f"{what} is no column of numbers: {error}") from None
+    if array.ndim != 1:
+        raise _argument(f"{what} has shape {array.shape}", "a column has shape (rows,)")
+    if array.dtype.kind not in "fiu":
+        raise _argument(
+            f"{what} holds {array.dtype} instead of real numbers", "times are seconds"
+        )
+    return array.astype(np.float64, copy=False)

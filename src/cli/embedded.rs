@@ -128,7 +128,7 @@ pub struct GivenLog {
     pub option: String,
     /// Which of its files, from 0.
     pub at: usize,
-    /// What messages call it.
+    /// What messages call it: a word, which faults have as their file.
     pub name: String,
     /// Its columns.
     pub log: MemoryLog,
@@ -355,17 +355,17 @@ mod tests {
 
     #[test]
     fn logs_in_memory_stand_in_place_of_files() {
-        let words = ["identify", "planar_2r", "--train", "here.csv", "train[1]"];
+        let words = ["identify", "planar_2r", "--train", "train[0]"];
         let arguments = words.map(OsString::from);
         let given = |at| {
             let log = MemoryLog { columns: vec![("t".to_owned(), vec![0.0, 1.0])] };
-            GivenLog { option: "train".to_owned(), at, name: "the log".to_owned(), log }
+            GivenLog { option: "train".to_owned(), at, name: "mine[0]".to_owned(), log }
         };
-        let found = answer_of_logs(&arguments, vec![given(1)], Arc::new(Heard::default()));
+        let found = answer_of_logs(&arguments, vec![given(0)], Arc::new(Heard::default()));
         let Err(Unanswered::Input("identify", wrong)) = found else { panic!("{found:?}") };
-        let files: Vec<_> = wrong.iter().filter_map(|one| one.file.as_deref()).collect();
-        assert!(files.contains(&"the log") && !files.contains(&"train[1]"), "{wrong:?}");
-        let found = answer_of_logs(&arguments, vec![given(2)], Arc::new(Heard::default()));
+        let is_of_log = |one: &Wrong| one.file.as_deref() == Some("mine[0]");
+        assert!(wrong.iter().all(is_of_log) && wrong[0].cause.contains("q_link1"), "{wrong:?}");
+        let found = answer_of_logs(&arguments, vec![given(1)], Arc::new(Heard::default()));
         assert!(matches!(found, Err(Unanswered::Internal(_))), "{found:?}");
     }
 

@@ -105,6 +105,7 @@ impl DiagnosisPage<'_> {
         }
         Page {
             title: format!("Diagnosis of {}", self.model.replace('_', " ")),
+            verdict: None,
             lead: verdict_paragraph(self.found, self.candidates),
             facts: self.facts.to_vec(),
             sections,

@@ -4,7 +4,6 @@
 mod axes;
 mod balance;
 mod compared;
-mod convergence;
 mod excitation;
 mod figures;
 mod gait;
@@ -12,7 +11,6 @@ mod torques;
 
 pub(crate) use balance::{BalanceCurve, BalancePicture};
 pub(crate) use compared::diagnosis_picture;
-pub(crate) use convergence::convergence_picture;
 pub(crate) use gait::{GaitCurve, GaitPicture};
 pub use torques::{TorquePicture, motion_picture, torque_picture};
 

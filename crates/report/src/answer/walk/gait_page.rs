@@ -55,6 +55,7 @@ pub fn gait_page(
     let section = |heading: &str, parts| Section { heading: heading.into(), parts };
     Page {
         title: scenario.name.replace('_', " "),
+        verdict: None,
         lead: scenario.description.clone(),
         facts,
         sections: vec![

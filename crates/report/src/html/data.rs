@@ -31,9 +31,15 @@ fn rounded(value: f64, digits: usize) -> Option<f64> {
     short.is_finite().then_some(short + 0.0)
 }
 
+/// A number in steps of a power of ten; none where it is no number.
+pub(crate) fn with_decimals(value: f64, decimals: usize) -> Brief {
+    let short: Option<f64> = format!("{value:.decimals$}").parse().ok();
+    Brief(short.filter(|short| short.is_finite()).map(|short| short + 0.0))
+}
+
 /// Writes a number as short as it is: whole numbers without a point.
-#[derive(Clone, Copy)]
-struct Brief(Option<f64>);
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Brief(Option<f64>);
 
 impl Serialize for Brief {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

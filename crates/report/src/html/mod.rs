@@ -13,6 +13,7 @@ mod replay;
 mod table;
 
 pub use chart::{Chart, ChartCurve, Look, Panel};
+pub(crate) use data::{Brief, with_decimals};
 pub use formula::{FormulaError, mathml};
 pub use replay::{Mark, Replay};
 pub use table::{Cell, Heading, HtmlTable, Row};

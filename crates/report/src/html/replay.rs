@@ -58,7 +58,7 @@ struct ReplayEvent {
 
 impl Replay {
     /// A run with what is shown beside it and what happened; `data` is what the script draws.
-    pub fn new(
+    pub(crate) fn new(
         [name, caption]: [String; 2],
         marks: &[Mark],
         events: impl Iterator<Item = (f64, String)>,

@@ -89,7 +89,8 @@ impl IdentificationPage<'_> {
                 (Grade::Bad, text)
             }
             true => {
-                let is_clear = hidden == 0 && found.warnings().is_empty();
+                let is_said = found.warnings().is_empty() && found.lacking.is_empty();
+                let is_clear = hidden == 0 && is_said;
                 let grade = if is_clear { Grade::Good } else { Grade::Fair };
                 (grade, format!("The parameters explain all but {left} of the torques of {whose}"))
             }

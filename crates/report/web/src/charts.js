@@ -64,15 +64,22 @@ function axis(label, isLeft) {
   };
 }
 
+/** Lines of a logarithmic scale stand at powers of ten alone. */
+function powers(_, ticks) {
+  return ticks.map(tick => (Math.abs(Math.log10(tick) % 1) < 1e-9 ? tick : null));
+}
+
 function options(data, panel, isLast, own, box, width) {
   const many = panel.curves.length > 4;
+  const left = axis(panel.label, true);
+  if (panel.log) for (const lines of [left, left.grid, left.ticks]) lines.filter = powers;
   return {
     width,
     height: panel.height + (isLast ? 50 : 24),
     padding: [10, 12, isLast ? 0 : 8, 0],
     scales: { x: { time: false }, y: panel.log ? { distr: 3 } : {} },
     axes: [isLast ? axis(data.x_label, false) : { ...axis("", false), label: undefined, size: 14,
-      values: (_, ticks) => ticks.map(() => "") }, axis(panel.label, true)],
+      values: (_, ticks) => ticks.map(() => "") }, left],
     series: [
       { label: data.x_name, value: (_, value) => shown(value) },
       ...panel.curves.map(series),

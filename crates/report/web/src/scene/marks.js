@@ -74,7 +74,9 @@ export class Marks {
   push(arrow, contact, at, poses) {
     const { data } = this;
     const force = data.forces && place(data.forces, at, data.contacts.length, contact);
-    const length = force ? (force.length() / data.force_n) * 0.5 * data.size : 0;
+    // impacts are larger than a picture
+    const share = force ? Math.min(2, force.length() / data.force_n) : 0;
+    const length = share * 0.5 * data.size;
     arrow.visible = length > 0.01 * data.size;
     if (!arrow.visible) return;
     const { link, at: point } = data.contacts[contact];

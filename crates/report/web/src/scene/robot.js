@@ -72,8 +72,8 @@ export class Robot {
     this.tips = data.tips.map(() => new Capsule(radius, body));
     this.feet = data.feet.map(own => footMesh(own.points.length + 1, foot));
     this.spikes = data.feet.map(own => own.points.map(() => new Capsule(0.5 * radius, foot)));
-    this.group.add(...this.tips.map(tip => tip.group), ...this.feet);
-    this.group.add(...this.spikes.flat().map(spike => spike.group));
+    const capsules = [...this.tips, ...this.spikes.flat()].map(one => one.group);
+    for (const part of [...capsules, ...this.feet]) this.group.add(part);
   }
 
   paint(colour) {

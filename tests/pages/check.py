@@ -81,6 +81,7 @@ class Checked:
         page.goto(self.path.resolve().as_uri())
         page.wait_for_selector("html[data-ready=yes]", timeout=10_000)
         ready = page.evaluate("performance.timing.domInteractive - performance.timing.fetchStart")
+        page.wait_for_selector("html[data-charts=yes]", timeout=20_000)
         if page.query_selector("figure.scene"):
             # here a processor draws what a graphics card would
             page.wait_for_selector("html[data-scene=yes]", timeout=20_000)

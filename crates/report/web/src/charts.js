@@ -159,6 +159,17 @@ function drawChart(figure) {
   });
 }
 
+/** Draws the first charts at once and the others one by one, so that the page answers meanwhile. */
 export function drawCharts(root) {
-  root.querySelectorAll("figure.chart").forEach(drawChart);
+  const left = [...root.querySelectorAll("figure.chart")];
+  const next = count => left.splice(0, count).forEach(drawChart);
+  const rest = () => {
+    next(1);
+    if (left.length > 0) setTimeout(rest, 0);
+    else document.documentElement.dataset.charts = "yes";
+  };
+  // paper has all of them
+  addEventListener("beforeprint", () => next(left.length));
+  next(2);
+  rest();
 }

@@ -35,7 +35,7 @@ pub(crate) fn of_log(
         IdentifyOptions { conditions: Conditions::filtered(cutoff_hz), ..Default::default() };
     let identified = identify(&robot, &logs, &options, &mut progress.observer())?;
     let facts = page::facts(&robot.whole, &logs, page::default_words());
-    let page = page::of(&facts, &identified)?;
+    let page = page::of(&facts, &identified, identified.is_good(false))?;
     Ok((identified.found, page))
 }
 
@@ -114,7 +114,8 @@ fn write_files(arguments: &Arguments, logs: &Logs, identified: &Identified) -> R
     }
     if let Some(path) = &arguments.html {
         let facts = page::facts(&identified.robot, logs, page::words(arguments));
-        files.push((path, page::of(&facts, identified)?));
+        let is_good = identified.is_good(arguments.accept_suspicious);
+        files.push((path, page::of(&facts, identified, is_good)?));
     }
     files.iter().try_for_each(|(path, text)| write_whole(path, text.as_bytes()))
 }

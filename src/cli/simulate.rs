@@ -8,7 +8,8 @@ use super::logs::run_file;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::report::answer::{drawn_run, run_json, run_text};
+use denavit::report::answer::{drawn_run, run_json, run_page, run_text};
+use denavit::report::html::Fact;
 use denavit::simulate::scenario::RunScheme;
 use denavit::simulate::{Log, Stop};
 use denavit::workflow::simulate;
@@ -26,6 +27,7 @@ use std::time::Instant;
 Examples:
   denavit simulate bouncing_ball -o ball.csv
   denavit simulate tulip_leg_tracking -o tracking.mcap
+  denavit simulate tulip_step --html step.html
   denavit simulate planar_biped_zmp_gait --scheme time-stepping --step 0.0005 -o gait.csv")]
 pub(crate) struct Arguments {
     /// The path of a scenario file, or the name of a shipped scenario
@@ -45,6 +47,10 @@ pub(crate) struct Arguments {
     /// output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// Write the run as one page of HTML: played back in three dimensions, with its curves and its
+    /// audit; - is standard output
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// The part of the run that is drawn
     #[arg(long, value_name = "FROM,TO", value_parser = window, requires = "svg")]
     window: Option<[f64; 2]>,
@@ -85,7 +91,7 @@ pub(super) fn run_kept(
     arguments: &Arguments,
     out: &mut dyn Write,
 ) -> Result<(Answer, Log), Failure> {
-    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
+    let outputs = [arguments.output.as_ref(), arguments.svg.as_ref(), arguments.html.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let mut scenario = FILES.scenario(&arguments.scenario)?;
     match arguments.scheme {
@@ -118,6 +124,11 @@ pub(super) fn run_kept(
         let window = arguments.window.filter(|[from, _]| *from < run.end.t_s);
         let drawn = drawn_run(&mut scenario, &run, window);
         write_whole(path, drawn.as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        let facts = vec![Fact { name: "denavit".to_owned(), value: version }];
+        write_whole(path, run_page(&mut scenario, &run, &broken, facts).render().as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}

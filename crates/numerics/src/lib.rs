@@ -2,12 +2,15 @@
 //!
 //! - [`Random`]: numbers from a seed, the same on every machine
 //! - [`MinimumNorm`]: square systems of any rank
+//! - [`extremes`]: the rows of long columns that a picture needs
 //! - [`short`], [`percent`]: numbers as a person writes them
 
+mod extremes;
 mod minimum_norm;
 mod random;
 mod text;
 
+pub use extremes::extremes;
 pub use minimum_norm::MinimumNorm;
 pub use random::Random;
 pub use text::{percent, short};

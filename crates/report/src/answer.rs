@@ -8,6 +8,7 @@ mod identified;
 mod identified_json;
 mod run;
 mod run_joints;
+mod run_page;
 mod statics;
 mod two_stage;
 mod two_stage_json;
@@ -22,6 +23,7 @@ pub use excited::{
 pub use identified::{identified_doubts, identified_text};
 pub use identified_json::identified_json;
 pub use run::{drawn_run, run_json, run_text};
+pub use run_page::run_page;
 pub use statics::{statics_json, statics_text};
 pub use two_stage::two_stage_text;
 pub use two_stage_json::two_stage_json;

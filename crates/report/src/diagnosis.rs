@@ -1,7 +1,10 @@
 //! What a model lacks, as a page.
 
 use super::effects::formulas;
-use super::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section, mathml};
+use super::html::{
+    Cell, Chart, ChartCurve, Fact, Grade, Heading, HtmlTable, Look, Page, Panel, Part, Row,
+    Section, VerdictLine, mathml,
+};
 use super::run::diagnosis_picture;
 use super::{percent, short};
 use denavit_codegen::effect::{Effect, Law};
@@ -36,8 +39,17 @@ pub struct DiagnosisPage<'a> {
     pub found: &'a Diagnosis,
 }
 
-/// The answer in a paragraph: verdict, what was found, the gap before and after, reasons.
-pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String {
+/// The answer in a sentence or two: the verdict, and what was found.
+fn verdict(found: &Diagnosis, candidates: &[Candidate]) -> VerdictLine {
+    let grade = match found.verdict {
+        Verdict::NothingMissing | Verdict::Explained => Grade::Good,
+        Verdict::PartlyExplained => Grade::Fair,
+        Verdict::Unexplained | Verdict::CannotTell => Grade::Bad,
+    };
+    VerdictLine { grade, text: verdict_sentence(found, candidates) }
+}
+
+fn verdict_sentence(found: &Diagnosis, candidates: &[Candidate]) -> String {
     let mut text = match found.verdict {
         Verdict::NothingMissing => "Nothing is missing: what is left is noise.",
         Verdict::Explained => "What the model lacks is named, and explains the disagreement.",
@@ -54,9 +66,19 @@ pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String 
             text += &format!(" {word}: {}.", names.join("; "));
         }
     }
+    text
+}
+
+/// The answer in a paragraph: verdict, what was found, the gap before and after, reasons.
+pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String {
+    format!("{} {}", verdict_sentence(found, candidates), reasons(found))
+}
+
+/// The gap before and after, and what speaks for the verdict.
+fn reasons(found: &Diagnosis) -> String {
     let Gaps { before, after, floor } = &found.held_out;
-    text += &format!(
-        " On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
+    let mut text = format!(
+        "On held-out logs the gap of the torques was {}, with what was found it is {}, and noise \
          alone leaves {}",
         percent(before.all),
         percent(after.all),
@@ -72,6 +94,31 @@ pub fn verdict_paragraph(found: &Diagnosis, candidates: &[Candidate]) -> String 
         text += &format!(" {first}{}.", letters.as_str());
     }
     text
+}
+
+/// Torques of one log, and what both models leave of them.
+fn torque_chart(joint: &str, curve: &Curve) -> Chart {
+    let computed = |left: &[f64]| -> Vec<f64> {
+        curve.measured.iter().zip(left).map(|(torque, left)| torque - left).collect()
+    };
+    let torques = vec![
+        ChartCurve::new("measured", Look::Measured, curve.measured.clone()),
+        ChartCurve::new("nominal model", Look::Before, computed(&curve.before)),
+        ChartCurve::new("with the effects", Look::Computed, computed(&curve.after)),
+    ];
+    let left = vec![
+        ChartCurve::new("left before", Look::Before, curve.before.clone()),
+        ChartCurve::new("left with the effects", Look::Residual, curve.after.clone()),
+    ];
+    Chart {
+        name: format!("{}, {}", joint.replace('_', " "), curve.file),
+        caption: String::new(),
+        group: "torques",
+        over: ["time [s]", "time [s]"],
+        x: curve.t_s.clone(),
+        panels: vec![Panel::new("torque [N m, N]", 190, torques), Panel::new("left", 100, left)],
+    }
+    .thinned()
 }
 
 /// The motion that would tell an effect from what would do as well.
@@ -105,7 +152,8 @@ impl DiagnosisPage<'_> {
         }
         Page {
             title: format!("Diagnosis of {}", self.model.replace('_', " ")),
-            lead: verdict_paragraph(self.found, self.candidates),
+            verdict: Some(verdict(self.found, self.candidates)),
+            lead: reasons(self.found),
             facts: self.facts.to_vec(),
             sections,
         }
@@ -114,6 +162,7 @@ impl DiagnosisPage<'_> {
     fn gaps(&self) -> Section {
         let columns = headings(&[
             ("joint", false),
+            ("before, after, noise", false),
             ("train before", true),
             ("after", true),
             ("noise", true),
@@ -129,19 +178,29 @@ impl DiagnosisPage<'_> {
         let mut rows: Vec<Row> = Vec::new();
         for (place, name) in self.found.places.iter().enumerate() {
             let numbers = of(&|gap| gap.per_joint.get(place).copied().flatten());
-            let cells = [vec![Cell::text(name)], numbers].concat();
+            let bars = self.bars(&|gap| gap.per_joint.get(place).copied().flatten());
+            let cells = [vec![Cell::text(name), bars], numbers].concat();
             rows.push(Row { cells, is_marked: false });
         }
-        let cells = [vec![Cell::text("all")], of(&|gap| Some(gap.all))].concat();
+        let all = |gap: &Gap| Some(gap.all);
+        let cells = [vec![Cell::text("all"), self.bars(&all)], of(&all)].concat();
         rows.push(Row { cells, is_marked: true });
         let caption =
             "What is left of the torques, over the torques (root of mean square), before \
                        and after the effects, and what noise alone leaves. All: root of mean \
-                       square over the joints and springs."
+                       square over the joints and springs. Bars are of the held-out logs."
                 .to_owned();
         let mut parts = vec![Part::Table(HtmlTable { caption, columns, rows })];
         parts.extend(self.in_motion());
         Section { heading: "Gap".to_owned(), parts }
+    }
+
+    /// What is left of held-out logs before, after and of noise, beside that of other joints.
+    fn bars(&self, value: &dyn Fn(&Gap) -> Option<f64>) -> Cell {
+        let Gaps { before, after, floor } = &self.found.held_out;
+        let sizes = [before, after, floor].map(|gap| value(gap).unwrap_or(0.0));
+        let of_joints = before.per_joint.iter().chain(&after.per_joint).flatten().copied();
+        Cell::bars(&sizes, of_joints.fold(before.all, f64::max), "")
     }
 
     /// The gap of the models in motion.
@@ -191,11 +250,15 @@ impl DiagnosisPage<'_> {
             Some((most.at.as_str(), most))
         };
         let shown: Vec<(&str, &Curve)> = self.worst().filter_map(of_joint).collect();
-        let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
-        let caption = "Held-out logs, the joints that leave most: torques that were measured, and \
-                       that both models compute; below, what they leave. All through one filter."
+        let text = "Held-out logs, the joints that leave most: torques that were measured, and \
+                    that both models compute; below, what they leave. All through one filter."
             .to_owned();
-        let parts = vec![Part::Figure { svg, caption }];
+        let mut parts = vec![Part::Paragraph { text }];
+        parts.extend(shown.iter().map(|(joint, curve)| Part::Chart(torque_chart(joint, curve))));
+        let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
+        let caption = "Where the nominal model leaves most.".to_owned();
+        let summary = "As a picture for papers".to_owned();
+        parts.push(Part::Folded { summary, parts: vec![Part::Figure { svg, caption }] });
         Section { heading: "Torques".to_owned(), parts }
     }
 

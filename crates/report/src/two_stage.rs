@@ -2,7 +2,7 @@
 
 use super::html::{Cell, Fact, FormulaError, HtmlTable, Page, Part, Row, Section};
 use super::identification::{
-    headings, nearest_bodies, parameters, percent, remarks, residuals, torques,
+    base_parameters, headings, nearest_bodies, percent, remarks, residuals, torques,
 };
 use super::short;
 use denavit_identify::estimate::{IdentifiedParameter, Validation};
@@ -34,13 +34,14 @@ impl TwoStagePage<'_> {
     pub fn page(&self) -> Result<Page, FormulaError> {
         let mut sections = vec![
             self.springs(),
-            parameters(self.parameters)?,
+            self.load()?,
+            torques(self.train, self.validate),
             residuals(self.train, self.validate),
-            torques(self.model, self.train, self.validate),
         ];
         sections.extend(remarks(self.remarks));
         Ok(Page {
             title: format!("Identification of {} in two stages", self.model.replace('_', " ")),
+            verdict: None,
             lead: self.lead(),
             facts: self.facts.to_vec(),
             sections,
@@ -58,7 +59,12 @@ impl TwoStagePage<'_> {
         if let Some(held_out) = self.validate {
             text += &format!(", and {} of those of other logs", percent(held_out.relative));
         }
-        text + "." + &nearest_bodies(self.distance)
+        format!("{text}. {}", nearest_bodies(self.distance)).trim_end().to_owned()
+    }
+
+    fn load(&self) -> Result<Section, FormulaError> {
+        let parts = vec![Part::Table(base_parameters(self.parameters)?)];
+        Ok(Section { heading: "Parameters of the load".to_owned(), parts })
     }
 
     fn springs(&self) -> Section {

@@ -37,7 +37,11 @@ pub(super) fn facts(robot: &Robot, logs: &Logs, [method, errors, seed]: Words) -
     given.map(|(name, value)| Fact { name: name.to_owned(), value }).collect()
 }
 
-pub(super) fn of(facts: &[Fact], identified: &Identified) -> Result<String, Failure> {
+pub(super) fn of(
+    facts: &[Fact],
+    identified: &Identified,
+    is_good: bool,
+) -> Result<String, Failure> {
     let Identified { robot, found, remarks, effects, simulated, .. } = identified;
     let mut notes: Vec<String> =
         remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
@@ -49,7 +53,9 @@ pub(super) fn of(facts: &[Fact], identified: &Identified) -> Result<String, Fail
         after: gap.after.as_ref().ok(),
         reasons,
     });
-    let page = IdentificationPage { model: &robot.name, facts, remarks: &notes, found, simulation };
+    let updated = identified.updated.as_ref().ok().map(|updated| &updated.robot);
+    let page =
+        IdentificationPage { robot, updated, facts, remarks: &notes, found, is_good, simulation };
     Ok(page.page().map_err(Misuse::Formula)?.render())
 }
 

@@ -137,8 +137,8 @@ fn compare_pictures(directory: &Directory, page: &str) {
     for name in shown.filter(|name| name.ends_with(".svg") && !name.contains('/')) {
         let report = fs::read_to_string(directory.path.join("found/report.html"));
         let on_page = report.ok().and_then(|report| {
-            let (_, rest) = report.split_once("<svg")?;
-            Some(format!("<svg{}</svg>\n", rest.split_once("</svg>")?.0))
+            let (_, rest) = report.split_once("<svg xmlns")?;
+            Some(format!("<svg xmlns{}</svg>\n", rest.split_once("</svg>")?.0))
         });
         let Some(drawn) = fs::read_to_string(directory.path.join(name)).ok().or(on_page) else {
             continue;

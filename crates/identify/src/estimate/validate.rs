@@ -3,6 +3,7 @@
 use super::rows::BlockMaker;
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, SampleIndex};
+use denavit_numerics::extremes;
 use denavit_plants::regression::RegressionModel;
 use std::borrow::Borrow;
 use std::collections::VecDeque;
@@ -10,8 +11,8 @@ use std::collections::VecDeque;
 /// Distances at which residuals are compared with themselves, in samples.
 pub const LAGS: usize = 20;
 
-/// Samples that a picture shows, at most.
-const DRAWN: usize = 1500;
+/// Spans of time of which a picture shows the first, the last and the extreme samples.
+const SPANS: usize = 500;
 
 /// What is left of a joint's torque.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,7 +29,8 @@ pub struct JointResidual {
     pub autocorrelation: Vec<f64>,
     /// The largest residual [N m, N].
     pub largest: f64,
-    /// Time, measured and computed torque of some samples, for pictures [s, N m, N].
+    /// Time, measured and computed torque, for pictures [s, N m, N]: of long logs the samples that
+    /// stand out ([`extremes`]).
     pub drawn: Vec<[f64; 3]>,
 }
 
@@ -52,9 +54,30 @@ struct Sums {
     recent: VecDeque<f64>,
     lagged: [f64; LAGS],
     drawn: Vec<[f64; 3]>,
+    /// Rows of the span that is not at its end yet.
+    span: Vec<[f64; 3]>,
 }
 
 impl Sums {
+    /// Keeps a row for pictures; `span` is how many rows a span has.
+    fn draw(&mut self, row: [f64; 3], span: usize) {
+        self.span.push(row);
+        if self.span.len() >= span {
+            self.end_span();
+        }
+    }
+
+    fn end_span(&mut self) {
+        let rows = std::mem::take(&mut self.span);
+        let residual = |row: &[f64; 3]| row[1] - row[2];
+        let kept = extremes(rows.len(), 3, 1, |column, row| match column {
+            0 => rows[row][1],
+            1 => rows[row][2],
+            _ => residual(&rows[row]),
+        });
+        self.drawn.extend(kept.into_iter().map(|row| rows[row]));
+    }
+
     fn add(&mut self, residual: f64, torque: f64) {
         for (sum, before) in self.lagged.iter_mut().zip(&self.recent) {
             *sum += residual * before;
@@ -77,7 +100,7 @@ pub fn validate(
     let mut sums = vec![Sums::default(); model.joints.len()];
     let logs = logs.iter().map(Borrow::borrow);
     let samples: usize = logs.clone().map(Conditioned::samples).sum();
-    let stride = samples.div_ceil(DRAWN).max(1);
+    let span = samples.div_ceil(SPANS).max(1);
     for log in logs {
         sums.iter_mut().for_each(|sums| sums.recent.clear());
         BlockMaker::new(model, log).for_each(|block| {
@@ -87,14 +110,12 @@ pub fn validate(
                 let Some([torque, _]) = &block.torque[joint] else { continue };
                 for (k, (residual, torque)) in residual.into_iter().zip(torque).enumerate() {
                     sums.add(residual, *torque);
-                    let sample = SampleIndex(block.first.0 + k);
-                    if sample.0.is_multiple_of(stride) {
-                        let time = log.time_s(sample);
-                        sums.drawn.push([time, *torque, torque - residual]);
-                    }
+                    let time = log.time_s(SampleIndex(block.first.0 + k));
+                    sums.draw([time, *torque, torque - residual], span);
                 }
             }
         });
+        sums.iter_mut().for_each(Sums::end_span);
     }
     let measured = sums.into_iter().zip(&model.joints).filter(|(sums, _)| sums.rows > 0);
     let joints: Vec<JointResidual> = measured

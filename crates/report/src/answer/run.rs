@@ -22,7 +22,7 @@ pub fn drawn_run(scenario: &mut Scenario, run: &Run, window_s: Option<[f64; 2]>)
     run_picture(scenario.plant.as_mut(), &picture)
 }
 
-fn scheme_text(scenario: &Scenario) -> String {
+pub(super) fn scheme_text(scenario: &Scenario) -> String {
     match scenario.scheme {
         RunScheme::Event => "from event to event".to_owned(),
         RunScheme::TimeStepping => format!("by steps of {} s", scenario.stepping.step_s),

@@ -1,33 +1,59 @@
 //! Reports as one HTML page that needs nothing from elsewhere: no network, no fonts, no files.
 //!
-//! Formulas are MathML, pictures are SVG, tables are sorted by a click on a heading. All text is
-//! escaped by the template engine; the page forbids itself to load anything.
+//! Formulas are MathML; curves and runs are drawn by scripts that the page carries, other pictures
+//! are SVG. All text is escaped by the template engine, data are JSON in elements that no browser
+//! runs, and the page forbids itself whatever is not of its frame: scripts and styles are allowed
+//! by their hashes.
 
+mod chart;
+mod data;
 mod formula;
+mod frame;
+mod replay;
+mod table;
 
+pub use chart::{Chart, ChartCurve, Look, Panel};
+pub(crate) use data::{Brief, with_decimals};
 pub use formula::{FormulaError, mathml};
+pub use replay::{Mark, Replay};
+pub use table::{Cell, Heading, HtmlTable, Row};
 
-use minijinja::Environment;
-use minijinja::value::Serde;
 use serde::Serialize;
-
-/// The frame of a page.
-const TEMPLATE: &str = include_str!("../../templates/html/report.html.jinja");
-
-/// The name by which the engine knows that text is escaped for HTML.
-const NAME: &str = "report.html";
 
 /// A report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Page {
     /// What it is about.
     pub title: String,
+    /// The answer in one sentence, if there is one.
+    pub verdict: Option<VerdictLine>,
     /// The answer, in a paragraph.
     pub lead: String,
     /// What it was made of: version, hash of the model, files, seed.
     pub facts: Vec<Fact>,
     /// The rest.
     pub sections: Vec<Section>,
+}
+
+/// The answer in one sentence.
+#[derive(Clone, Debug, Serialize)]
+pub struct VerdictLine {
+    /// How good it is.
+    pub grade: Grade,
+    /// The sentence.
+    pub text: String,
+}
+
+/// How good an answer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grade {
+    /// As wished.
+    Good,
+    /// With something to be looked at.
+    Fair,
+    /// Not to be believed, or broken.
+    Bad,
 }
 
 /// One line of what a report was made of.
@@ -71,71 +97,45 @@ pub enum Part {
     },
     /// A table.
     Table(HtmlTable),
+    /// Curves.
+    Chart(Chart),
+    /// A run in three dimensions.
+    Replay(Replay),
+    /// Parts of which one is seen at a time.
+    Tabs {
+        /// These.
+        tabs: Vec<Tab>,
+    },
+    /// What is seen when it is asked for.
+    Folded {
+        /// What is asked for.
+        summary: String,
+        /// No tabs, and nothing folded.
+        parts: Vec<Part>,
+    },
 }
 
-/// A table whose rows a reader can sort.
+/// One of several parts.
 #[derive(Clone, Debug, Serialize)]
-pub struct HtmlTable {
-    /// What it shows.
-    pub caption: String,
-    /// Its columns.
-    pub columns: Vec<Heading>,
-    /// Its rows, each with a cell for every column.
-    pub rows: Vec<Row>,
-}
-
-/// The head of a column.
-#[derive(Clone, Debug, Serialize)]
-pub struct Heading {
-    /// The words.
-    pub heading: String,
-    /// Whether its cells are numbers.
-    pub is_number: bool,
-}
-
-/// A row of a table.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// The cells.
-    pub cells: Vec<Cell>,
-    /// Whether it stands out.
-    pub is_marked: bool,
-}
-
-/// A cell of a table.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cell {
-    text: String,
-    mathml: Option<String>,
-    is_number: bool,
-    order: Option<f64>,
-}
-
-impl Cell {
-    /// Words.
-    pub fn text(text: impl Into<String>) -> Self {
-        Self { text: text.into(), mathml: None, is_number: false, order: None }
-    }
-
-    /// A number as it is shown; rows are sorted by its value.
-    pub fn number(value: f64, shown: impl Into<String>) -> Self {
-        let order = value.is_finite().then_some(value);
-        Self { text: shown.into(), mathml: None, is_number: true, order }
-    }
-
-    /// A formula in LaTeX.
-    pub fn formula(latex: &str) -> Result<Self, FormulaError> {
-        let mathml = Some(mathml(latex, false)?);
-        Ok(Self { text: String::new(), mathml, is_number: false, order: None })
-    }
+pub struct Tab {
+    /// What a reader clicks on.
+    pub name: String,
+    /// No tabs, and nothing folded.
+    pub parts: Vec<Part>,
 }
 
 impl Page {
     /// The page as text.
     pub fn render(&self) -> String {
-        let mut environment = Environment::new();
-        environment.add_template(NAME, TEMPLATE).expect("the template is part of the library");
-        let template = environment.get_template(NAME).expect("it was just added");
-        template.render(Serde(self)).expect("the template asks for what a page has")
+        frame::filled(self)
+    }
+
+    /// Whether a part is among what is shown.
+    fn has(&self, is: impl Fn(&Part) -> bool) -> bool {
+        self.sections.iter().flat_map(|section| &section.parts).any(|part| match part {
+            Part::Tabs { tabs } => tabs.iter().flat_map(|tab| &tab.parts).any(&is),
+            Part::Folded { parts, .. } => parts.iter().any(&is),
+            part => is(part),
+        })
     }
 }

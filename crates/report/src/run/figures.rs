@@ -110,7 +110,7 @@ pub(super) fn feet(model: &PlantModel) -> Vec<usize> {
 }
 
 /// How many links of a floating base were generated; all but the last are its virtual chain.
-fn generated(model: &PlantModel) -> usize {
+pub(super) fn generated(model: &PlantModel) -> usize {
     model.joints.iter().take_while(|joint| !joint.drivable).count()
 }
 

@@ -4,16 +4,18 @@
 mod axes;
 mod balance;
 mod compared;
-mod convergence;
+mod curves;
 mod excitation;
 mod figures;
 mod gait;
+mod replay;
 mod torques;
 
 pub(crate) use balance::{BalanceCurve, BalancePicture};
 pub(crate) use compared::diagnosis_picture;
-pub(crate) use convergence::convergence_picture;
+pub(crate) use curves::run_charts;
 pub(crate) use gait::{GaitCurve, GaitPicture};
+pub(crate) use replay::replay;
 pub use torques::{TorquePicture, motion_picture, torque_picture};
 
 pub use excitation::{ExcitationPicture, excitation_picture};
@@ -58,7 +60,7 @@ const HEADING: &str = "font-size=\"13\" font-weight=\"bold\" fill=\"#222\"";
 pub(crate) fn run_picture(plant: &mut dyn Plant, picture: &RunPicture<'_>) -> String {
     let log = Windowed::new(picture);
     let model = plant.model().clone();
-    let joints = shown_joints(&model, &log);
+    let joints = shown_joints(&model, &log, MOST_JOINTS);
     let forces = force_curves(&model, &log);
     let rows = joints.len().div_ceil(2);
     let block = 30.0 + POSITION + 12.0 + TORQUE + 30.0;
@@ -147,7 +149,7 @@ struct JointCurves {
 }
 
 /// The joints that follow something and move most; without any, those that move.
-fn shown_joints(model: &PlantModel, log: &Windowed<'_>) -> Vec<JointCurves> {
+fn shown_joints(model: &PlantModel, log: &Windowed<'_>, most: usize) -> Vec<JointCurves> {
     let curves = |joint: &denavit_plants::JointModel| {
         let column = |prefix: &str| log.column(&format!("{prefix}_{}", joint.name));
         let torque = column("tau_cmd").or_else(|| column("tau"));
@@ -172,7 +174,7 @@ fn shown_joints(model: &PlantModel, log: &Windowed<'_>) -> Vec<JointCurves> {
         .enumerate()
         .collect();
     chosen.sort_by(|(_, a), (_, b)| range(b).total_cmp(&range(a)));
-    chosen.truncate(MOST_JOINTS);
+    chosen.truncate(most);
     chosen.sort_by_key(|(index, _)| *index);
     chosen.into_iter().map(|(_, joint)| joint).collect()
 }

@@ -2,4 +2,5 @@
 
 mod effects_page;
 mod page;
+mod run_page;
 mod symbolic;

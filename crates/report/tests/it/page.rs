@@ -1,6 +1,9 @@
 //! Reports: pages of HTML.
 
-use denavit_report::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section, mathml};
+use denavit_report::html::{
+    Cell, Chart, ChartCurve, Fact, Grade, Heading, HtmlTable, Look, Page, Panel, Part, Row,
+    Section, Tab, VerdictLine, mathml,
+};
 use std::process::Command;
 
 fn page() -> Page {
@@ -25,6 +28,7 @@ fn page() -> Page {
     let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"></svg>";
     Page {
         title: "Identified <robot> & more".to_owned(),
+        verdict: Some(VerdictLine { grade: Grade::Fair, text: "So <so>.".to_owned() }),
         lead: "All is \"well\".".to_owned(),
         facts: vec![Fact { name: "seed".to_owned(), value: "7".to_owned() }],
         sections: vec![Section {
@@ -34,21 +38,75 @@ fn page() -> Page {
                 Part::Figure { svg: svg.to_owned(), caption: "nothing".to_owned() },
                 Part::Paragraph { text: "</p><script>alert(1)</script>".to_owned() },
                 Part::Formula { mathml: mathml("y = x^{2}", true).unwrap() },
+                Part::Chart(chart()),
+                Part::Tabs { tabs: vec![tab("one"), tab("two")] },
+                Part::Folded {
+                    summary: "more".to_owned(),
+                    parts: vec![Part::Paragraph { text: "inside".to_owned() }],
+                },
             ],
         }],
     }
 }
 
+/// A curve with more rows than are drawn, whose names end elements.
+fn chart() -> Chart {
+    let x: Vec<f64> = (0..20_000).map(|row| 1e-3 * f64::from(row)).collect();
+    let mut values = vec![0.0; x.len()];
+    values[7777] = 31.25;
+    let curve = ChartCurve::new("</script><b>", Look::Measured, values);
+    let panels = vec![Panel::new("torque <[N m]>", 100, vec![curve])];
+    let name = "<!-- torque".to_owned();
+    Chart { name, group: "torques", over: ["time", "time [s]"], x, panels, ..Chart::default() }
+        .thinned()
+}
+
+fn tab(name: &str) -> Tab {
+    let text = format!("panel {name}");
+    Tab { name: name.to_owned(), parts: vec![Part::Paragraph { text }] }
+}
+
+/// A page without the scripts and styles that it carries.
+fn written(text: &str) -> String {
+    let mut rest = text;
+    let mut kept = String::new();
+    for (open, close) in [("<style>", "</style>"), ("<script>", "</script>")] {
+        let (before, after) = rest.split_once(open).expect("an element");
+        kept += before;
+        rest = after.split_once(close).expect("its end").1;
+    }
+    kept + rest
+}
+
 #[test]
 fn text_is_escaped_and_nothing_is_loaded() {
-    let text = page().render();
+    let text = written(&page().render());
     assert!(text.contains("Identified &lt;robot&gt; &amp; more"), "{text}");
-    assert!(!text.contains("<script>alert"), "{text}");
+    assert!(text.contains("So &lt;so&gt;."), "{text}");
+    for markup in ["<script>", "<b>", "<!-- ", " style=", "unsafe-inline"] {
+        assert!(!text.contains(markup), "{markup}: {text}");
+    }
     // names of XML dialects are no addresses
     let loaded = text.replace("http://www.w3.org/", "");
     for word in ["http:", "https:", "src=", "href=", "url(", "@import"] {
         assert!(!loaded.contains(word), "{word}");
     }
+}
+
+#[test]
+fn long_curves_keep_what_stands_out_and_say_so() {
+    let text = page().render();
+    assert!(text.contains("31.25") && text.contains("7.777"), "the peak");
+    assert!(text.contains("of 20000 samples are drawn"), "{}", chart().caption);
+    assert!(chart().x.len() < 2500, "{}", chart().x.len());
+}
+
+/// A page without runs does without the library that draws them.
+#[test]
+fn pages_are_as_large_as_what_they_show() {
+    let text = page().render();
+    assert!(text.len() < 150_000, "{}", text.len());
+    assert_eq!(text, page().render(), "the same bytes");
 }
 
 #[test]
@@ -73,7 +131,8 @@ fn chromium() -> Option<&'static str> {
     names.into_iter().find(|name| Command::new(name).arg("--version").output().is_ok())
 }
 
-/// In a browser, where one is installed: the script runs, and a click sorts rows by their numbers.
+/// In a browser, where one is installed: the scripts are those that the page allows, and a click
+/// sorts rows by their numbers.
 #[test]
 fn a_browser_shows_and_sorts_the_page() {
     let Some(program) = chromium() else {
@@ -83,17 +142,30 @@ fn a_browser_shows_and_sorts_the_page() {
     let directory = std::env::temp_dir().join(format!("denavit-page-{}", std::process::id()));
     std::fs::create_dir_all(&directory).unwrap();
     let file = directory.join("report.html");
-    let click = "<script>document.querySelectorAll('th')[2].click()</script>\n</body>";
-    std::fs::write(&file, page().render().replace("</body>", click)).unwrap();
-    let output = Command::new(program)
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", directory.join("profile").display()))
-        .arg(format!("file://{}", file.display()))
-        .output()
-        .unwrap();
-    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+    let show = |page: &str| {
+        std::fs::write(&file, page).unwrap();
+        let output = Command::new(program)
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
+            .arg(format!("--user-data-dir={}", directory.join("profile").display()))
+            .arg(format!("file://{}", file.display()))
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let page = page().render();
+    let as_it_is = show(&page);
+    let click = "<script>document.querySelectorAll('thead button')[2].click()</script>\n</body>";
+    let clicked = page.replace("</body>", click);
+    // its policy refuses a script that is not of its frame
+    let refused = show(&clicked);
+    let shown = show(&clicked.replace("Content-Security-Policy", "none"));
     std::fs::remove_dir_all(&directory).unwrap();
-    assert!(shown.contains("data-ready=\"yes\""), "{shown}");
-    let place = |text: &str| shown.find(text).unwrap_or_else(|| panic!("{text}: {shown}"));
-    assert!(place("-2.500") < place("9.000") && place("9.000") < place("10.000"));
+    assert!(as_it_is.contains("data-ready=\"yes\""), "{as_it_is}");
+    assert!(as_it_is.contains("<canvas"), "the curve: {as_it_is}");
+    let is_sorted = |shown: &str| {
+        let place = |text: &str| shown.find(text).unwrap_or_else(|| panic!("{text}: {shown}"));
+        place("-2.500") < place("9.000") && place("9.000") < place("10.000")
+    };
+    assert!(is_sorted(&shown), "{shown}");
+    assert!(!is_sorted(&refused), "a script that the page does not allow ran");
 }

@@ -188,6 +188,18 @@ pub fn course_of_log(plant: &mut dyn Plant, file: &LogFile) -> Result<Course, Ba
     Ok(Course { over: Over::Run, scheme, period_s: None, instants, run: None })
 }
 
+/// Balance along a run that was made, as its log has it.
+///
+/// # Errors
+/// Robots that do not walk, logs without velocities or forces.
+pub fn course_of_run(plant: &mut dyn Plant, log: &Log) -> Result<Course, BalanceError> {
+    check_walker(plant)?;
+    let columns = Columns::of(plant.model(), log).map_err(|_| BalanceError::NotWalking)?;
+    let instants = instants(plant, log, &columns)?;
+    let scheme = log.scheme().map(str::to_owned);
+    Ok(Course { over: Over::Run, scheme, period_s: None, instants, run: None })
+}
+
 /// Whether a robot can walk, and fall: it has a floating base and contact points.
 ///
 /// # Errors

@@ -180,6 +180,7 @@ pub fn comparison_page(all: &[Compared]) -> Page {
     let paragraph = Part::Paragraph { text: shown.collect::<Vec<_>>().join(" ") };
     Page {
         title: "Criteria of stability, compared by runs".to_owned(),
+        verdict: None,
         lead: "No criterion is right on all runs: each is met in a fall, missed without one, or \
                says nothing."
             .to_owned(),

@@ -4,7 +4,7 @@ use super::balance::{BalanceCriterion, balance_picture, margin_cells};
 use super::cycle::{multipliers_picture, returns_picture, size};
 use crate::answer::run::drawn_run;
 use crate::html::{Cell, Fact, Heading, HtmlTable, Page, Part, Row, Section};
-use crate::run::{GaitCurve, GaitPicture};
+use crate::run::{GaitCurve, GaitPicture, replay};
 use denavit_simulate::scenario::Scenario;
 use denavit_walk::balance::Course;
 use denavit_walk::poincare::PoincareAnalysis;
@@ -22,6 +22,8 @@ pub fn gait_page(
 ) -> Page {
     let mut moves = vec![figure(joints(scenario, &course), "Joint angles (figures 4.2 and 4.4).")];
     if let Some(run) = &course.run {
+        let motion = replay(scenario.plant.as_mut(), run);
+        moves.splice(0..0, motion.map(Part::Replay));
         let caption = "Snapshots, joints, forces of the ground (figures 4.3 and 4.5).";
         moves.push(figure(drawn_run(scenario, run, None), caption));
     }
@@ -55,6 +57,7 @@ pub fn gait_page(
     let section = |heading: &str, parts| Section { heading: heading.into(), parts };
     Page {
         title: scenario.name.replace('_', " "),
+        verdict: None,
         lead: scenario.description.clone(),
         facts,
         sections: vec![

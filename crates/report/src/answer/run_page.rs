@@ -1,0 +1,76 @@
+//! A run as a page.
+
+use super::run::scheme_text;
+use crate::html::{Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Section, VerdictLine};
+use crate::run::{replay, run_charts};
+use denavit_simulate::scenario::Scenario;
+use denavit_simulate::{Run, Stop};
+
+/// A run on one page: played back, with its curves and its audit; `broken` are the tolerances that
+/// it broke (law, found, allowed).
+pub fn run_page(
+    scenario: &mut Scenario,
+    run: &Run,
+    broken: &[(&'static str, f64, f64)],
+    facts: Vec<Fact>,
+) -> Page {
+    let motion = replay(scenario.plant.as_mut(), run).map(Part::Replay);
+    let model = scenario.plant.model().clone();
+    let charts: Vec<Part> = run_charts(&model, &run.log).into_iter().map(Part::Chart).collect();
+    let mut sections = Vec::new();
+    let mut section = |heading: &str, parts: Vec<Part>| {
+        if !parts.is_empty() {
+            sections.push(Section { heading: heading.to_owned(), parts });
+        }
+    };
+    section("Motion", motion.into_iter().collect());
+    section("Curves", charts);
+    section("Audit", vec![Part::Table(audit(scenario, run, broken))]);
+    let given = [("model", model.name.clone()), ("scheme", scheme_text(scenario))];
+    let given = given.map(|(name, value)| Fact { name: name.to_owned(), value });
+    Page {
+        title: scenario.name.replace('_', " "),
+        verdict: Some(verdict(run, broken)),
+        lead: scenario.description.clone(),
+        facts: facts.into_iter().chain(given).collect(),
+        sections,
+    }
+}
+
+fn verdict(run: &Run, broken: &[(&'static str, f64, f64)]) -> VerdictLine {
+    let end = format!("{} at {:.3} s", run.stop, run.end.t_s);
+    let events = match run.events.len() {
+        1 => "1 event".to_owned(),
+        count => format!("{count} events"),
+    };
+    let (grade, text) = match (run.stop == Stop::End, broken) {
+        (true, []) => {
+            let text = format!("The run {end}, with {events}; every law that is audited holds.");
+            (Grade::Good, text)
+        }
+        (false, []) => (Grade::Bad, format!("Not at its end: {end}, with {events}.")),
+        (_, broken) => {
+            let laws: Vec<&str> = broken.iter().map(|(law, ..)| *law).collect();
+            (Grade::Bad, format!("Broken: {}. Ended: {end}, with {events}.", laws.join(", ")))
+        }
+    };
+    VerdictLine { grade, text }
+}
+
+/// The laws that a run is held to, and how far it was from them at worst.
+fn audit(scenario: &Scenario, run: &Run, broken: &[(&'static str, f64, f64)]) -> HtmlTable {
+    let heading = |(text, is_number): (&str, bool)| Heading { heading: text.to_owned(), is_number };
+    let row = |law: String, worst: f64| {
+        let allowed = broken.iter().find(|(_, found, _)| *found == worst);
+        let allowed = allowed.map_or_else(String::new, |(.., most)| format!("{most:.0e}"));
+        let is_marked = !allowed.is_empty();
+        let worst = Cell::number(worst, format!("{worst:.3e}"));
+        Row { cells: vec![Cell::text(law), worst, Cell::text(allowed)], is_marked }
+    };
+    let listed = run.audit.listed(scenario.plant.model()).into_iter();
+    HtmlTable {
+        caption: "The laws that every run is held to; marked are those that it breaks.".to_owned(),
+        columns: [("law", false), ("worst", true), ("allowed", true)].map(heading).to_vec(),
+        rows: listed.map(|(_, law, worst)| row(law.to_string(), worst)).collect(),
+    }
+}

@@ -1,0 +1,50 @@
+//! The frame of a page: the template with the scripts and the style sheet that it carries.
+
+use super::{Page, Part};
+use minijinja::Environment;
+use minijinja::value::Serde;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The frame.
+const TEMPLATE: &str = include_str!("../../templates/html/report.html.jinja");
+/// What `crates/report/web` makes, with licences and versions inside.
+const STYLE: &str = include_str!("../../templates/html/page.css");
+const SCRIPT: &str = include_str!("../../templates/html/page.js");
+const SCENE: &str = include_str!("../../templates/html/scene.js");
+/// By which a page allows these, and nothing else.
+const HASHES: &str = include_str!("../../templates/html/hashes.json");
+
+/// The name by which the engine knows that text is escaped for HTML.
+const NAME: &str = "report.html";
+
+/// What the template fills in.
+#[derive(Serialize)]
+struct Frame<'a> {
+    page: &'a Page,
+    policy: String,
+    style: &'a str,
+    scripts: Vec<&'a str>,
+}
+
+/// The page as text.
+pub(super) fn filled(page: &Page) -> String {
+    let hashes: BTreeMap<&str, &str> = serde_json::from_str(HASHES).expect("made with the scripts");
+    let hash = |name: &str| hashes.get(name).copied().expect("every file has its hash");
+    let has_scene = page.has(|part| matches!(part, Part::Replay(_)));
+    let mut scripts = vec![(SCRIPT, hash("page.js"))];
+    scripts.extend(has_scene.then(|| (SCENE, hash("scene.js"))));
+    let allowed: Vec<String> = scripts.iter().map(|(_, hash)| format!("'{hash}'")).collect();
+    let policy = format!(
+        "default-src 'none'; script-src {}; style-src '{}'; img-src data:; base-uri 'none'; \
+         form-action 'none'",
+        allowed.join(" "),
+        hash("page.css")
+    );
+    let mut environment = Environment::new();
+    environment.add_template(NAME, TEMPLATE).expect("the template is part of the library");
+    let template = environment.get_template(NAME).expect("it was just added");
+    let scripts = scripts.into_iter().map(|(text, _)| text).collect();
+    let frame = Frame { page, policy, style: STYLE, scripts };
+    template.render(Serde(&frame)).expect("the template asks for what a page has")
+}

@@ -1,0 +1,244 @@
+//! What was identified, as a page.
+
+mod curves;
+mod parameters;
+mod simulation;
+
+pub(super) use curves::torques;
+pub(super) use parameters::base_parameters;
+
+use super::html::{
+    Cell, Fact, FormulaError, Grade, Heading, HtmlTable, Page, Part, Row, Section, Tab, VerdictLine,
+};
+use super::short;
+use curves::{condition, convergence};
+use denavit_codegen::model::Robot;
+use denavit_identify::Identification;
+use denavit_identify::estimate::{JointResidual, Status, Validation};
+use denavit_identify::forward::Forward;
+use parameters::{bodies, not_excited};
+
+/// What a page about an identification says.
+#[derive(Clone, Copy, Debug)]
+pub struct IdentificationPage<'a> {
+    /// The robot as its file has it.
+    pub robot: &'a Robot,
+    /// The same with what was found, where that has a place in the file.
+    pub updated: Option<&'a Robot>,
+    /// What it was made of: version, hash of the model, logs, method, seed.
+    pub facts: &'a [Fact],
+    /// What was noticed of the logs.
+    pub remarks: &'a [String],
+    /// The parameters and what they leave.
+    pub found: &'a Identification,
+    /// Whether what was found is to be believed.
+    pub is_good: bool,
+    /// Logs that were simulated again, if any were.
+    pub simulation: Option<SimulationPart<'a>>,
+}
+
+/// What a page says of logs that were simulated again.
+#[derive(Clone, Copy, Debug)]
+pub struct SimulationPart<'a> {
+    /// How, as part of a sentence.
+    pub method: &'a str,
+    /// With the values that the model had.
+    pub before: Option<&'a Forward>,
+    /// With those that were found.
+    pub after: Option<&'a Forward>,
+    /// What kept a model from being simulated.
+    pub reasons: &'a [String],
+}
+
+impl IdentificationPage<'_> {
+    /// The page.
+    pub fn page(&self) -> Result<Page, FormulaError> {
+        let (found, held_out) = (self.found, self.found.validate.as_ref());
+        let mut sections = Vec::from_iter(self.warnings());
+        sections.push(self.parameters()?);
+        sections.push(torques(&found.train, held_out));
+        sections.push(residuals(&found.train, held_out));
+        sections.extend(not_excited(&found.parameters));
+        sections.push(self.convergence());
+        sections.extend(self.simulation.map(|simulation| simulation.section()));
+        sections.extend(remarks(self.remarks));
+        Ok(Page {
+            title: format!("Identification of {}", self.robot.name.replace('_', " ")),
+            verdict: Some(self.verdict()),
+            lead: self.lead(),
+            facts: self.facts.to_vec(),
+            sections,
+        })
+    }
+
+    /// The answer in one sentence.
+    fn verdict(&self) -> VerdictLine {
+        let found = self.found;
+        let hidden = found.not_excited().len();
+        let (judged, whose) = match &found.validate {
+            Some(held_out) => (held_out, "logs that they were not estimated from"),
+            None => (&found.train, "the logs that they are from"),
+        };
+        let left = percent(judged.relative);
+        let (grade, mut text) = match self.is_good {
+            false => {
+                let text = format!(
+                    "Do not trust these parameters: they leave {left} of the torques of {whose}, \
+                     and what speaks against them is listed below"
+                );
+                (Grade::Bad, text)
+            }
+            true => {
+                let is_said = found.warnings().is_empty() && found.lacking.is_empty();
+                let is_clear = hidden == 0 && is_said;
+                let grade = if is_clear { Grade::Good } else { Grade::Fair };
+                (grade, format!("The parameters explain all but {left} of the torques of {whose}"))
+            }
+        };
+        if hidden > 0 {
+            let all = found.parameters.len();
+            text += &format!("; the motion does not show {hidden} of {all}");
+        }
+        VerdictLine { grade, text: text + "." }
+    }
+
+    fn lead(&self) -> String {
+        let found = self.found;
+        let of = |status| found.parameters.iter().filter(|one| one.status == status).count();
+        let mut text = format!(
+            "Of {} base parameters {} are identified, {} may be 0, and {} are not excited.",
+            found.parameters.len(),
+            of(Status::Identified),
+            of(Status::Uncertain),
+            of(Status::NotExcited),
+        );
+        if let Some(before) = found.before {
+            text += &format!(" With the model's own values {} was left.", percent(before));
+        }
+        text
+    }
+
+    /// What is to be known before anybody believes the parameters.
+    fn warnings(&self) -> Option<Section> {
+        let found = self.found;
+        let nearest = Some(nearest_bodies(found.consistent.distance)).filter(|one| !one.is_empty());
+        let warnings = found.warnings().into_iter().chain(nearest.filter(|_| {
+            // said by the warnings, unless noise makes most
+            found.no_bodies().is_none()
+        }));
+        let mut parts: Vec<Part> = warnings.map(|text| Part::Paragraph { text }).collect();
+        let notes: Vec<Part> =
+            found.notes().into_iter().map(|text| Part::Paragraph { text }).collect();
+        if !notes.is_empty() {
+            let summary = "Samples that were left out, and what is left without a name".to_owned();
+            parts.push(Part::Folded { summary, parts: notes });
+        }
+        let heading = "Before you use them".to_owned();
+        (!parts.is_empty()).then_some(Section { heading, parts })
+    }
+
+    /// The bodies that a model file has, then what the logs determine.
+    fn parameters(&self) -> Result<Section, FormulaError> {
+        let found = self.found;
+        let base = Part::Table(base_parameters(&found.parameters)?);
+        let bodies = self.updated.map(|after| bodies([self.robot, after], &found.parameters));
+        let parts = match bodies {
+            None => vec![base],
+            Some(table) => {
+                let tab = |name: &str, part| Tab { name: name.to_owned(), parts: vec![part] };
+                let bodies = tab("Bodies and joints", Part::Table(table));
+                vec![Part::Tabs { tabs: vec![bodies, tab("Base parameters", base)] }]
+            }
+        };
+        Ok(Section { heading: "Parameters".to_owned(), parts })
+    }
+
+    fn convergence(&self) -> Section {
+        let found = self.found;
+        let parts = vec![
+            Part::Chart(convergence(&found.parameters, &found.convergence)),
+            Part::Chart(condition(&found.convergence)),
+            Part::Paragraph { text: self.conditioned() },
+        ];
+        Section { heading: "Convergence".to_owned(), parts }
+    }
+
+    fn conditioned(&self) -> String {
+        let solution = &self.found.estimate.solution;
+        format!(
+            "The regressor has condition {}, and {} with its columns scaled to length 1.",
+            short(solution.condition),
+            short(solution.scaled_condition)
+        )
+    }
+}
+
+/// What is left of the torques of the logs of an estimate, and of others.
+pub(super) fn residuals(train: &Validation, held_out: Option<&Validation>) -> Section {
+    let columns = headings(&[
+        ("joint", false),
+        ("torque rms", true),
+        ("residual rms", true),
+        ("left", true),
+        ("left of other logs", true),
+        ("largest residual", true),
+        ("correlation with the next sample", true),
+    ]);
+    let rows = train.joints.iter().map(|joint| {
+        let other = held_out.and_then(|all| find(all, &joint.name));
+        let number = |value: f64| Cell::number(value, short(value));
+        let next = joint.autocorrelation.first().copied().unwrap_or(0.0);
+        let cells = vec![
+            Cell::text(&joint.name),
+            number(joint.torque_rms),
+            number(joint.residual_rms),
+            share(joint.relative),
+            other.map_or_else(|| Cell::text(""), |other| share(other.relative)),
+            number(joint.largest),
+            Cell::number(next, format!("{next:.2}")),
+        ];
+        Row { cells, is_marked: false }
+    });
+    let caption = "What is left of the torques [N m, N], after the filter. Residuals that are \
+                   noise alone are not correlated.";
+    let table = HtmlTable { caption: caption.to_owned(), columns, rows: rows.collect() };
+    Section { heading: "Residuals".to_owned(), parts: vec![Part::Table(table)] }
+}
+
+/// What was noticed of the logs; none if nothing was.
+pub(super) fn remarks(remarks: &[String]) -> Option<Section> {
+    let paragraph = |text: &String| Part::Paragraph { text: text.clone() };
+    let parts: Vec<Part> = remarks.iter().map(paragraph).collect();
+    let heading = "Remarks on the logs".to_owned();
+    (!parts.is_empty()).then_some(Section { heading, parts })
+}
+
+/// How far the nearest bodies that exist are, where the estimate belongs to none.
+pub(super) fn nearest_bodies(distance: f64) -> String {
+    match distance > 1.0 {
+        true => format!(
+            "The estimate belongs to no bodies that exist; the nearest ones are {} standard \
+             errors away, over all parameters.",
+            short(distance)
+        ),
+        false => String::new(),
+    }
+}
+
+pub(super) fn headings(list: &[(&str, bool)]) -> Vec<Heading> {
+    let heading =
+        |&(text, is_number): &(&str, bool)| Heading { heading: text.to_owned(), is_number };
+    list.iter().map(heading).collect()
+}
+
+fn find<'a>(validation: &'a Validation, joint: &str) -> Option<&'a JointResidual> {
+    validation.joints.iter().find(|other| other.name == joint)
+}
+
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+pub(super) fn share(value: f64) -> Cell {
+    Cell::number(value, percent(value))
+}

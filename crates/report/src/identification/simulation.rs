@@ -1,0 +1,50 @@
+//! Logs that were simulated again.
+
+use super::curves::motion;
+use super::{SimulationPart, headings, share};
+use crate::html::{Cell, HtmlTable, Part, Row, Section};
+use denavit_identify::forward::{Compared, Forward, ForwardJoint};
+
+impl SimulationPart<'_> {
+    pub(super) fn section(&self) -> Section {
+        let columns = headings(&[
+            ("joint", false),
+            ("position before", true),
+            ("position", true),
+            ("rate before", true),
+            ("rate", true),
+            ("torque before", true),
+            ("torque", true),
+        ]);
+        let joints = self.after.or(self.before).map_or(&[][..], |made| &made.joints);
+        let rows = joints.iter().map(|joint| {
+            let of = |forward: Option<&Forward>| {
+                let joints = forward.map_or(&[][..], |made| &made.joints);
+                joints.iter().find(|other| other.name == joint.name).cloned()
+            };
+            let both = [of(self.before), of(self.after)];
+            let mut cells = vec![Cell::text(&joint.name)];
+            let signals: [fn(&ForwardJoint) -> Option<&Compared>; 3] =
+                [|one| Some(&one.position), |one| Some(&one.rate), |one| one.torque.as_ref()];
+            for signal in signals {
+                for made in &both {
+                    let compared = made.as_ref().and_then(signal);
+                    cells.push(compared.map_or_else(|| Cell::text(""), |one| share(one.relative)));
+                }
+            }
+            Row { cells, is_marked: false }
+        });
+        let caption = format!(
+            "Logs {}: rms of simulated less measured, over the size of what there is to predict.",
+            self.method
+        );
+        let table = HtmlTable { caption, columns, rows: rows.collect() };
+        let mut parts = vec![Part::Table(table)];
+        let paragraph = |text: &String| Part::Paragraph { text: text.clone() };
+        parts.extend(self.reasons.iter().map(paragraph));
+        if let Some(after) = self.after {
+            parts.extend(motion(after).map(Part::Chart));
+        }
+        Section { heading: "Simulation".to_owned(), parts }
+    }
+}

@@ -1,0 +1,175 @@
+// Curves over time, or over another quantity: panels below each other, with one horizontal axis.
+// Charts of a group have their zoom and their cursor in common.
+import uPlot from "uplot";
+import { colour, onTheme } from "./theme.js";
+
+/** How a curve looks by what it is; others have the colours of a palette in turn. */
+const LOOKS = {
+  measured: { colour: "measured", width: 1.6 },
+  computed: { colour: "computed", width: 1.6, dash: [6, 4] },
+  before: { colour: "before", width: 1.2 },
+  residual: { colour: "quiet", width: 1.2 },
+  points: { colour: "measured", points: true },
+};
+const PALETTE = 8;
+const PAPER_WIDTH = 640;
+
+const groups = new Map();
+
+function group(name) {
+  if (!groups.has(name)) groups.set(name, { plots: [], isBusy: false, full: null });
+  return groups.get(name);
+}
+
+/** The other charts of a group show the same part of the axis. */
+function link(own, plot) {
+  if (own.isBusy) return;
+  own.isBusy = true;
+  const { min, max } = plot.scales.x;
+  for (const other of own.plots) if (other !== plot) other.setScale("x", { min, max });
+  own.isBusy = false;
+}
+
+function shown(value) {
+  if (value === null || value === undefined) return "\u2013";
+  return String(Number(value.toPrecision(4)));
+}
+
+function series(curve, place) {
+  const look = LOOKS[curve.look] ?? { colour: `c${place % PALETTE}`, width: 1.2 };
+  const stroke = () => colour(look.colour);
+  return {
+    label: curve.name,
+    stroke,
+    width: look.width ?? 0,
+    dash: look.dash,
+    paths: look.points ? () => null : undefined,
+    points: look.points ? { show: true, size: 3, fill: stroke } : { show: false },
+    value: (_, value) => shown(value),
+  };
+}
+
+function axis(label, isLeft) {
+  return {
+    label,
+    labelSize: isLeft ? 20 : 18,
+    labelFont: "12px system-ui, sans-serif",
+    font: "11px system-ui, sans-serif",
+    size: isLeft ? 58 : 32,
+    stroke: () => colour("quiet"),
+    grid: { stroke: () => colour("rule"), width: 1 },
+    ticks: { stroke: () => colour("rule"), width: 1 },
+    space: isLeft ? 28 : 60,
+    values: (_, ticks) => ticks.map(tick => (tick === null ? "" : shown(tick))),
+  };
+}
+
+/** Lines of a logarithmic scale stand at powers of ten alone. */
+function powers(_, ticks) {
+  return ticks.map(tick => (Math.abs(Math.log10(tick) % 1) < 1e-9 ? tick : null));
+}
+
+function options(data, panel, isLast, own, box, width) {
+  const many = panel.curves.length > 4;
+  const left = axis(panel.label, true);
+  if (panel.log) for (const lines of [left, left.grid, left.ticks]) lines.filter = powers;
+  return {
+    width,
+    height: panel.height + (isLast ? 50 : 24),
+    padding: [10, 12, isLast ? 0 : 8, 0],
+    scales: { x: { time: false }, y: panel.log ? { distr: 3 } : {} },
+    axes: [isLast ? axis(data.x_label, false) : { ...axis("", false), label: undefined, size: 14,
+      values: (_, ticks) => ticks.map(() => "") }, left],
+    series: [
+      { label: data.x_name, value: (_, value) => shown(value) },
+      ...panel.curves.map(series),
+    ],
+    legend: { mount: (_, table) => box.append(table) },
+    // of many curves the one below the cursor stands out
+    focus: { alpha: many ? 0.2 : 1 },
+    cursor: {
+      y: false,
+      focus: { prox: many ? 24 : -1 },
+      drag: { x: true, y: false },
+      sync: {
+        key: data.group,
+        setSeries: false,
+        filters: { pub: type => type === "mousemove" || type === "mouseleave" },
+      },
+    },
+    hooks: { setScale: [(plot, scale) => { if (scale === "x") link(own, plot); }] },
+  };
+}
+
+function zoom(own, plot, factor, shift) {
+  const { min, max } = plot.scales.x;
+  const [first, last] = own.full;
+  const [half, middle] = [(factor * (max - min)) / 2, (min + max) / 2 + shift * (max - min)];
+  const range = { min: Math.max(first, middle - half), max: Math.min(last, middle + half) };
+  if (range.max > range.min) plot.setScale("x", range);
+}
+
+/** The keys of a chart: closer, further, along, all. */
+function keys(own, plot) {
+  return event => {
+    const [min, max] = own.full;
+    const acts = {
+      "+": () => zoom(own, plot, 0.5, 0),
+      "-": () => zoom(own, plot, 2, 0),
+      ArrowLeft: () => zoom(own, plot, 1, -0.25),
+      ArrowRight: () => zoom(own, plot, 1, 0.25),
+      0: () => plot.setScale("x", { min, max }),
+    };
+    const act = acts[event.key];
+    if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    act();
+  };
+}
+
+function drawChart(figure) {
+  const data = JSON.parse(figure.querySelector("script[type='application/json']").textContent);
+  const room = figure.querySelector(".plot");
+  const own = group(data.group);
+  const x = data.x;
+  own.full ??= [x[0], x[x.length - 1]];
+  own.full = [Math.min(own.full[0], x[0]), Math.max(own.full[1], x[x.length - 1])];
+  const width = () => Math.max(200, room.clientWidth);
+  const plots = data.panels.map((panel, place) => {
+    const legend = document.createElement("div");
+    legend.className = "legend";
+    room.append(legend);
+    const isLast = place === data.panels.length - 1;
+    const given = options(data, panel, isLast, own, legend, width());
+    const plot = new uPlot(given, [x, ...panel.curves.map(curve => curve.y)], room);
+    own.plots.push(plot);
+    return plot;
+  });
+  room.addEventListener("keydown", keys(own, plots[0]));
+  const resize = to => plots.forEach(plot => {
+    if (plot.width !== to) plot.setSize({ width: to, height: plot.height });
+  });
+  new ResizeObserver(() => {
+    if (room.clientWidth > 0) resize(width());
+  }).observe(room);
+  onTheme(() => {
+    const isPaper = document.documentElement.classList.contains("paper");
+    resize(isPaper ? PAPER_WIDTH : width());
+    plots.forEach(plot => plot.redraw(false, true));
+  });
+}
+
+/** Draws the first charts at once and the others one by one, so that the page answers meanwhile. */
+export function drawCharts(root) {
+  const left = [...root.querySelectorAll("figure.chart")];
+  const next = count => left.splice(0, count).forEach(drawChart);
+  const rest = () => {
+    next(1);
+    if (left.length > 0) setTimeout(rest, 0);
+    else document.documentElement.dataset.charts = "yes";
+  };
+  // paper has all of them
+  addEventListener("beforeprint", () => next(left.length));
+  next(2);
+  rest();
+}

@@ -1,0 +1,10 @@
+// What every page runs: tables that are sorted, tabs, and curves.
+import { drawCharts } from "./charts.js";
+import { makeSortable } from "./tables.js";
+import { makeTabs } from "./tabs.js";
+
+document.querySelectorAll("table.sortable").forEach(makeSortable);
+drawCharts(document);
+// after the curves: what is hidden has no width to draw them in
+document.querySelectorAll(".tabs").forEach(makeTabs);
+document.documentElement.dataset.ready = "yes";

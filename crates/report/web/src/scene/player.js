@@ -1,0 +1,128 @@
+// The controls of a run: play, time, speed, what is shown, events.
+import { Vector3 } from "three";
+import { between, place } from "./frames.js";
+import { Marks } from "./marks.js";
+import { Robot } from "./robot.js";
+import { Stage } from "./stage.js";
+import { colour, onTheme } from "../theme.js";
+
+const NEAR_S = 0.08;
+
+class Player {
+  constructor(figure, data) {
+    this.data = data;
+    this.stage = new Stage(figure.querySelector("canvas"), data);
+    this.robot = new Robot(data);
+    this.marks = new Marks(data);
+    this.stage.scene.add(this.robot.group, this.marks.group);
+    const find = name => figure.querySelector(name);
+    this.slider = find(".line input");
+    this.clock = find("output");
+    this.button = find(".play");
+    this.speed = find("select");
+    this.now = find(".now");
+    this.time = data.t[0];
+    this.last = null;
+    this.isFollowing = data.follows;
+    this.shift = new Vector3(...data.center);
+    if (data.com.length > 2) this.shift.sub(new Vector3(...data.com.slice(0, 3)));
+    if (!data.follows) this.stage.follow(new Vector3(...data.center));
+    this.listen(figure);
+    this.showEvents(find(".ticks"));
+    this.paint();
+  }
+
+  listen(figure) {
+    const { t } = this.data;
+    this.slider.addEventListener("input", () => {
+      this.pause();
+      this.show(Number(this.slider.value));
+    });
+    this.button.addEventListener("click", () => (this.last === null ? this.play() : this.pause()));
+    figure.querySelector(".home").addEventListener("click", () => {
+      this.stage.home();
+      this.stage.draw();
+    });
+    figure.querySelectorAll(".marks input").forEach(box => {
+      box.addEventListener("change", () => {
+        this.marks.toggle(box.value, box.checked);
+        this.stage.draw();
+      });
+    });
+    this.slider.min = t[0];
+    this.slider.max = t[t.length - 1];
+    this.slider.step = "any";
+    new ResizeObserver(() => this.stage.resize()).observe(this.stage.canvas);
+    onTheme(() => this.paint());
+  }
+
+  /** Marks of the events above the slider. */
+  showEvents(box) {
+    const { t, events } = this.data;
+    const over = t[t.length - 1] - t[0] || 1;
+    for (const event of events) {
+      const mark = document.createElement("i");
+      mark.style.left = `${(100 * (event.t - t[0])) / over}%`;
+      mark.title = `${event.t.toFixed(3)} s: ${event.text}`;
+      box.append(mark);
+    }
+  }
+
+  paint() {
+    for (const part of [this.robot, this.marks, this.stage]) part.paint(colour);
+    this.show(this.time);
+  }
+
+  show(time) {
+    const { data } = this;
+    this.time = time;
+    const at = between(data.t, time);
+    const poses = this.robot.show(at);
+    this.marks.show(at, poses);
+    if (this.isFollowing) {
+      const center = place(data.com, at);
+      if (center) this.stage.follow(center.add(this.shift));
+    }
+    this.slider.value = time;
+    this.slider.setAttribute("aria-valuetext", `${time.toFixed(2)} s`);
+    this.clock.textContent = `${time.toFixed(2)} s`;
+    const past = data.events.filter(event => event.t <= time + 1e-9).pop();
+    const isNear = past && time - past.t < NEAR_S * 5;
+    this.now.textContent = isNear ? `${past.t.toFixed(3)} s: ${past.text}` : "";
+    this.stage.draw();
+  }
+
+  play() {
+    const { t } = this.data;
+    const end = t[t.length - 1];
+    if (this.time >= end) this.time = t[0];
+    this.last = performance.now();
+    this.button.textContent = "Pause";
+    const tick = now => {
+      if (this.last === null) return;
+      const passed = ((now - this.last) / 1000) * Number(this.speed.value);
+      this.last = now;
+      this.show(Math.min(end, this.time + Math.max(0, passed)));
+      if (this.time >= end) this.pause();
+      else requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  pause() {
+    this.last = null;
+    this.button.textContent = "Play";
+  }
+}
+
+export function makePlayer(figure, data) {
+  let player;
+  try {
+    player = new Player(figure, data);
+  } catch (error) {
+    // a browser without WebGL: the rest of the page is as useful
+    figure.querySelector(".now").textContent = `Nothing is drawn in 3D: ${error.message}`;
+    return;
+  }
+  player.stage.resize();
+}

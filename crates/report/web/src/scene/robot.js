@@ -1,0 +1,127 @@
+// A robot as the rows of its Denavit-Hartenberg table: each link goes along the axis of its joint
+// by d, then at a right angle by a, as a capsule each; joints are cylinders, slides are blocks.
+import {
+  BoxGeometry, BufferGeometry, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group, Mesh,
+  MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
+} from "three";
+import { pose } from "./frames.js";
+
+const UP = new Vector3(0, 1, 0);
+const AXIS = new Vector3(0, 0, 1);
+const ROUND = 20;
+
+/** A cylinder with round ends, of length 1 until it is put between two points. */
+class Capsule {
+  constructor(radius, material) {
+    this.rod = new Mesh(new CylinderGeometry(radius, radius, 1, ROUND, 1, true), material);
+    const ball = new SphereGeometry(radius, ROUND, ROUND / 2);
+    this.ends = [new Mesh(ball, material), new Mesh(ball, material)];
+    this.group = new Group().add(this.rod, ...this.ends);
+  }
+
+  put(from, to) {
+    const way = to.clone().sub(from);
+    const length = way.length();
+    this.group.visible = length > 1e-5;
+    if (!this.group.visible) return;
+    this.rod.position.copy(from).addScaledVector(way, 0.5);
+    this.rod.quaternion.setFromUnitVectors(UP, way.divideScalar(length));
+    this.rod.scale.set(1, length, 1);
+    this.ends[0].position.copy(from);
+    this.ends[1].position.copy(to);
+  }
+}
+
+function jointMesh(slides, size, material) {
+  const along = slides
+    ? new BoxGeometry(0.05 * size, 0.09 * size, 0.05 * size)
+    : new CylinderGeometry(0.024 * size, 0.024 * size, 0.075 * size, ROUND);
+  return new Mesh(along, material);
+}
+
+/** A foot: all triangles of its contact points and its joint, of which the eye sees the hull. */
+function footMesh(count, material) {
+  const triangles = [];
+  for (let a = 0; a < count; a++)
+    for (let b = a + 1; b < count; b++) for (let c = b + 1; c < count; c++) triangles.push(a, b, c);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute(new Float32Array(3 * count), 3));
+  geometry.setIndex(triangles);
+  const mesh = new Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+export class Robot {
+  constructor(data) {
+    this.data = data;
+    this.group = new Group();
+    const material = () => new MeshLambertMaterial({ side: DoubleSide });
+    this.materials = { link: material(), joint: material(), foot: material() };
+    const radius = 0.015 * data.size;
+    const { link: body, joint, foot } = this.materials;
+    this.links = data.links.map(link => ({
+      along: new Capsule(radius, body),
+      across: new Capsule(radius, body),
+      joint: link.is_joint ? jointMesh(link.slides, data.size, joint) : null,
+    }));
+    for (const one of this.links) {
+      this.group.add(one.along.group, one.across.group);
+      if (one.joint) this.group.add(one.joint);
+    }
+    this.tips = data.tips.map(() => new Capsule(radius, body));
+    this.feet = data.feet.map(own => footMesh(own.points.length + 1, foot));
+    this.spikes = data.feet.map(own => own.points.map(() => new Capsule(0.5 * radius, foot)));
+    const capsules = [...this.tips, ...this.spikes.flat()].map(one => one.group);
+    for (const part of [...capsules, ...this.feet]) this.group.add(part);
+  }
+
+  paint(colour) {
+    for (const [name, material] of Object.entries(this.materials)) material.color.set(colour(name));
+  }
+
+  /** Moves all parts; gives the poses of the links. */
+  show(at) {
+    const { data } = this;
+    const poses = data.links.map((_, link) => pose(data, at, link));
+    const base = [new Vector3(...data.base), new Quaternion()];
+    data.links.forEach((link, place) => {
+      const [origin] = poses[place];
+      const [from, turn] = link.carrier < 0 ? base : poses[link.carrier];
+      const axis = AXIS.clone().applyQuaternion(turn);
+      const corner = from.clone().addScaledVector(axis, origin.clone().sub(from).dot(axis));
+      const parts = this.links[place];
+      if (link.is_body) {
+        parts.along.put(from, corner);
+        parts.across.put(corner, origin);
+      }
+      parts.along.group.visible &&= link.is_body;
+      parts.across.group.visible &&= link.is_body;
+      if (parts.joint) {
+        parts.joint.position.copy(from);
+        parts.joint.quaternion.setFromUnitVectors(UP, axis);
+      }
+    });
+    const seen = (link, point) =>
+      new Vector3(...point).applyQuaternion(poses[link][1]).add(poses[link][0]);
+    data.tips.forEach((tip, place) => {
+      this.tips[place].put(poses[tip.link][0], seen(tip.link, tip.at));
+    });
+    data.feet.forEach((foot, place) => this.stand(foot, place, poses, seen));
+    return poses;
+  }
+
+  stand(foot, place, poses, seen) {
+    const ankle = foot.carrier < 0 ? poses[foot.link][0] : poses[foot.carrier][0];
+    const points = foot.points.map(point => seen(foot.link, point));
+    const vertices = this.feet[place].geometry.getAttribute("position");
+    [ankle, ...points].forEach((point, at) => vertices.setXYZ(at, point.x, point.y, point.z));
+    vertices.needsUpdate = true;
+    this.feet[place].geometry.computeVertexNormals();
+    // a foot of one or two points has no area
+    this.spikes[place].forEach((spike, at) => {
+      if (points.length < 3) spike.put(ankle, points[at]);
+      else spike.group.visible = false;
+    });
+  }
+}

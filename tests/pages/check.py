@@ -1,0 +1,210 @@
+"""Opens pages in a headless Chromium and holds what pages promise.
+
+    python tests/pages/check.py PAGE.html .. [--shots FOLDER] [--chromium PATH]
+
+At 1280, 1920 and 400 px and on paper: no error, nothing is loaded, no horizontal overflow, every
+column of every table can be reached, curves are drawn and answer the cursor, and the robot of a run
+is drawn and moves with its slider. Prints how large a page is and how long it takes to be ready.
+"""
+
+import argparse
+import math
+import os
+import sys
+import time
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+WIDTHS = (1280, 1920, 400)
+MOST_BYTES = 4_000_000
+MOST_LIBRARIES = 1_500_000
+MOST_SECONDS = 1.5
+
+# the last column of each table that scrolls lies within its frame when it is scrolled there
+COLUMNS = """() => [...document.querySelectorAll('.wide')].filter(box => box.querySelector('table')
+  && box.clientWidth > 0).map(box => {
+  box.scrollLeft = box.scrollWidth;
+  const [frame, head] = [box.getBoundingClientRect(), box.querySelector('thead tr')];
+  const last = head.lastElementChild.getBoundingClientRect();
+  const first = head.firstElementChild.getBoundingClientRect();
+  const fits = last.right <= frame.right + 1 && last.right > frame.left
+    && Math.abs(first.left - frame.left) < 1.5 && frame.right <= innerWidth + 1;
+  const wide = [...box.querySelectorAll('tbody tr')].map(row => row.clientHeight);
+  box.scrollLeft = 0;
+  return [fits, head.parentNode.parentNode.caption?.textContent ?? box.ariaLabel, Math.max(...wide)];
+})"""
+
+# how many pixels of a canvas are not transparent, and a sum that changes where these do
+PIXELS = """canvas => {
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const context = copy.getContext('2d');
+  context.drawImage(canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  let [seen, sum] = [0, 0];
+  for (let at = 0; at < data.length; at += 4) if (data[at + 3] > 0) {
+    seen += 1;
+    sum = (sum * 31 + data[at] + 7 * data[at + 1] + 13 * data[at + 2] + at) % 1e9;
+  }
+  return [seen, sum, canvas.width * canvas.height];
+}"""
+
+SLIDE = """([slider, share]) => {
+  slider.value = Number(slider.min) + share * (slider.max - slider.min);
+  slider.dispatchEvent(new Event('input'));
+}"""
+
+
+class Checked:
+    """One page, with the faults that were found."""
+
+    def __init__(self, path):
+        self.path = path
+        self.faults = []
+        self.drawn_s = math.inf
+
+    def expect(self, holds, what):
+        if not holds:
+            self.faults.append(what)
+
+    def listen(self, page):
+        page.on("console", lambda note: self.expect(
+            note.type not in ("error", "warning") or "GPU stall" in note.text, note.text))
+        page.on("pageerror", lambda error: self.expect(False, str(error)))
+        page.on("request", lambda request: self.expect(
+            request.url.startswith(("file:", "data:")), f"asks for {request.url}"))
+
+    def open(self, page, width):
+        page.set_viewport_size({"width": width, "height": 900})
+        started = time.monotonic()
+        page.goto(self.path.resolve().as_uri())
+        page.wait_for_selector("html[data-ready=yes]", timeout=10_000)
+        ready = page.evaluate("performance.timing.domInteractive - performance.timing.fetchStart")
+        page.wait_for_selector("html[data-charts=yes]", timeout=20_000)
+        if page.query_selector("figure.scene"):
+            # here a processor draws what a graphics card would
+            page.wait_for_selector("html[data-scene=yes]", timeout=20_000)
+        self.drawn_s = min(self.drawn_s, time.monotonic() - started)
+        return ready / 1000
+
+    def layout(self, page, width):
+        overflow = page.evaluate("document.documentElement.scrollWidth - innerWidth")
+        self.expect(overflow <= 0, f"{width} px: the page is {overflow} px too wide")
+        tabs = page.query_selector_all("[role=tab]")
+        for tab in [None, *tabs]:
+            if tab:
+                tab.click()
+            for fits, name, _ in page.evaluate(COLUMNS):
+                self.expect(fits, f"{width} px: columns of `{name}` cannot be reached")
+        if tabs:
+            tabs[0].click()
+        for tag in ("h1", "main", "h2"):
+            self.expect(page.query_selector(tag), f"no {tag}")
+        bare = page.evaluate("""document.querySelectorAll(
+            'canvas:not([aria-label], .uplot canvas), [style]:not(.uplot *, .uplot, .legend *, .ticks *, .scene canvas)'
+        ).length""")
+        self.expect(bare == 0, f"{bare} elements without words, or with styles of their own")
+
+    def curves(self, page, width):
+        for chart in page.query_selector_all("figure.chart"):
+            name = chart.query_selector(".name").inner_text()
+            canvas = chart.query_selector("canvas")
+            chart.scroll_into_view_if_needed()
+            seen, _, _ = canvas.evaluate(PIXELS)
+            self.expect(seen > 500, f"{width} px: nothing is drawn of {name}")
+            over = chart.query_selector(".u-over").bounding_box()
+            page.mouse.move(over["x"] + 0.5 * over["width"], over["y"] + 0.5 * over["height"])
+            page.wait_for_timeout(30)
+            values = chart.eval_on_selector_all(
+                ".u-value", "all => all.map(one => one.textContent).filter(text => /[0-9]/.test(text))")
+            self.expect(values, f"{width} px: no value of {name} below the cursor")
+
+    def zoom(self, page):
+        """Charts of a group show the same part."""
+        ticks = ("() => [...document.querySelectorAll('figure.chart')].slice(0, 2)"
+                 ".map(one => one.querySelector('.legend') && "
+                 "one.querySelectorAll('canvas')[0].toDataURL().length)")
+        plots = page.query_selector_all("figure.chart .plot")
+        if len(plots) < 2:
+            return
+        before = page.evaluate(ticks)
+        plots[0].focus()
+        page.keyboard.press("+")
+        page.wait_for_timeout(60)
+        self.expect(before != page.evaluate(ticks), "a key does not zoom")
+        page.keyboard.press("0")
+
+    def scene(self, page, width):
+        figure = page.query_selector("figure.scene")
+        if not figure:
+            return
+        figure.scroll_into_view_if_needed()
+        canvas, slider = figure.query_selector("canvas"), figure.query_selector(".line input")
+        sums = []
+        for share in (0.0, 0.35, 0.8):
+            page.evaluate(SLIDE, [slider, share])
+            page.wait_for_timeout(50)
+            seen, value, total = canvas.evaluate(PIXELS)
+            self.expect(0.005 * total < seen < total, f"{width} px: the robot is not drawn")
+            sums.append(value)
+        self.expect(len(set(sums)) == 3, f"{width} px: the slider does not move the robot")
+        figure.query_selector(".play").click()
+        page.wait_for_timeout(400)
+        figure.query_selector(".play").click()
+        self.expect(canvas.evaluate(PIXELS)[1] != sums[2], f"{width} px: it does not play")
+
+
+def check(browser, path, shots):
+    checked, took = Checked(path), None
+    for scheme in ("light", "dark"):
+        for width in WIDTHS:
+            if scheme == "dark" and width != WIDTHS[0]:
+                continue
+            page = browser.new_page(color_scheme=scheme)
+            checked.listen(page)
+            seconds = checked.open(page, width)
+            took = seconds if took is None else min(took, seconds)
+            checked.layout(page, width)
+            checked.curves(page, width)
+            checked.scene(page, width)
+            checked.zoom(page)
+            if shots:
+                page.evaluate("scrollTo(0, 0)")
+                page.screenshot(path=shots / f"{path.stem}-{scheme}-{width}.png", full_page=True)
+            if scheme == "light" and width == WIDTHS[0]:
+                paper = page.pdf(format="A4", path=shots / f"{path.stem}.pdf" if shots else None)
+                checked.expect(len(paper) > 10_000, "the page on paper is empty")
+            page.close()
+    text = path.read_text(encoding="utf-8")
+    checked.expect(len(text) <= MOST_BYTES, f"{len(text)} bytes, where {MOST_BYTES} are allowed")
+    checked.expect(took <= MOST_SECONDS, f"ready after {took:.2f} s")
+    checked.expect("unsafe-inline" not in text, "its policy allows what has no hash")
+    print(f"{path.name}: {len(text)} bytes, ready after {took:.2f} s, "
+          f"drawn after {checked.drawn_s:.2f} s")
+    for fault in dict.fromkeys(checked.faults):
+        print(f"  {fault}")
+    return not checked.faults
+
+
+def main():
+    words = argparse.ArgumentParser()
+    words.add_argument("pages", nargs="+", type=Path)
+    words.add_argument("--shots", type=Path)
+    words.add_argument("--chromium", default=os.environ.get("CHROMIUM", "/usr/bin/chromium"))
+    given = words.parse_args()
+    if given.shots:
+        given.shots.mkdir(parents=True, exist_ok=True)
+    flags = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    with sync_playwright() as player:
+        browser = player.chromium.launch(executable_path=given.chromium, args=flags)
+        good = [check(browser, path, given.shots) for path in given.pages]
+        browser.close()
+    libraries = Path(__file__).parents[2] / "templates" / "html"
+    size = sum((libraries / name).stat().st_size for name in ("page.js", "scene.js", "page.css"))
+    print(f"libraries and styles: {size} bytes")
+    return 0 if all(good) and size <= MOST_LIBRARIES else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

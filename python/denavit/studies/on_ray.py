@@ -14,7 +14,7 @@ from .study import Study
 def ray_package() -> Any:
     """The package ray, which is asked for where it is used."""
     try:
-        import ray
+        import ray  # type: ignore[import-not-found, unused-ignore]
     except ImportError:
         cause, hint = "ray is not installed", "pip install 'denavit[ray]'"
         raise MissingPackage([Fault(None, None, None, cause, hint)]) from None

@@ -29,7 +29,7 @@ pub struct Chart {
 pub struct Panel {
     /// The scale, with its unit.
     pub label: String,
-    /// Its height [px].
+    /// Its height \[px\].
     pub height: u32,
     /// Whether the scale is logarithmic.
     pub log: bool,
@@ -90,7 +90,7 @@ impl ChartCurve {
 }
 
 impl Panel {
-    /// A panel of this height [px].
+    /// A panel of this height \[px\].
     pub fn new(label: impl Into<String>, height: u32, curves: Vec<ChartCurve>) -> Self {
         Self { label: label.into(), height, log: false, curves }
     }

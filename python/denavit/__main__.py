@@ -93,7 +93,7 @@ def _merge(given: argparse.Namespace) -> int:
 def _missing(given: argparse.Namespace) -> int:
     from . import studies
 
-    found = studies.missing(given.parts, studies.read_study(given.study).count)
+    found = studies.missing(given.parts, studies.read_study(given.study))
     for start, stop in found:
         print(f"{start}:{stop}")
     return 1 if found else 0

@@ -134,6 +134,16 @@ def test_what_does_not_fit_is_refused(study_file, tmp_path, capsys):
         studies.merge([out, other], tmp_path / "merged.parquet")
     with pytest.raises(studies.StudyError, match="no part of a study"):
         studies.read_part(study_file)
+    with pytest.raises(studies.StudyError, match="no part of the study"):
+        studies.missing([out], studies.read_study(study_file))
+    with pytest.raises(studies.StudyError, match="one of the parts"):
+        studies.merge([other], other)
+    part = Part(studies.read_study(study_file), 0, 10, tmp_path / "new.parquet")
+    head = json.dumps({"study": part.study.key, "start": 0, "stop": 10})
+    for line in ("[1]", '{"index": 99}', "{no", '{"index": 0}'):
+        part.journal.write_text(f"{head}\n{line}\n")
+        with pytest.raises(studies.StudyError, match="rows"):
+            studies.run(part.study, part.path)
     content = json.loads(study_file.read_text())
     study_file.write_text(json.dumps(content | {"count": -1, "sed": 2, "function": "os:nothing"}))
     assert main(["study", "run", str(study_file), "-o", str(out)]) == 2

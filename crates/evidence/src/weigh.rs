@@ -208,7 +208,8 @@ pub(crate) struct Posterior {
 
 impl Posterior {
     pub(crate) fn new(cells: &[Cell], variances: &[f64], believed: &[f64]) -> Self {
-        let size = cells.first().map_or(1, |cell| cell.products.nrows());
+        let of_believed = 1 + believed.len(); // where nothing was measured
+        let size = cells.first().map_or(of_believed, |cell| cell.products.nrows());
         let mut sum = DMatrix::zeros(size, size);
         for (cell, variance) in cells.iter().zip(variances) {
             let weight = 1.0 / variance;

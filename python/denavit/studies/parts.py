@@ -86,17 +86,26 @@ def journal(part: Part) -> Iterator[tuple[dict[int, Row], IO[str]]]:
     with part.journal.open("a+", encoding="utf-8") as file:
         _locked(file, part.journal)
         file.seek(0)
-        text = file.read()
+        try:
+            text = file.read()
+        except UnicodeDecodeError as error:
+            raise wrong(part.journal, f"is no text: {error}", "remove it") from None
         # what stands behind the last end of a line was cut
         whole = text[: text.rfind("\n") + 1]
         lines = whole.splitlines()
         done: dict[int, Row] = {}
         if lines:
-            if json.loads(lines[0]) != head:
-                hint = "name another file, or remove this one"
+            hint = "name another file, or remove this one"
+            try:
+                is_own = json.loads(lines[0]) == head
+                read = [json.loads(line) for line in lines[1:]]
+            except ValueError as error:
+                raise wrong(part.journal, f"is no journal of rows: {error}", hint) from None
+            if not is_own:
                 raise wrong(part.journal, "holds another study, or other indices of it", hint)
-            rows = (json.loads(line) for line in lines[1:])
-            done = {row["index"]: row for row in rows}
+            if not all(_is_row(row, part) for row in read):
+                raise wrong(part.journal, "has rows that are not of this study", hint)
+            done = {row["index"]: row for row in read}
         file.truncate(len(whole.encode()))
         if not lines:
             file.write(json.dumps(head) + "\n")
@@ -120,6 +129,14 @@ def _locked(file: IO[str], path: Path) -> None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         raise wrong(path, "another process is at this part") from None
+
+
+def _is_row(row: Any, part: Part) -> bool:
+    columns = {"index", "failure", *columns_of(part.study.function)}
+    if not isinstance(row, dict) or row.keys() != columns:
+        return False
+    index = row["index"]
+    return type(index) is int and part.start <= index < part.stop
 
 
 def _index(row: Row) -> int:
@@ -156,6 +173,7 @@ def write_rows(path: Path, study: Study, start: int, stop: int, rows: list[Row])
 
 def _write(path: Path, table: pa.Table) -> None:
     pa = arrow()
+    path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".denavit-", dir=path.parent) as inside:
         new = Path(inside) / "part.parquet"
         pa.parquet.write_table(table, new, compression="zstd", row_group_size=ROWS_A_GROUP)
@@ -179,10 +197,14 @@ def read_part(path: str | Path) -> pa.Table:
     return arrow().parquet.read_table(path)
 
 
-def missing(paths: Iterable[str | Path], count: int) -> list[tuple[int, int]]:
-    """Ranges of indices, of the first ``count``, that no part has."""
-    ranges = sorted(_said(Path(path))[1:] for path in paths)
-    found, at = [], 0
+def missing(paths: Iterable[str | Path], study: Study) -> list[tuple[int, int]]:
+    """Ranges of indices of a study that no part has."""
+    said = {Path(path): _said(Path(path)) for path in paths}
+    for path, (key, _, _) in said.items():
+        if key != study.key:
+            raise wrong(path, f"is no part of the study `{study.name}` as it is now")
+    ranges = sorted((start, stop) for _, start, stop in said.values())
+    found, at, count = [], 0, study.count
     for start, stop in ranges:
         if start > at:
             found.append((at, min(start, count)))
@@ -202,6 +224,8 @@ def merge(paths: Iterable[str | Path], out: str | Path) -> int:
     for other, _, _, path in parts:
         if other != key:
             raise wrong(path, f"is of another study than {parts[0][3]}")
+    if any(path.resolve() == Path(out).resolve() for *_, path in parts):
+        raise wrong(out, "is one of the parts", "name another file")
     parts.sort(key=lambda part: part[1:3])
     for (_, _, stop, path), (_, start, _, following) in zip(parts, parts[1:]):
         if start < stop:

@@ -1,3 +1,4 @@
 //! Evidence against densities of whole covariances.
 
+mod condensed;
 mod weigh;

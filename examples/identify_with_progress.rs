@@ -18,7 +18,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let logs = Logs::new([train], [held_out]);
     let identified = identify(&robot, &logs, &IdentifyOptions::default(), &mut watch)?;
     for one in &identified.found.parameters {
-        println!("{} = {:.4} +- {:.1e} {}", one.name, one.value, one.std.unwrap_or(0.0), one.unit);
+        let error = one.std.map_or("not excited".to_owned(), |std| format!("+- {std:.1e}"));
+        println!("{} = {:.4} {error} {}", one.name, one.value, one.unit);
     }
     Ok(())
 }

@@ -13,6 +13,7 @@ import pytest
 
 from denavit import studies
 from denavit.__main__ import main
+from denavit.studies.cases import plain
 from denavit.studies.here import in_processes
 from denavit.studies.parts import Part, journal, noted
 
@@ -152,6 +153,9 @@ def test_what_does_not_fit_is_refused(study_file, tmp_path, capsys):
     study_file.write_text(json.dumps(content | {"function": "os:getcwd"}))
     assert main(["study", "run", str(study_file), "-o", str(out)]) == 2
     assert "says no columns" in capsys.readouterr().err
+    for kind, value in ((int, 2.9), (bool, "False"), (str, 3), (int, 1 << 70), (str, "\ud800")):
+        with pytest.raises((TypeError, OverflowError, UnicodeEncodeError)):
+            plain(kind, value)
     with pytest.raises(TypeError, match="type that no row has"):
         studies.rows(value=complex)
 

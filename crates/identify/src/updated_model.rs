@@ -5,6 +5,7 @@ use super::model_text::{NewValue, updated};
 use super::model_values::{model_values, with_effect};
 use denavit_codegen::model::{self, About, BodyEntry, ModelError, Robot, Role};
 use denavit_plants::regression::{ModelParameter, RegressionModel};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// A model with new values.
@@ -14,6 +15,9 @@ pub struct UpdatedModel {
     pub text: String,
     /// What it says.
     pub robot: Robot,
+    /// Standard errors of its numbers by name: of those that the logs determine by themselves, and
+    /// that are as they were estimated.
+    pub errors: BTreeMap<String, f64>,
 }
 
 /// Why identified values make no model.
@@ -86,9 +90,14 @@ pub fn updated_model(
             .collect();
         updated(source, &new).ok_or_else(|| UpdateError::NoPlace(model.model.clone()))
     };
+    let with_error = |(parameter, value): (&ModelParameter, &f64)| {
+        Some((parameter.name.clone(), std_of(parameter, *value)?))
+    };
+    let errors: BTreeMap<String, f64> =
+        model.parameters.iter().zip(&values).filter_map(with_error).collect();
     let read = |text: String| {
         let robot = model::read("the identified model", text.as_bytes());
-        robot.map(|robot| UpdatedModel { text, robot })
+        robot.map(|robot| UpdatedModel { text, robot, errors: errors.clone() })
     };
     // What moves nothing stays as it is written, unless no body has it beside the rest.
     match read(text(&|place| effects[place])?) {

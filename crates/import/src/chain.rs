@@ -35,6 +35,12 @@ pub(crate) fn cut(tree: &mut Tree, tip: &str, at: usize, faults: &mut Faults) {
     if !left.is_empty() {
         tree.notes.push(format!("left out is what these joints carry: {}", listed(&left)));
     }
+    let gone = tree.contacts.iter().filter(|point| !kept[point.link]);
+    let gone: Vec<String> = gone.map(|point| point.name.clone()).collect();
+    if !gone.is_empty() {
+        let said = "`options.contacts`: `options.tip` leaves out what these points are on";
+        faults.push(at, Cause::new(format!("{said}: {}", listed(&gone))));
+    }
     // places after what is left out has gone
     let mut places = vec![0; tree.links.len()];
     let mut count = 0;

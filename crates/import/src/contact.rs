@@ -1,28 +1,59 @@
 //! Contact points of links, from the shapes that they touch others with.
 
 use crate::exact::{Vector, rounded, transformed, transposed};
+use crate::fault::{Cause, Faults, clip};
 use crate::names::identifier;
-use crate::place::{Pose, is_quarter, matrix};
+use crate::options::Options;
+use crate::place::{Pose, Turn, is_quarter, matrix};
 use crate::solid::Solid;
 use crate::tree::{Tree, TreeContact};
+use num_traits::Zero;
 
-/// What to do where a link has no shape that gives points.
-pub(crate) const NO_SHAPE: &str = "meshes are not read: write \"contacts\" into the model file";
+/// A link that is to have contact points.
+pub(crate) struct Wanted<'a> {
+    pub(crate) name: &'a str,
+    /// Its place in the tree, and in the file.
+    pub(crate) link: usize,
+    pub(crate) at: usize,
+    /// What it has none of, where it has no solids.
+    pub(crate) lacks: &'a str,
+}
 
-/// Adds the points of a link's solids, each in its pose in the link; whether there are any.
-pub(crate) fn touch(tree: &mut Tree, name: &str, link: usize, solids: &[(Pose, Solid)]) -> bool {
+/// The links that are asked for, each once.
+pub(crate) fn wanted(options: &Options) -> impl Iterator<Item = &String> {
+    let all = &options.contacts;
+    all.iter().enumerate().filter(|(at, name)| !all[..*at].contains(name)).map(|(_, name)| name)
+}
+
+/// Adds the points of a link's solids, each in its pose in the link.
+pub(crate) fn touch(
+    tree: &mut Tree,
+    link: &Wanted<'_>,
+    solids: &[(Pose, Solid)],
+    faults: &mut Faults,
+) {
+    let &Wanted { name, link, at, lacks } = link;
+    if solids.is_empty() {
+        let said = format!("`{}` has {lacks}", clip(name));
+        let hint = "meshes are not read: write \"contacts\" into the model file";
+        faults.push(at, Cause::with_hint(said, hint));
+    }
+    if tree.gravity.iter().all(Zero::is_zero) {
+        let said = "without gravity no point of a link is its lowest";
+        let hint = "write \"contacts\" into the model file";
+        faults.push(at, Cause::with_hint(said, hint));
+        return;
+    }
     let down = down_in(tree, link);
     let points = solids.iter().flat_map(|(place, solid)| {
         let own_down = transformed(&transposed(&matrix(&place.turns)), &down);
         solid.lowest(&own_down).into_iter().map(|point| in_link(place, &point))
     });
     let points: Vec<Vector> = points.collect();
-    let found = !points.is_empty();
     for (at, point) in points.into_iter().enumerate() {
         let name = format!("{}_{}", identifier(name), at + 1);
         tree.contacts.push(TreeContact { name, link, at: point });
     }
-    found
 }
 
 /// The direction of free fall in the frame of a link where all joints are at 0.
@@ -31,6 +62,13 @@ fn down_in(tree: &Tree, link: usize) -> Vector {
     let mut at = Some(link);
     while let Some(link) = at.map(|at| &tree.links[at]) {
         let mut own: Vec<_> = link.before.iter().flat_map(|pose| pose.turns.clone()).collect();
+        if let Some(joint) = &link.joint {
+            // its frame is turned where its variable is 0
+            let back = joint.axis.iter().rev();
+            own.extend(joint.axis.iter().cloned());
+            own.push(Turn::new(2, joint.zero.0.clone()));
+            own.extend(back.map(|turn| Turn::new(turn.axis, turn.angle.clone().negated())));
+        }
         own.extend(link.after.iter().flat_map(|pose| pose.turns.clone()));
         own.extend(turns);
         turns = own;

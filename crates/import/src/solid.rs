@@ -80,10 +80,11 @@ impl Solid {
             Self::Sphere(radius) => vec![down.each_ref().map(|x| rounded(&(x * radius)))],
             Self::Cylinder { radius, half } => match steepest(&down) {
                 2 => {
+                    // from the lowest point of the rim on, if there is one
                     let z = half * down[2].signum();
-                    let rim = |(x, y): (i64, i64)| [radius * integer(x), radius * integer(y)];
-                    let all = [(1, 0), (0, -1), (-1, 0), (0, 1)].map(rim);
-                    all.map(|[x, y]| [x, y, z.clone()]).to_vec()
+                    let [x, y] = below_axis(&down, radius);
+                    let rim = [[x.clone(), y.clone()], [-&y, x.clone()], [-&x, -&y], [y, -x]];
+                    rim.map(|[x, y]| [x, y, z.clone()]).to_vec()
                 }
                 _ => {
                     let [x, y] = below_axis(&down, radius);
@@ -122,8 +123,11 @@ fn steepest(direction: &Vector) -> usize {
     (0..3).max_by_key(|&k| &direction[k] * &direction[k]).unwrap_or(2)
 }
 
-/// Where the side of a cylinder is lowest.
+/// Where the side of a cylinder is lowest, x for one that stands.
 fn below_axis(down: &Vector, radius: &Rational) -> [Rational; 2] {
     let length = root(&(&down[0] * &down[0] + &down[1] * &down[1]));
+    if length.is_zero() {
+        return [radius.clone(), Rational::zero()];
+    }
     [0, 1].map(|k| rounded(&(&down[k] / &length * radius)))
 }

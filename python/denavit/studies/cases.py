@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
@@ -73,7 +74,18 @@ def plain(kind: Any, value: Any) -> Any:
     """A value of a column as one of Python's own, whatever numpy calls it."""
     if value is None:
         return None
-    if kind in (float, int, bool, str):
-        return kind(value)
-    own = str if kind == list[str] else float
-    return [own(one) for one in value]
+    if kind == list[float] or kind == list[str]:
+        own = str if kind == list[str] else float
+        return [plain(own, one) for one in value]
+    if kind is float:
+        return float(value)
+    if kind is int:
+        whole = operator.index(value)
+        if not -(1 << 63) <= whole < 1 << 63:
+            raise OverflowError(f"{whole} has no place in 64 bits")
+        return whole
+    if not isinstance(value, (bool, np.bool_) if kind is bool else str):
+        raise TypeError(f"{value!r} is no {kind.__name__}")
+    if isinstance(value, str):
+        value.encode()  # halves of characters have no bytes
+    return kind(value)

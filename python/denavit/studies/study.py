@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import inspect
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -44,10 +45,16 @@ class Study:
 
     @cached_property
     def key(self) -> str:
-        """Names the study by content: function, inputs, options, seed and version, but not how many
-        indices there are, so that a study may be extended.
+        """Names the study by content: the function (its own text, not that of what it calls),
+        inputs, options, seed and version, but not how many indices there are, so that a study may
+        be extended.
         """
+        try:
+            text = inspect.getsource(self.function)
+        except (OSError, TypeError):
+            text = ""  # it was typed in
         said = {
+            "text": digest(text.encode()),
             "format": FORMAT,
             "function": self.place,
             "columns": {name: str(kind) for name, kind in columns_of(self.function).items()},

@@ -53,7 +53,7 @@ pub(super) fn of(
         after: gap.after.as_ref().ok(),
         reasons,
     });
-    let updated = identified.updated.as_ref().ok().map(|updated| &updated.robot);
+    let updated = identified.updated.as_ref().ok();
     let page =
         IdentificationPage { robot, updated, facts, remarks: &notes, found, is_good, simulation };
     Ok(page.page().map_err(Misuse::Formula)?.render())

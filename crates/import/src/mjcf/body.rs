@@ -62,13 +62,14 @@ pub(crate) struct Reader<'s, 'f> {
     pub(crate) base: BaseChoice,
     pub(crate) notes: MassNotes,
     pub(crate) snapped: Snapped,
-    /// What each body with a name touches others with: its place in the tree, and its geoms.
+    /// What each body touches others with, by its name.
     pub(crate) touching: BTreeMap<String, Touching<'s>>,
     unnamed: usize,
 }
 
-/// A body that touches others.
+/// What a body touches others with.
 pub(crate) struct Touching<'s> {
+    /// The place of the body in the tree, and in the file.
     pub(crate) link: usize,
     pub(crate) at: usize,
     pub(crate) geoms: Vec<(Element<'s>, Scope<'s>)>,
@@ -181,7 +182,12 @@ impl<'s, 'f> Reader<'s, 'f> {
         }
         let own = self.tree.links.len() - 1;
         let touching = Touching { link: own, at: element.at(), geoms: contents.geoms };
-        self.touching.insert(name, touching);
+        if self.touching.insert(name, touching).is_some()
+            && let Some(name) = element.get("name")
+        {
+            let said = format!("two bodies are called `{}`", clip(name.text));
+            self.faults.push(name.at, Cause::new(said));
+        }
         for (child, scope) in contents.bodies {
             self.push(child, Some(own), &scope);
         }

@@ -3,7 +3,7 @@
 use super::body::Touching;
 use super::geom::{placed, touches};
 use super::settings::Settings;
-use crate::contact::{NO_SHAPE, touch};
+use crate::contact::{Wanted, touch, wanted};
 use crate::fault::{Cause, Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
@@ -19,7 +19,7 @@ pub(crate) fn find(
     options: &Options,
     faults: &mut Faults,
 ) {
-    for wanted in &options.contacts {
+    for wanted in wanted(options) {
         let Some(body) = bodies.get(wanted) else {
             let said = format!("`options.contacts`: no body is called `{}`", clip(wanted));
             faults.push(0, Cause::new(said));
@@ -27,9 +27,10 @@ pub(crate) fn find(
         };
         let before = faults.count();
         let solids = solids(wanted, body, settings, faults);
-        if !touch(tree, wanted, body.link, &solids) && faults.count() == before {
-            let said = format!("body `{}` has no geom that touches others", clip(wanted));
-            faults.push(body.at, Cause::with_hint(said, NO_SHAPE));
+        if faults.count() == before {
+            let lacks = "no geom that touches others";
+            let link = Wanted { name: wanted, link: body.link, at: body.at, lacks };
+            touch(tree, &link, &solids, faults);
         }
     }
 }

@@ -43,7 +43,7 @@ pub(crate) fn tree<'s>(
         .filter_map(|actuator| actuator.get("joint").or(actuator.get("jointinparent")))
         .map(|joint| joint.text);
     let driven: BTreeSet<&str> = driven.collect();
-    let acting = refused::acting(&settings, &of("actuator").collect::<Vec<_>>());
+    let acting = refused::acting(&settings, &of("actuator").collect::<Vec<_>>(), faults);
     let name = root.get("model").map_or("robot", |name| name.text);
     let tree = Tree {
         name: name.to_owned(),

@@ -56,19 +56,26 @@ fn tendon<'s>(settings: &Settings<'s>, tendon: Element<'s>, faults: &mut Faults)
     }
 }
 
-/// Actuators with gains of their own, which act on positions and velocities.
-const CONTROLLERS: [&str; 5] = ["position", "velocity", "intvelocity", "damper", "muscle"];
-
-/// Names of the actuators that do more than pass a torque on.
-pub(crate) fn acting<'s>(settings: &Settings<'s>, sections: &[Element<'s>]) -> Vec<String> {
+/// Names of the actuators that do more than pass a torque on, each once.
+pub(crate) fn acting<'s>(
+    settings: &Settings<'s>,
+    sections: &[Element<'s>],
+    faults: &mut Faults,
+) -> Vec<String> {
     let all = sections.iter().flat_map(|section| settings.children(*section));
-    let acts = |one: &Element<'s>| {
-        let has_bias = || one.get("biastype").is_some_and(|bias| bias.text != "none");
-        CONTROLLERS.contains(&one.name()) || one.name() == "general" && has_bias()
-    };
-    let name = |one: Element<'s>| {
+    let mut found = Vec::new();
+    for one in all.filter(|one| one.name() != "motor") {
+        let attributes = settings.with_class(one, None, faults);
+        let is = |key, plain| attributes.get(key).is_none_or(|value| value.text == plain);
+        let passes_on = is("biastype", "none") && is("gaintype", "fixed") && is("dyntype", "none");
+        if one.name() == "general" && passes_on {
+            continue;
+        }
         let name = one.get("name").or(one.get("joint"));
-        name.map_or_else(|| one.name().to_owned(), |name| name.text.to_owned())
-    };
-    all.filter(acts).map(name).collect()
+        let name = name.map_or_else(|| one.name().to_owned(), |name| name.text.to_owned());
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
 }

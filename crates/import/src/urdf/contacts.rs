@@ -2,7 +2,7 @@
 
 use super::raw::{Raw, RawLink};
 use super::values::{Snapped, numbers, pose, wrong};
-use crate::contact::{NO_SHAPE, touch};
+use crate::contact::{Wanted, touch, wanted};
 use crate::fault::{Cause, Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
@@ -21,7 +21,7 @@ pub(crate) fn find(
     options: &Options,
     faults: &mut Faults,
 ) {
-    for wanted in &options.contacts {
+    for wanted in wanted(options) {
         let link = raw.links.iter().find(|link| link.name.text == wanted);
         let (Some(link), Some(&place)) = (link, places.get(wanted.as_str())) else {
             let said =
@@ -31,9 +31,10 @@ pub(crate) fn find(
         };
         let before = faults.count();
         let solids = solids(link, faults);
-        if !touch(tree, wanted, place, &solids) && faults.count() == before {
-            let said = format!("link `{}` has no collision box, sphere or cylinder", clip(wanted));
-            faults.push(link.name.at, Cause::with_hint(said, NO_SHAPE));
+        if faults.count() == before {
+            let lacks = "no collision box, sphere or cylinder";
+            let link = Wanted { name: wanted, link: place, at: link.name.at, lacks };
+            touch(tree, &link, &solids, faults);
         }
     }
 }
@@ -51,25 +52,40 @@ fn solids(link: &RawLink<'_>, faults: &mut Faults) -> Vec<(Pose, Solid)> {
 
 fn solid(geometry: Element<'_>, faults: &mut Faults) -> Option<Solid> {
     let half = |value: &Rational| value / integer(2);
-    if let Some(size) = geometry.first("box").and_then(|shape| shape.get("size")) {
-        let size = numbers::<3>(size, "`size`", faults)?;
+    if let Some(shape) = geometry.first("box") {
+        let given = needed(shape, "size", faults)?;
+        let size = numbers::<3>(given, "`size`", faults)?;
+        if size.iter().any(Signed::is_negative) {
+            wrong(given, "`size`", "0 or more", faults);
+            return None;
+        }
         return Some(Solid::Box(size.each_ref().map(half)));
     }
-    if let Some(given) = geometry.first("sphere").and_then(|shape| shape.get("radius")) {
-        return Some(Solid::Sphere(length(given, "`radius`", faults)?));
+    if let Some(shape) = geometry.first("sphere") {
+        return Some(Solid::Sphere(length(shape, "radius", faults)?));
     }
-    let cylinder = geometry.first("cylinder")?;
-    let (radius, whole) = (cylinder.get("radius")?, cylinder.get("length")?);
-    let radius = length(radius, "`radius`", faults);
-    let whole = length(whole, "`length`", faults);
+    let shape = geometry.first("cylinder")?;
+    let (radius, whole) = (length(shape, "radius", faults), length(shape, "length", faults));
     Some(Solid::Cylinder { radius: radius?, half: half(&whole?) })
 }
 
+/// An attribute that a shape cannot be without.
+fn needed<'s>(shape: Element<'s>, name: &str, faults: &mut Faults) -> Option<Text<'s>> {
+    let found = shape.get(name);
+    if found.is_none() {
+        let said = format!("this {} has no `{name}`", clip(shape.name()));
+        faults.push(shape.at(), Cause::new(said));
+    }
+    found
+}
+
 /// A length that is not below 0.
-fn length(given: Text<'_>, what: &str, faults: &mut Faults) -> Option<Rational> {
-    let [value] = numbers::<1>(given, what, faults)?;
+fn length(shape: Element<'_>, name: &str, faults: &mut Faults) -> Option<Rational> {
+    let given = needed(shape, name, faults)?;
+    let what = format!("`{name}`");
+    let [value] = numbers::<1>(given, &what, faults)?;
     if value.is_negative() {
-        wrong(given, what, "0 or more", faults);
+        wrong(given, &what, "0 or more", faults);
         return None;
     }
     Some(value)

@@ -74,6 +74,16 @@ fn faces_and_edges_that_lie_flat_touch_with_their_corners() {
         2,
         0.03,
     );
+    // one that leans: the lowest point of its rim is one of the four
+    let leaning = heights(&urdf("<cylinder radius=\"0.03\" length=\"0.4\"/>", "0.3"));
+    let lowest = leaning.iter().copied().fold(f64::INFINITY, f64::min);
+    reach(&[lowest], 1, 0.2 * 0.3_f64.cos() + 0.03 * 0.3_f64.sin());
+    assert_eq!(leaning.len(), 4);
+    // a joint whose variable is a quarter turn where the file shows it, lies on another face at 0
+    let turned = mjcf("type=\"box\" size=\"0.1 0.02 0.04\"", 0.0)
+        .replace("name=\"hip\"", "name=\"hip\" ref=\"90\"");
+    let turned = heights(&turned);
+    assert!(turned.iter().all(|height| (height - turned[0]).abs() < 1e-14), "{turned:?}");
     reach(&heights(&urdf("<box size=\"0.2 0.04 0.08\"/>", "0")), 4, 0.04);
 }
 
@@ -86,6 +96,20 @@ fn a_foot_without_a_solid_that_touches_is_refused() {
     };
     let picture = mjcf("type=\"sphere\" size=\"0.03\" contype=\"0\" conaffinity=\"0\"", 0.0);
     assert!(said(&picture).contains("no geom that touches"), "{}", said(&picture));
+    let without_length = said(&urdf("<cylinder radius=\"1\"/>", "0"));
+    assert!(without_length.contains("has no `length`"), "{without_length}");
+    let inside_out = said(&urdf("<box size=\"-1 1 1\"/>", "0"));
+    assert!(inside_out.contains("`size`") && !inside_out.contains("meshes"), "{inside_out}");
+    let ball = mjcf("type=\"sphere\" size=\"0.03\"", 0.0);
+    let weightless = ball.replace("<worldbody>", "<option gravity=\"0 0 0\"/><worldbody>");
+    assert!(said(&weightless).contains("without gravity"), "{}", said(&weightless));
+    let twice = ball.replace("name=\"leg\"", "name=\"foot\"");
+    assert!(said(&twice).contains("two bodies are called `foot`"), "{}", said(&twice));
+    let contacts = vec!["foot".to_owned(), "foot".to_owned()];
+    let cut = Options { contacts, tip: Some("leg".to_owned()), ..Options::default() };
+    let jointed = ball.replace("<geom pos", "<joint name=\"ankle\"/><geom pos");
+    let cut = import("r.xml", jointed.as_bytes(), &cut, &mut nothing_included).expect_err("cut");
+    assert!(cut.to_string().contains("leaves out what these points are on"), "{cut}");
     let negative = said(&urdf("<cylinder radius=\"-1\" length=\"0.4\"/>", "0"));
     assert!(negative.contains("`radius`") && !negative.contains("no collision"), "{negative}");
     let nowhere = said(&mjcf("type=\"sphere\" size=\"0.03\"", 0.0).replace("name=\"foot\"", ""));

@@ -125,14 +125,18 @@ fn what_is_no_tree_is_refused_by_name() {
 
 #[test]
 fn what_a_model_has_not_is_left_out_with_a_note() {
-    let text = "<mujoco><option density=\"1.2\" viscosity=\"0\"/><worldbody><body name=\"arm\">\
+    let text = "<mujoco><option density=\"1.2\" viscosity=\"0\"/>\
+                <default><general biastype=\"affine\"/></default><worldbody><body name=\"arm\">\
                 <joint name=\"j\"/><geom size=\"0.1\"/></body></worldbody><actuator>\
                 <position name=\"servo\" joint=\"j\" kp=\"10\"/><motor name=\"plain\" joint=\"j\"/>\
-                <general joint=\"j\" biastype=\"affine\" biasprm=\"0 -1 0\"/></actuator></mujoco>";
+                <general joint=\"j\" biasprm=\"0 -1 0\"/>\
+                <general name=\"passes\" joint=\"j\" biastype=\"none\"/>\
+                <adhesion name=\"sucker\" body=\"arm\"/></actuator></mujoco>";
     let found = import("a.xml", text.as_bytes(), &Options::default(), &mut nothing_included);
     let notes = found.expect("a tree").notes;
     let of = |word: &str| notes.iter().find(|note| note.contains(word)).expect(word);
     assert!(of("fluid").contains("`density`") && !of("fluid").contains("viscosity"), "{notes:?}");
     let gains = of("controller file");
-    assert!(gains.contains("`servo`, `j`") && !gains.contains("plain"), "{notes:?}");
+    assert!(gains.contains("`servo`, `j`, `sucker`"), "{notes:?}");
+    assert!(!gains.contains("plain") && !gains.contains("passes"), "{notes:?}");
 }

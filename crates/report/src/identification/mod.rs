@@ -13,9 +13,9 @@ use super::html::{
 use super::short;
 use curves::{condition, convergence};
 use denavit_codegen::model::Robot;
-use denavit_identify::Identification;
 use denavit_identify::estimate::{JointResidual, Status, Validation};
 use denavit_identify::forward::Forward;
+use denavit_identify::{Identification, UpdatedModel};
 use parameters::{bodies, not_excited};
 
 /// What a page about an identification says.
@@ -24,7 +24,7 @@ pub struct IdentificationPage<'a> {
     /// The robot as its file has it.
     pub robot: &'a Robot,
     /// The same with what was found, where that has a place in the file.
-    pub updated: Option<&'a Robot>,
+    pub updated: Option<&'a UpdatedModel>,
     /// What it was made of: version, hash of the model, logs, method, seed.
     pub facts: &'a [Fact],
     /// What was noticed of the logs.
@@ -141,7 +141,7 @@ impl IdentificationPage<'_> {
     fn parameters(&self) -> Result<Section, FormulaError> {
         let found = self.found;
         let base = Part::Table(base_parameters(&found.parameters)?);
-        let bodies = self.updated.map(|after| bodies([self.robot, after], &found.parameters));
+        let bodies = self.updated.map(|updated| bodies(self.robot, updated, &found.parameters));
         let parts = match bodies {
             None => vec![base],
             Some(table) => {

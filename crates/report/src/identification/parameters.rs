@@ -4,6 +4,7 @@ use super::headings;
 use crate::html::{Cell, FormulaError, HtmlTable, Part, Row, Section};
 use crate::{Values, short};
 use denavit_codegen::model::Robot;
+use denavit_identify::UpdatedModel;
 use denavit_identify::estimate::{IdentifiedParameter, Status};
 
 /// The base parameters.
@@ -50,7 +51,11 @@ fn base_row(one: &IdentifiedParameter) -> Result<Row, FormulaError> {
 }
 
 /// The numbers of a model file, before and after.
-pub(super) fn bodies(robots: [&Robot; 2], found: &[IdentifiedParameter]) -> HtmlTable {
+pub(super) fn bodies(
+    before: &Robot,
+    updated: &UpdatedModel,
+    found: &[IdentifiedParameter],
+) -> HtmlTable {
     let columns = headings(&[
         ("parameter", false),
         ("value ± standard error", true),
@@ -59,8 +64,8 @@ pub(super) fn bodies(robots: [&Robot; 2], found: &[IdentifiedParameter]) -> Html
         ("unit", false),
         ("remark", false),
     ]);
-    let [before, after] = robots;
-    let mut values = robots.map(Values::new);
+    let after = &updated.robot;
+    let mut values = [before, after].map(Values::new);
     let mut rows = Vec::new();
     for parameter in after.parameters.values().filter(|one| !one.known) {
         let old = before.parameters.values().find(|one| one.name == parameter.name);
@@ -69,12 +74,14 @@ pub(super) fn bodies(robots: [&Robot; 2], found: &[IdentifiedParameter]) -> Html
             [(0, old), (1, parameter.default)].map(|(which, it)| values[which].number(it?));
         let Some(new) = new else { continue };
         let alone = found.iter().find(|one| one.expression == parameter.name);
-        let std = alone.and_then(|one| one.std);
+        let std = updated.errors.get(&parameter.name).copied();
         let is_hidden = alone.is_some_and(|one| one.status == Status::NotExcited);
         let remark = match alone.map(|one| one.status) {
-            Some(Status::Identified) => "",
-            Some(Status::Uncertain) => "may be 0",
             Some(Status::NotExcited) => "not excited",
+            Some(Status::Uncertain) if std.is_some() => "may be 0",
+            Some(Status::Identified) if std.is_some() => "",
+            // about the centre of mass, or moved so that the body exists
+            Some(_) => "depends on others, too",
             None if old == Some(new) => "open: as in the model",
             None => "in sums alone",
         };

@@ -193,7 +193,7 @@ fn growth_of_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedPara
 
 /// The identified model with all of its effects: what is simulated.
 fn with_all_effects(updated: UpdatedModel, own: &[Effect]) -> Result<UpdatedModel, UpdateError> {
-    let UpdatedModel { text, .. } = updated;
+    let UpdatedModel { text, errors, .. } = updated;
     let robot = effect::read_model("the identified model", text.as_bytes(), own);
-    robot.map(|robot| UpdatedModel { text, robot }).map_err(UpdateError::Unsound)
+    robot.map(|robot| UpdatedModel { text, robot, errors }).map_err(UpdateError::Unsound)
 }

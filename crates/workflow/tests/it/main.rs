@@ -3,6 +3,7 @@
 mod errors;
 mod observers;
 mod runs;
+mod updates;
 
 use std::fs;
 use std::path::{Path, PathBuf};

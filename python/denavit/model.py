@@ -117,17 +117,19 @@ class Model(_denavit.Model):
         base: Literal["fixed", "floating"] | None = None,
         tip: str | None = None,
         contacts: tuple[str, ...] | list[str] = (),
+        meshes: PathLike | None = None,
         mimic: Literal["refuse", "lock", "free"] = "refuse",
     ) -> Model:
         """The model of a URDF or MJCF: of a path, or of its text.
 
         ``base`` is what the first link stands on, ``tip`` the link at the end of the chain that is
-        wanted, ``contacts`` are links whose collision boxes and spheres become contact points, and
-        ``mimic`` says what becomes of joints that follow others.
+        wanted, ``contacts`` are links whose collision shapes become contact points, ``meshes`` is
+        the folder of their meshes, or of the package of ``package://`` (by default that of the
+        file), and ``mimic`` says what becomes of joints that follow others.
         """
         with _options.folder() as inside:
             arguments = ["import", _described(robot, "a robot", inside)]
-            arguments += _options.flags(base=base, tip=tip, mimic=mimic)
+            arguments += _options.flags(base=base, tip=tip, meshes=meshes, mimic=mimic)
             for contact in contacts:
                 arguments += ["--contacts", contact]
             out = inside / "model.json"

@@ -1,6 +1,7 @@
 """Models of files, dicts and URDF, and what is wrong with them."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -139,3 +140,21 @@ def test_robots_are_exported(tmp_path):
         model.to_urdf(into=tmp_path / "none.urdf")
     with pytest.raises(denavit.ModelError):
         model.to_urdf(into="<robot name='other'/>")
+
+
+def test_contact_points_of_a_mesh_in_another_folder(tmp_path: Path) -> None:
+    text = (
+        '<robot name="r"><link name="base"/><link name="foot"><inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><collision>'
+        '<geometry><mesh filename="package://feet/sole.obj"/></geometry></collision></link>'
+        '<joint name="hip" type="continuous"><axis xyz="0 1 0"/><parent link="base"/>'
+        '<child link="foot"/></joint></robot>'
+    )
+    corners = [(0.1, 0, 0), (0, 0.2, 0), (-0.1, 0, 0), (0, -0.2, 0), (0, 0, 1)]
+    (tmp_path / "sole.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners))
+    with pytest.raises(denavit.ModelError, match="folder"):
+        denavit.Model.from_urdf(text, contacts=["foot"])
+    with pytest.warns(denavit.ModelWarning, match="4 corners"):
+        model = denavit.Model.from_urdf(text, contacts=["foot"], meshes=tmp_path)
+    found = model.contact_positions(np.zeros(1))
+    assert sorted(map(tuple, found)) == sorted(corners[:4])

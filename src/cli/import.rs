@@ -6,7 +6,7 @@ use super::files::FILES;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::said::say_note;
 use clap::{Args, ValueEnum};
-use denavit::import::{BaseChoice, Mimic, Options, import};
+use denavit::import::{BaseChoice, Beside, Mimic, Options, import};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -32,9 +32,12 @@ pub(crate) struct Arguments {
     /// Take the chain to this link alone, with what is fixed to it
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
-    /// Make contact points of the collision shapes of this link (meshes apart); may be repeated
+    /// Make contact points of the collision shapes of this link; may be repeated
     #[arg(long, value_name = "LINK")]
     contacts: Vec<String>,
+    /// The folder of meshes (STL, OBJ), or of the package of `package://`; without it that of ROBOT
+    #[arg(long, value_name = "DIR", requires = "contacts")]
+    meshes: Option<PathBuf>,
     /// What becomes of joints that follow others, which a model file has not
     #[arg(long, value_enum, value_name = "WAY", default_value = "refuse")]
     mimic: Way,
@@ -80,7 +83,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             Way::Free => Mimic::Free,
         },
     };
-    let mut include = |file: &str| FILES.below(&arguments.robot, file);
+    let meshes = arguments.meshes.as_deref();
+    let mut include = |named: Beside<'_>| FILES.of_description(&arguments.robot, meshes, named);
     let imported = import(&name, &bytes, &options, &mut include).map_err(Failure::Import)?;
     for note in &imported.notes {
         say_note(&format_args!("note: {note}"));

@@ -2,12 +2,21 @@
 
 use crate::exact::{Vector, rounded, transformed, transposed};
 use crate::fault::{Cause, Faults, clip};
+use crate::mesh::{corners, sole};
 use crate::names::identifier;
 use crate::options::Options;
 use crate::place::{Pose, Turn, is_quarter, matrix};
 use crate::solid::Solid;
 use crate::tree::{Tree, TreeContact};
+use crate::{Beside, Include};
 use num_traits::Zero;
+
+/// What a link touches others with.
+pub(crate) enum Shape {
+    Solid(Solid),
+    /// Corners of the mesh of this name.
+    Mesh(String, Vec<Vector>),
+}
 
 /// A link that is to have contact points.
 pub(crate) struct Wanted<'a> {
@@ -25,17 +34,17 @@ pub(crate) fn wanted(options: &Options) -> impl Iterator<Item = &String> {
     all.iter().enumerate().filter(|(at, name)| !all[..*at].contains(name)).map(|(_, name)| name)
 }
 
-/// Adds the points of a link's solids, each in its pose in the link.
+/// Adds the points of a link's shapes, each in its pose in the link.
 pub(crate) fn touch(
     tree: &mut Tree,
     link: &Wanted<'_>,
-    solids: &[(Pose, Solid)],
+    shapes: &[(Pose, Shape)],
     faults: &mut Faults,
 ) {
     let &Wanted { name, link, at, lacks } = link;
-    if solids.is_empty() {
+    if shapes.is_empty() {
         let said = format!("`{}` has {lacks}", clip(name));
-        let hint = "meshes are not read: write \"contacts\" into the model file";
+        let hint = "write \"contacts\" into the model file";
         faults.push(at, Cause::with_hint(said, hint));
     }
     if tree.gravity.iter().all(Zero::is_zero) {
@@ -45,14 +54,50 @@ pub(crate) fn touch(
         return;
     }
     let down = down_in(tree, link);
-    let points = solids.iter().flat_map(|(place, solid)| {
+    let mut points: Vec<Vector> = Vec::new();
+    for (place, shape) in shapes {
         let own_down = transformed(&transposed(&matrix(&place.turns)), &down);
-        solid.lowest(&own_down).into_iter().map(|point| in_link(place, &point))
-    });
-    let points: Vec<Vector> = points.collect();
+        let lowest = match shape {
+            Shape::Solid(solid) => solid.lowest(&own_down),
+            Shape::Mesh(file, corners) => {
+                let sole = sole(corners, &own_down);
+                tree.notes.push(sole.note(name, file));
+                sole.points
+            }
+        };
+        points.extend(lowest.iter().map(|point| in_link(place, point)));
+    }
     for (at, point) in points.into_iter().enumerate() {
         let name = format!("{}_{}", identifier(name), at + 1);
         tree.contacts.push(TreeContact { name, link, at: point });
+    }
+}
+
+/// The mesh of a file, each axis by its scale.
+pub(crate) fn meshed(
+    file: &str,
+    at: usize,
+    scale: Option<&Vector>,
+    include: &mut Include<'_>,
+    faults: &mut Faults,
+) -> Option<Shape> {
+    let found = include(Beside::Mesh(file)).and_then(|bytes| corners(file, &bytes));
+    match found {
+        Ok(mut corners) => {
+            if let Some(scale) = scale {
+                corners
+                    .iter_mut()
+                    .flat_map(|at| at.iter_mut().zip(scale))
+                    .for_each(|(x, by)| *x *= by);
+            }
+            Some(Shape::Mesh(file.to_owned(), corners))
+        }
+        Err(why) => {
+            let said = format!("the mesh {} is not read: {why}", clip(file));
+            let hint = "say where the meshes are, or write \"contacts\" into the model file";
+            faults.push(at, Cause::with_hint(said, hint));
+            None
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod export;
 mod fault;
 mod json;
 mod layout;
+mod mesh;
 mod mjcf;
 mod model;
 mod names;
@@ -52,11 +53,20 @@ pub fn is_description(bytes: &[u8]) -> bool {
 /// Most files that a description may include.
 const MAX_INCLUDED: usize = 64;
 
-/// A file that a description includes, of its name; a sentence if it cannot be read.
-pub type Include<'i> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'i;
+/// Another file that a description names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside<'n> {
+    /// A file that an MJCF includes.
+    Description(&'n str),
+    /// A mesh of a link that is to have contact points: a path, perhaps behind `package://`.
+    Mesh(&'n str),
+}
+
+/// What another file holds; a sentence if it cannot be read.
+pub type Include<'i> = dyn FnMut(Beside<'_>) -> Result<Vec<u8>, String> + 'i;
 
 /// The model of a description. `file` is its name, for messages and the model's description;
-/// `include` reads the files that an MJCF includes, and decides which it may.
+/// `include` reads the files that it names, and decides which it may.
 pub fn import(
     file: &str,
     bytes: &[u8],
@@ -70,7 +80,7 @@ pub fn import(
     let root = source.root(&document);
     let name = short_name(file);
     let tree = match root.name() {
-        "robot" => urdf::tree(name, root, options, &mut faults),
+        "robot" => urdf::tree(name, root, options, include, &mut faults),
         "mujoco" => {
             let files = included_files(root, include, &mut faults);
             if !faults.is_empty() {
@@ -96,7 +106,7 @@ pub fn import(
                     ((*name).clone(), source.included(document, *at))
                 })
                 .collect();
-            mjcf::tree(name, root, included, options, &mut faults)
+            mjcf::tree(name, root, included, options, include, &mut faults)
         }
         other => {
             let said =
@@ -143,7 +153,7 @@ fn included_files(
             faults.push(at, Cause::new(format!("more than {MAX_INCLUDED} files are included")));
             break;
         }
-        match include(&name) {
+        match include(Beside::Description(&name)) {
             Err(why) => {
                 faults
                     .push(at, Cause::new(format!("{} is not included: {why}", fault::clip(&name))));
@@ -162,7 +172,7 @@ fn included_files(
 }
 
 /// Includes nothing: for descriptions that stand alone.
-pub fn nothing_included(_: &str) -> Result<Vec<u8>, String> {
+pub fn nothing_included(_: Beside<'_>) -> Result<Vec<u8>, String> {
     Err("a description from here stands alone".to_owned())
 }
 

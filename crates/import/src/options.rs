@@ -31,8 +31,8 @@ pub struct Options {
     pub base: BaseChoice,
     /// The link at the end of the chain that is wanted; all of the tree without one.
     pub tip: Option<String>,
-    /// Links whose collision shapes become contact points: boxes, spheres, cylinders, and of MJCF
-    /// capsules and ellipsoids, too.
+    /// Links whose collision shapes become contact points: boxes, spheres, cylinders, meshes, and
+    /// of MJCF capsules and ellipsoids, too.
     pub contacts: Vec<String>,
     /// What becomes of joints that follow others.
     pub mimic: Mimic,

@@ -5,7 +5,7 @@ use crate::mistaken::{FileKind, Mistaken};
 use crate::robot_file::{RobotFile, WholeRobot};
 use denavit_codegen::effect::{self, Effect};
 use denavit_codegen::model::equations::{self, Equations};
-use denavit_import as import;
+use denavit_import::{self as import, Beside};
 use denavit_measure::log::ColumnMapping;
 use denavit_plants::shipped::{self, ShippedModel};
 use denavit_simulate::LogFile;
@@ -206,7 +206,7 @@ impl Files {
     /// Name and text of a path, of a file of one of these lists, or of standard input.
     fn named(&self, place: &Path, lists: &[&[ShippedModel]]) -> Result<ModelText, Error> {
         let (name, bytes) = self.any(place, lists)?;
-        let read = described(name, bytes, &mut |file| self.below(place, file))?;
+        let read = described(name, bytes, &mut |named| self.of_description(place, None, named))?;
         let takes_equations = lists.contains(&shipped::EQUATIONS);
         if takes_equations && equations::is_equations_file(&read.text) {
             return Ok(read);
@@ -217,22 +217,51 @@ impl Files {
         }
     }
 
-    /// A file that another one includes: from its folder and below, from nowhere else.
+    /// A file that a description at `place` names: from its folder and below, from nowhere else,
+    /// but for meshes, which are in `meshes`, if that is a folder.
     ///
     /// # Errors
     /// Why not, as a sentence.
-    pub fn below(&self, place: &Path, file: &str) -> Result<Vec<u8>, String> {
-        let outside = || "it is not in the folder of the file that includes it".to_owned();
+    pub fn of_description(
+        &self,
+        place: &Path,
+        meshes: Option<&Path>,
+        named: Beside<'_>,
+    ) -> Result<Vec<u8>, String> {
+        let own = place.parent().filter(|_| place.is_file());
+        let own = own.map(|own| if own.as_os_str().is_empty() { Path::new(".") } else { own });
+        match named {
+            Beside::Description(file) => {
+                let own = own.ok_or("the description is in no folder")?;
+                self.below(own, file)
+            }
+            Beside::Mesh(file) => {
+                let folder = meshes.or(own).ok_or("no folder of meshes is given")?;
+                self.mesh(folder, file)
+            }
+        }
+    }
+
+    /// A mesh of a folder, by its path in it or, behind `package://`, in that package, which is
+    /// the folder or in it.
+    fn mesh(&self, folder: &Path, file: &str) -> Result<Vec<u8>, String> {
+        let path = ["package://", "model://"].into_iter().find_map(|way| file.strip_prefix(way));
+        let Some(path) = path else { return self.below(folder, file) };
+        let Some((_, inside)) = path.split_once('/') else { return self.below(folder, path) };
+        self.below(folder, path).or_else(|why| self.below(folder, inside).map_err(|_| why))
+    }
+
+    fn below(&self, folder: &Path, file: &str) -> Result<Vec<u8>, String> {
+        let outside = || format!("it is not in {} or below", folder.display());
         let relative = Path::new(file);
         let is_inside =
             |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-        if !place.is_file() || !relative.components().all(is_inside) {
+        if !relative.components().all(is_inside) {
             return Err(outside());
         }
-        let said = |error: io::Error| reason(&error);
-        let folder = match place.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
+        let said = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => outside(),
+            _ => reason(&error),
         };
         let whole = folder.join(relative).canonicalize().map_err(said)?;
         if !whole.starts_with(folder.canonicalize().map_err(said)?) || !whole.is_file() {
@@ -240,7 +269,10 @@ impl Files {
         }
         let mut bytes = Vec::new();
         let file = self.open(&whole);
-        let read = file.and_then(|file| file.take(MAX_MODEL_BYTES).read_to_end(&mut bytes));
+        let read = file.and_then(|file| file.take(MAX_MODEL_BYTES + 1).read_to_end(&mut bytes));
+        if bytes.len() as u64 > MAX_MODEL_BYTES {
+            return Err(format!("it has more than the {MAX_MODEL_BYTES} bytes that are read"));
+        }
         read.map(|_| bytes).map_err(said)
     }
 
@@ -369,7 +401,7 @@ impl Files {
             return Ok(bytes);
         }
         let options = import::Options::default();
-        let mut include = |file: &str| self.below(&place, file);
+        let mut include = |named: Beside<'_>| self.of_description(&place, None, named);
         let imported = import::import(model, &bytes, &options, &mut include);
         imported.map(|found| found.model.into_bytes()).map_err(|error| error.to_string())
     }

@@ -7,6 +7,7 @@ use crate::exact::{decimal, product, transposed, written};
 use crate::fault::listed;
 use crate::layout::{Layout, layout};
 use crate::names::identifier;
+use crate::nothing_included;
 use crate::options::{BaseChoice, Mimic, Options};
 use crate::place::{Turn, is_quarter, matrix};
 use crate::tree::{Tree, TreeBody};
@@ -34,7 +35,7 @@ pub fn export_into(robot: &Robot, file: &str, description: &[u8]) -> Result<Expo
     let Some(root) = root.filter(|root| root.name() == "robot") else {
         return Err(ExportError::Model(format!("{file} is no URDF: values go into a URDF")));
     };
-    let Some(tree) = urdf::tree(file, root, &options, &mut faults) else {
+    let Some(tree) = urdf::tree(file, root, &options, &mut nothing_included, &mut faults) else {
         return Err(ExportError::Description(faults.into_error(file, description, None)));
     };
     let mut writer = Writer {

@@ -4,10 +4,9 @@ use super::frame::{Snapped, pose};
 use super::joint::{Freedom, joint};
 use super::mass::{MassNotes, mass_of};
 use super::settings::Settings;
-use crate::exact::transformed;
 use crate::fault::{Cause, Faults, clip};
 use crate::options::BaseChoice;
-use crate::place::{Pose, matrix};
+use crate::place::Pose;
 use crate::tree::{MAX_LINKS, Tree, TreeLink};
 use crate::xml::Element;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,15 +39,10 @@ impl<'s> Scope<'s> {
     }
 
     fn inside(&self, class: Option<&'s str>, pose: &Pose) -> Self {
-        let moved = transformed(&matrix(&self.frame.turns), &pose.at);
-        let frame = Pose {
-            at: std::array::from_fn(|k| &self.frame.at[k] + &moved[k]),
-            turns: [&self.frame.turns[..], &pose.turns].concat(),
-        };
         Self {
             class: class.or(self.class),
             way: [&self.way[..], std::slice::from_ref(pose)].concat(),
-            frame,
+            frame: pose.within(&self.frame),
         }
     }
 }

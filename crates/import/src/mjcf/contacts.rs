@@ -1,13 +1,15 @@
 //! Contact points of bodies, from the geoms that touch others.
 
 use super::body::Touching;
+use super::frame::pose;
 use super::geom::{placed, touches};
+use super::meshes;
 use super::settings::Settings;
-use crate::contact::{Wanted, touch, wanted};
+use crate::Include;
+use crate::contact::{Shape, Wanted, touch, wanted};
 use crate::fault::{Cause, Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
-use crate::solid::Solid;
 use crate::tree::Tree;
 use std::collections::BTreeMap;
 
@@ -17,6 +19,7 @@ pub(crate) fn find(
     bodies: &BTreeMap<String, Touching<'_>>,
     settings: &Settings<'_>,
     options: &Options,
+    include: &mut Include<'_>,
     faults: &mut Faults,
 ) {
     for wanted in wanted(options) {
@@ -26,30 +29,38 @@ pub(crate) fn find(
             continue;
         };
         let before = faults.count();
-        let solids = solids(wanted, body, settings, faults);
+        let shapes = shapes(wanted, body, settings, include, faults);
         if faults.count() == before {
             let lacks = "no geom that touches others";
             let link = Wanted { name: wanted, link: body.link, at: body.at, lacks };
-            touch(tree, &link, &solids, faults);
+            touch(tree, &link, &shapes, faults);
         }
     }
 }
 
-fn solids(
+fn shapes(
     name: &str,
     body: &Touching<'_>,
     settings: &Settings<'_>,
+    include: &mut Include<'_>,
     faults: &mut Faults,
-) -> Vec<(Pose, Solid)> {
+) -> Vec<(Pose, Shape)> {
     let mut found = Vec::new();
     for (geom, scope) in &body.geoms {
         let geom = settings.with_class(*geom, scope.class, faults);
         let kind = geom.get("type").map_or("sphere", |kind| kind.text);
-        let is_solid = !matches!(kind, "plane" | "hfield" | "mesh" | "sdf");
-        if is_solid && geom.get("mesh").is_none() && touches(&geom, faults) {
-            // what turns of it are snapped is said where its mass is read
-            let mut snapped = Vec::new();
-            found.extend(placed(&geom, settings, &scope.frame, name, &mut snapped, faults));
+        if matches!(kind, "plane" | "hfield" | "sdf") || !touches(&geom, faults) {
+            continue;
+        }
+        // what turns of it are snapped is said where its mass is read
+        let mut snapped = Vec::new();
+        if kind == "mesh" {
+            let place = pose(&geom, settings, name, &mut snapped, faults).within(&scope.frame);
+            let shape = meshes::of_geom(&geom, settings, include, faults);
+            found.extend(shape.map(|shape| (place, shape)));
+        } else if geom.get("mesh").is_none() {
+            let solid = placed(&geom, settings, &scope.frame, name, &mut snapped, faults);
+            found.extend(solid.map(|(place, solid)| (place, Shape::Solid(solid))));
         }
     }
     found

@@ -2,7 +2,7 @@
 
 use super::frame::{Snapped, pose};
 use super::settings::{Attributes, Settings};
-use crate::exact::{Matrix, Vector, product, root, transformed, transposed};
+use crate::exact::{Matrix, Vector, product, root, transposed};
 use crate::fault::{Cause, Faults, clip};
 use crate::place::{Pose, matrix, shortest};
 use crate::solid::Solid;
@@ -93,9 +93,7 @@ pub(crate) fn placed(
         half_length = Some(root(&along.iter().map(|x| x * x).sum()) / integer(2));
     }
     let solid = solid(kind, geom, half_length, faults)?;
-    let moved = transformed(&matrix(&outer.turns), &place.at);
-    let at = std::array::from_fn(|k| &outer.at[k] + &moved[k]);
-    Some((Pose { at, turns: [&outer.turns[..], &place.turns].concat() }, solid))
+    Some((place.within(outer), solid))
 }
 
 fn solid(

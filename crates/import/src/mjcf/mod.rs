@@ -6,9 +6,11 @@ mod frame;
 mod geom;
 mod joint;
 mod mass;
+mod meshes;
 mod refused;
 mod settings;
 
+use crate::Include;
 use crate::body::settle;
 use crate::chain;
 use crate::fault::{Cause, Faults, listed};
@@ -32,6 +34,7 @@ pub(crate) fn tree<'s>(
     root: Element<'s>,
     included: BTreeMap<String, Element<'s>>,
     options: &Options,
+    include: &mut Include<'_>,
     faults: &mut Faults,
 ) -> Option<Tree> {
     let settings = Settings::read(root, included, faults);
@@ -81,7 +84,7 @@ pub(crate) fn tree<'s>(
             .push(format!("masses of {count} bodies are those of their shapes, at 17 digits"));
     }
     settle(&mut tree, faults);
-    contacts::find(&mut tree, &touching, &settings, options, faults);
+    contacts::find(&mut tree, &touching, &settings, options, include, faults);
     if let Some(tip) = &options.tip {
         chain::cut(&mut tree, tip, root.at(), faults);
     }

@@ -33,8 +33,19 @@ pub(crate) struct Settings<'s> {
     pub(crate) gravity: Vector,
     /// Forces of a fluid that the file has and a model has not.
     pub(crate) fluid: Vec<String>,
+    /// Meshes that geoms may have.
+    pub(crate) meshes: Vec<Element<'s>>,
+    folder: MeshFolder,
     classes: BTreeMap<&'s str, Class<'s>>,
     included: BTreeMap<String, Element<'s>>,
+}
+
+/// Where files of meshes are.
+#[derive(Default)]
+struct MeshFolder {
+    of_meshes: Option<String>,
+    of_assets: String,
+    is_stripped: bool,
 }
 
 /// The class of what names none.
@@ -59,6 +70,8 @@ impl<'s> Settings<'s> {
             total: None,
             gravity: [zero(), zero(), ratio(-981, 100)],
             fluid: Vec::new(),
+            meshes: Vec::new(),
+            folder: MeshFolder::default(),
             classes: BTreeMap::from([(MAIN, Class::new())]),
             included,
         };
@@ -67,6 +80,10 @@ impl<'s> Settings<'s> {
                 "compiler" => settings.compiler(element, faults),
                 "option" => settings.option(element, faults),
                 "default" => settings.class(element, None, 0, faults),
+                "asset" => {
+                    let meshes = settings.children(element).into_iter();
+                    settings.meshes.extend(meshes.filter(|asset| asset.name() == "mesh"));
+                }
                 _ => {}
             }
         }
@@ -101,6 +118,9 @@ impl<'s> Settings<'s> {
                     let said = "coordinates are global, which is not read";
                     faults.push(value.at, Cause::with_hint(said, "save the file by MuJoCo itself"));
                 }
+                ("meshdir", text) => self.folder.of_meshes = Some(text.to_owned()),
+                ("assetdir", text) => self.folder.of_assets = text.to_owned(),
+                ("strippath", text) => self.folder.is_stripped = text == "true",
                 ("eulerseq", text) if text.len() == 3 && text.chars().all(is_axis) => {
                     self.euler = text.to_owned();
                 }
@@ -176,6 +196,17 @@ impl<'s> Settings<'s> {
             if depth < 64 {
                 self.class(child, Some(name), depth + 1, faults);
             }
+        }
+    }
+
+    /// The path of a mesh's file, from the folder of the description.
+    pub(crate) fn mesh_path(&self, file: &str) -> String {
+        let folder = self.folder.of_meshes.as_ref().unwrap_or(&self.folder.of_assets);
+        let last = file.rsplit(['/', '\\']).next().unwrap_or(file);
+        let file = if self.folder.is_stripped { last } else { file };
+        match folder.trim_end_matches('/') {
+            "" => file.to_owned(),
+            folder => format!("{folder}/{file}"),
         }
     }
 

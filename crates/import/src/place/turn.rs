@@ -2,7 +2,7 @@
 
 use super::angle::{Angle, Made, Surd};
 use super::quarter::Quarter;
-use crate::exact::{self, Matrix, Vector};
+use crate::exact::{self, Matrix, Vector, transformed};
 use denavit_codegen::number::{Rational, integer};
 use num_traits::Zero;
 
@@ -65,6 +65,15 @@ impl Pose {
             }
         }
         Some(Self { at, turns: [&self.turns[..], &other.turns].concat() })
+    }
+
+    /// This pose in another one, whose turns count to fifty digits where they are no quarters.
+    pub(crate) fn within(&self, outer: &Self) -> Self {
+        let moved = transformed(&matrix(&outer.turns), &self.at);
+        Self {
+            at: std::array::from_fn(|k| &outer.at[k] + &moved[k]),
+            turns: [&outer.turns[..], &self.turns].concat(),
+        }
     }
 
     /// The way back, as poses one after the other.

@@ -2,7 +2,8 @@
 
 use super::raw::{Raw, RawLink};
 use super::values::{Snapped, numbers, pose, wrong};
-use crate::contact::{Wanted, touch, wanted};
+use crate::Include;
+use crate::contact::{Shape, Wanted, meshed, touch, wanted};
 use crate::fault::{Cause, Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
@@ -19,6 +20,7 @@ pub(crate) fn find(
     raw: &Raw<'_>,
     places: &BTreeMap<&str, usize>,
     options: &Options,
+    include: &mut Include<'_>,
     faults: &mut Faults,
 ) {
     for wanted in wanted(options) {
@@ -30,22 +32,30 @@ pub(crate) fn find(
             continue;
         };
         let before = faults.count();
-        let solids = solids(link, faults);
+        let shapes = shapes(link, include, faults);
         if faults.count() == before {
-            let lacks = "no collision box, sphere or cylinder";
+            let lacks = "no collision shape";
             let link = Wanted { name: wanted, link: place, at: link.name.at, lacks };
-            touch(tree, &link, &solids, faults);
+            touch(tree, &link, &shapes, faults);
         }
     }
 }
 
-fn solids(link: &RawLink<'_>, faults: &mut Faults) -> Vec<(Pose, Solid)> {
+fn shapes(
+    link: &RawLink<'_>,
+    include: &mut Include<'_>,
+    faults: &mut Faults,
+) -> Vec<(Pose, Shape)> {
     let mut found = Vec::new();
     for collision in link.element.all("collision") {
         let mut news = Snapped::default();
         let place = pose(collision.first("origin"), link.name.text, &mut news, faults);
         let Some((geometry, place)) = collision.first("geometry").zip(place) else { continue };
-        found.extend(solid(geometry, faults).map(|solid| (place, solid)));
+        let shape = match geometry.first("mesh") {
+            Some(mesh) => of_mesh(mesh, include, faults),
+            None => solid(geometry, faults).map(Shape::Solid),
+        };
+        found.extend(shape.map(|shape| (place, shape)));
     }
     found
 }
@@ -67,6 +77,15 @@ fn solid(geometry: Element<'_>, faults: &mut Faults) -> Option<Solid> {
     let shape = geometry.first("cylinder")?;
     let (radius, whole) = (length(shape, "radius", faults), length(shape, "length", faults));
     Some(Solid::Cylinder { radius: radius?, half: half(&whole?) })
+}
+
+fn of_mesh(mesh: Element<'_>, include: &mut Include<'_>, faults: &mut Faults) -> Option<Shape> {
+    let file = needed(mesh, "filename", faults)?;
+    let scale = match mesh.get("scale") {
+        Some(scale) => Some(numbers::<3>(scale, "`scale`", faults)?),
+        None => None,
+    };
+    meshed(file.text, file.at, scale.as_ref(), include, faults)
 }
 
 /// An attribute that a shape cannot be without.

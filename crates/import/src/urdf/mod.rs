@@ -7,6 +7,7 @@ mod values;
 
 pub(crate) use values::{number, numbers, wrong};
 
+use crate::Include;
 use crate::body;
 use crate::chain;
 use crate::fault::{Cause, Faults, clip, listed};
@@ -25,6 +26,7 @@ pub(crate) fn tree(
     file: &str,
     robot: Element<'_>,
     options: &Options,
+    include: &mut Include<'_>,
     faults: &mut Faults,
 ) -> Option<Tree> {
     let raw = raw::read(robot, faults);
@@ -60,7 +62,7 @@ pub(crate) fn tree(
     }
     notes(&mut tree, &raw);
     body::settle(&mut tree, faults);
-    contacts::find(&mut tree, &raw, &places, options, faults);
+    contacts::find(&mut tree, &raw, &places, options, include, faults);
     if let Some(tip) = &options.tip {
         chain::cut(&mut tree, tip, robot.at(), faults);
     }

@@ -1,6 +1,6 @@
 //! What is said of descriptions that are wrong: all at once, each with place, cause and hint.
 
-use denavit_import::{Options, import, is_description, nothing_included};
+use denavit_import::{Beside, Options, import, is_description, nothing_included};
 
 fn said(text: &str) -> String {
     let refused = import("r.urdf", text.as_bytes(), &Options::default(), &mut nothing_included);
@@ -85,7 +85,7 @@ fn files_that_include_themselves_end() {
     let text = "<mujoco><worldbody><body><joint/><geom size=\"1\"/><include file=\"a.xml\"/></body>\
                 </worldbody></mujoco>";
     let again = "<mujoco><body><include file=\"a.xml\"/><include file=\"a.xml\"/></body></mujoco>";
-    let mut include = |_: &str| Ok(again.as_bytes().to_vec());
+    let mut include = |_: Beside<'_>| Ok(again.as_bytes().to_vec());
     let refused = import("a.xml", text.as_bytes(), &Options::default(), &mut include);
     assert!(refused.expect_err("a fault").to_string().contains("included twice"));
 }

@@ -5,6 +5,7 @@ mod contacts;
 mod evaluated;
 mod export;
 mod faults;
+mod meshes;
 mod mjcf;
 mod mutated;
 mod urdf;

@@ -2,7 +2,7 @@
 
 use crate::evaluated::Random;
 use denavit_codegen::model;
-use denavit_import::{BaseChoice, Mimic, Options, export_into, import};
+use denavit_import::{BaseChoice, Beside, Mimic, Options, export_into, import};
 
 const SEEDS: [&str; 2] =
     [include_str!("../robots/gantry.urdf"), include_str!("../robots/hopper.xml")];
@@ -85,7 +85,7 @@ fn no_mutation_is_more_than_a_fault() {
                     .collect(),
                 tip: None,
             };
-            let mut include = |_: &str| Ok(bytes.clone());
+            let mut include = |_: Beside<'_>| Ok(bytes.clone());
             match import("m.xml", &bytes, &options, &mut include) {
                 Ok(found) => {
                     let robot = model::read("m.json", found.model.as_bytes()).expect("checked");

@@ -88,7 +88,7 @@ fn contact_points_are_the_lower_corners_of_boxes() {
         &mut nothing_included,
     );
     let said = refused.expect_err("no shape").to_string();
-    assert!(said.contains("no collision box"), "{said}");
+    assert!(said.contains("no collision shape"), "{said}");
 }
 
 #[test]

@@ -78,8 +78,10 @@ impl LanguageName {
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let is_answered = on_stdout(&[Some(&arguments.output)], arguments.json)?;
-    let language = arguments.language.map(LanguageName::language);
-    let language = language.unwrap_or(Language::of(&arguments.output));
+    let language = match arguments.language {
+        Some(name) => name.language(),
+        None => Language::of(&arguments.output).map_err(SourceError::FileName)?,
+    };
     language.check(&arguments.output).map_err(SourceError::FileName)?;
     let robot =
         read_model_with_effects(&arguments.model.model, arguments.effects.effects.as_deref())?;

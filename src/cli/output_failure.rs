@@ -16,6 +16,8 @@ pub(crate) enum OutputFailure {
     Overwrites(String),
     /// Two documents were asked for on standard output.
     TwoDocuments,
+    /// Several files were asked for on standard output.
+    NoFolder,
     /// Two outputs would be one file.
     SameOutput(String),
     /// What is to be written has no place in the format of the file; why.
@@ -39,6 +41,7 @@ impl OutputFailure {
             }
             Self::Overwrites(_) => "choose another file for the output",
             Self::TwoDocuments => "give all but one of them a file",
+            Self::NoFolder => "give the path of a folder; `./-` is one of that name",
             Self::SameOutput(_) => "give each a file of its own",
             Self::NotOfFormat { .. } => "a name that does not end in .mcap is written as CSV",
         })
@@ -58,6 +61,7 @@ impl fmt::Display for OutputFailure {
                 write!(f, "{file}: is what this command reads, and would be replaced")?;
             }
             Self::TwoDocuments => write!(f, "standard output would hold two documents")?,
+            Self::NoFolder => write!(f, "standard output is no folder for several files")?,
             Self::SameOutput(file) => write!(f, "{file}: two outputs would be this file")?,
             Self::NotOfFormat { file, cause } => write!(f, "{file}: {cause}")?,
         }

@@ -164,6 +164,9 @@ pub(crate) struct NewDirectory {
 impl NewDirectory {
     /// Makes a directory with those above it.
     pub(crate) fn make(path: &Path) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" {
+            return Err(OutputFailure::NoFolder.into());
+        }
         let made = unfinished::new_directories(path).map_err(|error| failed(path, error))?;
         Ok(Self { made })
     }

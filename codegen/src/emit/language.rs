@@ -36,6 +36,8 @@ pub enum FileNameError {
     TwoFilesOfC(String),
     /// No source can include a header of this name.
     NotIncluded(String),
+    /// The end of its name is that of no language.
+    OtherLanguage(String),
 }
 
 impl fmt::Display for FileNameError {
@@ -51,6 +53,11 @@ impl fmt::Display for FileNameError {
                 f,
                 "{file}: a source cannot include a header of this name\n  hint: give a name \
                  without quotation marks, backslashes and `?`"
+            ),
+            Self::OtherLanguage(file) => write!(
+                f,
+                "{file}: the end of this name is that of no language that is emitted\n  hint: it \
+                 is .rs, .c, .h, .hpp or .cpp; `options.language` takes any name"
             ),
         }
     }
@@ -113,12 +120,13 @@ impl Sources {
 }
 
 impl Language {
-    /// The language of a file by the end of its name; Rust where that says nothing.
-    pub fn of(output: &Path) -> Self {
+    /// The language of a file by the end of its name: Rust where it has none.
+    pub fn of(output: &Path) -> Result<Self, FileNameError> {
         match extension(output).as_deref() {
-            Some("c" | "h") => Self::C,
-            Some("hpp" | "hh" | "hxx" | "cpp" | "cc" | "cxx") => Self::Cpp,
-            _ => Self::Rust,
+            Some("c" | "h") => Ok(Self::C),
+            Some("hpp" | "hh" | "hxx" | "cpp" | "cc" | "cxx") => Ok(Self::Cpp),
+            Some("rs") | None => Ok(Self::Rust),
+            Some(_) => Err(FileNameError::OtherLanguage(output.display().to_string())),
         }
     }
 

@@ -9,6 +9,7 @@ use crate::place::{Pose, Turn, is_quarter, matrix};
 use crate::solid::Solid;
 use crate::tree::{Tree, TreeContact};
 use crate::{Beside, Include};
+use denavit_codegen::expr::text::nearest;
 use num_traits::Zero;
 
 /// What a link touches others with.
@@ -32,6 +33,15 @@ pub(crate) struct Wanted<'a> {
 pub(crate) fn wanted(options: &Options) -> impl Iterator<Item = &String> {
     let all = &options.contacts;
     all.iter().enumerate().filter(|(at, name)| !all[..*at].contains(name)).map(|(_, name)| name)
+}
+
+/// The fault of a name of contacts that nothing has.
+pub(crate) fn unknown<'n>(said: &str, name: &str, all: impl Iterator<Item = &'n str>) -> Cause {
+    let said = format!("`options.contacts`: {said}");
+    match nearest(name, all) {
+        Some(near) => Cause::with_hint(said, format!("did you mean `{}`?", clip(near))),
+        None => Cause::new(said),
+    }
 }
 
 /// Adds the points of a link's shapes, each in its pose in the link.

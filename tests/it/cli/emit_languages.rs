@@ -44,6 +44,15 @@ fn cpp_is_one_header_that_goes_anywhere() {
 }
 
 #[test]
+fn a_name_of_another_language_is_refused() {
+    let directory = Directory::new("emit_other");
+    let message = refused(&directory, &["emit", "scara", "-o", "scara.py"]);
+    assert_says(&message, &["scara.py", "no language", "hint: ", "--language"]);
+    let run = run_in(&directory.path, &["emit", "scara", "-o", "scara.inc", "--language", "rust"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+}
+
+#[test]
 fn what_c_cannot_be_written_to_is_refused() {
     let directory = Directory::new("emit_c_refused");
     for output in ["-", "scara", "scara.rs"] {

@@ -85,6 +85,38 @@ fn mjcf_includes_files_of_its_own_folder_alone() {
 }
 
 #[test]
+fn meshes_of_feet_are_read_from_one_folder_alone() {
+    let directory = Directory::new("import");
+    let robot = "<robot name=\"r\"><link name=\"base\"/><link name=\"foot\"><collision><geometry>\
+        <mesh filename=\"package://walker/meshes/sole.obj\"/></geometry></collision></link>\
+        <joint name=\"hip\" type=\"continuous\"><axis xyz=\"0 1 0\"/><parent link=\"base\"/>\
+        <child link=\"foot\"/></joint></robot>";
+    for folder in ["walker/urdf", "walker/meshes", "other"] {
+        fs::create_dir_all(directory.path.join(folder)).expect("a folder");
+    }
+    fs::write(directory.path.join("walker/urdf/r.urdf"), robot).expect("a file");
+    let sole = "v 1 1 0\nv 1 -1 0\nv -1 -1 0\nv -1 1 0\nv 0 0 1\n";
+    fs::write(directory.path.join("walker/meshes/sole.obj"), sole).expect("a file");
+    let import = |more: &[&str]| {
+        let words = ["import", "walker/urdf/r.urdf", "--contacts", "foot"];
+        run(&directory, &[&words[..], more].concat())
+    };
+    for folder in [".", "walker"] {
+        let imported = import(&["--meshes", folder]);
+        assert_eq!(imported.code, Some(0), "{}", imported.stderr);
+        assert!(imported.stderr.contains("4 corners of"), "{}", imported.stderr);
+        assert_eq!(imported.stdout.matches("\"link\": \"foot\"").count(), 4);
+    }
+    for folder in [&[][..], &["--meshes", "other"], &["--meshes", "none"]] {
+        let refused = import(folder);
+        assert_eq!(refused.code, Some(2));
+        assert!(refused.stderr.contains("or below\n  hint: "), "{}", refused.stderr);
+    }
+    let refused = run(&directory, &["import", "walker/urdf/r.urdf", "--contacts", "foott"]);
+    assert!(refused.stderr.contains("did you mean `foot`?"), "{}", refused.stderr);
+}
+
+#[test]
 fn functions_are_evaluated_in_states() {
     let directory = Directory::new("evaluate");
     let states = "{\"states\": [{\"q\": [0.1, 0.2]}, {\"qdd\": [1, 0]}]}";

@@ -148,6 +148,13 @@ fn a_link_stays_a_link_and_its_target_is_written() {
 }
 
 #[test]
+fn standard_output_is_no_folder() {
+    let directory = Directory::new("no_folder");
+    let message = super::errors::refused(&directory, &["man", "--out", "-"]);
+    assert_says(&message, &["no folder", "hint: "]);
+}
+
+#[test]
 fn a_link_to_nowhere_is_refused() {
     let directory = Directory::new("lost-links");
     symlink("no/such/place.svg", directory.path.join("lost")).expect("a link");

@@ -6,7 +6,7 @@ use super::geom::{placed, touches};
 use super::meshes;
 use super::settings::Settings;
 use crate::Include;
-use crate::contact::{Shape, Wanted, touch, wanted};
+use crate::contact::{Shape, Wanted, touch, unknown, wanted};
 use crate::fault::{Cause, Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
@@ -24,8 +24,8 @@ pub(crate) fn find(
 ) {
     for wanted in wanted(options) {
         let Some(body) = bodies.get(wanted) else {
-            let said = format!("`options.contacts`: no body is called `{}`", clip(wanted));
-            faults.push(0, Cause::new(said));
+            let said = format!("no body is called `{}`", clip(wanted));
+            faults.push(0, unknown(&said, wanted, bodies.keys().map(String::as_str)));
             continue;
         };
         let before = faults.count();

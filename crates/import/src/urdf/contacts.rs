@@ -3,7 +3,7 @@
 use super::raw::{Raw, RawLink};
 use super::values::{Snapped, numbers, pose, wrong};
 use crate::Include;
-use crate::contact::{Shape, Wanted, meshed, touch, wanted};
+use crate::contact::{Shape, Wanted, meshed, touch, unknown, wanted};
 use crate::fault::{Cause, Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
@@ -26,9 +26,8 @@ pub(crate) fn find(
     for wanted in wanted(options) {
         let link = raw.links.iter().find(|link| link.name.text == wanted);
         let (Some(link), Some(&place)) = (link, places.get(wanted.as_str())) else {
-            let said =
-                format!("`options.contacts`: no link of the model is called `{}`", clip(wanted));
-            faults.push(0, Cause::new(said));
+            let said = format!("no link of the model is called `{}`", clip(wanted));
+            faults.push(0, unknown(&said, wanted, places.keys().copied()));
             continue;
         };
         let before = faults.count();

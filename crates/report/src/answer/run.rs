@@ -118,6 +118,9 @@ fn write(
     for (_, law, worst) in run.audit.listed(scenario.plant.model()) {
         writeln!(out, "{law:<40} {worst:>10.3e}")?;
     }
+    if broken.is_empty() {
+        writeln!(out, "all laws hold within their tolerances")?;
+    }
     for (law, found, allowed) in broken {
         writeln!(out, "broken: {law}: {found:.3e}, and {allowed:.0e} is tolerated")?;
     }

@@ -1,17 +1,18 @@
 """A cluster of Ray of two nodes on this machine: rows are the same whatever dies, and what it costs.
 
-    python benches/studies/cluster.py [--cases 40] [--seconds 1.0]
+    python benches/studies/cluster.py [--cases 40] [--seconds 1.0 | --battery]
 
 Needs the package with its extra `ray`. Starts a head and a second node, runs a study undisturbed,
 then again while a worker is killed and then the second node, each by its process id, and compares
 the files byte by byte. Then measures overhead and speed-up: the same cases in this process, on one
-core of Ray and on two.
+core of Ray and on two. With `--battery` cases hide effects in simulated arms, and diagnose them.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import secrets
 import signal
 import subprocess
 import sys
@@ -49,6 +50,9 @@ def started(*arguments: str) -> None:
 
 def cluster() -> int:
     """Starts a head and a second node; the process id of the second one's raylet."""
+    # a token of this cluster alone, which its nodes and drivers inherit: the head listens to all
+    os.environ["RAY_AUTH_MODE"] = "token"
+    os.environ["RAY_AUTH_TOKEN"] = secrets.token_hex(32)
     started("--head", f"--port={PORT}", "--include-dashboard=false")
     before = raylets()
     started(f"--address=127.0.0.1:{PORT}")
@@ -93,9 +97,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cases", type=int, default=40)
     parser.add_argument("--seconds", type=float, default=1.0)
+    parser.add_argument("--battery", action="store_true")
     given = parser.parse_args()
     options = {"seconds": given.seconds}
     study = studies.Study("busy", busy, given.cases, seed=1, options=options)
+    if given.battery:
+        study = studies.Study("battery", studies.ready.battery, given.cases, seed=1)
     # workers import the study's function from here
     os.environ["PYTHONPATH"] = str(Path(__file__).parent)
     with tempfile.TemporaryDirectory() as inside:
@@ -113,11 +120,17 @@ def main() -> None:
         finally:
             ray = str(Path(sys.executable).with_name("ray"))
             subprocess.run([ray, "stop", "--force"], stdout=subprocess.DEVNULL)
+        if given.battery:
+            rows = studies.read_part(folder / "here.parquet").to_pylist()
+            print(f"{sum(row['is_right'] for row in rows)} of {len(rows)} right")
         files = ["here", "two", "disturbed", "one"]
         contents = {(folder / f"{name}.parquet").read_bytes() for name in files}
     assert len(contents) == 1, "rows differ"
-    print(f"{given.cases} cases of {given.seconds} s: the same bytes in all four runs")
+    kind = "a battery" if given.battery else f"{given.seconds} s"
+    print(f"{given.cases} cases of {kind}: the same bytes in all four runs")
+    more = 1000 * (one - here) / given.cases
     print(f"here {here:.1f} s, one core of Ray {one:.1f} s ({100 * (one / here - 1):.1f} % more)")
+    print(f"that is {more:.1f} ms a case")
     print(f"two cores {two:.1f} s ({here / two:.2f} times), disturbed {disturbed:.1f} s")
 
 

@@ -70,8 +70,12 @@ class Outcome:
     @property
     def reason(self) -> str | None:
         """Why there is no answer."""
-        rows = (self.identified, self.diagnosed or {})
-        said = (one.get("failure") for one in rows)
+        said = (
+            self.identified["failure"],
+            (self.diagnosed or {}).get("failure"),
+            # without a model there is no history, and nothing to diagnose
+            None if self.identified["model"] else self.identified["refused"],
+        )
         return next((one for one in said if one), None)
 
 

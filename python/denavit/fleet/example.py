@@ -8,16 +8,18 @@ a night, effects begin in some arms; the file ``answer.json`` says which, and th
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..excite import excite
+from ..excite import Excitation, excite
 from ..model import load
-from ..simulate import simulate
+from ..simulate import Run, simulate
 
 JOINTS = ("shoulder", "elbow")
 DURATION_S = 5.0
@@ -90,16 +92,45 @@ def model(
 NOMINAL = model((2.0, 1.5), {"shoulder": (0.5, 0.8), "elbow": (0.2, 0.3)})
 
 
-def _arm(number: int, count: int, changed: Mapping[int, int], seed: int) -> Arm:
-    random = np.random.default_rng([seed, number])
+def drawn(
+    name: str, random: np.random.Generator, effect: tuple[str, str, Mapping[str, float]] | None
+) -> Arm:
+    """An arm that differs from the model by a few per cent, and in friction by more."""
     masses = tuple(float(mass * random.normal(1, 0.03)) for mass in (2.0, 1.5))
     friction = {
         joint: (float(viscous * random.normal(1, 0.1)), float(coulomb * random.normal(1, 0.1)))
         for joint, (viscous, coulomb) in {"shoulder": (0.5, 0.8), "elbow": (0.2, 0.3)}.items()
     }
+    return Arm(name, (masses[0], masses[1]), friction, effect)
+
+
+def _arm(number: int, count: int, changed: Mapping[int, int], seed: int) -> Arm:
     effect = EFFECTS[changed[number] % len(EFFECTS)] if number in changed else None
-    width = len(str(count - 1))
-    return Arm(f"arm-{number:0{width}}", (masses[0], masses[1]), friction, effect)
+    name = f"arm-{number:0{len(str(count - 1))}}"
+    return drawn(name, np.random.default_rng([seed, number]), effect)
+
+
+@lru_cache(maxsize=1)
+def _motions() -> tuple[Excitation, ...]:
+    """The motions of the logs, the same for all arms."""
+    return tuple(
+        excite(load(NOMINAL), duration_s=DURATION_S, starts=2, evaluations=60, reach=0.9, seed=seed)
+        for seed in (1, 2)
+    )
+
+
+def logged(arm: Arm, random: np.random.Generator, *, has_effect: bool) -> list[Run]:
+    """Two runs of an arm, with its effect or without."""
+    truth = model(arm.masses, arm.friction)
+    if has_effect and arm.effect is not None:
+        truth["effects"] = [_effect(arm.effect)]
+    runs = []
+    with tempfile.TemporaryDirectory() as inside:
+        for at, motion in enumerate(_motions()):
+            path = Path(inside) / f"motion_{at}.json"
+            motion.save(path)
+            runs.append(simulate(_scenario(truth, path, int(random.integers(1 << 31)))))
+    return runs
 
 
 def write_example(
@@ -120,7 +151,9 @@ def write_example(
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     (out / "arm.json").write_text(json.dumps(NOMINAL, indent=2) + "\n")
-    motions = {name: _motion(at, out / f"{name}_motion.json") for at, name in enumerate(LOGS)}
+    motions = {name: (out / f"{name}_motion.json").resolve() for name in LOGS}
+    for path, motion in zip(motions.values(), _motions()):
+        motion.save(path)
     order = np.random.default_rng([seed]).permutation(robots)[:changed]
     numbers = {int(number): at for at, number in enumerate(order)}
     arms = [_arm(number, robots, numbers, seed) for number in range(robots)]
@@ -135,9 +168,9 @@ def write_example(
             truth = _tonight(arm, number, night, night >= since, seed)
             folder = out / "logs" / arm.name / _date(night)
             folder.mkdir(parents=True, exist_ok=True)
-            for at, (name, motion) in enumerate(motions.items()):
+            for at, (name, path) in enumerate(motions.items()):
                 own = len(LOGS) * (nights * number + night - 1) + at
-                simulate(_scenario(truth, motion, own), log=folder / f"{name}.csv")
+                simulate(_scenario(truth, path, own), log=folder / f"{name}.csv")
         if progress is not None:
             progress(number + 1, robots)
 
@@ -149,12 +182,9 @@ def _date(night: int) -> str:
     return f"2026-01-{night:02}" if night < 32 else f"night-{night:04}"
 
 
-def _motion(seed: int, path: Path) -> Path:
-    found = excite(
-        load(NOMINAL), duration_s=DURATION_S, starts=2, evaluations=60, reach=0.9, seed=seed + 1
-    )
-    found.save(path)
-    return path.resolve()
+def _effect(effect: tuple[str, str, Mapping[str, float]]) -> dict[str, Any]:
+    name, joint, parameters = effect
+    return {"effect": name, "at": {"link": joint}, "parameters": dict(parameters)}
 
 
 def _tonight(arm: Arm, number: int, night: int, has_effect: bool, seed: int) -> dict[str, Any]:
@@ -167,10 +197,7 @@ def _tonight(arm: Arm, number: int, night: int, has_effect: bool, seed: int) -> 
     }
     truth = model(arm.masses, friction)
     if has_effect and arm.effect is not None:
-        name, joint, parameters = arm.effect
-        truth["effects"] = [
-            {"effect": name, "at": {"link": joint}, "parameters": dict(parameters)}
-        ]
+        truth["effects"] = [_effect(arm.effect)]
     return truth
 
 

@@ -41,6 +41,7 @@ path{stroke:var(--accent);stroke-width:1}
 circle.changed{fill:var(--bad)}path.changed{stroke:var(--bad)}
 .wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem}
 th,td{padding:.2rem .7rem;border-bottom:1px solid var(--rule);text-align:left;white-space:nowrap}
+tr>:first-child{position:sticky;left:0;background:var(--ground)}
 td.number{text-align:right;font-variant-numeric:tabular-nums}
 :focus-visible{outline:2px solid var(--accent)}
 @media(max-width:40rem){body{margin:1rem auto;padding:0 .8rem}}
@@ -64,10 +65,10 @@ def page(fleet: Fleet, drifts: Sequence[Drift]) -> str:
     rest = f"<p>{more} more robots are in the table below.</p>" if more else ""
     sections = "".join(_section(one, fleet) for one in shown)
     return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
+<html lang="en" data-ready="yes" data-charts="yes"><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{allowed}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Fleet: {len(robots)} robots</title><style>{STYLE}</style></head><body>
+<title>Fleet: {len(robots)} robots</title><style>{STYLE}</style></head><body><main>
 <h1>Fleet: {len(robots)} robots, {len(fleet.nights)} nights</h1>
 <p class="{kind}">{said}.</p>
 <p>Among the alarms of a night, a share of at most {100 * fleet.rate:g} % is expected to be false.
@@ -79,7 +80,7 @@ errors have the scatter from night to night.</p>
 Red is changed. Values are in SI units; a residual is the logarithm of its share of the torque.</p>
 {sections}{rest}
 <h2>All robots</h2>{_list(robots)}
-</body></html>
+</main></body></html>
 """
 
 
@@ -106,7 +107,7 @@ class _Robot:
             return 2, "fair", "alarm of an earlier night"
         if self.has_drift:
             return 3, "fair", "drift"
-        return 4, "good", "no change"
+        return 4, "good", "no alarm"
 
 
 def _robots(fleet: Fleet, drifts: Sequence[Drift]) -> list[_Robot]:

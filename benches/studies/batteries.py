@@ -27,6 +27,8 @@ from typing import Any
 from denavit import studies
 from denavit.errors import Error, Fault
 
+COUNTS = re.compile(r"^([a-z][a-z0-9 ,:]*[a-z0-9])  +([0-9]+) of +([0-9]+)  ", re.MULTILINE)
+"""A line of a score that counts cases."""
 FOREIGN = Path(__file__).parents[1] / "foreign" / "run"
 
 
@@ -76,8 +78,8 @@ def _answered(found: dict[str, Any]) -> dict[str, Any]:
     build=str,
 )
 def blind(case: studies.Case) -> studies.Row:
-    """A case of the blind battery. Options: ``battery`` and ``denavit``, the programs; ``first``, the
-    number of index 0.
+    """A case of the blind battery. Options: ``battery`` and ``denavit``, the programs, and
+    ``first``, the number of index 0.
     """
     battery, denavit = case.options["battery"], case.options["denavit"]
     number = int(case.options["first"]) + case.index
@@ -101,8 +103,11 @@ def blind(case: studies.Case) -> studies.Row:
 
 @studies.rows(
     name=str,
-    truth=str,
-    score=str,
+    robot=str,
+    strength=str,
+    kind=str,
+    hidden=list[str],
+    counted=list[str],
     verdict=str,
     named=list[str],
     log_odds=list[float],
@@ -117,20 +122,44 @@ def foreign(case: studies.Case) -> studies.Row:
     """
     denavit = case.options["denavit"]
     with tempfile.TemporaryDirectory() as inside:
-        own = {"JOBS": "1", "ONLY": str(case.index), "VENV": case.options["venv"]}
+        told = {"JOBS": "1", "ONLY": str(case.index), "VENV": case.options["venv"]}
         command = [str(FOREIGN), case.options["generator"], str(case.seed), inside, denavit]
-        _run(command, env=os.environ | own)
+        _run(command, env=os.environ | told)
         out = Path(inside)
-        truth = json.loads((out / "truth.json").read_text())
-        (folder,) = (out / "answers").iterdir()
-        text = (folder / "diagnosis.json").read_text()
+        truth = json.loads((out / "truth.json").read_text())["cases"]
+        (file,) = (out / "answers").glob("*/diagnosis.json")
+        name, text = file.parent.name, file.read_text()
         scored = (out / "score.txt").read_text()
+    own = truth[name]
     return {
-        "name": folder.name,
-        "truth": json.dumps(truth, sort_keys=True),
-        "score": scored,
+        "name": name,
+        "robot": own["robot"],
+        "strength": own["strength"],
+        "kind": own["kind"],
+        "hidden": [f"{one['effect']} at {one['joint']}" for one in own["effects"]],
+        # counts alone: times are others in every run
+        "counted": [f"{each[0]}: {each[1]} of {each[2]}" for each in COUNTS.findall(scored)],
         "build": _digest(denavit),
     } | _answered(json.loads(text) if text else {})
+
+
+def summed(rows: Iterable[dict[str, Any]]) -> list[str]:
+    """Lines of a table of Markdown: the counts of all cases of the foreign bench."""
+    hits: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
+    for row in rows:
+        for line in row["counted"]:
+            name, _, numbers = line.rpartition(": ")
+            hit, _, count = numbers.partition(" of ")
+            hits[name] += int(hit)
+            counts[name] += int(count)
+    lines = ["| what | cases | of | interval of 95 % |", "|---|---:|---:|---|"]
+    return lines + [_line(name, hits[name], count) for name, count in counts.items()]
+
+
+def _line(name: str, hits: int, count: int) -> str:
+    low, high = interval(hits, count)
+    return f"| {name} | {hits} | {count} | {100 * low:.0f} to {100 * high:.0f} % |"
 
 
 def interval(hits: int, count: int) -> tuple[float, float]:
@@ -152,23 +181,20 @@ def figures(rows: Iterable[dict[str, Any]], key: str) -> list[str]:
             counts[name] += 1
             right[name] += bool(row["is_right"])
     lines = [f"| {key} | right | of | interval of 95 % |", "|---|---:|---:|---|"]
-    for name in sorted(counts, key=lambda one: (one == "all", one)):
-        low, high = interval(right[name], counts[name])
-        share = f"{100 * low:.0f} to {100 * high:.0f} %"
-        lines.append(f"| {name} | {right[name]} | {counts[name]} | {share} |")
-    return lines
+    names = sorted(counts, key=lambda one: (one == "all", one))
+    return lines + [_line(name, right[name], counts[name]) for name in names]
 
 
 def main() -> None:
     """Prints the figures of a Parquet file."""
     rows = studies.read_part(sys.argv[1]).to_pylist()
     failed = [row for row in rows if row["failure"]]
-    if "is_right" in rows[0]:
-        key = next(name for name in ("kind", "hidden") if name in rows[0])
-        print("\n".join(figures([row for row in rows if not row["failure"]], key)))
+    good = [row for row in rows if not row["failure"]]
+    if good and "counted" in good[0]:
+        lines = summed(good)
     else:
-        names = Counter(line for row in rows for line in re.findall(r"^.*\d$", row["score"] or ""))
-        print("\n".join(f"| {name} | {count} |" for name, count in names.most_common()))
+        lines = figures(good, "kind" if good and "kind" in good[0] else "hidden")
+    print("\n".join(lines))
     print(f"\n{len(rows)} rows, {len(failed)} failed")
 
 

@@ -1,4 +1,4 @@
-"""A cluster of Ray of two nodes on this machine: rows are the same whatever dies, and what it costs.
+"""A cluster of Ray of two nodes on this machine: the same rows whatever dies, and what it costs.
 
     python benches/studies/cluster.py [--cases 40] [--seconds 1.0 | --battery]
 

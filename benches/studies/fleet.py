@@ -36,7 +36,7 @@ def command(folder: Path, out: Path, diagnose: str) -> list[str]:
 
 def noted(out: Path) -> int:
     """How many rows are kept: those of whole parts, and of journals."""
-    rows = sum(pq.read_metadata(path).num_rows for path in (out / "rows").glob("*.parquet"))
+    rows = sum(int(pq.read_metadata(path).num_rows) for path in (out / "rows").glob("*.parquet"))
     for path in (out / "rows").glob("*.rows"):
         rows += max(0, path.read_text().count("\n") - 1)
     return rows

@@ -274,7 +274,9 @@ def _with_effects(
     night: str, logs: list[RobotNight], first: set[str], answers: Mapping[str, Mapping[str, Any]],
     stage: Stage,
 ) -> dict[str, dict[str, Any]]:  # fmt: skip
-    """Robots that lack an effect in their first night, identified with it: it is no change later."""
+    """Robots that lack an effect in their first night, identified with it, so that it is no
+    change later.
+    """
     lacking = [
         one
         for one in logs

@@ -143,8 +143,8 @@ def write_example(
     seed: int = 1,
     progress: Callable[[int, int], object] | None = None,
 ) -> None:
-    """Writes ``OUT/logs/ROBOT/NIGHT/train.csv`` and ``validate.csv``, the model ``OUT/arm.json``, and
-    ``OUT/answer.json``. ``changed`` robots have an effect from the night ``since`` on, from 1.
+    """Writes ``OUT/logs/ROBOT/NIGHT/train.csv`` and ``validate.csv``, the model ``OUT/arm.json``,
+    and ``OUT/answer.json``. ``changed`` robots have an effect from the night ``since`` on, from 1.
     """
     if not (0 <= changed <= robots and robots > 0 and nights > 0 and 0 < since and seed >= 0):
         raise ValueError("robots and nights are positive, and no more robots change than there are")

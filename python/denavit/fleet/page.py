@@ -171,10 +171,9 @@ def _lines(robot: _Robot, fleet: Fleet) -> list[str]:
         verdict = (last.diagnosed or {}).get("verdict")
         lines.append(f"Nothing is named{f': {escape(verdict)}' if verdict else ''}.")
     if last.diagnosed and last.diagnosed["before"] is not None:
-        shares = [100 * last.diagnosed[key] for key in ("before", "after", "floor")]
-        lines.append(
-            "Torque mismatch {:.2f} %, {:.2f} % with what is named, {:.2f} % of noise.".format(*shares)
-        )
+        before, after, floor = (100 * last.diagnosed[key] for key in ("before", "after", "floor"))
+        named = f"{before:.2f} %, {after:.2f} % with what is named"
+        lines.append(f"Torque mismatch {named}, {floor:.2f} % of noise.")
     if last.reason:
         lines.append(f"{escape(last.night)}: {escape(last.reason)}")
     steps = [one for one in robot.drifts if one.is_change and one.since is not None]

@@ -1,4 +1,4 @@
-"""Tables of a fleet, as Parquet: what each night says of each robot, its parameters, their drift."""
+"""Tables of a fleet, as Parquet: robots in nights, their parameters, and drift."""
 
 from __future__ import annotations
 

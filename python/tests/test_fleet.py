@@ -133,6 +133,7 @@ def test_broken_logs_are_rows_that_say_so(example, tmp_path):
 def test_logs_of_every_format_and_names_that_want_care(example, tmp_path):
     import denavit
     import pyarrow.csv
+    from denavit.fleet import example as parts
 
     folder = copied(example, tmp_path / "logs", ["arm-00", "arm-01"], nights=1)
     night = "2026-01-01"
@@ -142,11 +143,14 @@ def test_logs_of_every_format_and_names_that_want_care(example, tmp_path):
         csv.write_text("\n".join(text) + "\n")
         pq.write_table(pyarrow.csv.read_csv(csv), csv.with_suffix(".parquet"))
         csv.unlink()
+    scenario = parts._scenario(parts.NOMINAL, example / "train_motion.json", 1)
+    denavit.simulate(scenario, log=folder / "a.mcap")
+    csv = f"arm-00/{night}/train.csv"
     manifest = {
-        "robot": ["<b>&'\"../x", "cut in two", "gone"],
-        "night": ["../../1"] * 3,
-        "train": [f"arm-01/{night}/train.parquet", f"arm-00/{night}/train.csv", "none.mcap"],
-        "validate": [f"arm-01/{night}/validate.parquet", None, "none.csv"],
+        "robot": ["<b>&'\"../x", "cut in two", "mixed", "gone", "one mcap"],
+        "night": ["../../1"] * 5,
+        "train": [f"arm-01/{night}/train.parquet", csv, "a.mcap", "none.mcap", "a.mcap"],
+        "validate": [f"arm-01/{night}/validate.parquet", None, csv, "none.csv", None],
     }
     import pyarrow as pa
 
@@ -156,13 +160,15 @@ def test_logs_of_every_format_and_names_that_want_care(example, tmp_path):
     judge(folder / "manifest.parquet", example / "arm.json", out, options=options)
     table = {row["robot"]: row for row in rows(out)}
     assert table["gone"]["reason"].startswith("none.mcap")
-    for robot in ("<b>&'\"../x", "cut in two"):
-        assert table[robot]["reason"] is None and table[robot]["is_trusted"]
+    assert "only tables can be cut" in table["one mcap"]["reason"]
+    for robot in ("<b>&'\"../x", "cut in two", "mixed"):
+        # the mixed one has logs of two robots
+        assert table[robot]["reason"] is None and table[robot]["is_trusted"] == (robot != "mixed")
     text = (out / "index.html").read_text()
     assert "&lt;b&gt;" in text and "<b>&'" not in text
     pages = {one.name for one in (out / "reports").iterdir()}
     named = [row["report"] for row in table.values() if row["report"]]
-    assert len(pages) == len(named) == 2 and all((out / name).is_file() for name in named)
+    assert len(pages) == len(named) == 3 and all((out / name).is_file() for name in named)
     model = denavit.load(example / "arm.json")
     direct = denavit.identify(model, folder / "arm-00" / night / "train.csv")
     assert direct.is_good

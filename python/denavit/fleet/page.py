@@ -57,7 +57,7 @@ def page(fleet: Fleet, drifts: Sequence[Drift]) -> str:
     style = base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{style}'"
     kind = "verdict bad" if alarmed else "verdict"
-    said = f"{len(alarmed)} of {len(robots)} robots are alarms of {escape(last)}"
+    said = f"{escape(last)}: {len(alarmed)} alarms among {len(robots)} robots"
     if silent:
         said += f"; {len(silent)} have no answer"
     shown = robots[:MOST_WITH_CURVES]

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from .errors import Error
+from .fleet import command
 
 
 def _range(text: str) -> range:
@@ -54,6 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     missing.add_argument("study", type=Path, help="study file")
     missing.add_argument("parts", type=Path, nargs="*")
     missing.set_defaults(run=_missing)
+    command.add(commands)
     return parser
 
 

@@ -187,6 +187,13 @@ def test_intervals_of_an_identification_hold_as_often_as_they_say(tmp_path):
     assert abs(inside / told - 0.95) < 6 * deviation, (inside, told)
 
 
+def test_an_effect_that_is_hidden_in_an_arm_is_found():
+    study = studies.Study("battery", studies.ready.battery, 100, seed=1)
+    (row,) = studies.computed(study, [0])
+    assert row["is_right"] and (row["hidden"], row["at"]) == ("torque_offset", "elbow")
+    assert row["mismatch_after"] < 0.3 * row["mismatch"]
+
+
 def test_starts_near_the_cycle_of_a_gait_walk_on():
     scenario = (Path(__file__).parents[2] / "models/scenarios/compass_gait.json").read_bytes()
     options = {"noise_rad_s": 1e-3, "steps": 3}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from ..errors import Fault, MissingPackage
@@ -21,6 +22,20 @@ def ray_package() -> Any:
     return ray
 
 
+@contextmanager
+def connected(address: str | None = None) -> Iterator[None]:
+    """A connection to Ray that several studies share. ``address`` is that of :func:`on_ray`."""
+    ray = ray_package()
+    is_ours = not ray.is_initialized()
+    if is_ours:
+        ray.init(address=address, include_dashboard=False, log_to_driver=False)
+    try:
+        yield
+    finally:
+        if is_ours:
+            ray.shutdown()
+
+
 def on_ray(address: str | None = None, *, tasks_a_core: int = 2) -> Runner:
     """Computes rows on Ray. ``address`` is that of a cluster (``"auto"`` for the one that runs
     here); without one Ray starts on this machine. Rows of a worker or a node that dies are computed
@@ -28,15 +43,8 @@ def on_ray(address: str | None = None, *, tasks_a_core: int = 2) -> Runner:
     """
 
     def computed(study: Study, indices: Iterable[int]) -> Iterator[Row]:
-        ray = ray_package()
-        is_ours = not ray.is_initialized()
-        if is_ours:
-            ray.init(address=address, include_dashboard=False, log_to_driver=False)
-        try:
-            yield from _rows(ray, study, indices, tasks_a_core)
-        finally:
-            if is_ours:
-                ray.shutdown()
+        with connected(address):
+            yield from _rows(ray_package(), study, indices, tasks_a_core)
 
     return computed
 

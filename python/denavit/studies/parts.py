@@ -168,10 +168,11 @@ def write_rows(path: Path, study: Study, start: int, stop: int, rows: list[Row])
     pa = arrow()
     table = pa.Table.from_pylist([dict(row) for row in rows], schema=schema(study))
     said = {"study": study.key, "name": study.name, "start": str(start), "stop": str(stop)}
-    _write(path, table.replace_schema_metadata(said))
+    write_table(path, table.replace_schema_metadata(said))
 
 
-def _write(path: Path, table: pa.Table) -> None:
+def write_table(path: Path, table: pa.Table) -> None:
+    """Writes a table as a whole file, or none."""
     pa = arrow()
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".denavit-", dir=path.parent) as inside:
@@ -235,6 +236,6 @@ def merge(paths: Iterable[str | Path], out: str | Path) -> int:
     table = pa.concat_tables([pa.parquet.read_table(path) for *_, path in parts])
     said = dict(pa.parquet.read_schema(parts[0][3]).metadata)
     said |= {b"start": str(parts[0][1]).encode(), b"stop": str(parts[-1][2]).encode()}
-    _write(Path(out), table.combine_chunks().replace_schema_metadata(said))
+    write_table(Path(out), table.combine_chunks().replace_schema_metadata(said))
     rows: int = table.num_rows
     return rows

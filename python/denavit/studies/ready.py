@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from .. import walk
+from ..diagnose import diagnose
 from ..identify import identify
 from ..model import Model, load
 from ..simulate import Run, simulate
@@ -73,6 +75,50 @@ def coverage(case: Case) -> Row:
         "values": [one.value for one in told],
         "stds": [one.std for one in told],
         "names": [one.name for one in told],
+    }
+
+
+@rows(
+    hidden=str,
+    at=str,
+    verdict=str,
+    named=str,
+    named_at=str,
+    named_others=int,
+    log10_odds=float,
+    is_right=bool,
+    mismatch=float,
+    mismatch_after=float,
+)
+def battery(case: Case) -> Row:
+    """Hides an effect in a simulated arm of two joints, or none in one case of four, and diagnoses
+    its identified model from logs of 5 s with the effect. Says whether the surest name is right, or
+    that there is none. Values of the arm, effect and noise are drawn by this index.
+    """
+    from ..fleet import example
+
+    random = case.random()
+    number = int(random.integers(len(example.EFFECTS) * 4 // 3))
+    effect = example.EFFECTS[number] if number < len(example.EFFECTS) else None
+    arm = example.drawn("arm", random, effect)
+    before, after = (example.logged(arm, random, has_effect=one) for one in (False, True))
+    known = identify(load(example.NOMINAL), *before).updated
+    found = diagnose(known or load(example.NOMINAL), *after)
+    first = max(found.effects, key=lambda one: one.log_odds, default=None)
+    hidden = (None, None) if effect is None else effect[:2]
+    named = (None, None) if first is None else (first.effect, first.at)
+    gap = found.gap.validate
+    return {
+        "hidden": hidden[0],
+        "at": hidden[1],
+        "verdict": found.verdict,
+        "named": named[0],
+        "named_at": named[1],
+        "named_others": max(0, len(found.effects) - 1),
+        "log10_odds": None if first is None else first.log_odds / math.log(10),
+        "is_right": hidden == named,
+        "mismatch": gap.before,
+        "mismatch_after": gap.after,
     }
 
 

@@ -174,6 +174,7 @@ pages! {
     the_page_on_urdf_is_real: "from-your-urdf",
     the_page_on_python_is_real: "python",
     the_page_on_studies_is_real: "studies",
+    the_page_on_fleets_is_real: "fleet",
     the_page_on_the_library_is_real: "library",
     the_page_on_shells_is_real: "shell",
 }

@@ -1,0 +1,134 @@
+"""``python -m denavit fleet`` and ``fleet-example``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ..studies.here import Runner, in_process, in_processes
+from ..studies.on_ray import connected, on_ray
+from .engine import Options
+from .sources import FleetError, fault
+
+
+def add(commands: Any) -> None:
+    """Adds the commands of fleets."""
+    fleet = commands.add_parser("fleet", help="judge every robot in every night")
+    fleet.add_argument("logs", metavar="LOGS", help="a folder, a URI, or a manifest")
+    fleet.add_argument("--model-by", type=Path, required=True, metavar="FILE",
+                       help="a model, or JSON of robots and their models")  # fmt: skip
+    fleet.add_argument("-o", "--output", type=Path, required=True, help="folder of the answers")
+    fleet.add_argument("--columns", type=Path, metavar="MAP", help="map of the columns of logs")
+    fleet.add_argument("--restart", action="append", default=[], metavar="ROBOT=NIGHT",
+                       help="the history of a robot begins anew, as after a repair")  # fmt: skip
+    _judging(fleet)
+    fleet.set_defaults(run=_fleet)
+
+    example = commands.add_parser("fleet-example", help="simulate a fleet, with hidden effects")
+    example.add_argument("output", type=Path, metavar="OUT", help="folder of logs and model")
+    for name, default in (("robots", 12), ("nights", 4), ("changed", 2), ("since", 3), ("seed", 1)):
+        example.add_argument(f"--{name}", type=int, default=default, metavar="N",
+                             help=f"{default} if it is left out")  # fmt: skip
+    example.add_argument("--run", action="store_true", dest="judges", help="judge it, too")
+    _judging(example)
+    example.set_defaults(run=_example)
+
+
+def _judging(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--false-alarms", type=float, default=0.05, metavar="SHARE",
+                        help="expected share of false alarms among alarms: 0.05")  # fmt: skip
+    parser.add_argument("--diagnose", choices=("all", "alarms", "none"), default="all",
+                        help="which robots are diagnosed: all")  # fmt: skip
+    parser.add_argument("--reports", choices=("all", "alarms"), default="alarms",
+                        help="which diagnoses get a page: those of alarms")  # fmt: skip
+    parser.add_argument("--open", action="store_true", help="show the page in a browser")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--workers", type=int, default=1, metavar="N", help="processes, here")
+    where.add_argument("--ray", nargs="?", const="local", metavar="ADDRESS",
+                       help="on Ray: of this address, `auto`, or started here")  # fmt: skip
+
+
+@contextmanager
+def _runner(given: argparse.Namespace) -> Iterator[Runner]:
+    if given.ray is not None:
+        with connected(None if given.ray == "local" else given.ray):
+            yield on_ray()
+    else:
+        yield in_process if given.workers <= 1 else in_processes(given.workers)
+
+
+def _fleet(given: argparse.Namespace) -> int:
+    restart, faults = {}, []
+    for one in given.restart:
+        robot, equals, night = one.rpartition("=")
+        restart[robot] = night
+        if not (robot and equals and night):
+            faults.append(fault("--restart", f"{one!r} is not ROBOT=NIGHT"))
+    columns = None
+    if given.columns is not None:
+        try:
+            columns = json.loads(given.columns.read_bytes())
+        except (OSError, ValueError) as error:
+            faults.append(fault(str(given.columns), f"is no map of columns: {error}"))
+    if faults:
+        raise FleetError(faults)
+    options = Options(given.false_alarms, given.diagnose, given.reports, columns, restart)
+    return _judged(given, given.logs, given.model_by, given.output, options)
+
+
+def _judged(
+    given: argparse.Namespace, logs: str, models: Path, out: Path, options: Options
+) -> int:
+    from . import judge
+
+    def show(night: str, what: str, done: int, count: int) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{night}: {what} {done} of {count}   ", end="", file=sys.stderr, flush=True)
+
+    with _runner(given) as runner:
+        fleet = judge(logs, models, out, runner=runner, options=options, progress=show)
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    last = [one for one in fleet.outcomes if one.night == fleet.nights[-1]]
+    alarms = [one for one in last if one.is_alarm]
+    silent = [one for one in last if one.reason]
+    print(f"{len(fleet.robots)} robots, {len(fleet.nights)} nights")
+    print(f"{fleet.nights[-1]}: {len(alarms)} alarms, {len(silent)} without an answer")
+    for one in sorted(alarms, key=lambda one: (one.judged.p if one.judged else 1.0, one.robot)):
+        found = one.diagnosed or {}
+        name = f"{found['effect']} at {found['joint']}" if found.get("effect") else "nothing named"
+        print(f"  {one.robot}: {name}")
+    for one in silent:
+        print(f"  {one.robot}: {(one.reason or '').splitlines()[0]}")
+    print(out / "index.html")
+    if given.open:
+        webbrowser.open((out / "index.html").resolve().as_uri())
+    return 1 if alarms or silent else 0
+
+
+def _example(given: argparse.Namespace) -> int:
+    from .example import write_example
+
+    def show(done: int, count: int) -> None:
+        if sys.stderr.isatty():
+            print(f"\rsimulated {done} of {count}   ", end="", file=sys.stderr, flush=True)
+
+    write_example(
+        given.output, robots=given.robots, nights=given.nights, changed=given.changed,
+        since=given.since, seed=given.seed, progress=show,
+    )  # fmt: skip
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    logs, model = given.output / "logs", given.output / "arm.json"
+    print(f"{logs}: {given.robots} robots, {given.nights} nights; {model}")
+    if not given.judges:
+        return 0
+    options = Options(given.false_alarms, given.diagnose, given.reports)
+    _judged(given, str(logs), model, given.output / "found", options)
+    return 0

@@ -1,0 +1,280 @@
+"""Where the logs of a fleet are: a folder, a table of logs, or a place in object storage."""
+
+from __future__ import annotations
+
+import io
+import re
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import numpy as np
+
+from .._arrays import Array
+from ..errors import Error, Fault
+from ..studies.parts import arrow
+
+KINDS = (".csv", ".parquet", ".mcap")
+"""Endings of logs in a folder."""
+
+ReadLog = str | dict[str, Array]
+"""A log as the use cases take it: a path, or columns."""
+
+
+class FleetError(Error):
+    """What was given as a fleet is none."""
+
+
+def fault(place: str, cause: str, hint: str | None = None) -> Fault:
+    """One thing that is wrong with a file."""
+    return Fault(place, None, None, cause, hint)
+
+
+@dataclass(frozen=True)
+class File:
+    """A log, by its path below the root of the fleet, and what tells whether it was changed."""
+
+    path: str
+    size: int
+    changed_ns: int
+
+
+@dataclass(frozen=True)
+class RobotNight:
+    """The logs of a robot in a night. Without one for validation the only log is cut in two."""
+
+    robot: str
+    night: str
+    train: tuple[File, ...]
+    validate: tuple[File, ...] = ()
+
+
+def opened(place: str) -> tuple[Any, str]:
+    """The file system of a place, and the path there. A place is a path, or a URI."""
+    fs = _fs()
+    if re.match(r"[a-z][a-z0-9+.-]+://", place):
+        try:
+            system, path = fs.FileSystem.from_uri(place)
+        except (arrow().ArrowException, ValueError) as error:
+            hint = "s3://bucket/folder?region=.., or a path"
+            raise FleetError([fault(place, f"is no place of logs: {error}", hint)]) from None
+        return system, path
+    return fs.LocalFileSystem(), str(Path(place).resolve())
+
+
+def _fs() -> Any:
+    arrow()
+    import pyarrow.fs  # type: ignore[import-untyped, unused-ignore]
+
+    return pyarrow.fs
+
+
+def read_fleet(place: str) -> tuple[str, list[RobotNight]]:
+    """The root of a fleet's logs and its robot-nights, sorted. ``place`` is a folder with logs as
+    ``ROBOT/NIGHT.csv`` or ``ROBOT/NIGHT/train*.csv`` and ``validate*.csv``, or a manifest: a table
+    with the columns ``robot``, ``night``, ``train`` and, if it is wanted, ``validate``.
+    """
+    system, path = opened(place)
+    pa = arrow()
+    try:
+        info = system.get_file_info(path)
+    except (pa.ArrowException, OSError) as error:
+        raise FleetError([fault(place, f"cannot be read: {error}", "check the place")]) from None
+    if info.type == _fs().FileType.File:
+        found = _of_manifest(system, place, path)
+        head, mark, query = place.partition("?")
+        root = head.rpartition("/")[0] + mark + query if "://" in place else str(Path(path).parent)
+    elif info.type == _fs().FileType.Directory:
+        found, root = _of_folder(system, place, path), place if "://" in place else path
+    else:
+        raise FleetError([fault(place, "is not there", "a folder, a URI, or a manifest")])
+    if not found:
+        hint = "ROBOT/NIGHT.csv, or ROBOT/NIGHT/train.csv with ROBOT/NIGHT/validate.csv"
+        raise FleetError([fault(place, "has no logs", hint)])
+    return root, sorted(found, key=lambda one: (one.night, one.robot))
+
+
+def _of_folder(system: Any, place: str, path: str) -> list[RobotNight]:
+    selector = _fs().FileSelector(path, recursive=True)
+    nights: dict[tuple[str, str], list[File]] = {}
+    for info in system.get_file_info(selector):
+        name = PurePosixPath(info.path).relative_to(path)
+        is_log = info.type == _fs().FileType.File and name.suffix.lower() in KINDS
+        if is_log and len(name.parts) in (2, 3):
+            night = name.parts[1] if len(name.parts) == 3 else name.stem
+            nights.setdefault((name.parts[0], night), []).append(_file(info, str(name)))
+    found, faults = [], []
+    for (robot, night), files in nights.items():
+        files.sort(key=lambda file: file.path)
+        judging = [file for file in files if PurePosixPath(file.path).stem.startswith("validate")]
+        train = [file for file in files if file not in judging]
+        if not train or (len(train) > 1 and not judging):
+            cause = f"{robot}/{night}: logs are called train.. and validate.., or there is one"
+            faults.append(fault(place, cause))
+        found.append(RobotNight(robot, night, tuple(train), tuple(judging)))
+    if faults:
+        raise FleetError(faults)
+    return found
+
+
+def _file(info: Any, name: str) -> File:
+    return File(name, int(info.size), int(info.mtime_ns or 0))
+
+
+def _of_manifest(system: Any, place: str, path: str) -> list[RobotNight]:
+    table = _table(system, place, path)
+    needed = {"robot", "night", "train"}
+    faults = [fault(place, f"has no column `{name}`") for name in needed - set(table)]
+    if faults:
+        raise FleetError(sorted(faults, key=str))
+    root, found = PurePosixPath(path).parent, []
+    rows = zip(*(table[name] for name in ("robot", "night", "train")))
+    judging = table.get("validate") or [None] * len(table["robot"])
+    seen: set[tuple[str, str]] = set()
+    for number, ((robot, night, train), validate) in enumerate(zip(rows, judging), start=1):
+        if None in (robot, night, train) or not str(robot) or not str(night):
+            faults.append(fault(place, f"row {number} has no robot, night or train"))
+            continue
+        key = str(robot), str(night)
+        if key in seen:
+            faults.append(fault(place, f"row {number}: {key[0]} in {key[1]} stands there twice"))
+        seen.add(key)
+        logs = [[_listed(system, root, one) for one in _names(cell)] for cell in (train, validate)]
+        found.append(RobotNight(*key, tuple(logs[0]), tuple(logs[1])))
+    if faults:
+        raise FleetError(faults)
+    return found
+
+
+def _names(cell: object) -> list[str]:
+    """The logs of a cell: one, several with semicolons, or a list."""
+    if cell is None:
+        return []
+    each = cell if isinstance(cell, list) else str(cell).split(";")
+    return [str(one).strip() for one in each if str(one).strip()]
+
+
+def _listed(system: Any, root: PurePosixPath, name: str) -> File:
+    """A log of a manifest. One that is not there is a row that says so, later."""
+    info = system.get_file_info(str(root / name))
+    return File(name, int(info.size or 0), int(info.mtime_ns or 0))
+
+
+def _table(system: Any, place: str, path: str) -> dict[str, list[Any]]:
+    pa = arrow()
+    import pyarrow.csv  # type: ignore[import-untyped, unused-ignore]
+
+    try:
+        with system.open_input_file(path) as file:
+            if path.lower().endswith(".csv"):
+                table = pyarrow.csv.read_csv(io.BytesIO(file.read()))
+            else:
+                table = pa.parquet.read_table(file)
+    except (pa.ArrowException, OSError) as error:
+        hint = "a Parquet or CSV file with the columns robot, night, train, validate"
+        raise FleetError([fault(place, f"is no manifest: {error}", hint)]) from None
+    found: dict[str, list[Any]] = table.to_pydict()
+    return found
+
+
+@dataclass(frozen=True)
+class Fetched:
+    """The logs of a robot-night, here. Files that denavit reads itself are paths."""
+
+    train: tuple[ReadLog, ...]
+    validate: tuple[ReadLog, ...]
+    folders: tuple[str, ...]
+    """Where they are now, which is nobody's concern."""
+
+    def bare(self, text: str) -> str:
+        """A text that names logs as the fleet does."""
+        for folder in self.folders:
+            text = text.replace(folder, "")
+        return text
+
+
+@contextmanager
+def fetched(root: str, train: Sequence[str], validate: Sequence[str]) -> Iterator[Fetched]:
+    """The logs of a robot-night, here for a while."""
+    system, base = _opened(root)
+    with tempfile.TemporaryDirectory(prefix="denavit-fleet-") as inside:
+        folders = inside + "/", base.rstrip("/") + "/"
+        try:
+            logs = [
+                [_fetched(system, base, name, Path(inside)) for name in names]
+                for names in (train, validate)
+            ]
+            if not logs[1]:
+                logs = _cut(logs[0], train[0])
+            yield Fetched(tuple(logs[0]), tuple(logs[1]), folders)
+        except Error as error:
+            # faults name logs as the fleet does
+            for folder in folders:
+                error = error._without(folder)
+            raise error from None
+
+
+@lru_cache(maxsize=4)
+def _opened(root: str) -> tuple[Any, str]:
+    return opened(root)
+
+
+def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
+    pa = arrow()
+    path = str(PurePosixPath(base) / name)
+    is_local, is_parquet = isinstance(system, _fs().LocalFileSystem), name.endswith(".parquet")
+    try:
+        if is_parquet:
+            with system.open_input_file(path) as file:
+                return columns(pa.parquet.read_table(file))
+        if is_local:
+            return path
+        copy = inside / name
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        with system.open_input_file(path) as file:
+            copy.write_bytes(file.read())
+        return str(copy)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        cause = str(error).replace(base.rstrip("/") + "/", "")
+        raise FleetError([fault(name, f"cannot be read: {cause}")]) from None
+
+
+def columns(table: Any) -> dict[str, Array]:
+    """The columns of numbers of a table."""
+    pa = arrow()
+    kinds = (pa.types.is_floating, pa.types.is_integer)
+    return {
+        name: column.to_numpy().astype(np.float64)
+        for name, column in zip(table.column_names, table.columns)
+        if any(kind(column.type) for kind in kinds)
+    }
+
+
+def _cut(logs: list[ReadLog], name: str) -> list[list[ReadLog]]:
+    """The only log of a night as two: its first half, and its second."""
+    log = logs[0]
+    if isinstance(log, str):
+        if not name.lower().endswith(".csv"):
+            hint = "give two logs of the night: train and validate"
+            raise FleetError([fault(name, "only tables can be cut in two", hint)])
+        log = _read_csv(log, name)
+    half = len(next(iter(log.values()), ())) // 2
+    first: ReadLog = {column: values[:half] for column, values in log.items()}
+    second: ReadLog = {column: values[half:] for column, values in log.items()}
+    return [[first], [second]]
+
+
+def _read_csv(path: str, name: str) -> dict[str, Array]:
+    pa = arrow()
+    import pyarrow.csv
+
+    try:
+        lines = Path(path).read_bytes().splitlines(keepends=True)
+        text = b"".join(line for line in lines if not line.startswith(b"#"))
+        return columns(pyarrow.csv.read_csv(io.BytesIO(text)))
+    except (pa.ArrowException, OSError) as error:
+        raise FleetError([fault(name, f"cannot be read: {error}")]) from None

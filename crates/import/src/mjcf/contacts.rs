@@ -7,7 +7,7 @@ use super::meshes;
 use super::settings::Settings;
 use crate::Include;
 use crate::contact::{Shape, Wanted, touch, unknown, wanted};
-use crate::fault::{Cause, Faults, clip};
+use crate::fault::{Faults, clip};
 use crate::options::Options;
 use crate::place::Pose;
 use crate::tree::Tree;

@@ -1,5 +1,6 @@
 //! The frame of a page: the template with the scripts and the style sheet that it carries.
 
+use super::units::with_units;
 use super::{Page, Part};
 use minijinja::Environment;
 use minijinja::value::Serde;
@@ -42,6 +43,7 @@ pub(super) fn filled(page: &Page) -> String {
         hash("page.css")
     );
     let mut environment = Environment::new();
+    environment.add_filter("units", |text: String| with_units(&text));
     environment.add_template(NAME, TEMPLATE).expect("the template is part of the library");
     let template = environment.get_template(NAME).expect("it was just added");
     let scripts = scripts.into_iter().map(|(text, _)| text).collect();

@@ -11,12 +11,15 @@ mod formula;
 mod frame;
 mod replay;
 mod table;
+mod units;
 
 pub use chart::{Chart, ChartCurve, Look, Panel};
 pub(crate) use data::{Brief, with_decimals};
 pub use formula::{FormulaError, mathml};
 pub use replay::{Mark, Replay};
+pub(crate) use replay::{Scene, SceneMark, Slider};
 pub use table::{Cell, Heading, HtmlTable, Row};
+pub(crate) use units::unit;
 
 use serde::Serialize;
 

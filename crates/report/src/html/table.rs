@@ -1,5 +1,6 @@
 //! Tables of pages.
 
+use super::units::unit;
 use super::{FormulaError, mathml};
 use serde::Serialize;
 
@@ -62,6 +63,11 @@ impl Cell {
     /// Words.
     pub fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
+    }
+
+    /// A unit as files write it: `kg m^2`.
+    pub fn unit(text: &str) -> Self {
+        Self::text(unit(text))
     }
 
     /// Words that may take several lines.

@@ -43,7 +43,7 @@ fn base_row(one: &IdentifiedParameter) -> Result<Row, FormulaError> {
         value(one.value, one.std),
         or_empty(one.model_value, short),
         apart(one.value, one.model_value, one.std),
-        Cell::text(&one.unit),
+        Cell::unit(&one.unit),
         Cell::prose(remarks.join("; ")),
         if is_sum { Cell::folded("show", &one.latex)? } else { Cell::text("") },
     ];
@@ -91,7 +91,7 @@ pub(super) fn bodies(
             value(new, std),
             or_empty(old, short),
             apart(new, old, std),
-            Cell::text(unit),
+            Cell::unit(&unit),
             Cell::prose(remark),
         ];
         rows.push(Row { cells, is_marked: is_hidden });

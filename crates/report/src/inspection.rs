@@ -43,6 +43,7 @@ pub fn inspection_page(robot: &Robot, facts: Vec<Fact>) -> Result<Page, LowerErr
         sections.push(Section { heading: "Assumptions".to_owned(), parts: parts.collect() });
     }
     Ok(Page {
+        watches: false,
         title: robot.name.replace('_', " "),
         verdict: None,
         lead: robot.description.clone(),

@@ -176,6 +176,7 @@ pages! {
     the_page_on_studies_is_real: "studies",
     the_page_on_the_library_is_real: "library",
     the_page_on_shells_is_real: "shell",
+    the_page_of_questions_is_real: "faq",
 }
 
 #[test]

@@ -29,6 +29,7 @@ pub fn run_page(
     let given = [("model", model.name.clone()), ("scheme", scheme_text(scenario))];
     let given = given.map(|(name, value)| Fact { name: name.to_owned(), value });
     Page {
+        watches: false,
         title: scenario.name.replace('_', " "),
         verdict: Some(verdict(run, broken)),
         lead: scenario.description.clone(),

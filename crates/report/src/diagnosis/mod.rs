@@ -172,6 +172,7 @@ impl DiagnosisPage<'_> {
             sections.push(Section { heading: "Remarks".to_owned(), parts });
         }
         Page {
+            watches: false,
             title: format!("Diagnosis of {}", self.model.replace('_', " ")),
             verdict: Some(verdict(self.found, self.candidates)),
             lead: reasons(self.found),

@@ -38,9 +38,10 @@ pub(super) fn filled(page: &Page) -> String {
     let allowed: Vec<String> = scripts.iter().map(|(_, hash)| format!("'{hash}'")).collect();
     let policy = format!(
         "default-src 'none'; script-src {}; style-src '{}'; img-src data:; base-uri 'none'; \
-         form-action 'none'",
+         form-action 'none'{}",
         allowed.join(" "),
-        hash("page.css")
+        hash("page.css"),
+        if page.watches { "; connect-src 'self'" } else { "" }
     );
     let mut environment = Environment::new();
     environment.add_filter("units", |text: String| with_units(&text));

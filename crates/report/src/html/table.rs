@@ -45,6 +45,7 @@ pub struct Cell {
     is_folded: bool,
     order: Option<f64>,
     bars: Option<Bars>,
+    href: Option<String>,
 }
 
 /// Bars below each other, each of a share of the longest.
@@ -63,6 +64,11 @@ impl Cell {
     /// Words.
     pub fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
+    }
+
+    /// Words that lead to another page.
+    pub(crate) fn link(text: &str, href: &str) -> Self {
+        Self { href: Some(href.to_owned()), ..Self::text(text) }
     }
 
     /// A unit as files write it: `kg m^2`.

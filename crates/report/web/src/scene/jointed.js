@@ -54,14 +54,26 @@ export function centerOf(data, poses) {
   return mass > 0 ? sum.divideScalar(mass) : null;
 }
 
+/** Postures that are looked at where joints are moved by hand: the same ones every time. */
+const POSTURES = 120;
+
+function posture(data, number) {
+  return data.joints.map((joint, place) => {
+    if (!joint.is_shown || number === 0) return joint.start;
+    // evenly spread, each joint by another irrational step
+    const share = (number * Math.sqrt(place + 2)) % 1;
+    return joint.low + share * (joint.high - joint.low);
+  });
+}
+
 /** Size and middle of all that a motion passes, so that it stays in the picture. */
 export function fit(data) {
-  const frames = data.t.length;
-  if (frames === 0) return;
+  const frames = data.t.length > 0 ? data.t.length : POSTURES;
   const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
-  const step = Math.max(1, Math.floor(frames / 60));
+  const step = Math.max(1, Math.floor(frames / POSTURES));
   for (let frame = 0; frame < frames; frame += step) {
-    const poses = posesOf(data, positionsAt(data, [frame, 0]));
+    const q = data.t.length > 0 ? positionsAt(data, [frame, 0]) : posture(data, frame);
+    const poses = posesOf(data, q);
     data.links.forEach((link, place) => {
       if (!link.is_body) return;
       low.min(poses[place][0]);

@@ -34,7 +34,7 @@ export class Stage {
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.draw());
     this.target = new Vector3();
-    const far = ((data.joints ? NEAR : ROOM) * (data.view ?? data.size)) / Math.sin((35 * Math.PI) / 360) / 2;
+    const far = ((data.follows ? ROOM : NEAR) * (data.view ?? data.size)) / Math.sin((35 * Math.PI) / 360) / 2;
     this.away = data.look
       ? new Vector3(...data.look).addScaledVector(up, 0.25).normalize()
       : raised(data.eye ?? EYE, up);

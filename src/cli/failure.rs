@@ -55,6 +55,10 @@ pub(crate) enum Failure {
     Misuse(Misuse),
     /// A gait has no answer; holds the scenario and why.
     Walk(String, String),
+    /// A folder cannot be read; holds it and why.
+    Folder(String, io::Error),
+    /// Nothing can be served; holds the port and why.
+    Serve(u16, String),
     /// A step was given for the scheme that chooses its own.
     StepOfEventScheme,
     /// The answer cannot be written to standard output.
@@ -192,6 +196,8 @@ impl Failure {
             | Self::Output(_)
             | Self::Misuse(_)
             | Self::Walk(..)
+            | Self::Folder(..)
+            | Self::Serve(..)
             | Self::Base(..)
             | Self::Library(_)
             | Self::Read { .. }
@@ -246,6 +252,12 @@ impl Failure {
             Self::Work(error) => write!(f, "{error}")?,
             Self::Misuse(error) => write!(f, "{error}")?,
             Self::Walk(scenario, why) => write!(f, "{scenario}: {why}")?,
+            Self::Folder(folder, error) => write!(f, "{folder}: cannot be read: {error}")?,
+            Self::Serve(port, why) => write!(
+                f,
+                "--port {port}: cannot be listened on: {why}\n  hint: another port, or none for \
+                 one that is free"
+            )?,
             Self::StepOfEventScheme => {
                 write!(f, "--step: the event-driven scheme chooses its steps itself")?;
             }

@@ -8,8 +8,9 @@ use super::options::{EffectsOption, ModelArgument};
 use super::outputs::{on_stdout, write_whole};
 use clap::Args;
 use denavit::program::CodeError;
+use denavit::report::html::Fact;
 use denavit::report::symbolic::{faults_json, model_json, model_text};
-use denavit::report::{Pose, picture};
+use denavit::report::{Pose, inspection_page, picture};
 use denavit::workflow::RobotFaults;
 use std::io::Write;
 use std::path::PathBuf;
@@ -23,6 +24,7 @@ use std::path::PathBuf;
 Examples:
   denavit inspect tulip
   denavit inspect puma560 --svg puma560.svg
+  denavit inspect puma560 --html puma560.html
   denavit inspect scara --json")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -32,13 +34,18 @@ pub(crate) struct Arguments {
     /// Draw the robot at its zero pose, with the frames of its links; - is standard output
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// Write a page: the robot in three dimensions, with sliders for its joints, its numbers and
+    /// its equations; - is standard output
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let is_answered = on_stdout(&[arguments.svg.as_ref()], arguments.json)?;
+    let is_answered =
+        on_stdout(&[arguments.svg.as_ref(), arguments.html.as_ref()], arguments.json)?;
     let effects = arguments.effects.effects.as_deref();
     let robot =
         read_model_with_effects(&arguments.model.model, effects).inspect_err(|failure| {
@@ -58,6 +65,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             Pose::zero(&robot).map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
         write_whole(file, picture(&robot, &pose).as_bytes())?;
     }
+    if let Some(file) = &arguments.html {
+        let version = ("denavit", env!("CARGO_PKG_VERSION").to_owned());
+        let facts = [version, ("model", format!("{}, content {:016x}", robot.name, robot.hash))];
+        let facts = facts.map(|(name, value)| Fact { name: name.to_owned(), value });
+        let page = inspection_page(&robot, facts.to_vec());
+        let page = page.map_err(|error| CodeError::Lower(robot.name.clone(), error))?;
+        write_whole(file, page.render().as_bytes())?;
+    }
     if is_answered {
         return Ok(Answer::Done);
     }
@@ -65,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         write_json(out, &model_json(&robot))?;
     } else {
         write!(out, "{}", model_text(&robot))?;
-        if let Some(file) = &arguments.svg {
+        for file in [&arguments.svg, &arguments.html].into_iter().flatten() {
             writeln!(out, "\nwrote {}", file.display())?;
         }
     }

@@ -40,6 +40,7 @@ mod schema;
 mod simulate;
 mod unfinished;
 mod verify;
+mod view;
 mod walk;
 
 use clap::error::ErrorKind;
@@ -94,6 +95,7 @@ enum Command {
     Diagnose(diagnose::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
+    View(view::Arguments),
 }
 
 /// What a command that ran to its end says.
@@ -208,6 +210,7 @@ impl Command {
             Self::Diagnose(_) => "diagnose",
             Self::Completions(_) => "completions",
             Self::Man(_) => "man",
+            Self::View(_) => "view",
         }
     }
 
@@ -237,6 +240,7 @@ impl Command {
             Self::Diagnose(arguments) => diagnose::run(arguments, out),
             Self::Completions(arguments) => completions::run(arguments, out),
             Self::Man(arguments) => man::run(arguments, out),
+            Self::View(arguments) => view::run(arguments, out),
         }
     }
 }

@@ -3,8 +3,9 @@
     python tests/pages/check.py PAGE.html .. [--shots FOLDER] [--chromium PATH]
 
 At 1280, 1920 and 400 px and on paper: no error, nothing is loaded, no horizontal overflow, every
-column of every table can be reached, curves are drawn and answer the cursor, and the robot of a run
-is drawn and moves with its slider. Prints how large a page is and how long it takes to be ready.
+column of every table can be reached, curves are drawn and answer the cursor, and robots are drawn,
+move with their sliders and tell what is pointed at. axe-core has no serious finding. Prints how
+large a page is and how long it takes to be ready.
 """
 
 import argparse
@@ -15,6 +16,10 @@ import time
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
+
+AXE = Path(__file__).parents[2] / "crates/report/web/node_modules/axe-core/axe.min.js"
+# faults of the kinds that keep people from reading a page
+GRAVE = ("serious", "critical")
 
 WIDTHS = (1280, 1920, 400)
 MOST_BYTES = 4_000_000
@@ -102,7 +107,7 @@ class Checked:
         for tag in ("h1", "main", "h2"):
             self.expect(page.query_selector(tag), f"no {tag}")
         bare = page.evaluate("""document.querySelectorAll(
-            'canvas:not([aria-label], .uplot canvas), [style]:not(.uplot *, .uplot, .legend *, .ticks *, .scene canvas)'
+            'canvas:not([aria-label], .uplot canvas), [style]:not(.uplot *, .uplot, .legend *, .ticks *, .labels *, .scene canvas)'
         ).length""")
         self.expect(bare == 0, f"{bare} elements without words, or with styles of their own")
 
@@ -135,24 +140,50 @@ class Checked:
         self.expect(before != page.evaluate(ticks), "a key does not zoom")
         page.keyboard.press("0")
 
-    def scene(self, page, width):
-        figure = page.query_selector("figure.scene")
-        if not figure:
-            return
+    def scenes(self, page, width):
+        for figure in page.query_selector_all("figure.scene"):
+            if figure.is_visible():
+                self.scene(page, figure, width)
+
+    def scene(self, page, figure, width):
         figure.scroll_into_view_if_needed()
-        canvas, slider = figure.query_selector("canvas"), figure.query_selector(".line input")
+        canvas = figure.query_selector("canvas")
+        button = figure.query_selector(".play")
+        slider = figure.query_selector(".line input" if button else ".joints input")
         sums = []
-        for share in (0.0, 0.35, 0.8):
+        for share in (0.1, 0.35, 0.8):
             page.evaluate(SLIDE, [slider, share])
             page.wait_for_timeout(50)
             seen, value, total = canvas.evaluate(PIXELS)
-            self.expect(0.005 * total < seen < total, f"{width} px: the robot is not drawn")
+            self.expect(0.003 * total < seen < total, f"{width} px: the robot is not drawn")
             sums.append(value)
         self.expect(len(set(sums)) == 3, f"{width} px: the slider does not move the robot")
-        figure.query_selector(".play").click()
+        if not button:
+            self.pointed(page, figure, canvas, width)
+            return
+        button.click()
         page.wait_for_timeout(400)
-        figure.query_selector(".play").click()
+        button.click()
         self.expect(canvas.evaluate(PIXELS)[1] != sums[2], f"{width} px: it does not play")
+
+    def pointed(self, page, figure, canvas, width):
+        """Somewhere on the canvas a link tells its row."""
+        box = canvas.bounding_box()
+        for step in range(1, 400):
+            x, y = (step % 20) / 20, (step // 20) / 20
+            page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
+            if figure.query_selector(".now").inner_text():
+                return
+        self.expect(False, f"{width} px: no link tells its row when it is pointed at")
+
+    def accessible(self, page, scheme):
+        page.evaluate("document.querySelectorAll('details').forEach(one => { one.open = true; })")
+        page.evaluate(AXE.read_text(encoding="utf-8"))
+        found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        for one in found["violations"]:
+            if one["impact"] in GRAVE:
+                where = [node["target"][0] for node in one["nodes"][:3]]
+                self.expect(False, f"{scheme}: axe {one['id']}: {one['help']} at {where}")
 
 
 def check(browser, path, shots):
@@ -167,8 +198,10 @@ def check(browser, path, shots):
             took = seconds if took is None else min(took, seconds)
             checked.layout(page, width)
             checked.curves(page, width)
-            checked.scene(page, width)
+            checked.scenes(page, width)
             checked.zoom(page)
+            if width == WIDTHS[0]:
+                checked.accessible(page, scheme)
             if shots:
                 page.evaluate("scrollTo(0, 0)")
                 page.screenshot(path=shots / f"{path.stem}-{scheme}-{width}.png", full_page=True)

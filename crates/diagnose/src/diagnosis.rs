@@ -15,6 +15,7 @@ use super::fault::DiagnosisError;
 use super::floor::NoiseFloor;
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
+use super::logged::{LoggedMotion, logged};
 use super::nominal::{Nominal, NominalAt, Uncertainty};
 use super::regime::{Where, where_left};
 use super::rounds::Found;
@@ -114,6 +115,8 @@ pub struct Diagnosis {
     pub motion: Option<Result<MotionGaps, NotMoved>>,
     /// Torques of held-out logs over time.
     pub curves: Vec<Curve>,
+    /// How the robot moved in these logs.
+    pub logged: Vec<LoggedMotion>,
     /// The filters.
     pub filters: Filters,
     /// Numbers of the model that the logs would move beyond their uncertainty, before and after.
@@ -249,6 +252,7 @@ impl Told<'_, '_> {
             leftovers,
             structures,
             curves: curves(data.held_out, &before.residual.held_out, &after.residual.held_out),
+            logged: logged(data.held_out),
             motion: moved.map(|moved| self.motion_gaps(moved)),
             filters: *filters,
             driven: [before, after].map(|state| driven_names(setting, state)),

@@ -7,6 +7,7 @@ use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
 use super::gap::Gap;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
+use super::law_curve::LawCurve;
 use super::rounds::Found;
 use super::search::Search;
 use super::signals::Filters;
@@ -67,6 +68,8 @@ pub struct FoundEffect {
     /// A motion that would tell it from these, or why there is none; none if it was not asked for,
     /// or if nothing is to be told apart.
     pub experiment: Option<Result<Experiment, NoExperiment>>,
+    /// What it adds over what it depends on; none where it adds nothing to held-out logs.
+    pub curve: Option<LawCurve>,
 }
 
 /// An effect that the model has.
@@ -111,6 +114,7 @@ pub(super) fn found_effects(
             alternatives: alternatives(found, place),
             exact: Vec::new(),
             experiment: None,
+            curve: LawCurve::of(setting, after, taken),
         }
     };
     (0..all.parts.len()).map(of).collect()

@@ -171,15 +171,18 @@ impl Identification {
     fn rows_left_out(&self) -> Option<String> {
         let of = |one: &LeftOutRows| {
             let left = 100.0 * one.left;
-            format!("{} of {} samples of {} ({left:.2} %)", one.samples, one.of, one.joint)
+            format!(
+                "{} of {} samples of {}, whose others leave {left:.2} %",
+                one.samples, one.of, one.joint
+            )
         };
         let listed: Vec<String> = self.left_out.iter().map(of).collect();
         (!listed.is_empty()).then(|| {
             format!(
                 "Left out of the estimate, since the joint turns round or is slow there, where \
-                 friction is not the sign of its rate: {} (`options.slow=off` keeps them). What is \
-                 left of torques above is that of all samples; in brackets, that of the others.",
-                listed.join(", ")
+                 friction is not the sign of its velocity: {}. Residuals of the tables are those of \
+                 all samples. `options.slow=off` keeps them all.",
+                listed.join("; ")
             )
         })
     }

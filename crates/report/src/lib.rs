@@ -8,6 +8,7 @@
 //! - [`html`]: reports as one page that needs nothing from elsewhere
 //! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
 //!   [`IdentificationPage`]: all of an estimate
+//! - [`inspection_page`]: a model, whose joints a reader moves; [`Gallery`]: the results of a folder
 //! - [`DiagnosisPage`]: what a model lacks, with torques before and after
 //! - [`symbolic`]: what the compiler finds, as text, JSON, Markdown and LaTeX
 //! - [`answer`]: what use cases answer, as text, JSON, pictures and pages
@@ -19,14 +20,18 @@ mod camera;
 mod cells;
 mod diagnosis;
 mod effects;
+mod gallery;
 pub mod html;
 mod identification;
+mod inspection;
+mod jointed;
 mod label;
 mod ordered;
 mod outline;
 mod paragraph;
 mod picture;
 mod pose;
+mod quaternion;
 mod run;
 mod scene;
 mod space;
@@ -38,9 +43,11 @@ mod values;
 mod walk;
 
 pub use denavit_numerics::{percent, short};
-pub use diagnosis::{DiagnosisPage, verdict_paragraph};
+pub use diagnosis::{DiagnosisPage, DiagnosisSource, verdict_paragraph};
 pub use effects::effects_page;
+pub use gallery::Gallery;
 pub use identification::{IdentificationPage, SimulationPart};
+pub use inspection::inspection_page;
 pub use ordered::Ordered;
 pub use paragraph::paragraph;
 pub use picture::picture;

@@ -17,6 +17,8 @@ const OPEN_VALUE: f64 = 0.5;
 /// The frames, points and the centre of mass of a robot at one configuration.
 #[derive(Clone, Debug)]
 pub struct Pose {
+    /// Positions of the joints [rad, m].
+    pub(super) q: Vec<f64>,
     /// Frame of each link, in link order.
     pub(super) frames: Vec<Transform>,
     /// Contact points, in file order \[m\].
@@ -73,7 +75,16 @@ impl Pose {
         };
         let center_of_mass = center_of_mass(robot, &mut values, &frames);
         let ground = [point, normal];
-        Ok(Self { frames, contacts, center_of_mass, ground, up, open, is_lifted: false })
+        Ok(Self {
+            q: q.to_vec(),
+            frames,
+            contacts,
+            center_of_mass,
+            ground,
+            up,
+            open,
+            is_lifted: false,
+        })
     }
 }
 

@@ -40,6 +40,7 @@ impl TwoStagePage<'_> {
         ];
         sections.extend(remarks(self.remarks));
         Ok(Page {
+            watches: false,
             title: format!("Identification of {} in two stages", self.model.replace('_', " ")),
             verdict: None,
             lead: self.lead(),

@@ -2,9 +2,9 @@
 
 use super::Arguments;
 use crate::cli::logs::listed;
-use denavit::report::DiagnosisPage;
 use denavit::report::answer::DiagnosisFolder;
 use denavit::report::html::{Fact, Page};
+use denavit::report::{DiagnosisPage, DiagnosisSource};
 use denavit::workflow::Diagnosed;
 
 pub(super) fn of(arguments: &Arguments, shown: &Diagnosed, folder: &DiagnosisFolder) -> Page {
@@ -28,14 +28,14 @@ pub(super) fn of(arguments: &Arguments, shown: &Diagnosed, folder: &DiagnosisFol
     remarks.extend(shown.model_effects.iter().map(ToString::to_string));
     remarks.extend(folder.about_model());
     let joints: Vec<&str> = shown.model.joints.iter().map(|joint| joint.name.as_str()).collect();
-    DiagnosisPage {
-        model: &shown.robot.name,
+    DiagnosisPage::new(DiagnosisSource {
+        robot: &shown.robot,
         facts: &facts,
         remarks: &remarks,
         joints: &joints,
         candidates: &shown.candidates,
         effects: &shown.effects,
         found: &shown.found,
-    }
+    })
     .page()
 }

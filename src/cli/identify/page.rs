@@ -2,6 +2,7 @@
 
 use super::arguments::{Arguments, ErrorsName, MethodName};
 use crate::cli::failure::{Failure, Misuse};
+use crate::cli::flags::by_flag;
 use crate::cli::logs::listed;
 use clap::ValueEnum;
 use denavit::model::Robot;
@@ -42,7 +43,7 @@ pub(super) fn of(
     identified: &Identified,
     is_good: bool,
 ) -> Result<String, Failure> {
-    let Identified { robot, found, remarks, effects, simulated, .. } = identified;
+    let Identified { robot, model, found, remarks, effects, simulated, .. } = identified;
     let mut notes: Vec<String> =
         remarks.iter().map(|(file, remark)| format!("{file}: {remark}")).collect();
     notes.extend(effects.iter().map(ToString::to_string));
@@ -54,9 +55,18 @@ pub(super) fn of(
         reasons,
     });
     let updated = identified.updated.as_ref().ok();
-    let page =
-        IdentificationPage { robot, updated, facts, remarks: &notes, found, is_good, simulation };
-    Ok(page.page().map_err(Misuse::Formula)?.render())
+    let page = IdentificationPage {
+        robot,
+        model,
+        updated,
+        facts,
+        remarks: &notes,
+        found,
+        is_good,
+        simulation,
+    };
+    let page = page.page().map_err(Misuse::Formula)?;
+    Ok(page.rewritten(|text| by_flag(text).into_owned()).render())
 }
 
 /// The word by which an option's value is given.

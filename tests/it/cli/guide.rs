@@ -177,6 +177,7 @@ pages! {
     the_page_on_fleets_is_real: "fleet",
     the_page_on_the_library_is_real: "library",
     the_page_on_shells_is_real: "shell",
+    the_page_of_questions_is_real: "faq",
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{Directory, answer, run_in};
 
 /// In an order in which an example may read what one before it wrote: `verify` reads a
 /// certificate, `import` a URDF.
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "demo",
     "export",
     "import",
@@ -24,6 +24,7 @@ const COMMANDS: [&str; 19] = [
     "diagnose",
     "completions",
     "man",
+    "view",
 ];
 
 /// The commands of `walk`.
@@ -66,7 +67,7 @@ fn every_example_of_every_help_text_runs() {
             let run = run_in(&directory.path, &words);
             assert_eq!(run.code, Some(0), "{example:?}: {}", run.stderr);
             assert!(!run.stdout.is_empty(), "{example:?} says nothing");
-            for option in ["--svg", "--latex", "--certificate", "-o"] {
+            for option in ["--svg", "--html", "--latex", "--certificate", "-o"] {
                 let at = words.iter().position(|word| *word == option);
                 let file = at.and_then(|at| words.get(at + 1)).filter(|file| **file != "-");
                 if let Some(file) = file {

@@ -4,7 +4,7 @@ use super::root;
 use std::fs;
 use std::process::Command;
 
-const COMMANDS: [&str; 32] = [
+const COMMANDS: [&str; 33] = [
     "demo",
     "list",
     "inspect",
@@ -37,6 +37,7 @@ const COMMANDS: [&str; 32] = [
     "walk page",
     "completions",
     "man",
+    "view",
 ];
 
 fn help(command: &str) -> String {

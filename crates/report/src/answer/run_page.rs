@@ -4,7 +4,7 @@ use super::run::scheme_text;
 use crate::html::{Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Section, VerdictLine};
 use crate::run::{replay, run_charts};
 use denavit_simulate::scenario::Scenario;
-use denavit_simulate::{Run, Stop};
+use denavit_simulate::{EventKind, Run, Stop};
 
 /// A run on one page: played back, with its curves and its audit; `broken` are the tolerances that
 /// it broke (law, found, allowed).
@@ -29,6 +29,7 @@ pub fn run_page(
     let given = [("model", model.name.clone()), ("scheme", scheme_text(scenario))];
     let given = given.map(|(name, value)| Fact { name: name.to_owned(), value });
     Page {
+        watches: false,
         title: scenario.name.replace('_', " "),
         verdict: Some(verdict(run, broken)),
         lead: scenario.description.clone(),
@@ -39,7 +40,9 @@ pub fn run_page(
 
 fn verdict(run: &Run, broken: &[(&'static str, f64, f64)]) -> VerdictLine {
     let end = format!("{} at {:.3} s", run.stop, run.end.t_s);
-    let events = match run.events.len() {
+    // as many as are listed: a start is none
+    let happened = run.events.iter().filter(|event| event.kind != EventKind::Start).count();
+    let events = match happened {
         1 => "1 event".to_owned(),
         count => format!("{count} events"),
     };
@@ -59,18 +62,27 @@ fn verdict(run: &Run, broken: &[(&'static str, f64, f64)]) -> VerdictLine {
 
 /// The laws that a run is held to, and how far it was from them at worst.
 fn audit(scenario: &Scenario, run: &Run, broken: &[(&'static str, f64, f64)]) -> HtmlTable {
+    let has_broken = !broken.is_empty();
     let heading = |(text, is_number): (&str, bool)| Heading { heading: text.to_owned(), is_number };
     let row = |law: String, worst: f64| {
         let allowed = broken.iter().find(|(_, found, _)| *found == worst);
         let allowed = allowed.map_or_else(String::new, |(.., most)| format!("{most:.0e}"));
         let is_marked = !allowed.is_empty();
         let worst = Cell::number(worst, format!("{worst:.3e}"));
-        Row { cells: vec![Cell::text(law), worst, Cell::text(allowed)], is_marked }
+        let mut cells = vec![Cell::text(law), worst];
+        cells.extend(has_broken.then(|| Cell::text(allowed)));
+        Row { cells, is_marked }
     };
     let listed = run.audit.listed(scenario.plant.model()).into_iter();
+    let columns = [("law", false), ("worst", true), ("allowed", true)];
+    let shown = if has_broken { 3 } else { 2 };
+    let caption = match has_broken {
+        true => "The laws that every run is held to; marked are those that it breaks.",
+        false => "The laws that every run is held to. None is broken.",
+    };
     HtmlTable {
-        caption: "The laws that every run is held to; marked are those that it breaks.".to_owned(),
-        columns: [("law", false), ("worst", true), ("allowed", true)].map(heading).to_vec(),
+        caption: caption.to_owned(),
+        columns: columns.map(heading).into_iter().take(shown).collect(),
         rows: listed.map(|(_, law, worst)| row(law.to_string(), worst)).collect(),
     }
 }

@@ -1,6 +1,7 @@
 //! Curves that a reader looks into: panels below each other over one axis.
 
 use super::data::{embedded, times, values};
+use super::units::with_units;
 use denavit_numerics::extremes;
 use serde::{Serialize, Serializer};
 
@@ -22,6 +23,8 @@ pub struct Chart {
     pub x: Vec<f64>,
     /// What stands above each other.
     pub panels: Vec<Panel>,
+    /// Parts of the axis that stand out.
+    pub windows: Vec<[f64; 2]>,
 }
 
 /// Curves with one scale.
@@ -61,8 +64,10 @@ pub enum Look {
     Before,
     /// The difference.
     Residual,
-    /// Points without a line.
+    /// Points that were measured.
     Points,
+    /// Points of a law.
+    Law,
     /// One of many: by its place.
     Palette,
 }
@@ -80,6 +85,7 @@ struct Data<'a> {
     #[serde(serialize_with = "as_times")]
     x: &'a [f64],
     panels: &'a [Panel],
+    windows: &'a [[f64; 2]],
 }
 
 impl ChartCurve {
@@ -92,7 +98,7 @@ impl ChartCurve {
 impl Panel {
     /// A panel of this height \[px\].
     pub fn new(label: impl Into<String>, height: u32, curves: Vec<ChartCurve>) -> Self {
-        Self { label: label.into(), height, log: false, curves }
+        Self { label: with_units(&label.into()), height, log: false, curves }
     }
 }
 
@@ -158,9 +164,10 @@ impl Serialize for Chart {
         let data = Data {
             group: self.group,
             x_name: self.over[0],
-            x_label: self.over[1],
+            x_label: &with_units(self.over[1]),
             x: &self.x,
             panels: &self.panels,
+            windows: &self.windows,
         };
         let data = embedded(&data);
         let (name, caption) = (&self.name, &self.caption);

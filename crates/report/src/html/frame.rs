@@ -1,5 +1,6 @@
 //! The frame of a page: the template with the scripts and the style sheet that it carries.
 
+use super::units::with_units;
 use super::{Page, Part};
 use minijinja::Environment;
 use minijinja::value::Serde;
@@ -37,11 +38,13 @@ pub(super) fn filled(page: &Page) -> String {
     let allowed: Vec<String> = scripts.iter().map(|(_, hash)| format!("'{hash}'")).collect();
     let policy = format!(
         "default-src 'none'; script-src {}; style-src '{}'; img-src data:; base-uri 'none'; \
-         form-action 'none'",
+         form-action 'none'{}",
         allowed.join(" "),
-        hash("page.css")
+        hash("page.css"),
+        if page.watches { "; connect-src 'self'" } else { "" }
     );
     let mut environment = Environment::new();
+    environment.add_filter("units", |text: String| with_units(&text));
     environment.add_template(NAME, TEMPLATE).expect("the template is part of the library");
     let template = environment.get_template(NAME).expect("it was just added");
     let scripts = scripts.into_iter().map(|(text, _)| text).collect();

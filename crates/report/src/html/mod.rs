@@ -11,12 +11,15 @@ mod formula;
 mod frame;
 mod replay;
 mod table;
+mod units;
 
 pub use chart::{Chart, ChartCurve, Look, Panel};
 pub(crate) use data::{Brief, with_decimals};
 pub use formula::{FormulaError, mathml};
 pub use replay::{Mark, Replay};
+pub(crate) use replay::{Scene, SceneMark, Slider};
 pub use table::{Cell, Heading, HtmlTable, Row};
+pub(crate) use units::unit;
 
 use serde::Serialize;
 
@@ -33,6 +36,8 @@ pub struct Page {
     pub facts: Vec<Fact>,
     /// The rest.
     pub sections: Vec<Section>,
+    /// Whether it loads itself again when the server that it is from says so.
+    pub watches: bool,
 }
 
 /// The answer in one sentence.
@@ -128,6 +133,26 @@ impl Page {
     /// The page as text.
     pub fn render(&self) -> String {
         frame::filled(self)
+    }
+
+    /// The page with paragraphs as `written`.
+    #[must_use]
+    pub fn rewritten(mut self, written: impl Fn(&str) -> String) -> Self {
+        fn rewrite(parts: &mut [Part], written: &dyn Fn(&str) -> String) {
+            for part in parts {
+                match part {
+                    Part::Paragraph { text } => *text = written(text),
+                    Part::Folded { parts, .. } => rewrite(parts, written),
+                    Part::Tabs { tabs } => {
+                        tabs.iter_mut().for_each(|tab| rewrite(&mut tab.parts, written));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        let sections = self.sections.iter_mut();
+        sections.for_each(|section| rewrite(&mut section.parts, &written));
+        self
     }
 
     /// Whether a part is among what is shown.

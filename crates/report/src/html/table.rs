@@ -1,5 +1,6 @@
 //! Tables of pages.
 
+use super::units::unit;
 use super::{FormulaError, mathml};
 use serde::Serialize;
 
@@ -44,6 +45,7 @@ pub struct Cell {
     is_folded: bool,
     order: Option<f64>,
     bars: Option<Bars>,
+    href: Option<String>,
 }
 
 /// Bars below each other, each of a share of the longest.
@@ -62,6 +64,16 @@ impl Cell {
     /// Words.
     pub fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
+    }
+
+    /// Words that lead to another page.
+    pub(crate) fn link(text: &str, href: &str) -> Self {
+        Self { href: Some(href.to_owned()), ..Self::text(text) }
+    }
+
+    /// A unit as files write it: `kg m^2`.
+    pub fn unit(text: &str) -> Self {
+        Self::text(unit(text))
     }
 
     /// Words that may take several lines.

@@ -66,6 +66,7 @@ fn torque(joint: &JointResidual, samples: usize) -> Chart {
             Panel::new("torque [N m, N]", TALL, torques),
             Panel::new("residual", LOW, residual),
         ],
+        windows: Vec::new(),
     }
 }
 
@@ -87,6 +88,7 @@ pub(super) fn motion(forward: &Forward) -> impl Iterator<Item = Chart> + '_ {
             over: TIME,
             x: forward.t_s.clone(),
             panels: vec![Panel::new(what, TALL, both), Panel::new("difference", LOW, off)],
+            windows: Vec::new(),
         }
         .thinned()
     };
@@ -117,6 +119,7 @@ pub(super) fn convergence(parameters: &[IdentifiedParameter], points: &[Converge
         over: ["time [s]", "time of measurement [s]"],
         x: points.iter().map(|point| point.time_s).collect(),
         panels: vec![Panel::new("standard errors from the end", 240, curves)],
+        windows: Vec::new(),
     }
 }
 
@@ -138,5 +141,6 @@ pub(super) fn condition(points: &[Convergence]) -> Chart {
         over: ["time [s]", "time of measurement [s]"],
         x: points.iter().map(|point| point.time_s).collect(),
         panels: vec![panel],
+        windows: Vec::new(),
     }
 }

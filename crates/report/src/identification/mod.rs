@@ -2,6 +2,7 @@
 
 mod curves;
 mod parameters;
+mod shown_by;
 mod simulation;
 
 pub(super) use curves::torques;
@@ -16,13 +17,16 @@ use denavit_codegen::model::Robot;
 use denavit_identify::estimate::{JointResidual, Status, Validation};
 use denavit_identify::forward::Forward;
 use denavit_identify::{Identification, UpdatedModel};
+use denavit_plants::regression::RegressionModel;
 use parameters::{bodies, not_excited};
 
 /// What a page about an identification says.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct IdentificationPage<'a> {
     /// The robot as its file has it.
     pub robot: &'a Robot,
+    /// The columns of its base parameters.
+    pub model: &'a RegressionModel,
     /// The same with what was found, where that has a place in the file.
     pub updated: Option<&'a UpdatedModel>,
     /// What it was made of: version, hash of the model, logs, method, seed.
@@ -58,11 +62,12 @@ impl IdentificationPage<'_> {
         sections.push(self.parameters()?);
         sections.push(torques(&found.train, held_out));
         sections.push(residuals(&found.train, held_out));
-        sections.extend(not_excited(&found.parameters));
+        sections.extend(not_excited(self.model, &found.parameters));
         sections.push(self.convergence());
         sections.extend(self.simulation.map(|simulation| simulation.section()));
         sections.extend(remarks(self.remarks));
         Ok(Page {
+            watches: false,
             title: format!("Identification of {}", self.robot.name.replace('_', " ")),
             verdict: Some(self.verdict()),
             lead: self.lead(),

@@ -1,11 +1,13 @@
 //! Tables of parameters.
 
 use super::headings;
+use super::shown_by::motions;
 use crate::html::{Cell, FormulaError, HtmlTable, Part, Row, Section};
 use crate::{Values, short};
 use denavit_codegen::model::Robot;
 use denavit_identify::UpdatedModel;
 use denavit_identify::estimate::{IdentifiedParameter, Status};
+use denavit_plants::regression::RegressionModel;
 
 /// The base parameters.
 pub(crate) fn base_parameters(found: &[IdentifiedParameter]) -> Result<HtmlTable, FormulaError> {
@@ -43,7 +45,7 @@ fn base_row(one: &IdentifiedParameter) -> Result<Row, FormulaError> {
         value(one.value, one.std),
         or_empty(one.model_value, short),
         apart(one.value, one.model_value, one.std),
-        Cell::text(&one.unit),
+        Cell::unit(&one.unit),
         Cell::prose(remarks.join("; ")),
         if is_sum { Cell::folded("show", &one.latex)? } else { Cell::text("") },
     ];
@@ -91,7 +93,7 @@ pub(super) fn bodies(
             value(new, std),
             or_empty(old, short),
             apart(new, old, std),
-            Cell::text(unit),
+            Cell::unit(&unit),
             Cell::prose(remark),
         ];
         rows.push(Row { cells, is_marked: is_hidden });
@@ -103,39 +105,26 @@ pub(super) fn bodies(
 }
 
 /// What the motion does not show, and what would.
-pub(super) fn not_excited(found: &[IdentifiedParameter]) -> Option<Section> {
+pub(super) fn not_excited(
+    model: &RegressionModel,
+    found: &[IdentifiedParameter],
+) -> Option<Section> {
     let hidden = found.iter().filter(|one| one.status == Status::NotExcited);
-    let rows: Vec<Row> = hidden
-        .map(|one| {
-            let cells = vec![Cell::text(&one.name), Cell::prose(shown_by(&one.name))];
-            Row { cells, is_marked: false }
-        })
-        .collect();
-    let columns = headings(&[("parameter", false), ("a motion that shows it", false)]);
-    let caption = "These keep the values of the model. An excitation that is designed for the \
-                   model has such motions within its limits."
-        .to_owned();
-    let table = HtmlTable { caption, columns, rows };
-    let is_some = !table.rows.is_empty();
-    let parts = vec![Part::Table(table)];
-    is_some.then(|| Section { heading: "Not excited".to_owned(), parts })
-}
-
-/// By the letters that a name begins with, as the compiler gives them.
-fn shown_by(name: &str) -> String {
-    let (kind, owner) = name.split_once('_').unwrap_or((name, ""));
-    let owner = if owner.is_empty() { "its joint" } else { owner };
-    match kind {
-        "fv" => format!("{owner} turns at several speeds"),
-        "fc" => format!("{owner} moves both ways, longer than it takes to turn round"),
-        "off" => format!("{owner} holds still, and moves both ways"),
-        "k" | "kr" | "ks" => format!("{owner} is held at several positions"),
-        "Ia" => format!("{owner} speeds up and slows down"),
-        "m" | "mx" | "my" | "mz" | "cx" | "cy" | "cz" => {
-            format!("{owner} is held in several postures against gravity, and speeds up")
-        }
-        _ => format!("joints up to {owner} speed up and slow down in several postures"),
+    let names: Vec<&str> = hidden.map(|one| one.name.as_str()).collect();
+    if names.is_empty() {
+        return None;
     }
+    let motions = motions(model, &names);
+    let rows = names.iter().zip(&motions).map(|(name, motion)| {
+        let cells = vec![Cell::text(*name), Cell::prose(motion)];
+        Row { cells, is_marked: false }
+    });
+    let columns = headings(&[("parameter", false), ("shown where", false)]);
+    let caption = "These keep the values of the model. By the regressor of the robot the plainest \
+                   motions that show each of them, when what the logs determine is known."
+        .to_owned();
+    let table = HtmlTable { caption, columns, rows: rows.collect() };
+    Some(Section { heading: "Not excited".to_owned(), parts: vec![Part::Table(table)] })
 }
 
 fn or_empty(value: Option<f64>, shown: fn(f64) -> String) -> Cell {

@@ -20,6 +20,7 @@ pub(crate) fn run_charts(model: &PlantModel, log: &Log) -> Vec<Chart> {
         over: ["time [s]", "time [s]"],
         x: shown.times.clone(),
         panels,
+        windows: Vec::new(),
     };
     let mut charts: Vec<Chart> = Vec::new();
     for joint in shown_joints(model, &shown, MOST) {

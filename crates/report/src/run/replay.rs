@@ -2,6 +2,7 @@
 //! with what acts on them and how the robot keeps its balance.
 
 use super::super::outline::{hull, round_step};
+use super::super::quaternion::pose_of;
 use super::super::space::{Transform, Vec3, add, norm, scale, sub};
 use super::figures::{feet, generated};
 use crate::html::{Brief, Mark, Replay, with_decimals};
@@ -21,6 +22,8 @@ const FORCE: usize = 2;
 const TIME: usize = 5;
 /// Events that are listed, at most: a ball has no last bounce.
 const MOST_EVENTS: usize = 500;
+/// The radius of a ball that is a point, per size of the picture.
+const BALL: f64 = 0.2;
 /// The least size of a robot \[m\].
 const LEAST_SIZE_M: f64 = 0.05;
 
@@ -57,10 +60,13 @@ struct Data {
 
 #[derive(Serialize)]
 struct LinkData {
+    name: String,
     carrier: i64,
     slides: bool,
     is_joint: bool,
     is_body: bool,
+    /// That of a ball that stands for itself \[m\].
+    radius: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -235,7 +241,7 @@ fn data(
     forces: Option<(Vec<Brief>, f64)>,
     events: Vec<EventData>,
 ) -> Data {
-    let links = links(model);
+    let mut links = links(model);
     let follows = generated(model) > 0;
     let weight = norm(model.gravity);
     let up = match weight > 0.0 {
@@ -243,6 +249,7 @@ fn data(
         false => model.ground.normal,
     };
     let (size, center) = extent(model, &links, if follows { &frames[..1] } else { frames });
+    round_bodies(model, frames, size, &mut links);
     let first = frames.first().map_or([0.0; 3], |frame| frame.center);
     let reach = frames.iter().map(|frame| norm(sub(frame.center, first))).fold(0.0, f64::max);
     let triple = |v: Vec3| v.map(|entry| with_decimals(entry, PLACE));
@@ -291,13 +298,36 @@ fn links(model: &PlantModel) -> Vec<LinkData> {
         // bodies beside each other hang on nothing
         let is_body = place >= first && !(parent.is_none() && roots > 1);
         LinkData {
+            name: name.clone(),
             carrier: number(parent),
             slides: joint.is_some_and(|joint| joint.slides),
             is_joint: is_body && joint.is_some(),
             is_body,
+            radius: None,
         }
     };
     model.links.iter().enumerate().map(link).collect()
+}
+
+/// Gives bodies without a length a radius: those beside each other touch where they are nearest,
+/// a point that touches the ground is a share of the picture.
+fn round_bodies(model: &PlantModel, frames: &[Frame], size: f64, links: &mut [LinkData]) {
+    let roots: Vec<usize> =
+        (0..links.len()).filter(|&link| model.parents[link].is_none()).collect();
+    if roots.len() > 1 {
+        let apart = |frame: &Frame, a: usize, b: usize| {
+            norm(sub(frame.links[a].origin, frame.links[b].origin))
+        };
+        let pairs = |frame| roots.windows(2).map(move |pair| apart(frame, pair[0], pair[1]));
+        let nearest = frames.iter().flat_map(pairs).fold(f64::INFINITY, f64::min);
+        let radius = nearest.is_finite().then_some((0.5 * nearest).max(0.02 * size));
+        roots.iter().for_each(|&root| links[root].radius = radius);
+    } else if let [only] = model.contacts.as_slice()
+        && model.fall_points.is_empty()
+        && !links.iter().any(|link| link.is_joint)
+    {
+        links[only.link].radius = Some(BALL * size);
+    }
 }
 
 fn foot_data(model: &PlantModel) -> Vec<FootData> {
@@ -340,25 +370,6 @@ fn extent(model: &PlantModel, links: &[LinkData], frames: &[Frame]) -> (f64, Vec
 
 /// Place and turn of a frame.
 fn pose(frame: &Transform) -> Vec<Brief> {
-    let [x, y, z] = frame.axes;
-    // the largest of the four squares is far from 0 (Shepperd 1978)
-    let squares = [
-        1.0 + x[0] - y[1] - z[2],
-        1.0 - x[0] + y[1] - z[2],
-        1.0 - x[0] - y[1] + z[2],
-        1.0 + x[0] + y[1] + z[2],
-    ];
-    let most = (0..4).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).unwrap_or(3);
-    let (sums, turned) =
-        ([x[1] + y[0], x[2] + z[0], y[2] + z[1]], [y[2] - z[1], z[0] - x[2], x[1] - y[0]]);
-    let parts = match most {
-        0 => [squares[0], sums[0], sums[1], turned[0]],
-        1 => [sums[0], squares[1], sums[2], turned[1]],
-        2 => [sums[1], sums[2], squares[2], turned[2]],
-        _ => [turned[0], turned[1], turned[2], squares[3]],
-    };
-    let length = parts.iter().map(|part| part * part).sum::<f64>().sqrt().max(1e-12);
-    let places = frame.origin.map(|entry| with_decimals(entry, PLACE));
-    let turns = parts.map(|part| with_decimals(part / length, TURN));
-    places.into_iter().chain(turns).collect()
+    let all = pose_of(frame).into_iter().enumerate();
+    all.map(|(at, entry)| with_decimals(entry, if at < 3 { PLACE } else { TURN })).collect()
 }

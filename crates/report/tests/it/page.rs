@@ -27,6 +27,7 @@ fn page() -> Page {
     };
     let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"></svg>";
     Page {
+        watches: false,
         title: "Identified <robot> & more".to_owned(),
         verdict: Some(VerdictLine { grade: Grade::Fair, text: "So <so>.".to_owned() }),
         lead: "All is \"well\".".to_owned(),

@@ -10,6 +10,7 @@ const LOOKS = {
   before: { colour: "before", width: 1.2 },
   residual: { colour: "quiet", width: 1.2 },
   points: { colour: "measured", points: true },
+  law: { colour: "computed", points: true },
 };
 const PALETTE = 8;
 const PAPER_WIDTH = 640;
@@ -64,6 +65,19 @@ function axis(label, isLeft) {
   };
 }
 
+/** Parts of the axis that stand out. */
+function shade(plot, windows) {
+  const { ctx, bbox } = plot;
+  ctx.save();
+  ctx.fillStyle = colour("marked");
+  for (const [from, to] of windows ?? []) {
+    const ends = [from, to].map(x => plot.valToPos(x, "x", true));
+    const [left, right] = ends.map(x => Math.min(Math.max(x, bbox.left), bbox.left + bbox.width));
+    if (right > left) ctx.fillRect(left, bbox.top, right - left, bbox.height);
+  }
+  ctx.restore();
+}
+
 /** Lines of a logarithmic scale stand at powers of ten alone. */
 function powers(_, ticks) {
   return ticks.map(tick => (Math.abs(Math.log10(tick) % 1) < 1e-9 ? tick : null));
@@ -97,7 +111,10 @@ function options(data, panel, isLast, own, box, width) {
         filters: { pub: type => type === "mousemove" || type === "mouseleave" },
       },
     },
-    hooks: { setScale: [(plot, scale) => { if (scale === "x") link(own, plot); }] },
+    hooks: {
+      drawClear: [plot => shade(plot, data.windows)],
+      setScale: [(plot, scale) => { if (scale === "x") link(own, plot); }],
+    },
   };
 }
 

@@ -2,9 +2,11 @@
 import { drawCharts } from "./charts.js";
 import { makeSortable } from "./tables.js";
 import { makeTabs } from "./tabs.js";
+import { watch } from "./watch.js";
 
 document.querySelectorAll("table.sortable").forEach(makeSortable);
 drawCharts(document);
 // after the curves: what is hidden has no width to draw them in
 document.querySelectorAll(".tabs").forEach(makeTabs);
+if (document.documentElement.dataset.watches) watch();
 document.documentElement.dataset.ready = "yes";

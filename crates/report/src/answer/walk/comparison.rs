@@ -179,6 +179,7 @@ pub fn comparison_page(all: &[Compared]) -> Page {
     let shown = CASES.iter().map(|case| format!("{}: {}.", case.scenario, case.shows));
     let paragraph = Part::Paragraph { text: shown.collect::<Vec<_>>().join(" ") };
     Page {
+        watches: false,
         title: "Criteria of stability, compared by runs".to_owned(),
         verdict: None,
         lead: "No criterion is right on all runs: each is met in a fall, missed without one, or \

@@ -56,6 +56,7 @@ pub fn gait_page(
     }
     let section = |heading: &str, parts| Section { heading: heading.into(), parts };
     Page {
+        watches: false,
         title: scenario.name.replace('_', " "),
         verdict: None,
         lead: scenario.description.clone(),

@@ -11,19 +11,10 @@ pub(super) fn write(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> 
     head(out, robot, values)?;
     writeln!(out, "\n{}", link_table(robot, values))?;
     totals(out, robot, values)?;
-    for (title, table) in [
-        ("moments of inertia [kg m^2]", inertia_table(robot, values)),
-        ("standard deviations that the file states", deviation_table(robot, values)),
-        ("limits", limit_table(robot, values)),
-        ("drives, springs, damping", drive_table(robot, values)),
-        ("contacts", contact_table(robot, values)),
-        ("must not touch the ground", body_table(robot, values)),
-    ] {
-        if !table.is_empty() {
-            writeln!(out, "\n{title}")?;
-            for line in table.without_empty_columns().to_string().lines() {
-                writeln!(out, "  {line}")?;
-            }
+    for (title, table) in tables(robot, values) {
+        writeln!(out, "\n{title}")?;
+        for line in table.to_string().lines() {
+            writeln!(out, "  {line}")?;
         }
     }
     if !robot.assumptions.is_empty() {
@@ -33,6 +24,20 @@ pub(super) fn write(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> 
         }
     }
     Ok(())
+}
+
+/// The numbers of a model beside its rows, those that it has.
+pub(super) fn tables(robot: &Robot, values: &mut Values) -> Vec<(&'static str, Table)> {
+    let all = [
+        ("moments of inertia [kg m^2]", inertia_table(robot, values)),
+        ("standard deviations that the file states", deviation_table(robot, values)),
+        ("limits", limit_table(robot, values)),
+        ("drives, springs, damping", drive_table(robot, values)),
+        ("contacts", contact_table(robot, values)),
+        ("must not touch the ground", body_table(robot, values)),
+    ];
+    let full = all.into_iter().filter(|(_, table)| !table.is_empty());
+    full.map(|(title, table)| (title, table.without_empty_columns())).collect()
 }
 
 fn head(out: &mut dyn Write, robot: &Robot, values: &mut Values) -> fmt::Result {
@@ -107,7 +112,7 @@ pub(super) fn total_mass(robot: &Robot, values: &mut Values) -> Option<f64> {
     values.sum(&masses)
 }
 
-fn link_table(robot: &Robot, values: &mut Values) -> Table {
+pub(super) fn link_table(robot: &Robot, values: &mut Values) -> Table {
     use Align::{Left, Right};
     let mut table = Table::new(&[
         ("link", Left),

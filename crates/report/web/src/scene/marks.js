@@ -21,6 +21,7 @@ function setPoints(of, points) {
 export class Marks {
   constructor(data) {
     this.data = data;
+    this.isShown = true;
     const dot = (radius = 0.02) =>
       new Mesh(new SphereGeometry(radius * data.size, 16, 12), new MeshBasicMaterial());
     this.parts = { com: new Group(), zmp: new Group(), capture: new Group(), support: new Group(),
@@ -40,7 +41,7 @@ export class Marks {
     this.arrows = data.contacts.map(() => new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1));
     if (this.arrows.length > 0) this.parts.force.add(...this.arrows);
     this.group = new Group().add(...Object.values(this.parts));
-    setPoints(this.trail, data.com);
+    if (data.com) setPoints(this.trail, data.com);
   }
 
   paint(colour) {
@@ -50,7 +51,17 @@ export class Marks {
   }
 
   toggle(name, isShown) {
+    if (!this.parts[name]) return;
+    if (name === "com") this.isShown = isShown;
     this.parts[name].visible = isShown;
+  }
+
+  /** The centre of mass of a robot whose joints are moved by hand. */
+  stay(center) {
+    this.group.children.forEach(part => { part.visible = part === this.parts.com && this.isShown; });
+    this.com.visible = Boolean(center);
+    this.trail.visible = false;
+    if (center) this.com.position.copy(center);
   }
 
   show(at, poses) {

@@ -1,6 +1,8 @@
 // The controls of a run: play, time, speed, what is shown, events.
 import { Vector3 } from "three";
-import { between, place } from "./frames.js";
+import { between, place, pose } from "./frames.js";
+import { Hints } from "./hints.js";
+import { centerOf, fit, posesOf, positionsAt, startOf } from "./jointed.js";
 import { Marks } from "./marks.js";
 import { Robot } from "./robot.js";
 import { Stage } from "./stage.js";
@@ -11,49 +13,83 @@ const NEAR_S = 0.08;
 class Player {
   constructor(figure, data) {
     this.data = data;
+    // joints that are moved here, or poses that were computed beforehand
+    this.isJointed = Boolean(data.joints);
+    if (this.isJointed) fit(data);
     this.stage = new Stage(figure.querySelector("canvas"), data);
     this.robot = new Robot(data);
     this.marks = new Marks(data);
-    this.stage.scene.add(this.robot.group, this.marks.group);
+    this.hints = new Hints(figure, data, this.robot, this.stage);
+    this.stage.scene.add(this.robot.group, this.marks.group, this.hints.group);
     const find = name => figure.querySelector(name);
     this.slider = find(".line input");
-    this.clock = find("output");
+    this.clock = find(".controls output");
     this.button = find(".play");
     this.speed = find("select");
     this.now = find(".now");
     this.time = data.t[0];
     this.last = null;
-    this.isFollowing = data.follows;
+    this.q = this.isJointed ? startOf(data) : null;
+    this.isFollowing = data.follows && !this.isJointed;
     this.shift = new Vector3(...data.center);
-    if (data.com.length > 2) this.shift.sub(new Vector3(...data.com.slice(0, 3)));
-    if (!data.follows) this.stage.follow(new Vector3(...data.center));
+    if (data.com?.length > 2) this.shift.sub(new Vector3(...data.com.slice(0, 3)));
+    if (!this.isFollowing) this.stage.follow(new Vector3(...data.center));
     this.listen(figure);
-    this.showEvents(find(".ticks"));
+    if (this.button) {
+      this.listenToTime();
+      this.showEvents(find(".ticks"));
+    }
     this.paint();
   }
 
   listen(figure) {
-    const { t } = this.data;
-    this.slider.addEventListener("input", () => {
-      this.pause();
-      this.show(Number(this.slider.value));
-    });
-    this.button.addEventListener("click", () => (this.last === null ? this.play() : this.pause()));
     figure.querySelector(".home").addEventListener("click", () => {
       this.stage.home();
       this.stage.draw();
     });
     figure.querySelectorAll(".marks input").forEach(box => {
       box.addEventListener("change", () => {
+        if (box.value === "frames") this.hints.toggle(box.checked);
         this.marks.toggle(box.value, box.checked);
-        this.stage.draw();
+        this.show(this.time);
       });
     });
+    const joints = [...figure.querySelectorAll(".joints input")];
+    const read = input => {
+      const joint = this.data.joints.findIndex(one => one.name === input.dataset.joint);
+      this.q[joint] = Number(input.value);
+      const text = `${Number(input.value).toFixed(3)} ${input.dataset.unit}`;
+      input.parentNode.querySelector("output").textContent = text;
+      input.setAttribute("aria-valuetext", text);
+    };
+    joints.forEach(input => {
+      read(input);
+      input.addEventListener("input", () => {
+        read(input);
+        this.show(this.time);
+      });
+    });
+    figure.querySelector(".zero")?.addEventListener("click", () => {
+      joints.forEach(input => {
+        input.value = input.getAttribute("value");
+        read(input);
+      });
+      this.show(this.time);
+    });
+    new ResizeObserver(() => this.stage.resize()).observe(this.stage.canvas);
+    onTheme(() => this.paint());
+  }
+
+  listenToTime() {
+    const { t } = this.data;
+    this.slider.addEventListener("input", () => {
+      this.pause();
+      this.show(Number(this.slider.value));
+    });
+    this.button.addEventListener("click", () => (this.last === null ? this.play() : this.pause()));
     this.slider.min = t[0];
     this.slider.max = t[t.length - 1];
     this.slider.step = "any";
-    new ResizeObserver(() => this.stage.resize()).observe(this.stage.canvas);
-    onTheme(() => this.paint());
   }
 
   /** Marks of the events above the slider. */
@@ -69,27 +105,42 @@ class Player {
   }
 
   paint() {
-    for (const part of [this.robot, this.marks, this.stage]) part.paint(colour);
+    for (const part of [this.robot, this.marks, this.hints, this.stage]) part.paint(colour);
     this.show(this.time);
+  }
+
+  /** Where the links are at a time. */
+  poses(at) {
+    const { data } = this;
+    if (!this.isJointed) return data.links.map((_, link) => pose(data, at, link));
+    return posesOf(data, this.button ? positionsAt(data, at) : this.q);
   }
 
   show(time) {
     const { data } = this;
     this.time = time;
-    const at = between(data.t, time);
-    const poses = this.robot.show(at);
-    this.marks.show(at, poses);
+    const at = this.button ? between(data.t, time) : [0, 0];
+    const poses = this.poses(at);
+    this.robot.show(poses);
+    this.hints.show(poses);
+    if (this.isJointed) this.marks.stay(centerOf(data, poses));
+    else this.marks.show(at, poses);
     if (this.isFollowing) {
       const center = place(data.com, at);
       if (center) this.stage.follow(center.add(this.shift));
     }
+    if (this.button) this.tell(time);
+    this.stage.draw();
+  }
+
+  /** The time, and what happened just before it. */
+  tell(time) {
     this.slider.value = time;
     this.slider.setAttribute("aria-valuetext", `${time.toFixed(2)} s`);
     this.clock.textContent = `${time.toFixed(2)} s`;
-    const past = data.events.filter(event => event.t <= time + 1e-9).pop();
+    const past = this.data.events.filter(event => event.t <= time + 1e-9).pop();
     const isNear = past && time - past.t < NEAR_S * 5;
     this.now.textContent = isNear ? `${past.t.toFixed(3)} s: ${past.text}` : "";
-    this.stage.draw();
   }
 
   play() {

@@ -4,11 +4,12 @@ import {
   BoxGeometry, BufferGeometry, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group, Mesh,
   MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
-import { pose } from "./frames.js";
 
 const UP = new Vector3(0, 1, 0);
 const AXIS = new Vector3(0, 0, 1);
 const ROUND = 20;
+/** What is marked has the colour of faults. */
+const COLOURS = { marked: "bad" };
 
 /** A cylinder with round ends, of length 1 until it is put between two points. */
 class Capsule {
@@ -57,17 +58,29 @@ export class Robot {
     this.data = data;
     this.group = new Group();
     const material = () => new MeshLambertMaterial({ side: DoubleSide });
-    this.materials = { link: material(), joint: material(), foot: material() };
+    this.materials = { link: material(), joint: material(), foot: material(), marked: material() };
     const radius = 0.015 * data.size;
-    const { link: body, joint, foot } = this.materials;
-    this.links = data.links.map(link => ({
-      along: new Capsule(radius, body),
-      across: new Capsule(radius, body),
-      joint: link.is_joint ? jointMesh(link.slides, data.size, joint) : null,
-    }));
+    const { link: body, joint, foot, marked } = this.materials;
+    this.links = data.links.map((link, place) => {
+      const of = link.is_marked ? marked : body;
+      const wide = link.is_marked ? 1.5 * radius : radius;
+      const parts = {
+        along: new Capsule(wide, of),
+        across: new Capsule(wide, of),
+        joint: link.is_joint
+          ? jointMesh(link.slides, (link.is_joint_marked ? 1.5 : 1) * data.size,
+            link.is_joint_marked ? marked : joint)
+          : null,
+        ball: link.radius ? new Mesh(new SphereGeometry(link.radius, 24, 16), body) : null,
+      };
+      const all = [parts.along.group, parts.across.group, parts.joint, parts.ball];
+      for (const part of all) part?.traverse(one => { one.userData.link = place; });
+      return parts;
+    });
     for (const one of this.links) {
       this.group.add(one.along.group, one.across.group);
       if (one.joint) this.group.add(one.joint);
+      if (one.ball) this.group.add(one.ball);
     }
     this.tips = data.tips.map(() => new Capsule(radius, body));
     this.feet = data.feet.map(own => footMesh(own.points.length + 1, foot));
@@ -77,19 +90,20 @@ export class Robot {
   }
 
   paint(colour) {
-    for (const [name, material] of Object.entries(this.materials)) material.color.set(colour(name));
+    for (const [name, material] of Object.entries(this.materials)) material.color.set(colour(COLOURS[name] ?? name));
   }
 
-  /** Moves all parts; gives the poses of the links. */
-  show(at) {
+  /** Moves all parts to where the links are. */
+  show(poses) {
     const { data } = this;
-    const poses = data.links.map((_, link) => pose(data, at, link));
     const base = [new Vector3(...data.base), new Quaternion()];
     data.links.forEach((link, place) => {
-      const [origin] = poses[place];
+      const [origin, own] = poses[place];
       const [from, turn] = link.carrier < 0 ? base : poses[link.carrier];
-      const axis = AXIS.clone().applyQuaternion(turn);
-      const corner = from.clone().addScaledVector(axis, origin.clone().sub(from).dot(axis));
+      const axis = AXIS.clone().applyQuaternion(data.is_modified ? own : turn);
+      // along the axis of the joint, then at a right angle to it; a modified row the other way
+      const [foot, head] = data.is_modified ? [origin, from] : [from, origin];
+      const corner = foot.clone().addScaledVector(axis, head.clone().sub(foot).dot(axis));
       const parts = this.links[place];
       if (link.is_body) {
         parts.along.put(from, corner);
@@ -97,8 +111,9 @@ export class Robot {
       }
       parts.along.group.visible &&= link.is_body;
       parts.across.group.visible &&= link.is_body;
+      parts.ball?.position.copy(origin);
       if (parts.joint) {
-        parts.joint.position.copy(from);
+        parts.joint.position.copy(foot);
         parts.joint.quaternion.setFromUnitVectors(UP, axis);
       }
     });
@@ -108,7 +123,6 @@ export class Robot {
       this.tips[place].put(poses[tip.link][0], seen(tip.link, tip.at));
     });
     data.feet.forEach((foot, place) => this.stand(foot, place, poses, seen));
-    return poses;
   }
 
   stand(foot, place, poses, seen) {

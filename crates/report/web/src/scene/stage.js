@@ -8,6 +8,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 /** From where a run is looked at: ahead, to its side, above. */
 const EYE = [0.55, -1, 0.35];
 const ROOM = 1.45;
+const NEAR = 1.1;
 
 /** A direction given with z upwards, turned to where `up` is. */
 function raised(direction, up) {
@@ -33,8 +34,11 @@ export class Stage {
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.draw());
     this.target = new Vector3();
-    const far = (ROOM * data.size) / Math.sin((35 * Math.PI) / 360) / 2;
-    this.away = raised(data.eye ?? EYE, up).multiplyScalar(far);
+    const far = ((data.follows ? ROOM : NEAR) * (data.view ?? data.size)) / Math.sin((35 * Math.PI) / 360) / 2;
+    this.away = data.look
+      ? new Vector3(...data.look).addScaledVector(up, 0.25).normalize()
+      : raised(data.eye ?? EYE, up);
+    this.away.multiplyScalar(far);
     this.home();
   }
 
@@ -92,5 +96,6 @@ export class Stage {
 
   draw() {
     this.renderer.render(this.scene, this.camera);
+    this.onDraw?.();
   }
 }

@@ -1,18 +1,28 @@
 //! What a model lacks, as a page.
 
+mod law;
+mod rivals;
+mod robot;
+mod unseen;
+mod windows;
+
 use super::effects::formulas;
 use super::html::{
     Cell, Chart, ChartCurve, Fact, Grade, Heading, HtmlTable, Look, Page, Panel, Part, Row,
     Section, VerdictLine, mathml,
 };
+use super::jointed::JointedRobot;
 use super::run::diagnosis_picture;
 use super::{percent, short};
 use denavit_codegen::effect::{Effect, Law};
+use denavit_codegen::model::Robot;
 use denavit_diagnose::{
     Candidate, Curve, Diagnosis, FoundEffect, Gap, Gaps, MotionGap, MotionGaps, Step, Verdict,
     Where,
 };
+use law::law_chart;
 use std::f64::consts::LN_10;
+use windows::{windows, windows_table};
 
 /// Joints whose torques are drawn, at most.
 const DRAWN: usize = 3;
@@ -21,10 +31,23 @@ const DRAWN: usize = 3;
 const LEAST: f64 = 0.02;
 
 /// What a page about a diagnosis says.
-#[derive(Clone, Copy)]
 pub struct DiagnosisPage<'a> {
-    /// The model's name.
-    pub model: &'a str,
+    model: &'a str,
+    /// The robot in three dimensions; none where its numbers do not give it a shape.
+    scene: Option<JointedRobot>,
+    facts: &'a [Fact],
+    remarks: &'a [String],
+    joints: Vec<&'a str>,
+    candidates: &'a [Candidate],
+    effects: &'a [Effect],
+    found: &'a Diagnosis,
+}
+
+/// What a page about a diagnosis is made of.
+#[derive(Clone, Copy)]
+pub struct DiagnosisSource<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
     /// What it was made of: version, hash of the model, logs, seed.
     pub facts: &'a [Fact],
     /// What was noticed of the logs, and of the files that were written.
@@ -117,33 +140,31 @@ fn torque_chart(joint: &str, curve: &Curve) -> Chart {
         over: ["time [s]", "time [s]"],
         x: curve.t_s.clone(),
         panels: vec![Panel::new("torque [N m, N]", 190, torques), Panel::new("left", 100, left)],
+        windows: windows(curve).iter().map(|one| [one.from_s, one.to_s]).collect(),
     }
     .thinned()
 }
 
-/// The motion that would tell an effect from what would do as well.
-fn separating(one: &FoundEffect) -> Option<Part> {
-    let text = match one.experiment.as_ref()? {
-        Ok(found) => format!(
-            "A motion of {} s within the limits of the robot tells it from these in {} of \
-             simulated logs with the same noise: its separation is {}, that of these logs {}.",
-            found.duration_s,
-            percent(found.power),
-            short(found.separation),
-            short(found.separation_before)
-        ),
-        Err(reason) => format!("No motion was found that would tell it from these: {reason}."),
-    };
-    Some(Part::Paragraph { text })
+impl<'a> DiagnosisPage<'a> {
+    /// The page of what was found.
+    pub fn new(source: DiagnosisSource<'a>) -> Self {
+        let DiagnosisSource { robot, facts, remarks, joints, candidates, effects, found } = source;
+        let scene = JointedRobot::new(robot).ok();
+        let joints = joints.to_vec();
+        Self { model: &robot.name, scene, facts, remarks, joints, candidates, effects, found }
+    }
 }
 
 impl DiagnosisPage<'_> {
     /// The page.
     pub fn page(&self) -> Page {
-        let mut sections = vec![self.gaps(), self.torques()];
+        let mut sections = vec![self.gaps()];
+        sections.extend(self.robot());
         sections.extend(self.terms());
+        sections.push(self.torques());
         sections.extend(self.unnamed());
         sections.push(self.regimes());
+        sections.extend(self.unseen());
         sections.extend(self.evidence());
         if !self.remarks.is_empty() {
             let parts =
@@ -151,6 +172,7 @@ impl DiagnosisPage<'_> {
             sections.push(Section { heading: "Remarks".to_owned(), parts });
         }
         Page {
+            watches: false,
             title: format!("Diagnosis of {}", self.model.replace('_', " ")),
             verdict: Some(verdict(self.found, self.candidates)),
             lead: reasons(self.found),
@@ -241,20 +263,25 @@ impl DiagnosisPage<'_> {
         self.found.before.iter().take(count.clamp(1, DRAWN))
     }
 
-    /// Torques of these joints, each in the held-out log where it does.
-    fn torques(&self) -> Section {
+    /// Torques of these joints, each in the held-out log where it leaves most.
+    fn torque_curves(&self) -> Vec<(&str, &Curve)> {
         let squares = |curve: &Curve| curve.before.iter().map(|left| left * left).sum::<f64>();
         let of_joint = |one: &Where| -> Option<(&str, &Curve)> {
             let own = self.found.curves.iter().filter(|curve| curve.at == one.joint);
             let most = own.max_by(|a, b| squares(a).total_cmp(&squares(b)))?;
             Some((most.at.as_str(), most))
         };
-        let shown: Vec<(&str, &Curve)> = self.worst().filter_map(of_joint).collect();
+        self.worst().filter_map(of_joint).collect()
+    }
+
+    fn torques(&self) -> Section {
+        let shown = self.torque_curves();
         let text = "Held-out logs, the joints that leave most: torques that were measured, and \
                     that both models compute; below, what they leave. All through one filter."
             .to_owned();
         let mut parts = vec![Part::Paragraph { text }];
         parts.extend(shown.iter().map(|(joint, curve)| Part::Chart(torque_chart(joint, curve))));
+        parts.extend(windows_table(&shown));
         let svg = diagnosis_picture(&self.model.replace('_', " "), &shown);
         let caption = "Where the nominal model leaves most.".to_owned();
         let summary = "As a picture for papers".to_owned();
@@ -268,7 +295,7 @@ impl DiagnosisPage<'_> {
             return None;
         }
         let parts = self.found.effects.iter().flat_map(|one| self.term(one)).collect();
-        Some(Section { heading: "New terms".to_owned(), parts })
+        Some(Section { heading: "What was found".to_owned(), parts })
     }
 
     fn term(&self, one: &FoundEffect) -> Vec<Part> {
@@ -289,6 +316,18 @@ impl DiagnosisPage<'_> {
                 Err(_) => Part::Paragraph { text: latex },
             }));
         }
+        parts.extend(one.curve.as_ref().map(|curve| {
+            let title = own.title.clone();
+            Part::Chart(law_chart(&title, "", curve))
+        }));
+        parts.push(Part::Table(self.values(one)));
+        parts.push(self.rivals(one));
+        parts.extend(self.separating(one));
+        parts
+    }
+
+    /// The parameters of an effect.
+    fn values(&self, one: &FoundEffect) -> HtmlTable {
         let columns = headings(&[
             ("parameter", false),
             ("value", true),
@@ -304,23 +343,12 @@ impl DiagnosisPage<'_> {
                 Cell::text(&value.name),
                 Cell::number(value.value, short(value.value)),
                 std,
-                Cell::text(&value.unit),
+                Cell::unit(&value.unit),
             ];
             Row { cells, is_marked: false }
         });
-        let caption = format!("Parameters of {}.", own.name());
-        parts.push(Part::Table(HtmlTable { caption, columns, rows: rows.collect() }));
-        for other in &one.alternatives {
-            let which = if other.is_exact { "No motion tells" } else { "These logs do not tell" };
-            let text = format!(
-                "{which} it from {} for sure: its odds against that are {}.",
-                self.candidates[other.candidate].name(),
-                odds(other.log_odds)
-            );
-            parts.push(Part::Paragraph { text });
-        }
-        parts.extend(separating(one));
-        parts
+        let caption = format!("Parameters of {}.", self.candidates[one.candidate].name());
+        HtmlTable { caption, columns, rows: rows.collect() }
     }
 
     /// What joints still lack, as formulas without a name.
@@ -412,7 +440,20 @@ impl DiagnosisPage<'_> {
 /// Odds in words: as powers of ten where they are large.
 fn odds(log_odds: f64) -> String {
     let tens = log_odds / LN_10;
-    if tens.abs() < 3.0 { short(log_odds.exp()) } else { format!("10^{tens:.0}") }
+    if tens.abs() < 3.0 { short(log_odds.exp()) } else { format!("10{}", raised(tens)) }
+}
+
+/// A whole number as an exponent.
+fn raised(tens: f64) -> String {
+    const DIGITS: [char; 10] = [
+        '\u{2070}', '\u{b9}', '\u{b2}', '\u{b3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}',
+        '\u{2078}', '\u{2079}',
+    ];
+    let letter = |letter: char| match letter.to_digit(10) {
+        Some(digit) => DIGITS[digit as usize],
+        None => '\u{207b}',
+    };
+    format!("{tens:.0}").chars().map(letter).collect()
 }
 
 /// A line of a law as a new term of the equation that it is part of.

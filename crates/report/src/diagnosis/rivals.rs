@@ -1,0 +1,106 @@
+//! What would do as well as an effect that was found, and the motion that would tell.
+
+use super::super::html::{Cell, HtmlTable, Part, Row, SceneMark};
+use super::super::jointed::{JointMotion, JointedRobot};
+use super::super::{percent, short};
+use super::{DiagnosisPage, headings, odds};
+use denavit_diagnose::{Experiment, FoundEffect};
+
+/// Distance of the frames of a motion \[s\].
+const STEP_S: f64 = 1.0 / 30.0;
+
+impl DiagnosisPage<'_> {
+    /// The effects that would do in the place of one that was found, with their odds.
+    pub(super) fn rivals(&self, one: &FoundEffect) -> Part {
+        let separated = match &one.experiment {
+            Some(Ok(found)) => found.rivals.as_slice(),
+            _ => &[],
+        };
+        let rows: Vec<Row> = one
+            .alternatives
+            .iter()
+            .map(|other| {
+                let own = &self.candidates[other.candidate];
+                let told = if other.is_exact {
+                    "no motion: the equations are the same"
+                } else if separated.contains(&other.candidate) {
+                    "the motion below"
+                } else {
+                    "other logs: no motion was looked for"
+                };
+                let odds = Cell::number(other.log_odds, odds(other.log_odds));
+                let cells =
+                    vec![Cell::prose(&own.title), Cell::text(&own.at), odds, Cell::prose(told)];
+                Row { cells, is_marked: other.is_exact }
+            })
+            .collect();
+        if rows.is_empty() {
+            let text = "No other effect of the catalogue comes near: all rivals are less likely \
+                        than the odds that are listed."
+                .to_owned();
+            return Part::Paragraph { text };
+        }
+        let columns = headings(&[
+            ("rival", false),
+            ("at", false),
+            ("odds against it", true),
+            ("what would tell them apart", false),
+        ]);
+        let caption = "Rivals: effects that would do in its place. Odds near 1 mean that these \
+                       logs do not tell."
+            .to_owned();
+        Part::Table(HtmlTable { caption, columns, rows })
+    }
+
+    /// The motion that would tell an effect from its rivals, to be played.
+    pub(super) fn separating(&self, one: &FoundEffect) -> Vec<Part> {
+        let found = match &one.experiment {
+            None => return Vec::new(),
+            Some(Err(reason)) => {
+                let text = format!("No motion was found that would tell it apart: {reason}.");
+                return vec![Part::Paragraph { text }];
+            }
+            Some(Ok(found)) => found,
+        };
+        let text = format!(
+            "A motion of {} s within the limits of the robot tells it from its rivals in {} of {} \
+             simulated logs with the same noise. Its separation is {}, that of these logs {}.",
+            found.duration_s,
+            percent(found.power),
+            found.draws,
+            short(found.separation),
+            short(found.separation_before)
+        );
+        let motion = self.scene.as_ref().and_then(|scene| self.played(scene, one, found));
+        [Some(Part::Paragraph { text }), motion].into_iter().flatten().collect()
+    }
+
+    fn played(&self, scene: &JointedRobot, one: &FoundEffect, found: &Experiment) -> Option<Part> {
+        let frames = (found.duration_s / STEP_S).ceil() as usize;
+        let t_s: Vec<f64> =
+            (0..=frames).map(|at| found.duration_s * at as f64 / frames as f64).collect();
+        let of_joint = |reference: &denavit_plants::trajectory::Reference| -> Vec<f64> {
+            t_s.iter().map(|t| reference.at(*t).position).collect()
+        };
+        let positions: Vec<Vec<f64>> = found.references.iter().map(of_joint).collect();
+        let joints = self.joints.iter().copied().zip(positions.iter().map(Vec::as_slice));
+        let motion = JointMotion { t_s: &t_s, q: joints.collect() };
+        let name = format!("The motion that tells {} apart", self.candidates[one.candidate].name());
+        let caption =
+            "The separating experiment, one lap. Its file is beside this page.".to_owned();
+        let (scene, mark) = self.marked(scene, one);
+        scene.moving([name, caption], mark, &motion).map(Part::Replay)
+    }
+
+    /// The robot with the joint or the body of an effect marked, and the words for that.
+    pub(super) fn marked(
+        &self,
+        scene: &JointedRobot,
+        one: &FoundEffect,
+    ) -> (JointedRobot, Vec<SceneMark>) {
+        let own = &self.candidates[one.candidate];
+        let names: Vec<&str> = own.at.split(" with ").collect();
+        let word = format!("{} at {}", own.title, own.at);
+        (scene.clone().marking(&names, own.is_body), vec![SceneMark::marked(word)])
+    }
+}

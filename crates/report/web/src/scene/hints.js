@@ -1,0 +1,96 @@
+// What is read off a scene: names where frames are, and words of the link that is pointed at.
+import { ArrowHelper, Group, Raycaster, Vector2, Vector3 } from "three";
+
+const AXES = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
+/** Red, green, blue of frames, as the style sheet has them. */
+const COLOURS = ["c1", "c2", "c0"];
+const APART = 14;
+
+export class Hints {
+  constructor(figure, data, robot, stage) {
+    Object.assign(this, { data, robot, stage });
+    this.now = figure.querySelector(".now");
+    this.box = figure.querySelector(".labels");
+    this.group = new Group();
+    this.frames = data.frames ? data.links.map(link => this.frame(link)) : [];
+    this.labels = data.links.map(link => this.label(link));
+    this.ray = new Raycaster();
+    stage.canvas.addEventListener("pointermove", event => this.point(event));
+    stage.onDraw = () => this.place();
+  }
+
+  frame(link) {
+    if (!link.is_body) return null;
+    const length = 0.1 * this.data.size;
+    const arrows = AXES.map(axis =>
+      new ArrowHelper(axis, new Vector3(), length, 0, 0.25 * length, 0.12 * length));
+    const group = new Group().add(...arrows);
+    this.group.add(group);
+    return group;
+  }
+
+  label(link) {
+    const isNamed = this.data.frames ? link.is_body : link.is_marked || link.is_joint_marked;
+    if (!isNamed) return null;
+    const label = document.createElement("span");
+    label.textContent = link.name;
+    this.box.append(label);
+    return label;
+  }
+
+  toggle(isShown) {
+    this.group.visible = isShown;
+    this.box.classList.toggle("away", !isShown);
+  }
+
+  paint(colour) {
+    for (const frame of this.frames) {
+      frame?.children.forEach((arrow, axis) => arrow.setColor(colour(COLOURS[axis])));
+    }
+  }
+
+  /** Where the links are now. */
+  show(poses) {
+    this.poses = poses;
+    this.frames.forEach((frame, link) => {
+      frame?.position.copy(poses[link][0]);
+      frame?.quaternion.copy(poses[link][1]);
+    });
+  }
+
+  /** Puts names beside their joints or frames; of several in one place the others go below. */
+  place() {
+    if (!this.poses) return;
+    const { clientWidth: wide, clientHeight: tall } = this.stage.canvas;
+    const taken = [];
+    this.labels.forEach((label, link) => {
+      if (!label) return;
+      const own = this.data.links[link];
+      const seat = own.is_joint_marked && !this.data.is_modified && own.carrier >= 0
+        ? this.poses[own.carrier][0] : this.poses[link][0];
+      const at = own.is_joint_marked && own.carrier < 0 && !this.data.is_modified
+        ? new Vector3(...this.data.base) : seat;
+      const seen = at.clone().project(this.stage.camera);
+      const x = (0.5 + 0.5 * seen.x) * wide + 10;
+      let y = (0.5 - 0.5 * seen.y) * tall - 8;
+      while (taken.some(([a, b]) => Math.abs(a - x) < 60 && Math.abs(b - y) < APART)) y += APART;
+      taken.push([x, y]);
+      label.hidden = seen.z > 1 || x > wide || y < 0 || y > tall - APART;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    });
+  }
+
+  point(event) {
+    if (event.buttons !== 0) return;
+    const frame = this.stage.canvas.getBoundingClientRect();
+    const at = new Vector2(
+      (2 * (event.clientX - frame.left)) / frame.width - 1,
+      1 - (2 * (event.clientY - frame.top)) / frame.height);
+    this.ray.setFromCamera(at, this.stage.camera);
+    const met = this.ray.intersectObject(this.robot.group, true)
+      .find(one => one.object.userData.link !== undefined);
+    if (!met) return;
+    const link = this.data.links[met.object.userData.link];
+    this.now.textContent = link.text || link.name || "";
+  }
+}

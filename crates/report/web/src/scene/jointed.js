@@ -1,0 +1,91 @@
+// A robot whose joints are moved here: the rows of its table as transforms at zero, with turns
+// about, or ways along, the z axes of the joints.
+import { Quaternion, Vector3 } from "three";
+
+const Z = new Vector3(0, 0, 1);
+
+/** Places and turns of all links for positions of the joints. */
+export function posesOf(data, q) {
+  const poses = [];
+  for (const link of data.links) {
+    const [origin, turn] = link.carrier < 0
+      ? [new Vector3(...data.base), new Quaternion()]
+      : poses[link.carrier].map(part => part.clone());
+    const [x, y, z, ...zero] = link.zero;
+    const value = link.joint < 0 ? 0 : q[link.joint];
+    const move = () => {
+      if (link.joint < 0) return;
+      if (link.slides) origin.addScaledVector(Z.clone().applyQuaternion(turn), value);
+      else turn.multiply(new Quaternion().setFromAxisAngle(Z, value));
+    };
+    // a standard row turns before it is gone along, a modified one after
+    if (!data.is_modified) move();
+    origin.add(new Vector3(x, y, z).applyQuaternion(turn));
+    turn.multiply(new Quaternion(...zero));
+    if (data.is_modified) move();
+    poses.push([origin, turn]);
+  }
+  return poses;
+}
+
+/** Positions of the joints at a time between frames. */
+export function positionsAt(data, [frame, share]) {
+  const count = data.joints.length;
+  return data.joints.map((_, joint) => {
+    const first = data.q[frame * count + joint];
+    return share > 0 ? first + share * (data.q[(frame + 1) * count + joint] - first) : first;
+  });
+}
+
+export function startOf(data) {
+  return data.joints.map(joint => joint.start);
+}
+
+/** The centre of mass; none of a robot without masses. */
+export function centerOf(data, poses) {
+  const sum = new Vector3();
+  let mass = 0;
+  data.links.forEach((link, place) => {
+    const [origin, turn] = poses[place];
+    const com = new Vector3(...link.com).applyQuaternion(turn).add(origin);
+    sum.addScaledVector(com, link.mass);
+    mass += link.mass;
+  });
+  return mass > 0 ? sum.divideScalar(mass) : null;
+}
+
+/** Postures that are looked at where joints are moved by hand: the same ones every time. */
+const POSTURES = 120;
+
+function posture(data, number) {
+  return data.joints.map((joint, place) => {
+    if (!joint.is_shown || number === 0) return joint.start;
+    // evenly spread, each joint by another irrational step
+    const share = (number * Math.sqrt(place + 2)) % 1;
+    return joint.low + share * (joint.high - joint.low);
+  });
+}
+
+/** Size and middle of all that a motion passes, so that it stays in the picture. */
+export function fit(data) {
+  const frames = data.t.length > 0 ? data.t.length : POSTURES;
+  const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
+  const step = Math.max(1, Math.floor(frames / POSTURES));
+  for (let frame = 0; frame < frames; frame += step) {
+    const q = data.t.length > 0 ? positionsAt(data, [frame, 0]) : posture(data, frame);
+    const poses = posesOf(data, q);
+    data.links.forEach((link, place) => {
+      if (!link.is_body) return;
+      low.min(poses[place][0]);
+      high.max(poses[place][0]);
+    });
+  }
+  if (!data.follows) {
+    low.min(new Vector3(...data.base));
+    high.max(new Vector3(...data.base));
+  }
+  const size = high.clone().sub(low).length();
+  if (!(size > 0) || !Number.isFinite(size)) return;
+  data.view = Math.max(size, data.size);
+  data.center = high.add(low).multiplyScalar(0.5).toArray();
+}

@@ -49,9 +49,6 @@ pub struct LawCurve {
 /// Groups of rows of equal count, in which a function is as good as constant.
 const GROUPS: usize = 24;
 
-/// What a quantity must explain more than one that comes before it.
-const CLEARER: f64 = 0.02;
-
 /// The rows of one equation.
 #[derive(Default)]
 struct Rows {
@@ -79,7 +76,8 @@ impl LawCurve {
         let (mut best, mut explained) = (0, 0.0);
         for (place, values) in rows.quantities.iter().enumerate() {
             let share = explained_by(values, &rows.law);
-            if share > explained + CLEARER {
+            // one that comes before does as well where no more than a group tells them apart
+            if share > explained + (GROUPS as f64).recip() {
                 (best, explained) = (place, share);
             }
         }

@@ -180,8 +180,8 @@ impl Identification {
         (!listed.is_empty()).then(|| {
             format!(
                 "Left out of the estimate, since the joint turns round or is slow there, where \
-                 friction is not the sign of its velocity: {}. Residuals of the tables are those of \
-                 all samples. `options.slow=off` keeps them all.",
+                 friction is not the sign of its velocity: {}. Residuals of the tables are those \
+                 of all samples. `options.slow=off` keeps them all.",
                 listed.join("; ")
             )
         })

@@ -266,6 +266,6 @@ mod tests {
         fs::write(folder.path().join("a.html"), page).expect("written");
         let text = Gallery::read(folder.path()).expect("read").page(true).render();
         assert!(text.contains("a &lt;b&gt;") && text.contains("It &amp; that."));
-        assert!(text.contains("href=\"./a.html\"") && text.contains("connect-src 'self'"));
+        assert!(text.contains("href=\".&#x2f;a.html\"") && text.contains("connect-src 'self'"));
     }
 }

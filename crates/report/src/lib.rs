@@ -8,7 +8,8 @@
 //! - [`html`]: reports as one page that needs nothing from elsewhere
 //! - [`torque_picture`], [`motion_picture`]: measured torques and motions beside those of a model;
 //!   [`IdentificationPage`]: all of an estimate
-//! - [`inspection_page`]: a model, whose joints a reader moves; [`Gallery`]: the results of a folder
+//! - [`inspection_page`]: a model, whose joints a reader moves
+//! - [`Gallery`]: the results of a folder
 //! - [`DiagnosisPage`]: what a model lacks, with torques before and after
 //! - [`symbolic`]: what the compiler finds, as text, JSON, Markdown and LaTeX
 //! - [`answer`]: what use cases answer, as text, JSON, pictures and pages

@@ -1,4 +1,5 @@
-//! The law of an effect that was found, over what it depends on, with the points that were measured.
+//! The law of an effect that was found, over what it depends on, with the points that were
+//! measured.
 
 use super::super::html::{Chart, ChartCurve, Look, Panel};
 use super::super::percent;

@@ -5,6 +5,8 @@ const AXES = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
 /** Red, green, blue of frames, as the style sheet has them. */
 const COLOURS = ["c1", "c2", "c0"];
 const APART = 14;
+/** How near a frame the pointer must be, in pixels. */
+const REACH = 24;
 
 export class Hints {
   constructor(figure, data, robot, stage) {
@@ -80,6 +82,20 @@ export class Hints {
     });
   }
 
+  /** The link whose frame is seen next to the pointer. */
+  nearest(event, frame) {
+    let [found, least] = [undefined, REACH];
+    this.data.links.forEach((link, place) => {
+      if (!link.is_body || !this.poses) return;
+      const seen = this.poses[place][0].clone().project(this.stage.camera);
+      const x = (0.5 + 0.5 * seen.x) * frame.width + frame.left - event.clientX;
+      const y = (0.5 - 0.5 * seen.y) * frame.height + frame.top - event.clientY;
+      const away = Math.hypot(x, y);
+      if (away < least) [found, least] = [place, away];
+    });
+    return found;
+  }
+
   point(event) {
     if (event.buttons !== 0) return;
     const frame = this.stage.canvas.getBoundingClientRect();
@@ -89,8 +105,9 @@ export class Hints {
     this.ray.setFromCamera(at, this.stage.camera);
     const met = this.ray.intersectObject(this.robot.group, true)
       .find(one => one.object.userData.link !== undefined);
-    if (!met) return;
-    const link = this.data.links[met.object.userData.link];
+    const place = met ? met.object.userData.link : this.nearest(event, frame);
+    if (place === undefined) return;
+    const link = this.data.links[place];
     this.now.textContent = link.text || link.name || "";
   }
 }

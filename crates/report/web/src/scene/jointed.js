@@ -84,7 +84,7 @@ export function fit(data) {
     low.min(new Vector3(...data.base));
     high.max(new Vector3(...data.base));
   }
-  const size = high.clone().sub(low).length();
+  const size = 1.05 * Math.max(...high.clone().sub(low).toArray());
   if (!(size > 0) || !Number.isFinite(size)) return;
   data.view = Math.max(size, data.size);
   data.center = high.add(low).multiplyScalar(0.5).toArray();

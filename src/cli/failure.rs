@@ -57,6 +57,8 @@ pub(crate) enum Failure {
     Walk(String, String),
     /// A folder cannot be read; holds it and why.
     Folder(String, io::Error),
+    /// A page that links to results of a folder is to be outside of it; holds both.
+    Outside(String, String),
     /// Nothing can be served; holds the port and why.
     Serve(u16, String),
     /// A step was given for the scheme that chooses its own.
@@ -197,6 +199,7 @@ impl Failure {
             | Self::Misuse(_)
             | Self::Walk(..)
             | Self::Folder(..)
+            | Self::Outside(..)
             | Self::Serve(..)
             | Self::Base(..)
             | Self::Library(_)
@@ -252,7 +255,14 @@ impl Failure {
             Self::Work(error) => write!(f, "{error}")?,
             Self::Misuse(error) => write!(f, "{error}")?,
             Self::Walk(scenario, why) => write!(f, "{scenario}: {why}")?,
-            Self::Folder(folder, error) => write!(f, "{folder}: cannot be read: {error}")?,
+            Self::Folder(folder, error) => {
+                write!(f, "{folder}: cannot be read: {}", reason(error))?;
+            }
+            Self::Outside(file, folder) => write!(
+                f,
+                "{file}: is not in {folder}, whose results the page links to\n  hint: give the \
+                 path of a file right in the folder"
+            )?,
             Self::Serve(port, why) => write!(
                 f,
                 "--port {port}: cannot be listened on: {why}\n  hint: another port, or none for \

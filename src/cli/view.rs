@@ -34,8 +34,17 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let folder = &arguments.folder;
     let failed = |error| Failure::Folder(folder.display().to_string(), error);
     let gallery = Gallery::read(folder).map_err(failed)?;
-    if arguments.output.is_some() {
-        let outputs = [arguments.output.as_ref()];
+    if let Some(output) = &arguments.output {
+        // links of the page begin where it is
+        let beside = output.parent().unwrap_or(output);
+        let beside = if beside.as_os_str().is_empty() { Path::new(".") } else { beside };
+        let is_inside =
+            output.as_os_str() == "-" || beside.canonicalize().ok() == folder.canonicalize().ok();
+        if !is_inside {
+            let shown = |path: &Path| path.display().to_string();
+            return Err(Failure::Outside(shown(output), shown(folder)));
+        }
+        let outputs = [Some(output)];
         check_outputs(&outputs)?;
         for file in outputs.iter().flatten() {
             write_whole(file, gallery.page(false).render().as_bytes())?;

@@ -37,6 +37,7 @@ mod shell;
 mod simulate;
 mod simulate_summary;
 mod simulated_again;
+mod view;
 mod walk;
 mod walk_design;
 

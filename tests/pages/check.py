@@ -155,7 +155,7 @@ class Checked:
             page.evaluate(SLIDE, [slider, share])
             page.wait_for_timeout(50)
             seen, value, total = canvas.evaluate(PIXELS)
-            self.expect(0.003 * total < seen < total, f"{width} px: the robot is not drawn")
+            self.expect(0.001 * total < seen < total, f"{width} px: the robot is not drawn")
             sums.append(value)
         self.expect(len(set(sums)) == 3, f"{width} px: the slider does not move the robot")
         if not button:

@@ -146,7 +146,7 @@ fn the_page_tells_it(directory: &Directory) {
         "Simulation gap",
         "Round 1",
         "Its odds are",
-        "N m s^2",
+        "N·m·s²",
     ];
     for words in said {
         assert!(page.contains(words), "{words}");

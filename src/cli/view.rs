@@ -44,6 +44,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
             let shown = |path: &Path| path.display().to_string();
             return Err(Failure::Outside(shown(output), shown(folder)));
         }
+        let own = output.file_name().unwrap_or_default().to_string_lossy();
+        let gallery = gallery.without(&own);
         let outputs = [Some(output)];
         check_outputs(&outputs)?;
         for file in outputs.iter().flatten() {

@@ -56,6 +56,12 @@ impl Gallery {
         Ok(gallery)
     }
 
+    /// The same without a file right in the folder: a page does not list itself.
+    pub fn without(mut self, name: &str) -> Self {
+        self.files.remove(name);
+        self
+    }
+
     fn look_into(&mut self, folder: &Path, prefix: &str, depth: usize) -> io::Result<()> {
         for entry in fs::read_dir(folder)? {
             let entry = entry?;

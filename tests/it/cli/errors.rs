@@ -47,7 +47,7 @@ fn no_output_takes_the_place_of_an_input() {
     let text = shipped::find("double_pendulum").expect("a model").text;
     fs::write(directory.path.join("model.json"), text).expect("a file");
     for arguments in [
-        ["emit", "model.json", "--language", "rust", "-o", "./model.json"],
+        ["export", "model.json", "-o", "./model.json"],
         ["inspect", "model.json", "--svg", "model.json"],
         ["derive", "model.json", "--latex", "model.json"],
         ["base", "model.json", "--certificate", "model.json"],

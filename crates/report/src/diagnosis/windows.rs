@@ -88,7 +88,7 @@ pub(super) fn windows_table(curves: &[(&str, &Curve)]) -> Option<Part> {
     let caption = "Where it shows: the windows with most of what the effects explain. Those with \
                    half of it are shaded in the curves."
         .to_owned();
-    (!rows.is_empty()).then(|| Part::Table(HtmlTable { caption, columns, rows }))
+    (!rows.is_empty()).then_some(Part::Table(HtmlTable { caption, columns, rows }))
 }
 
 #[cfg(test)]

@@ -152,7 +152,7 @@ def test_contact_points_of_a_mesh_in_another_folder(tmp_path: Path) -> None:
     )
     corners = [(0.1, 0, 0), (0, 0.2, 0), (-0.1, 0, 0), (0, -0.2, 0), (0, 0, 1)]
     (tmp_path / "sole.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners))
-    with pytest.raises(denavit.ModelError, match="folder"):
+    with pytest.raises(denavit.ModelError, match="say where the meshes are"):
         denavit.Model.from_urdf(text, contacts=["foot"])
     with pytest.warns(denavit.ModelWarning, match="4 corners"):
         model = denavit.Model.from_urdf(text, contacts=["foot"], meshes=tmp_path)

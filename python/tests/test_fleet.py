@@ -17,7 +17,7 @@ from denavit.fleet.changes import Estimate, History, judged, less_common
 from denavit.fleet.distributions import two_sided
 from denavit.fleet.drift import changed, drift
 from denavit.fleet.models import read_models
-from denavit.fleet.sources import read_fleet
+from denavit.fleet.sources import fetched, read_fleet
 from denavit.fleet.testing import adjusted, combined
 from denavit.studies.here import in_processes
 
@@ -197,6 +197,10 @@ def test_a_fleet_in_object_storage(example, found, tmp_path):
         assert contents(tmp_path / "s3") == contents(tmp_path / "here")
         with pytest.raises(FleetError, match="is not there"):
             read_fleet(f"s3://fleet/nowhere?{query}")
+        # no copy of a log leaves its folder
+        for outside in ("../x.csv", "a/../../x.csv", "/x.csv"):
+            with pytest.raises(FleetError, match="leads out"), fetched(place, [outside], []):
+                pass
     finally:
         server.stop()
         for name, value in before.items():

@@ -38,7 +38,8 @@ pub(crate) struct Arguments {
     functions: FunctionList,
     #[command(flatten)]
     flavour: FlavourOption,
-    /// The language; if not given, that of the output's name (.c, .h, .hpp, ..), else Rust
+    /// The language; if not given, that of the output's name (.rs, .c, .h, .hpp, ..), and Rust for
+    /// standard output and names without an ending
     #[arg(long, visible_alias = "lang", value_name = "NAME")]
     language: Option<LanguageName>,
     /// Fuse products with the sums that they go into: faster with the feature `fma` of

@@ -63,8 +63,10 @@ impl Gallery {
     }
 
     fn look_into(&mut self, folder: &Path, prefix: &str, depth: usize) -> io::Result<()> {
-        for entry in fs::read_dir(folder)? {
-            let entry = entry?;
+        // in an order of their own, so that the same ones are left out where there are too many
+        let mut entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+        entries.sort_by_key(fs::DirEntry::file_name);
+        for entry in entries {
             let Ok(name) = entry.file_name().into_string() else { continue };
             // a link is neither a file nor a folder here
             let (Ok(kind), Ok(about)) = (entry.file_type(), entry.metadata()) else { continue };
@@ -128,6 +130,7 @@ impl Gallery {
         let lead = match self.files.len() {
             0 => "There are no results in this folder yet.".to_owned(),
             1 => "One result.".to_owned(),
+            MOST => format!("{MOST} results, the newest first; more are left out."),
             count => format!("{count} results, the newest first."),
         };
         let title = format!("Results in {}", name.unwrap_or_else(|| "this folder".to_owned()));

@@ -66,3 +66,19 @@ impl Transform {
         add(self.origin, turned)
     }
 }
+
+/// The least size of a robot \[m\].
+const LEAST_SIZE_M: f64 = 0.05;
+
+/// The size of what some points are the ends of, and its middle.
+pub(super) fn extent(points: &[Vec3]) -> (f64, Vec3) {
+    let bound = |of: fn(f64, f64) -> f64, start: f64| {
+        [0, 1, 2].map(|axis| {
+            let along = points.iter().map(|point| point[axis]).filter(|entry| entry.is_finite());
+            along.fold(start, of)
+        })
+    };
+    let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+    let size = norm(sub(high, low));
+    (if size.is_finite() { size.max(LEAST_SIZE_M) } else { 1.0 }, scale(add(low, high), 0.5))
+}

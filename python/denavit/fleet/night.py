@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import Any
 
 from ..diagnose import Diagnosis, FoundEffect, diagnose
@@ -115,7 +116,7 @@ def _first(found: Diagnosis) -> dict[str, Any]:
         "value": None if value is None else value.value,
         "error": None if value is None else value.std,
         "unit": None if value is None else value.unit,
-        "log10_odds": one.log_odds / 2.302585092994046,
+        "log10_odds": one.log_odds / math.log(10),
         "rivals": [f"{other.effect} at {other.at}" for other in one.indistinguishable],
         "completed": None if found.completed is None else found.completed.source,
     }

@@ -233,6 +233,9 @@ def _fetched(system: Any, base: str, name: str, inside: Path) -> ReadLog:
                 return columns(pa.parquet.read_table(file))
         if is_local:
             return path
+        if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
+            # its copy must not leave the folder
+            raise FleetError([fault(name, "leads out of the place of the logs")])
         copy = inside / name
         copy.parent.mkdir(parents=True, exist_ok=True)
         with system.open_input_file(path) as file:

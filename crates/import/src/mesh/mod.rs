@@ -9,7 +9,7 @@ pub(crate) use sole::sole;
 use crate::exact::Vector;
 use crate::fault::clip;
 
-/// Most corners of a mesh, each time that it is named.
+/// Most corners of a file, those that several triangles share counted in each.
 const MAX_CORNERS: usize = 2_000_000;
 
 /// The corners of a mesh, each once. The end of its name says what format it has.

@@ -4,7 +4,6 @@ use crate::exact::{Vector, root, written};
 use crate::fault::clip;
 use denavit_codegen::number::{Rational, integer, ratio};
 use num_traits::{One, Signed, Zero};
-use std::cmp::Ordering;
 
 /// The corners on which a mesh stands.
 pub(crate) struct Sole {
@@ -33,8 +32,8 @@ impl Sole {
     }
 }
 
-/// The share of its height within which corners of a mesh are its sole: meshes are rounded, and
-/// soles of scanned or drawn feet are flat to less than that.
+/// The share of its height within which corners of a mesh are its sole: a choice, which the note
+/// tells in millimetres.
 fn flat() -> Rational {
     ratio(1, 100)
 }
@@ -97,8 +96,7 @@ fn half_of_hull(order: impl Iterator<Item = usize>, all: &[Seen<'_>]) -> Vec<usi
     let mut side: Vec<usize> = Vec::new();
     for next in order {
         while let [.., before, last] = side[..]
-            && turn(&all[before], &all[last], &all[next]).cmp(&Rational::zero())
-                != Ordering::Greater
+            && !turn(&all[before], &all[last], &all[next]).is_positive()
         {
             side.pop();
         }

@@ -1,13 +1,10 @@
 //! What would do as well as an effect that was found, and the motion that would tell.
 
 use super::super::html::{Cell, HtmlTable, Part, Row, SceneMark};
-use super::super::jointed::{JointMotion, JointedRobot};
+use super::super::jointed::{JointMotion, JointedRobot, RATE};
 use super::super::{percent, short};
 use super::{DiagnosisPage, headings, odds};
 use denavit_diagnose::{Experiment, FoundEffect};
-
-/// Distance of the frames of a motion \[s\].
-const STEP_S: f64 = 1.0 / 30.0;
 
 impl DiagnosisPage<'_> {
     /// The effects that would do in the place of one that was found, with their odds.
@@ -76,7 +73,7 @@ impl DiagnosisPage<'_> {
     }
 
     fn played(&self, scene: &JointedRobot, one: &FoundEffect, found: &Experiment) -> Option<Part> {
-        let frames = (found.duration_s / STEP_S).ceil() as usize;
+        let frames = (found.duration_s * RATE).ceil() as usize;
         let t_s: Vec<f64> =
             (0..=frames).map(|at| found.duration_s * at as f64 / frames as f64).collect();
         let of_joint = |reference: &denavit_plants::trajectory::Reference| -> Vec<f64> {

@@ -4,15 +4,12 @@ use crate::html::Slider;
 use crate::outline::round_step;
 use crate::pose::Pose;
 use crate::quaternion::pose_of;
-use crate::space::{Transform, Vec3, add, norm, scale, sub};
+use crate::space::{Transform, Vec3, extent, scale, sub};
 use crate::values::Values;
 use denavit_codegen::arena::Handle;
 use denavit_codegen::model::{Base, Convention, JointKind, LinkId, Robot};
 use serde::Serialize;
 use std::f64::consts::PI;
-
-/// The least size of a robot \[m\].
-const LEAST_SIZE_M: f64 = 0.05;
 
 /// What does not change when joints move.
 #[derive(Clone, Debug, Serialize)]
@@ -93,7 +90,7 @@ impl JointData {
 impl Geometry {
     pub(super) fn new(robot: &Robot, pose: &Pose) -> Self {
         let mut values = Values::new(robot);
-        let (size, center) = extent(pose);
+        let (size, center) = size_and_middle(pose);
         let is_walker = !robot.contacts.is_empty() && robot.base != Base::Fixed;
         let point = |link: LinkId, at: Vec3| PointData { link: link.index(), at };
         let local = |contact: &denavit_codegen::model::Contact, at: Vec3| {
@@ -238,18 +235,12 @@ fn inverse(frame: &Transform, point: Vec3) -> Vec3 {
 }
 
 /// Size and middle of the robot.
-fn extent(pose: &Pose) -> (f64, Vec3) {
+fn size_and_middle(pose: &Pose) -> (f64, Vec3) {
     let mut points = vec![[0.0; 3]];
     points.extend(pose.frames.iter().map(|frame| frame.origin));
     points.extend(&pose.contacts);
     if pose.is_lifted {
         points.remove(0);
     }
-    let bound = |of: fn(f64, f64) -> f64, start: f64| {
-        [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).fold(start, of))
-    };
-    let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
-    let size = norm(sub(high, low));
-    let size = if size.is_finite() { size.max(LEAST_SIZE_M) } else { 1.0 };
-    (size, scale(add(low, high), 0.5))
+    extent(&points)
 }

@@ -10,9 +10,10 @@ use denavit_codegen::program::LowerError;
 use geometry::{Geometry, JointData};
 use serde::Serialize;
 
-/// Frames of a motion at most, and of a second.
+/// Frames of a motion at most.
 const MOST_FRAMES: usize = 1500;
-const RATE: f64 = 30.0;
+/// Frames of a second.
+pub(crate) const RATE: f64 = 30.0;
 /// Decimals of a time and of a position: those of a pixel.
 const DECIMALS: usize = 4;
 
@@ -48,12 +49,12 @@ impl JointedRobot {
         Ok(Self { geometry: Geometry::new(robot, &Pose::zero(robot)?) })
     }
 
-    /// The same with the links of these names marked, or their joints.
+    /// The same with the links of these names marked, or their joints, beside what is already.
     pub(crate) fn marking(mut self, links: &[&str], is_body: bool) -> Self {
         for link in &mut self.geometry.links {
             let is_own = links.contains(&link.name.as_str());
-            link.is_marked = is_own && is_body;
-            link.is_joint_marked = is_own && !is_body;
+            link.is_marked |= is_own && is_body;
+            link.is_joint_marked |= is_own && !is_body;
         }
         self
     }
@@ -108,5 +109,25 @@ impl JointedRobot {
         };
         let scene = Scene { name, caption, marks, has_time: true, ..Scene::default() };
         (last > first).then(|| scene.shown(&data))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use denavit_plants::shipped;
+
+    #[test]
+    fn marks_of_several_effects_stand_beside_each_other() {
+        let text = shipped::find("puma560").expect("shipped").text;
+        let robot = denavit_codegen::model::read("puma560", text.as_bytes()).expect("a model");
+        let scene = JointedRobot::new(&robot).expect("numbers");
+        let scene = scene.marking(&["elbow"], false).marking(&["waist"], false);
+        let scene = scene.marking(&["shoulder"], true);
+        let links = scene.geometry.links.iter();
+        let marked = links.map(|link| (link.name.as_str(), link.is_joint_marked, link.is_marked));
+        let marked: Vec<_> = marked.filter(|(_, joint, body)| *joint || *body).collect();
+        let expected = [("waist", true, false), ("shoulder", false, true), ("elbow", true, false)];
+        assert_eq!(marked, expected);
     }
 }

@@ -3,7 +3,7 @@
 
 use super::super::outline::{hull, round_step};
 use super::super::quaternion::pose_of;
-use super::super::space::{Transform, Vec3, add, norm, scale, sub};
+use super::super::space::{Transform, Vec3, add, extent, norm, scale, sub};
 use super::figures::{feet, generated};
 use crate::html::{Brief, Mark, Replay, with_decimals};
 use denavit_plants::{Plant, PlantModel};
@@ -24,8 +24,6 @@ const TIME: usize = 5;
 const MOST_EVENTS: usize = 500;
 /// The radius of a ball that is a point, per size of the picture.
 const BALL: f64 = 0.2;
-/// The least size of a robot \[m\].
-const LEAST_SIZE_M: f64 = 0.05;
 
 /// What the script draws.
 #[derive(Serialize)]
@@ -248,7 +246,8 @@ fn data(
         true => scale(model.gravity, -1.0 / weight),
         false => model.ground.normal,
     };
-    let (size, center) = extent(model, &links, if follows { &frames[..1] } else { frames });
+    let (size, center) =
+        size_and_middle(model, &links, if follows { &frames[..1] } else { frames });
     round_bodies(model, frames, size, &mut links);
     let first = frames.first().map_or([0.0; 3], |frame| frame.center);
     let reach = frames.iter().map(|frame| norm(sub(frame.center, first))).fold(0.0, f64::max);
@@ -345,7 +344,7 @@ fn number(link: Option<usize>) -> i64 {
 }
 
 /// Size and middle of what some frames show.
-fn extent(model: &PlantModel, links: &[LinkData], frames: &[Frame]) -> (f64, Vec3) {
+fn size_and_middle(model: &PlantModel, links: &[LinkData], frames: &[Frame]) -> (f64, Vec3) {
     let mut points: Vec<Vec3> = Vec::new();
     for frame in frames {
         let bodies = frame.links.iter().zip(links).filter(|(_, link)| link.is_body);
@@ -357,15 +356,7 @@ fn extent(model: &PlantModel, links: &[LinkData], frames: &[Frame]) -> (f64, Vec
     if generated(model) == 0 {
         points.push([0.0; 3]);
     }
-    let bound = |of: fn(f64, f64) -> f64, start: f64| {
-        [0, 1, 2].map(|axis| {
-            let along = points.iter().map(|point| point[axis]).filter(|entry| entry.is_finite());
-            along.fold(start, of)
-        })
-    };
-    let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
-    let size = norm(sub(high, low));
-    (if size.is_finite() { size.max(LEAST_SIZE_M) } else { 1.0 }, scale(add(low, high), 0.5))
+    extent(&points)
 }
 
 /// Place and turn of a frame.

@@ -37,8 +37,9 @@ fn is_temporary(name: &str) -> bool {
     name.starts_with('.')
 }
 
-/// A log of some megabytes, so that it takes its time to be written.
-const LONG: &str = r#"{"format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 0.05,
+/// A log of tens of megabytes: it takes longer to be written than `kill` to be started, on a busy
+/// machine as well.
+const LONG: &str = r#"{"format": "denavit-scenario/1", "model": "planar_2r", "duration_s": 0.2,
  "log_period_s": 1e-6}"#;
 
 #[test]

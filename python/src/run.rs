@@ -155,7 +155,12 @@ type Columns<'py> = (String, usize, String, Vec<(String, PyReadonlyArray1<'py, f
 
 fn given((option, at, name, columns): Columns<'_>) -> GivenLog {
     let columns = columns.into_iter().map(|(name, array)| (name, array.as_array().to_vec()));
-    GivenLog { option, at, name, log: MemoryLog { columns: columns.collect() } }
+    GivenLog {
+        option,
+        at,
+        name,
+        log: MemoryLog { columns: columns.collect(), ..MemoryLog::default() },
+    }
 }
 
 fn words(arguments: Vec<String>) -> Vec<OsString> {

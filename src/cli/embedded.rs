@@ -358,7 +358,10 @@ mod tests {
         let words = ["identify", "planar_2r", "--train", "train[0]"];
         let arguments = words.map(OsString::from);
         let given = |at| {
-            let log = MemoryLog { columns: vec![("t".to_owned(), vec![0.0, 1.0])] };
+            let log = MemoryLog {
+                columns: vec![("t".to_owned(), vec![0.0, 1.0])],
+                ..MemoryLog::default()
+            };
             GivenLog { option: "train".to_owned(), at, name: "mine[0]".to_owned(), log }
         };
         let found = answer_of_logs(&arguments, vec![given(0)], Arc::new(Heard::default()));

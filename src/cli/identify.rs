@@ -18,7 +18,9 @@ use arguments::MethodName;
 use denavit::identify::Identification;
 use denavit::report::answer::{identified_doubts, identified_json, identified_text};
 use denavit::report::{TorquePicture, motion_picture, torque_picture};
-use denavit::workflow::{Conditions, Identified, IdentifyOptions, Logs, identify};
+use denavit::workflow::{
+    Conditions, Identified, IdentifyOptions, Logs, LongLog, RobotFile, identify, identify_long,
+};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -49,6 +51,37 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let Some(path) = &arguments.statics {
         return statics::run(arguments, path, out);
     }
+    answer(arguments, out, |robot, logs, options, progress| {
+        let observer = &mut progress.observer();
+        Ok(match arguments.long {
+            true => identify_long(long_log(arguments, robot, logs, options), observer)?,
+            false => identify(robot, logs, options, observer)?,
+        })
+    })
+}
+
+/// The log of the arguments, as one that is read piece by piece.
+pub(crate) fn long_log<'a>(
+    arguments: &Arguments,
+    file: &'a RobotFile,
+    logs: &'a Logs,
+    options: &'a IdentifyOptions,
+) -> LongLog<'a> {
+    let head_rows = arguments.head.map_or(LongLog::USUAL_HEAD, |rows| rows as usize);
+    LongLog { file, logs, options, head_rows }
+}
+
+/// Reads the inputs, identifies, and writes all that is asked for.
+pub(crate) fn answer(
+    arguments: &Arguments,
+    out: &mut dyn Write,
+    identified: impl FnOnce(
+        &RobotFile,
+        &Logs,
+        &IdentifyOptions,
+        &Progress,
+    ) -> Result<Identified, Failure>,
+) -> Result<Answer, Failure> {
     let outputs = [
         arguments.output.as_ref(),
         arguments.svg.as_ref(),
@@ -62,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let (logs, options) = (arguments.logs()?, arguments.options(&robot)?);
     // now that all inputs are known
     check_outputs(&outputs)?;
-    let identified = identify(&robot, &logs, &options, &mut progress.observer())?;
+    let identified = identified(&robot, &logs, &options, &progress)?;
     progress.clear();
     write_files(arguments, &logs, &identified)?;
     match (is_answered, arguments.json) {

@@ -27,6 +27,7 @@ mod inspect;
 mod json;
 mod list;
 mod logs;
+mod long;
 mod man;
 mod mistaken;
 mod options;
@@ -92,6 +93,7 @@ enum Command {
     Walk(walk::Arguments),
     Excite(excite::Arguments),
     Identify(identify::Arguments),
+    Long(long::Arguments),
     Diagnose(diagnose::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
@@ -174,6 +176,7 @@ impl Command {
                 | Self::Walk(_)
                 | Self::Excite(_)
                 | Self::Identify(_)
+                | Self::Long(_)
                 | Self::Diagnose(_)
         )
     }
@@ -182,6 +185,7 @@ impl Command {
     fn logs_of(&mut self, option: &str) -> Option<&mut Vec<LogSource>> {
         match self {
             Self::Identify(arguments) => arguments.logs_of(option),
+            Self::Long(arguments) => arguments.logs_of(option),
             Self::Diagnose(arguments) => arguments.logs_of(option),
             _ => None,
         }
@@ -207,6 +211,7 @@ impl Command {
             Self::Walk(_) => "walk",
             Self::Excite(_) => "excite",
             Self::Identify(_) => "identify",
+            Self::Long(_) => "long",
             Self::Diagnose(_) => "diagnose",
             Self::Completions(_) => "completions",
             Self::Man(_) => "man",
@@ -237,6 +242,7 @@ impl Command {
             Self::Walk(arguments) => walk::run(arguments, out),
             Self::Excite(arguments) => excite::run(arguments, out),
             Self::Identify(arguments) => identify::run(arguments, out),
+            Self::Long(arguments) => long::run(arguments, out),
             Self::Diagnose(arguments) => diagnose::run(arguments, out),
             Self::Completions(arguments) => completions::run(arguments, out),
             Self::Man(arguments) => man::run(arguments, out),

@@ -19,6 +19,7 @@ mod identify;
 mod identify_contradiction;
 mod identify_doubts;
 mod identify_logs;
+mod identify_long;
 mod identify_noise;
 mod identify_procedures;
 mod identify_rest;

@@ -316,10 +316,8 @@ impl Estimated {
         let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
         let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
         let held_out_left = judged(phi);
-        let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
         let torques = torques(model, &left);
-        let noise = found.noise_of_joints().into_iter();
-        let counted: Vec<f64> = noise.zip(torques.iter().copied()).map(share).collect();
+        let counted = shares(model, &found, &left);
         // of a log that is noise, much is left
         let shown = shown_logs(train.len(), &found);
         let train_logs = ShownLogs { logs: train, shown: &shown };
@@ -366,6 +364,12 @@ impl Estimated {
             estimate: found,
         }
     }
+}
+
+/// For each joint the share of its torque that is noise of the rows that count.
+pub(super) fn shares(model: &RegressionModel, found: &Estimate, left: &Validation) -> Vec<f64> {
+    let share = |(noise, torque): (f64, f64)| if torque > 0.0 { noise / torque } else { 0.0 };
+    found.noise_of_joints().into_iter().zip(torques(model, left)).map(share).collect()
 }
 
 /// Root of mean square of each joint's torque; 0 where none was measured.
@@ -463,11 +467,21 @@ fn left_out(
         let measured = logs.iter().filter(|log| log.torque[joint].is_some());
         measured.map(Conditioned::samples).sum()
     };
-    let one = |joint: usize| LeftOutRows {
+    let all = (0..model.joints.len()).map(|joint| [of(joint) - rows(joint), of(joint)]);
+    left_out_rows(model, all.collect(), counted)
+}
+
+/// The joints of whose rows some do not count: how many, and of how many.
+pub(super) fn left_out_rows(
+    model: &RegressionModel,
+    rows: Vec<[usize; 2]>,
+    counted: &[f64],
+) -> Vec<LeftOutRows> {
+    let one = |(joint, [samples, of]): (usize, [usize; 2])| LeftOutRows {
         joint: model.joints[joint].name.clone(),
-        samples: of(joint) - rows(joint),
-        of: of(joint),
+        samples,
+        of,
         left: counted.get(joint).copied().unwrap_or(0.0),
     };
-    (0..model.joints.len()).map(one).filter(|one| one.samples > 0).collect()
+    rows.into_iter().enumerate().map(one).filter(|one| one.samples > 0).collect()
 }

@@ -21,6 +21,7 @@ mod idle;
 pub mod knowledge;
 mod known_effects;
 mod lacking;
+mod long;
 mod model_text;
 mod model_values;
 mod no_bodies;

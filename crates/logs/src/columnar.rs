@@ -1,7 +1,7 @@
 //! Parquet and Arrow: tables of columns, of which only those that are wanted are read.
 
 use super::fault::{FileFault, of_io};
-use super::source::{Column, Log, Rows};
+use super::source::{self, Column, Log, Rows};
 use super::table::{Places, Table};
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
@@ -141,9 +141,11 @@ fn log(
     }
 }
 
-impl Rows for Columnar {
-    fn read(self: Box<Self>, places: &[usize], _: &[usize]) -> Result<Table, Vec<FileFault>> {
-        let Self { schema, open } = *self;
+impl Columnar {
+    /// The columns of places that are used, in the order of the file, each once, and what reads
+    /// them.
+    fn used(self, places: &[usize]) -> Result<(Vec<usize>, Open), Vec<FileFault>> {
+        let Self { schema, open } = self;
         let mut used = places.to_vec();
         used.sort_unstable();
         used.dedup();
@@ -153,22 +155,62 @@ impl Rows for Columnar {
             FileFault::NoNumbers { column, kind: kind(place).to_string() }
         });
         let faults: Vec<FileFault> = no_numbers.collect();
-        if !faults.is_empty() {
-            return Err(faults);
-        }
-        let read = guarded(|| all_batches(open, &used))?;
-        let of = |place: &usize| read[used.partition_point(|one| one < place)].values.clone();
-        let columns = places.iter().map(of).collect();
-        Ok(Table { columns, places: Places::Rows, ..Table::default() })
+        if faults.is_empty() { Ok((used, open)) } else { Err(faults) }
     }
+}
+
+/// Columns that were read once each, as they were asked for.
+fn table(read: &[Reading], used: &[usize], places: &[usize]) -> Table {
+    let of = |place: &usize| read[used.partition_point(|one| one < place)].values.clone();
+    let columns = places.iter().map(of).collect();
+    Table { columns, places: Places::Rows, ..Table::default() }
+}
+
+impl Rows for Columnar {
+    fn read(self: Box<Self>, places: &[usize], _: &[usize]) -> Result<Table, Vec<FileFault>> {
+        let (used, open) = self.used(places)?;
+        let read = guarded(|| all_batches(open, &used))?;
+        Ok(table(&read, &used, places))
+    }
+
+    fn batches<'a>(self: Box<Self>, places: &[usize]) -> Result<source::Batches<'a>, Vec<FileFault>>
+    where
+        Self: 'a,
+    {
+        let places = places.to_vec();
+        let (used, open) = self.used(&places)?;
+        let mut batches = guarded(|| open(&used).map_err(unreadable))?;
+        let mut read = vec![Reading::default(); used.len()];
+        let mut row = 0;
+        Ok(Box::new(std::iter::from_fn(move || {
+            let next = guarded(|| Ok(batches.next()));
+            let batch = match next {
+                Ok(batch) => batch?,
+                Err(faults) => return Some(Err(faults)),
+            };
+            Some(batch.map_err(|error| of_row(row, &error)).map(|batch| {
+                row += batch.num_rows();
+                for (reading, column) in read.iter_mut().zip(batch.columns()) {
+                    reading.values.clear();
+                    reading.push(column.as_ref());
+                }
+                table(&read, &used, &places)
+            }))
+        })))
+    }
+}
+
+/// What is wrong behind so many rows.
+fn of_row(rows: usize, error: &ArrowError) -> Vec<FileFault> {
+    unreadable(format!("from row {} on: {error}", rows + 1))
 }
 
 /// The columns of these places, batch after batch.
 fn all_batches(open: Open, places: &[usize]) -> Result<Vec<Reading>, Vec<FileFault>> {
     let mut read = vec![Reading::default(); places.len()];
     for batch in open(places).map_err(unreadable)? {
-        let row = read.first().map_or(0, |column| column.values.len()) + 1;
-        let batch = batch.map_err(|error| unreadable(format!("from row {row} on: {error}")))?;
+        let rows = read.first().map_or(0, |column| column.values.len());
+        let batch = batch.map_err(|error| of_row(rows, &error))?;
         for (reading, column) in read.iter_mut().zip(batch.columns()) {
             reading.push(column.as_ref());
         }

@@ -2,15 +2,19 @@
 
 use super::fault::{FileFault, of_io};
 use super::remark::FileRemark;
-use super::source::{Column, Log, Rows};
+use super::source::{Batches, Column, Log, Rows};
 use super::table::{Places, Table};
 use std::io::{BufRead, Read};
+use std::ops::Range;
 
 /// Faults of one kind that are listed; more would say nothing new.
 const MAX_LISTED: usize = 5;
 
 /// Bytes of a line; a source without ends of lines must not fill the memory.
 pub(crate) const LONGEST_LINE: u64 = 1 << 20;
+
+/// Rows of a batch.
+const BATCH: usize = 1 << 14;
 
 /// The first lines of a log: what it says of itself, and the names of its columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,7 +35,24 @@ struct Text<R> {
 
 impl<R: BufRead> Rows for Text<R> {
     fn read(mut self: Box<Self>, places: &[usize], _: &[usize]) -> Result<Table, Vec<FileFault>> {
-        read_rows(&mut self.lines, &self.head, places)
+        Ok(read_rows(&mut self.lines, &self.head, places, 0..usize::MAX)?.0)
+    }
+
+    fn batches<'a>(self: Box<Self>, places: &[usize]) -> Result<Batches<'a>, Vec<FileFault>>
+    where
+        Self: 'a,
+    {
+        let (mut text, places, mut is_at_end) = (*self, places.to_vec(), false);
+        let mut rows = 0;
+        Ok(Box::new(std::iter::from_fn(move || {
+            if is_at_end {
+                return None;
+            }
+            let read = read_rows(&mut text.lines, &text.head, &places, rows..rows + BATCH);
+            rows += BATCH;
+            is_at_end = read.as_ref().map_or(true, |(_, is_at_end)| *is_at_end);
+            Some(read.map(|(table, _)| table))
+        })))
     }
 }
 
@@ -111,12 +132,14 @@ fn read_head<R: BufRead>(lines: &mut Lines<R>) -> Result<Head, Vec<FileFault>> {
     Err(vec![FileFault::NoColumns])
 }
 
-/// Reads the columns of `places` of all rows.
+/// Reads the columns of `places` of these rows, which are the next ones, and says whether there are
+/// no more.
 fn read_rows<R: BufRead>(
     lines: &mut Lines<R>,
     head: &Head,
     places: &[usize],
-) -> Result<Table, Vec<FileFault>> {
+    of: Range<usize>,
+) -> Result<(Table, bool), Vec<FileFault>> {
     // Where the cell of each column of the file goes.
     let mut targets = vec![Vec::new(); head.columns.len()];
     for (target, &place) in places.iter().enumerate() {
@@ -126,13 +149,19 @@ fn read_rows<R: BufRead>(
     let mut runs = Vec::new();
     let mut faults = Vec::new();
     let mut before = 0;
-    while let Some((number, line, is_whole)) = lines.next().map_err(|fault| vec![fault])? {
+    let mut is_at_end = false;
+    while table.rows() < of.len() {
+        let Some((number, line, is_whole)) = lines.next().map_err(|fault| vec![fault])? else {
+            is_at_end = true;
+            break;
+        };
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
         let row = table.rows();
-        if !is_whole && row > 0 {
+        if !is_whole && of.start + row > 0 {
             table.remarks.push(FileRemark::CutLine { line: number });
+            is_at_end = true;
             break;
         }
         if before + 1 != number || row == 0 {
@@ -162,7 +191,7 @@ fn read_rows<R: BufRead>(
         }
     }
     table.places = Places::Lines(runs);
-    if faults.is_empty() { Ok(table) } else { Err(faults) }
+    if faults.is_empty() { Ok((table, is_at_end)) } else { Err(faults) }
 }
 
 /// A cell: a number, or nothing (empty, `nan`) as NaN. None if it is neither.

@@ -27,6 +27,8 @@ pub enum FileFault {
     NotANumber { line: usize, column: String, cell: String },
     /// A format that this build does not read; its name and that of the feature that reads it.
     NoFeature { format: &'static str, feature: &'static str },
+    /// A format that is read as a whole alone.
+    NotInBatches,
     /// A format that is not read; what to do.
     OtherFormat { format: &'static str, hint: &'static str },
     /// The file is cut or corrupt; where, how much before is whole, and what is wrong.
@@ -132,6 +134,11 @@ impl fmt::Display for FileFault {
                 f,
                 "is {format}, which this build does not read\n  hint: `cargo install --path . \
                  --features {feature}` in the sources of denavit builds one that does"
+            ),
+            Self::NotInBatches => write!(
+                f,
+                "messages are read as a whole, and not piece by piece\n  hint: write them as a \
+                 table, in CSV or Parquet"
             ),
             Self::OtherFormat { format, hint } => {
                 write!(f, "is {format}, which is not read\n  hint: {hint}")

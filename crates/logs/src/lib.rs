@@ -3,7 +3,8 @@
 //! - [`open`]: a log of any format: CSV, MCAP, Parquet, Arrow, a folder of a ROS 2 bag
 //! - [`open_csv`]: text alone, from any source
 //! - [`MemoryLog`]: columns that a program has
-//! - [`Log`]: what a log says of itself and which columns it has; [`Log::read`] reads some
+//! - [`Log`]: what a log says of itself and which columns it has; [`Log::read`] reads some,
+//!   [`Log::batches`] some rows at a time
 //! - `write_mcap`: a table as messages of ROS 2
 
 #[cfg(feature = "mcap")]
@@ -35,5 +36,5 @@ pub use mcap::{Rows as McapRows, write_mcap};
 pub use memory::MemoryLog;
 pub use opening::Opening;
 pub use remark::FileRemark;
-pub use source::{Column, Found, Known, Log};
+pub use source::{Batches, Column, Found, Known, Log};
 pub use table::{Place, Table};

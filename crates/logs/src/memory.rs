@@ -8,6 +8,8 @@ use std::fmt;
 /// Columns of numbers by their names; what is undefined is NaN.
 #[derive(Clone, Default, PartialEq)]
 pub struct MemoryLog {
+    /// Name and value of what the log says of itself.
+    pub header: Vec<(String, String)>,
     /// Name and values of each column.
     pub columns: Vec<(String, Vec<f64>)>,
 }
@@ -45,7 +47,7 @@ impl MemoryLog {
         }
         let named = |(name, _): &(String, Vec<f64>)| Column { name: name.clone(), known: None };
         let columns = self.columns.iter().map(named).collect();
-        Ok(Log { header: Vec::new(), columns, rows: Box::new(Held(&self.columns)) })
+        Ok(Log { header: self.header.clone(), columns, rows: Box::new(Held(&self.columns)) })
     }
 }
 
@@ -65,7 +67,7 @@ mod tests {
 
     fn log(columns: &[(&str, &[f64])]) -> MemoryLog {
         let own = |(name, values): &(&str, &[f64])| ((*name).to_owned(), values.to_vec());
-        MemoryLog { columns: columns.iter().map(own).collect() }
+        MemoryLog { columns: columns.iter().map(own).collect(), ..MemoryLog::default() }
     }
 
     #[test]

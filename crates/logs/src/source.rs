@@ -39,7 +39,18 @@ pub(crate) trait Rows {
     /// Reads the columns of `places`. Where columns have clocks of their own, rows are those of
     /// one of the columns `clocks`, which are places too.
     fn read(self: Box<Self>, places: &[usize], clocks: &[usize]) -> Result<Table, Vec<FileFault>>;
+
+    /// Reads the columns of `places`, some rows at a time.
+    fn batches<'a>(self: Box<Self>, _: &[usize]) -> Result<Batches<'a>, Vec<FileFault>>
+    where
+        Self: 'a,
+    {
+        Err(vec![FileFault::NotInBatches])
+    }
 }
+
+/// Rows of a log, some at a time, in their order.
+pub type Batches<'a> = Box<dyn Iterator<Item = Result<Table, Vec<FileFault>>> + 'a>;
 
 /// A log that is open.
 pub struct Log<'a> {
@@ -57,7 +68,16 @@ impl fmt::Debug for Log<'_> {
     }
 }
 
-impl Log<'_> {
+impl<'a> Log<'a> {
+    /// Reads the columns of `places`, in this order, some rows at a time, so that a log may be
+    /// larger than the memory. Places of rows are those in their batch.
+    ///
+    /// # Errors
+    /// The format has no order of rows in its file, as messages have not, or a column no numbers.
+    pub fn batches(self, places: &[usize]) -> Result<Batches<'a>, Vec<FileFault>> {
+        self.rows.batches(places)
+    }
+
     /// Reads the columns of `places`, in this order. Where columns have clocks of their own, as
     /// topics do, rows are those of the topic of one of `clocks`, places too: of the topic with the
     /// most of them.

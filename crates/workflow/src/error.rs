@@ -13,7 +13,7 @@ use denavit_identify::statics::StaticFault;
 use denavit_identify::two_stage::TwoStageError;
 use denavit_import::ImportError;
 use denavit_measure::condition::ConditionError;
-use denavit_measure::log::{LogFaults as MeasuredFaults, MappingError};
+use denavit_measure::log::{LogFault, LogFaults as MeasuredFaults, MappingError};
 use denavit_plants::PlantError;
 use denavit_plants::effect::AddedError;
 use denavit_plants::regression::RegressionError;
@@ -155,6 +155,8 @@ pub(crate) enum Cause {
     Mistaken(Mistaken),
     /// Nothing is diagnosed.
     Diagnosis(DiagnosisError),
+    /// A log is not identified piece by piece; holds its name and why.
+    Long(String, String),
     /// Stopped before there was anything.
     Stopped,
 }
@@ -241,6 +243,12 @@ impl Error {
             Cause::SameLogs(_) => advice("name each log once".to_owned()),
             _ => Vec::new(),
         }
+    }
+
+    /// Whether all that is wrong with a log is that nothing moves.
+    pub(crate) fn is_of_rest(&self) -> bool {
+        let rests = |one: &MeasuredFaults| one.faults == [LogFault::NothingMoves];
+        matches!(&*self.0, Cause::Logs(faults) if faults.iter().all(rests))
     }
 
     /// Whether a file is not there.
@@ -339,6 +347,7 @@ impl fmt::Display for Cause {
             Self::Walk(scenario, why) => write!(f, "{scenario}: {why}"),
             Self::Mistaken(mistaken) => write!(f, "{mistaken}"),
             Self::Diagnosis(error) => write!(f, "{error}"),
+            Self::Long(file, why) => write!(f, "{file}: {why}"),
             Self::Stopped => write!(f, "stopped before there was an answer"),
         }
     }
@@ -385,6 +394,7 @@ impl std::error::Error for Error {
             | Cause::SameLogs(_)
             | Cause::Walk(..)
             | Cause::Mistaken(_)
+            | Cause::Long(..)
             | Cause::Stopped => None,
         }
     }

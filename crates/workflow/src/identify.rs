@@ -6,6 +6,7 @@ mod estimation;
 mod forward;
 mod loads;
 mod logs;
+mod long;
 mod prior;
 mod statics;
 mod two_stage;
@@ -26,6 +27,8 @@ use denavit_plants::regression::{CoulombLaw, RegressionModel};
 use estimation::Estimation;
 use forward::Again;
 pub use forward::{Controlled, NotMoved, SimulationGap};
+use logs::Read;
+pub use long::{LongLog, LongPlan, PieceRows, identify_long};
 pub use statics::{StaticsFound, identify_statics};
 pub use two_stage::{TwoStageFound, identify_two_stage};
 
@@ -137,42 +140,73 @@ pub fn identify(
     observer: &mut dyn Observer,
 ) -> Result<Identified, Error> {
     let mut watched = Watched::new(observer);
-    let ApartEffects { robot, laws, .. } = &file.apart;
-    let model = regression(robot, options)?;
-    let work = Work { logs, options, robot, laws, model: &model };
-    let estimation = Estimation { work, own: &file.own, source: &file.source };
-    let mut read = estimation.read_first(&mut watched)?;
-    let same = read.same();
-    let how = options.estimate(&model, read.position_noise.clone())?;
-    if how.method == Method::Instrumental && read.instruments.is_empty() {
-        let controller = options.controller.as_ref().ok_or(Cause::NoInstruments)?;
-        let first = Options { method: Method::Weighted, ..how.clone() };
-        let updated = estimation.found(&read, &first)?.1.map_err(Cause::Update)?;
-        if !watched.begins(Stage::SimulatingInstruments) {
-            return Err(Cause::Stopped.into());
+    let model = regression(&file.apart.robot, options)?;
+    let head = Head::new(file, logs, options, &model, &mut watched)?;
+    head.answered(file, &mut watched)
+}
+
+/// Logs that were identified, before they are simulated again: of a long log its head.
+struct Head<'a> {
+    estimation: Estimation<'a>,
+    read: Read,
+    how: Options,
+    found: Identification,
+    updated: Result<UpdatedModel, UpdateError>,
+    /// Which logs for validation say the same as others.
+    same: Vec<(String, LogRemark)>,
+}
+
+impl<'a> Head<'a> {
+    fn new(
+        file: &'a RobotFile,
+        logs: &'a Logs,
+        options: &'a IdentifyOptions,
+        model: &'a RegressionModel,
+        watched: &mut Watched<'_>,
+    ) -> Result<Self, Error> {
+        let ApartEffects { robot, laws, .. } = &file.apart;
+        let work = Work { logs, options, robot, laws, model };
+        let estimation = Estimation { work, own: &file.own, source: &file.source };
+        let mut read = estimation.read_first(watched)?;
+        let same = read.same();
+        let how = options.estimate(model, read.position_noise.clone())?;
+        if how.method == Method::Instrumental && read.instruments.is_empty() {
+            let controller = options.controller.as_ref().ok_or(Cause::NoInstruments)?;
+            let first = Options { method: Method::Weighted, ..how.clone() };
+            let updated = estimation.found(&read, &first)?.1.map_err(Cause::Update)?;
+            if !watched.begins(Stage::SimulatingInstruments) {
+                return Err(Cause::Stopped.into());
+            }
+            read.instruments =
+                controller.instruments(&updated.robot, &read, &options.conditions)?;
         }
-        read.instruments = controller.instruments(&updated.robot, &read, &options.conditions)?;
+        let (read, (found, updated)) = estimation.unbiased(read, &how, watched)?;
+        let is_sure = found.misread.iter().any(|one| one.is_sure);
+        if is_sure && !logs.accepts_suspicious {
+            return Err(Cause::Misread(found.misread).into());
+        }
+        Ok(Self { estimation, read, how, found, updated, same })
     }
-    let (read, (found, updated)) = estimation.unbiased(read, &how, &mut watched)?;
-    let is_sure = found.misread.iter().any(|one| one.is_sure);
-    if is_sure && !logs.accepts_suspicious {
-        return Err(Cause::Misread(found.misread).into());
+
+    /// The answer, with logs simulated again.
+    fn answered(self, file: &RobotFile, watched: &mut Watched<'_>) -> Result<Identified, Error> {
+        let Self { estimation, read, found, updated, same, .. } = self;
+        let Work { options, robot, model, .. } = estimation.work;
+        let simulates = !read.motions.is_empty() && watched.begins(Stage::SimulatingLogs);
+        let simulated = simulates.then(|| {
+            let controlled = options.controller.as_ref();
+            let again = Again { controlled, logs: &read.motions, window_s: options.window_s };
+            again.gap(&file.whole, &updated, watched)
+        });
+        if let (Some(gap), true) = (&simulated, options.controller.is_some()) {
+            gap.check()?;
+        }
+        let (mut remarks, effects) = (read.into_remarks(), file.uses(TAKEN_OUT));
+        let is_new = |one: &(String, LogRemark)| !remarks.contains(one);
+        remarks.extend(same.into_iter().filter(is_new).collect::<Vec<_>>());
+        let (is_stopped, robot, model) = (watched.is_stopped, robot.clone(), model.clone());
+        Ok(Identified { robot, model, found, updated, remarks, effects, simulated, is_stopped })
     }
-    let simulates = !read.motions.is_empty() && watched.begins(Stage::SimulatingLogs);
-    let simulated = simulates.then(|| {
-        let controlled = options.controller.as_ref();
-        let again = Again { controlled, logs: &read.motions, window_s: options.window_s };
-        again.gap(&file.whole, &updated, &mut watched)
-    });
-    if let (Some(gap), true) = (&simulated, options.controller.is_some()) {
-        gap.check()?;
-    }
-    let (mut remarks, effects) = (read.into_remarks(), file.uses(TAKEN_OUT));
-    let is_new = |one: &(String, LogRemark)| !remarks.contains(one);
-    remarks.extend(same.into_iter().filter(is_new).collect::<Vec<_>>());
-    let is_stopped = watched.is_stopped;
-    let robot = robot.clone();
-    Ok(Identified { robot, model, found, updated, remarks, effects, simulated, is_stopped })
 }
 
 /// Base parameters and their columns.

@@ -4,6 +4,8 @@
 //! - [`Logs`]: which logs, and how they are read; a [`LogSource`] is a file, or in memory
 //! - [`identify()`]: parameters from logs, by [`IdentifyOptions`]; [`identify_two_stage`] and
 //!   [`identify_statics`] for springs, and for measurements at rest
+//! - [`identify_long`]: the same from a log that may be larger than the memory; [`LongLog`] has its
+//!   parts for many machines
 //! - [`diagnose()`]: what a model lacks, by [`DiagnoseOptions`]
 //! - [`excite()`]: a trajectory that shows the parameters; [`simulate()`]: a run of a scenario
 //! - [`design_gait`], [`judge_run`], [`judge_log`]: gaits, and balance along runs and logs
@@ -30,8 +32,9 @@ pub use error::{Error, ErrorKind, Hint, RobotFaults};
 pub use excite::excite;
 pub use files::{Files, Input, ModelText, described, effects_folder, reason};
 pub use identify::{
-    Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, NotMoved, SimulationGap,
-    StaticsFound, TwoStageFound, identify, identify_statics, identify_two_stage,
+    Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, LongLog, LongPlan, NotMoved,
+    PieceRows, SimulationGap, StaticsFound, TwoStageFound, identify, identify_long,
+    identify_statics, identify_two_stage,
 };
 pub use logs::{LogSource, Logs};
 pub use mistaken::{FileKind, Mistaken};

@@ -5,7 +5,9 @@ use crate::files::MAX_MODEL_BYTES;
 use crate::mistaken::{FileKind, Mistaken};
 use denavit_codegen::model::Robot;
 use denavit_logs::{self as logs, MemoryLog, Opening};
-use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
+use denavit_measure::log::{
+    ColumnMapping, LogFaults, LogOf, MeasuredLog, UsedColumns, of_file, read_opened, used_columns,
+};
 use denavit_plants::regression::RegressionModel;
 use std::fmt;
 use std::fs::{self, File};
@@ -97,6 +99,25 @@ impl Logs {
         }
     }
 
+    /// A log that is open, with the columns that are read for a robot.
+    pub(crate) fn opened<'a>(
+        &self,
+        source: &'a LogSource,
+        robot: LogOf<'_>,
+    ) -> Result<(logs::Log<'a>, UsedColumns), Error> {
+        let name = source.to_string();
+        let failed = |faults| Cause::Logs(vec![of_file(&name, faults)]);
+        let log = match source {
+            LogSource::File(path) => {
+                self.open(path, &name)?.map_err(|faults| Cause::Logs(vec![faults]))?
+            }
+            LogSource::Memory { log, .. } => log.open().map_err(failed)?,
+        };
+        let used = used_columns(&name, &log, robot, &self.columns);
+        let used = used.map_err(|faults| Cause::Logs(vec![faults]))?;
+        Ok((log, used))
+    }
+
     fn of_memory(
         &self,
         name: &str,
@@ -110,22 +131,31 @@ impl Logs {
 
     fn of_file(&self, path: &Path, robot: LogOf<'_>) -> Result<MeasuredLog, Error> {
         let file = path.display().to_string();
-        // a folder is opened by its metadata
-        let opened = match path.is_dir() {
-            true => None,
-            false => Some(File::open(path).map_err(|error| {
-                let mistaken = Mistaken::name(&file, FileKind::Log);
-                mistaken.map_or_else(|| Error::read(path, error), |one| Cause::Mistaken(one).into())
-            })?),
-        };
-        let how = Opening { accepts_cut: self.accepts_cut, named: self.columns.beginnings() };
-        let log = logs::open(path, opened, &how).map_err(|faults| of_file(&file, faults));
+        let log = self.open(path, &file)?;
         let read = log.and_then(|log| read_opened(&file, log, robot, &self.columns));
         let failed = |faults| match other_file(path, &file) {
             Some(mistaken) => Cause::Mistaken(mistaken),
             None => Cause::Logs(vec![faults]),
         };
         Ok(read.map_err(failed)?)
+    }
+
+    /// Opens a file, or says what is wrong with it as a log.
+    fn open(
+        &self,
+        path: &Path,
+        file: &str,
+    ) -> Result<Result<logs::Log<'static>, LogFaults>, Error> {
+        // a folder is opened by its metadata
+        let opened = match path.is_dir() {
+            true => None,
+            false => Some(File::open(path).map_err(|error| {
+                let mistaken = Mistaken::name(file, FileKind::Log);
+                mistaken.map_or_else(|| Error::read(path, error), |one| Cause::Mistaken(one).into())
+            })?),
+        };
+        let how = Opening { accepts_cut: self.accepts_cut, named: self.columns.beginnings() };
+        Ok(logs::open(path, opened, &how).map_err(|faults| of_file(file, faults)))
     }
 }
 

@@ -14,6 +14,8 @@ pub enum Stage {
     ReadingLogsAgain(u32),
     /// Logs that judge are read again, behind a lower filter.
     ReadingHeldOutAgain,
+    /// A long log is read piece by piece.
+    Condensing,
     /// Parameters are estimated.
     Estimating,
     /// They are estimated again, behind a filter whose cutoff was halved so often.
@@ -41,6 +43,7 @@ impl fmt::Display for Stage {
             Self::ReadingHeldOutAgain => {
                 write!(f, "reading logs for validation, filter halved")
             }
+            Self::Condensing => write!(f, "reading the log piece by piece"),
             Self::Estimating => write!(f, "estimating"),
             Self::EstimatingAgain(1) => write!(f, "estimating, filter halved once"),
             Self::EstimatingAgain(times) => write!(f, "estimating, filter halved {times} times"),
@@ -103,6 +106,11 @@ pub(crate) struct Watched<'a> {
 impl<'a> Watched<'a> {
     pub(crate) fn new(observer: &'a mut dyn Observer) -> Self {
         Self { observer, is_stopped: false }
+    }
+
+    /// Who watches.
+    pub(crate) fn observer(&mut self) -> &mut dyn Observer {
+        self.observer
     }
 
     /// A stage has come so far; whether to go on.

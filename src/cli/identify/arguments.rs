@@ -120,6 +120,13 @@ pub(crate) struct Arguments {
     /// Of a log that is cut or corrupt, take what is before the damage
     #[arg(long)]
     pub(super) accept_cut: bool,
+    /// Read the log piece by piece, so that it may be larger than the memory: one table of samples
+    /// at equal distances. Its head is identified as any log is, and says how the rest is read
+    #[arg(long, conflicts_with_all = ["two_stage", "statics", "controller", "motion_svg"])]
+    pub(super) long: bool,
+    /// Rows of the head of a log that is read piece by piece; 524288 if nothing is said
+    #[arg(long, value_name = "ROWS", value_parser = clap::value_parser!(u32).range(1000..))]
+    pub(super) head: Option<u32>,
     /// Write the model with the identified values; - is standard output
     #[arg(short, long, value_name = "MODEL")]
     pub(super) output: Option<PathBuf>,
@@ -260,7 +267,7 @@ fn averaging(text: &str) -> Result<Averaging, String> {
 
 impl Arguments {
     /// The robot.
-    pub(super) fn robot(&self) -> Result<RobotFile, Failure> {
+    pub(crate) fn robot(&self) -> Result<RobotFile, Failure> {
         files::read_robot(&self.model, self.effects.effects.as_deref())
     }
 
@@ -275,7 +282,7 @@ impl Arguments {
     }
 
     /// The logs.
-    pub(super) fn logs(&self) -> Result<Logs, Failure> {
+    pub(crate) fn logs(&self) -> Result<Logs, Failure> {
         note_logs([&self.train, &self.validate, &self.instruments].into_iter().flatten());
         Ok(Logs {
             train: self.train.clone(),
@@ -287,7 +294,7 @@ impl Arguments {
     }
 
     /// Everything else that the library is asked for.
-    pub(super) fn options(&self, robot: &RobotFile) -> Result<IdentifyOptions, Failure> {
+    pub(crate) fn options(&self, robot: &RobotFile) -> Result<IdentifyOptions, Failure> {
         let method = match self.method {
             MethodName::Ols => Method::Ordinary,
             MethodName::Wls => Method::Weighted,

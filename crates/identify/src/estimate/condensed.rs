@@ -14,13 +14,13 @@ use nalgebra::DMatrix;
 use std::borrow::Cow;
 
 /// Parts that logs are cut into, altogether.
-const PARTS: usize = 96;
+pub(super) const PARTS: usize = 96;
 
 /// The fewest samples of a part.
 pub(super) const MIN_PART: usize = 20;
 
 /// Triangles of every joint, part by part.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Condensed {
     /// For each joint the places of phi that its columns belong to.
     pub pattern: Vec<Vec<usize>>,
@@ -97,7 +97,18 @@ impl Condensed {
         rows: RowsOf<'_>,
     ) -> Self {
         let all: usize = logs.iter().map(Conditioned::samples).sum();
-        let length = all.div_ceil(PARTS).max(MIN_PART);
+        Self::of_parts(model, (logs, left_out), pattern, rank, part_length(all), rows)
+    }
+
+    /// The same in parts of so many samples.
+    pub(super) fn of_parts(
+        model: &RegressionModel,
+        (logs, left_out): Rows<'_>,
+        pattern: Vec<Vec<usize>>,
+        rank: usize,
+        length: usize,
+        rows: RowsOf<'_>,
+    ) -> Self {
         let (parts, log_of_part, end_s) = (Vec::new(), Vec::new(), Vec::new());
         let share = |log: &Conditioned| log.independent() / log.samples().max(1) as f64;
         let independent = logs.iter().map(share).collect();
@@ -234,8 +245,13 @@ impl Condensed {
     }
 }
 
+/// Samples of a part of logs that have so many together.
+pub(super) fn part_length(samples: usize) -> usize {
+    samples.div_ceil(PARTS).max(MIN_PART)
+}
+
 /// The rows as they are.
-fn plain(_: LogIndex, block: &Block, joint: JointIndex) -> Option<Vec<Cow<'_, [f64]>>> {
+pub(super) fn plain(_: LogIndex, block: &Block, joint: JointIndex) -> Option<Vec<Cow<'_, [f64]>>> {
     let columns = block.with_target(joint)?;
     Some(columns.into_iter().map(Cow::Borrowed).collect())
 }

@@ -17,7 +17,7 @@ use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
 
 /// Samples of all logs that are looked at, before decimation.
-const SAMPLES: usize = 200_000;
+pub(super) const SAMPLES: usize = 200_000;
 
 /// A change of listed parameters with half the cutoff.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,9 +72,20 @@ impl Fit<'_> {
         let left_out = left_out.of_halved(logs, &places);
         let weights: Vec<Vec<f64>> =
             places.iter().map(|(number, _)| found.weights[number.0].clone()).collect();
-        let both = [own, halved].map(|logs| {
-            let condensed = Condensed::counted(model, (&logs, &left_out));
-            let solution = self.solved(&condensed, &condensed.whole(), &weights);
+        let both = [own, halved].map(|logs| Condensed::counted(model, (&logs, &left_out)));
+        self.change_of(model, both, &weights, found)
+    }
+
+    /// The same from rows of pieces of logs as they are, and behind half the cutoff.
+    pub(super) fn change_of(
+        &self,
+        model: &RegressionModel,
+        both: [Condensed; 2],
+        weights: &[Vec<f64>],
+        found: &Estimate,
+    ) -> Option<Change> {
+        let both = both.map(|condensed| {
+            let solution = self.solved(&condensed, &condensed.whole(), weights);
             (condensed, solution)
         });
         let [(condensed, _), _] = &both;
@@ -84,8 +95,7 @@ impl Fit<'_> {
             return None;
         }
         let [before, after] = both.each_ref().map(|(condensed, solution)| {
-            let (weights, prior) = (&weights[..], &self.options.prior[..]);
-            Problem { condensed, weights, prior, solution }.influences()
+            Problem { condensed, weights, prior: &self.options.prior, solution }.influences()
         });
         let apart: Vec<DVector<f64>> =
             before.into_iter().zip(after).map(|(one, other)| other - one).collect();

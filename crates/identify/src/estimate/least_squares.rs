@@ -184,7 +184,7 @@ pub fn estimate(
     let NoiseBias { bias, share, of_logs } = fit.noise_bias(model, rows, &first);
     (first.noise_bias, first.noise_share, first.noise_of_logs) = (bias, share, of_logs);
     let problem = fit.problem(&first);
-    let mut covariance = match options.method {
+    let covariance = match options.method {
         Method::Robust(loss) => {
             let (phi, scales) = (first.solution.phi.as_slice(), &first.noise);
             let influences = influences(model, rows, phi, scales, loss);
@@ -192,25 +192,7 @@ pub fn estimate(
         }
         _ => problem.covariance(options.errors),
     };
-    let mut degrees_of_freedom = problem.degrees_of_freedom(options.errors, model.to_listed());
-    match options.errors {
-        Errors::Correlated => {
-            let (wider, free) = first.widened_by_filter(options.method);
-            let parts = first.condensed.parts.len();
-            if parts < FEWEST_PARTS {
-                // too few parts to say more
-                covariance *= wider;
-                degrees_of_freedom.fill(free);
-            } else {
-                let by_filter = first.solution.covariance() * wider;
-                at_least(model, &mut covariance, &by_filter, &degrees_of_freedom, parts);
-            }
-        }
-        Errors::Classical if options.method == Method::Ordinary => {
-            covariance *= first.sum_of_squares() / problem.free_rows();
-        }
-        _ => {}
-    }
+    let (mut covariance, degrees_of_freedom) = fit.errors(model, &first, covariance);
     let mut change = fit.change(model, rows, &first);
     if let Some(change) = &mut change {
         change.widen(model, &mut covariance);
@@ -276,16 +258,54 @@ impl Fit<'_> {
         rows: Rows<'_>,
     ) -> Result<Estimate, EstimateError> {
         let (logs, _) = rows;
-        let condensed = Condensed::counted(model, rows);
+        let has_torque = logs.iter().any(|log| log.torque.iter().any(Option::is_some));
+        self.of_condensed(Condensed::counted(model, rows), has_torque)
+    }
+
+    /// The same of rows that are condensed, of logs with or without torques.
+    pub(super) fn of_condensed(
+        &self,
+        condensed: Condensed,
+        has_torque: bool,
+    ) -> Result<Estimate, EstimateError> {
         let count: usize = condensed.parts.iter().flatten().map(Triangle::rows).sum();
         match count {
-            0 if logs.iter().any(|log| log.torque.iter().any(Option::is_some)) => {
-                Err(EstimateError::NothingLeft)
-            }
+            0 if has_torque => Err(EstimateError::NothingLeft),
             0 => Err(EstimateError::NoTorque),
             rows if rows < condensed.rank => Err(EstimateError::TooFewRows(rows, condensed.rank)),
             _ => Ok(self.by_noise(condensed, self.options.method != Method::Ordinary)),
         }
+    }
+
+    /// The covariance of phi, of which parts of the logs say this, and the degrees of freedom of
+    /// the listed parameters.
+    pub(super) fn errors(
+        &self,
+        model: &RegressionModel,
+        found: &Estimate,
+        mut covariance: DMatrix<f64>,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let (problem, Options { method, errors, .. }) = (self.problem(found), self.options);
+        let mut degrees_of_freedom = problem.degrees_of_freedom(*errors, model.to_listed());
+        match errors {
+            Errors::Correlated => {
+                let (wider, free) = found.widened_by_filter(*method);
+                let parts = found.condensed.parts.len();
+                if parts < FEWEST_PARTS {
+                    // too few parts to say more
+                    covariance *= wider;
+                    degrees_of_freedom.fill(free);
+                } else {
+                    let by_filter = found.solution.covariance() * wider;
+                    at_least(model, &mut covariance, &by_filter, &degrees_of_freedom, parts);
+                }
+            }
+            Errors::Classical if *method == Method::Ordinary => {
+                covariance *= found.sum_of_squares() / problem.free_rows();
+            }
+            _ => {}
+        }
+        (covariance, degrees_of_freedom)
     }
 
     pub(super) fn problem<'a>(&'a self, found: &'a Estimate) -> Problem<'a> {

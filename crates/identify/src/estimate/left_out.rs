@@ -175,9 +175,24 @@ impl LeftOut {
         logs: &[Conditioned],
         options: &Options,
     ) -> Self {
-        let mut others = Self::asked(model, logs, options);
-        self.widened.iter().for_each(|&(joint, times)| _ = others.widen(logs, joint, times));
-        others
+        Self::ruled(model, logs, options, &self.widened)
+    }
+
+    /// What the options ask for of logs, and rows near reversals of joints, so often widened.
+    pub(super) fn ruled(
+        model: &RegressionModel,
+        logs: &[Conditioned],
+        options: &Options,
+        widened: &[(JointIndex, f64)],
+    ) -> Self {
+        let mut ruled = Self::asked(model, logs, options);
+        widened.iter().for_each(|&(joint, times)| _ = ruled.widen(logs, joint, times));
+        ruled
+    }
+
+    /// Joints whose rows near reversals are left out, and the times they were widened to.
+    pub(super) fn widened(&self) -> &[(JointIndex, f64)] {
+        &self.widened
     }
 
     /// The same of other logs, and all besides where Coulomb friction as the sign of a rate is not

@@ -7,6 +7,7 @@
 //! - [`validate`]: what is left of the torques
 //! - [`ContradictingLog`]: logs that no parameters explain together with the others
 //! - [`unexplained_joints`]: whose torque is as good as unexplained
+//! - [`long`]: logs that are too long to be held at once
 //! - [`consistent()`]: the nearest bodies that exist
 
 mod bounds;
@@ -23,6 +24,7 @@ mod least_squares;
 mod left_out;
 mod left_over;
 mod likelihood;
+pub mod long;
 mod noise_bias;
 mod nominal;
 mod own_estimate;

@@ -23,6 +23,26 @@ impl Triangle {
         Self { r: DMatrix::zeros(size, size), sums: DVector::zeros(size), rows: 0 }
     }
 
+    /// From the columns of R from the top to the diagonal, sums of the columns of its rows, and
+    /// their number.
+    pub(super) fn of_entries(entries: &[f64], sums: Vec<f64>, rows: usize) -> Self {
+        let size = sums.len();
+        let mut entries = entries.iter();
+        let mut r = DMatrix::zeros(size, size);
+        for column in 0..size {
+            for (entry, given) in r.column_mut(column).iter_mut().take(column + 1).zip(&mut entries)
+            {
+                *entry = *given;
+            }
+        }
+        Self { r, sums: DVector::from_vec(sums), rows }
+    }
+
+    /// Sums of the columns of W, and of y.
+    pub(super) fn sums(&self) -> &DVector<f64> {
+        &self.sums
+    }
+
     /// Number of rows condensed.
     pub fn rows(&self) -> usize {
         self.rows

@@ -136,8 +136,15 @@ pub fn validate(
             }
         })
         .collect();
-    // a sum of nothing is -0, which would be shown
-    let squares = joints.iter().map(|joint| joint.relative.powi(2)).fold(0.0, |a, b| a + b);
-    let relative = (squares / joints.len().max(1) as f64).sqrt();
-    Validation { joints, relative, samples }
+    Validation::of_joints(joints, samples)
+}
+
+impl Validation {
+    /// Of so many samples, of the joints whose torque was measured.
+    pub(super) fn of_joints(joints: Vec<JointResidual>, samples: usize) -> Self {
+        // a sum of nothing is -0, which would be shown
+        let squares = joints.iter().map(|joint| joint.relative.powi(2)).fold(0.0, |a, b| a + b);
+        let relative = (squares / joints.len().max(1) as f64).sqrt();
+        Self { joints, relative, samples }
+    }
 }

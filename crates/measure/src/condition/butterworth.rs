@@ -86,6 +86,20 @@ impl Butterworth {
         self.settling
     }
 
+    /// Samples after which both passes have forgotten all but a share of what was before. Poles of
+    /// one pass are apart, so that its transients are their powers; both passes have them twice,
+    /// which makes that so many times as much.
+    pub fn memory(&self, share: f64) -> usize {
+        let radius = |section: &Section| match section.a {
+            [a, 0.0] => a.abs(),
+            [_, b] => b.sqrt(),
+        };
+        let slowest = self.sections.iter().map(radius).fold(0.0, f64::max);
+        let samples = |share: f64| share.ln() / slowest.ln();
+        let first = samples(share);
+        samples(share / first.max(1.0)).ceil().clamp(1.0, 1e8) as usize
+    }
+
     /// Filters a signal forwards and backwards, in place. Beyond its ends the signal is taken to
     /// go on turned about its last sample, and to have been at rest before that, so that neither
     /// steps nor slopes make transients.

@@ -12,12 +12,14 @@ mod noise;
 mod overlap;
 mod pieces;
 mod reversals;
+mod stretch;
 
 pub use butterworth::Butterworth;
 pub use decimate::Decimator;
 pub use laps::Laps;
 pub use noise::Encoder;
 pub use pieces::Piece;
+pub use stretch::{Stretch, Stretches};
 
 use super::log::{JointSignals, MeasuredLog};
 use crate::{JointIndex, SampleIndex};

@@ -53,6 +53,11 @@ pub enum LogFault {
     Jitter { relative: f64 },
     /// Samples are missing, more than are filled in.
     Gaps { missing: usize, samples: usize, longest: usize, at: Place },
+    /// Samples are not where a clock of equal steps has them, by so many steps, in a log that is
+    /// read piece by piece.
+    OffClock { steps: f64 },
+    /// Samples had to be repaired in a log that is read piece by piece; how.
+    Repaired { how: Box<LogRemark> },
     /// The log says something else than it seems to.
     Suspicion(Suspicion),
     /// No joint moves.
@@ -84,6 +89,24 @@ pub enum Suspicion {
     Jump { column: String, at: Place, from: f64, to: f64, others: usize },
     /// A position is beyond its limits.
     BeyondLimits { column: String, value: f64, limits: [f64; 2] },
+}
+
+impl Suspicion {
+    /// Whether a single sample can raise it, and not how a log goes on alone.
+    pub fn is_of_samples(&self) -> bool {
+        match self {
+            Self::Degrees { .. }
+            | Self::BeyondTorque { .. }
+            | Self::Jump { .. }
+            | Self::BeyondLimits { .. } => true,
+            Self::TimeUnit { .. }
+            | Self::RateScale { .. }
+            | Self::NotTheRate { .. }
+            | Self::Swapped { .. }
+            | Self::ConstantTorque { .. }
+            | Self::CommandOfSpring { .. } => false,
+        }
+    }
 }
 
 /// What was found and needs no answer: repairs that were made, properties that matter.
@@ -262,6 +285,17 @@ impl fmt::Display for LogFault {
                  can be filled in\n  hint: cut the log at its gaps"
             ),
             Self::Suspicion(suspicion) => write!(f, "{suspicion}"),
+            Self::OffClock { steps } => write!(
+                f,
+                "samples are {steps:.1} steps from where equal distances of time have them\n  hint: a \
+                 log that is read piece by piece has all of its samples: cut it where some are \
+                 missing, or resample it"
+            ),
+            Self::Repaired { how } => write!(
+                f,
+                "{how}: a log that is read piece by piece is not repaired\n  hint: cut it before and \
+                 behind these rows, or resample it"
+            ),
             Self::NothingMoves => write!(f, "no joint moves"),
         }
     }

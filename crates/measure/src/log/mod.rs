@@ -2,6 +2,7 @@
 //!
 //! - [`ColumnMapping`]: which column of a foreign log is which of ours
 //! - [`read_log`], [`read_opened`]: a log of a robot; all that is wrong with it at once
+//! - [`used_columns`]: which of its columns are read
 //! - [`MeasuredLog`]: what was measured, joint by joint
 //!
 //! A log is streamed: only the columns that are used are held, 8 bytes a sample each.
@@ -230,6 +231,39 @@ pub fn read_opened(
         }
     }
     if faults.is_empty() { Ok(log) } else { Err(failed(faults)) }
+}
+
+/// The places of the columns of a log that are read for a robot. `file` is its name, for messages
+/// alone.
+///
+/// # Errors
+/// All that its columns lack.
+pub fn used_columns(
+    file: &str,
+    log: &Log<'_>,
+    robot: LogOf<'_>,
+    mapping: &ColumnMapping,
+) -> Result<UsedColumns, LogFaults> {
+    let failed = |faults| LogFaults { file: file.to_owned(), faults };
+    let wanted = Wanted::new(log, robot, mapping).map_err(failed)?;
+    let is_time = |column: &&WantedColumn| matches!(column.goes_to, Target::Time);
+    let time = wanted.columns.iter().find(is_time).expect("it is always needed");
+    Ok(UsedColumns {
+        places: wanted.places(),
+        time: time.place,
+        to_seconds: [time.scale, time.offset],
+    })
+}
+
+/// Columns that are read of a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UsedColumns {
+    /// Their places in the log.
+    pub places: Vec<usize>,
+    /// That of the time.
+    pub time: usize,
+    /// What it is multiplied by, and what is added, to be in seconds.
+    pub to_seconds: [f64; 2],
 }
 
 /// The first number of each column that nothing of a robot can be.

@@ -40,7 +40,7 @@ impl Estimation<'_> {
         logs::read(self.work, halvings, &mut reading)
     }
 
-    fn request<'a>(&'a self, read: &'a Read, options: &'a Options) -> Request<'a> {
+    pub(super) fn request<'a>(&'a self, read: &'a Read, options: &'a Options) -> Request<'a> {
         Request {
             model: self.work.model,
             train: &read.train,
@@ -62,11 +62,16 @@ impl Estimation<'_> {
 
     fn judged(&self, read: &Read, options: &Options, estimated: Estimated) -> Found {
         let found = estimated.judged(self.request(read, options));
+        let updated = self.updated(&found);
+        (found, updated)
+    }
+
+    /// The model with what is found.
+    pub(super) fn updated(&self, found: &Identification) -> Result<UpdatedModel, UpdateError> {
         let Work { robot, model, .. } = self.work;
         let (bodies, listed) = (&found.consistent, &found.parameters);
         let updated = updated_model(robot, model, bodies, listed, self.source);
-        let updated = updated.and_then(|updated| with_all_effects(updated, self.own));
-        (found, updated)
+        updated.and_then(|updated| with_all_effects(updated, self.own))
     }
 
     /// What is found with the highest filter, of those that nobody asked for, below which noise of
@@ -108,6 +113,7 @@ impl Estimation<'_> {
             };
             (found, halvings) = (better, lower);
         }
+        read.halvings = halvings.first().copied().unwrap_or(0);
         self.lower_held_out(&mut read, halvings, &found, watched)?;
         let mut found = self.judged(&read, options, found);
         let given = &self.work.logs.columns;

@@ -1,6 +1,7 @@
 //! Logs read, checked and conditioned as the options say.
 
 use super::Work;
+use super::long::Clock;
 use crate::error::{Cause, Error};
 use crate::logs::LogSource;
 use crate::observer::Reading;
@@ -9,9 +10,9 @@ use denavit_identify::forward::{LONGEST_S, MotionLog};
 use denavit_identify::{
     Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
 };
-use denavit_measure::Split;
-use denavit_measure::condition::{Conditioned, Conditioning, Filter};
-use denavit_measure::log::LogRemark;
+use denavit_measure::condition::{ConditionError, Conditioned, Conditioning, Filter, Stretch};
+use denavit_measure::log::{LogFault, LogFaults, LogRemark, MeasuredLog};
+use denavit_measure::{JointIndex, Split};
 use denavit_plants::regression::CoulombLaw;
 
 /// All logs of a run.
@@ -27,6 +28,8 @@ pub(super) struct Read {
     remarks: Split<Vec<(String, LogRemark)>>,
     /// Deviation of each measured position [rad, m].
     pub(super) position_noise: Vec<f64>,
+    /// How often the cutoff of the first log was halved.
+    pub(super) halvings: u32,
 }
 
 /// All logs, with these halvings of their cutoffs.
@@ -63,8 +66,16 @@ pub(super) fn read(
     let motions = if logs.held_out.is_empty() { whole.clone() } else { Vec::new() };
     let Reader { remarks, noise, .. } = reader;
     let (remarks, position_noise) = (Split { train: remarks, held_out: Vec::new() }, noise);
-    let validate = Vec::new();
-    let mut read = Read { train, validate, instruments, motions, whole, remarks, position_noise };
+    let mut read = Read {
+        train,
+        validate: Vec::new(),
+        instruments,
+        motions,
+        whole,
+        remarks,
+        position_noise,
+        halvings: of_train.first().copied().unwrap_or(0),
+    };
     read.held_out(work, of_others, reading)?;
     Ok(read)
 }
@@ -120,7 +131,7 @@ impl Read {
     }
 }
 
-struct Reader<'a, 'r, 'w, 'o> {
+pub(super) struct Reader<'a, 'r, 'w, 'o> {
     work: Work<'a>,
     reading: &'r mut Reading<'w, 'o>,
     ground: Option<Ground>,
@@ -132,7 +143,7 @@ struct Reader<'a, 'r, 'w, 'o> {
 }
 
 impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
-    fn new(work: Work<'a>, reading: &'r mut Reading<'w, 'o>) -> Result<Self, Error> {
+    pub(super) fn new(work: Work<'a>, reading: &'r mut Reading<'w, 'o>) -> Result<Self, Error> {
         let Work { robot, model, .. } = work;
         let ground = Ground::under(robot, model)
             .map_err(|error| Cause::Plant(model.model.clone(), error))?;
@@ -168,19 +179,8 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
     ) -> Result<Conditioned, Error> {
         self.reading.next()?;
         let file = source.to_string();
-        let Work { logs, options, robot, laws, model } = self.work;
-        let mut log = logs.measured(source, robot, model)?;
-        let required = log.require_joint_torques(&model.joints, logs.accepts_suspicious);
-        required.map_err(|faults| Cause::Logs(vec![faults]))?;
-        undo_readings(&mut log, laws);
-        if self.ground.is_none() && !log.wrenches.is_empty() {
-            let around = Ground::around(robot, model);
-            let failed = |error| Cause::Plant(model.model.clone(), error);
-            self.ground = Some(around.map_err(failed)?);
-        }
-        if let Some(ground) = &mut self.ground {
-            ground.load(&mut log);
-        }
+        let Work { options, laws, model, .. } = self.work;
+        let mut log = self.measured(source)?;
         let remarks = std::mem::take(&mut log.remarks);
         self.remarks.extend(remarks.into_iter().map(|remark| (file.clone(), remark)));
         let conditions = &options.conditions;
@@ -203,14 +203,70 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
             motions.push(motion);
         }
         let conditioned = Conditioned::new(log, &self.names, &how);
-        let mut conditioned = conditioned.map_err(|error| Cause::Condition(file.clone(), error))?;
-        take_out(&mut conditioned, model, laws);
+        let conditioned = conditioned.map_err(|error| Cause::Condition(file.clone(), error))?;
         self.note(&file, &conditioned);
-        for joint in leave_out_idle_motors(model, &mut conditioned) {
+        let (conditioned, idle) = self.without_known(conditioned);
+        for joint in idle {
             self.remarks
                 .push((file.clone(), LogRemark::Idle { joint: self.names[joint.0].clone() }));
         }
         Ok(conditioned)
+    }
+
+    /// A log as it was measured, without what is known of its readings and loads.
+    fn measured(&mut self, source: &LogSource) -> Result<MeasuredLog, Error> {
+        let Work { logs, robot, laws, model, .. } = self.work;
+        let mut log = logs.measured(source, robot, model)?;
+        let required = log.require_joint_torques(&model.joints, logs.accepts_suspicious);
+        required.map_err(|faults| Cause::Logs(vec![faults]))?;
+        undo_readings(&mut log, laws);
+        if self.ground.is_none() && !log.wrenches.is_empty() {
+            let around = Ground::around(robot, model);
+            let failed = |error| Cause::Plant(model.model.clone(), error);
+            self.ground = Some(around.map_err(failed)?);
+        }
+        if let Some(ground) = &mut self.ground {
+            ground.load(&mut log);
+        }
+        Ok(log)
+    }
+
+    /// A stretch of a long log, conditioned as a part of the whole; none where nothing moves.
+    pub(super) fn stretch(
+        &mut self,
+        source: &LogSource,
+        stretch: &Stretch,
+        clock: Clock,
+        how: &Conditioning,
+    ) -> Result<Option<Conditioned>, Error> {
+        self.reading.next()?;
+        let faults = |faults: Vec<LogFault>| LogFaults { file: source.to_string(), faults };
+        let mut log = match self.measured(source) {
+            Err(error) if error.is_of_rest() => return Ok(None),
+            log => log?,
+        };
+        if log.samples() != stretch.read.len() {
+            let why =
+                format!("{} rows stand where the plan has {}", log.samples(), stretch.read.len());
+            return Err(Cause::Long(source.to_string(), why).into());
+        }
+        let wrong = clock.set(&mut log, stretch.read.start);
+        if !wrong.is_empty() {
+            return Err(Cause::Logs(vec![faults(wrong)]).into());
+        }
+        match Conditioned::new(log, &self.names, how) {
+            Ok(log) => Ok(Some(self.without_known(log.of_stretch(stretch)).0)),
+            Err(ConditionError::NothingMoves) => Ok(None),
+            Err(error) => Err(Cause::Condition(source.to_string(), error).into()),
+        }
+    }
+
+    /// A conditioned log without laws that are known and torques of idle motors, and their joints.
+    fn without_known(&self, mut log: Conditioned) -> (Conditioned, Vec<JointIndex>) {
+        let Work { laws, model, .. } = self.work;
+        take_out(&mut log, model, laws);
+        let idle = leave_out_idle_motors(model, &mut log);
+        (log, idle)
     }
 
     /// What a conditioned log says of noise, rest and laps.

@@ -1,0 +1,136 @@
+//! Rows of a piece of a long log as JSON, so that pieces are condensed where the log is and added
+//! elsewhere. Numbers are printed with all their digits, and read as they were.
+
+use super::super::condensed::Condensed;
+use super::super::triangle::Triangle;
+use super::LongRows;
+use denavit_measure::LogIndex;
+use denavit_plants::regression::RegressionModel;
+use serde_json::{Value, json};
+use std::fmt;
+
+/// Why a text is no piece of a log of a model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PieceError {
+    reason: String,
+}
+
+impl fmt::Display for PieceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for PieceError {}
+
+fn wrong(reason: impl fmt::Display) -> PieceError {
+    PieceError { reason: reason.to_string() }
+}
+
+impl LongRows {
+    /// As JSON: triangles by their columns, from the top to the diagonal.
+    pub fn to_json(&self) -> Value {
+        let Self { condensed, all, torque_squares, samples, halved } = self;
+        json!({
+            "counted": condensed_json(condensed),
+            "halved": halved.each_ref().map(condensed_json),
+            "all": all.iter().map(Triangle::to_json).collect::<Vec<_>>(),
+            "torque_squares": torque_squares,
+            "samples": samples,
+        })
+    }
+
+    /// Of a model, from JSON.
+    ///
+    /// # Errors
+    /// It is something else, or of another model.
+    pub fn of_json(model: &RegressionModel, value: &Value) -> Result<Self, PieceError> {
+        let samples = value["samples"].as_u64().ok_or_else(|| wrong("`samples` is no count"))?;
+        let joints = model.joints.len();
+        let half = |at: usize| condensed_of_json(model, &value["halved"][at]);
+        Ok(Self {
+            condensed: condensed_of_json(model, &value["counted"])?,
+            all: of_joints(model, &value["all"])?,
+            torque_squares: numbers(&value["torque_squares"], joints, "`torque_squares`")?,
+            samples: usize::try_from(samples).map_err(wrong)?,
+            halved: [half(0)?, half(1)?],
+        })
+    }
+}
+
+fn condensed_json(condensed: &Condensed) -> Value {
+    let parts = condensed.parts.iter().map(|part| {
+        let joints: Vec<Value> = part.iter().map(Triangle::to_json).collect();
+        Value::from(joints)
+    });
+    json!({
+        "parts": parts.collect::<Vec<_>>(),
+        "end_s": condensed.end_s,
+        "independent": condensed.independent[0],
+        "row_s": condensed.row_s[0],
+    })
+}
+
+fn condensed_of_json(model: &RegressionModel, value: &Value) -> Result<Condensed, PieceError> {
+    let parts = list(&value["parts"], "`parts`")?.iter().map(|part| of_joints(model, part));
+    let parts = parts.collect::<Result<Vec<_>, _>>()?;
+    let number = |key: &str| {
+        let found = value[key].as_f64().filter(|found| found.is_finite());
+        found.ok_or_else(|| wrong(format!("`{key}` is no number")))
+    };
+    Ok(Condensed {
+        log_of_part: vec![LogIndex(0); parts.len()],
+        end_s: numbers(&value["end_s"], parts.len(), "`end_s`")?,
+        parts,
+        independent: vec![number("independent")?],
+        row_s: vec![number("row_s")?],
+        rank: model.rank(),
+        pattern: model.pattern().to_vec(),
+    })
+}
+
+fn of_joints(model: &RegressionModel, value: &Value) -> Result<Vec<Triangle>, PieceError> {
+    let (joints, pattern) = (list(value, "a triangle for each joint")?, model.pattern());
+    if joints.len() != pattern.len() {
+        let (its, own) = (joints.len(), pattern.len());
+        return Err(wrong(format!("it has {its} joints, and the model {own}")));
+    }
+    let both = joints.iter().zip(pattern);
+    both.map(|(one, places)| Triangle::of_json(one, places.len())).collect()
+}
+
+fn list<'a>(value: &'a Value, what: &str) -> Result<&'a Vec<Value>, PieceError> {
+    value.as_array().ok_or_else(|| wrong(format!("{what} is no list")))
+}
+
+fn numbers(value: &Value, count: usize, what: &str) -> Result<Vec<f64>, PieceError> {
+    let all: Option<Vec<f64>> = list(value, what)?.iter().map(Value::as_f64).collect();
+    let all = all.filter(|all| all.iter().all(|one| one.is_finite()));
+    let all = all.ok_or_else(|| wrong(format!("{what} has something that is no number")))?;
+    match all.len() == count {
+        true => Ok(all),
+        false => Err(wrong(format!("{what} has {} numbers instead of {count}", all.len()))),
+    }
+}
+
+impl Triangle {
+    fn to_json(&self) -> Value {
+        let size = self.width() + 1;
+        let entry = |(row, column): (usize, usize)| self.matrix()[(row, column)];
+        let places = (0..size).flat_map(|column| (0..=column).map(move |row| (row, column)));
+        json!({
+            "rows": self.rows(),
+            "r": places.map(entry).collect::<Vec<_>>(),
+            "sums": self.sums().as_slice(),
+        })
+    }
+
+    fn of_json(value: &Value, width: usize) -> Result<Self, PieceError> {
+        let size = width + 1;
+        let rows = value["rows"].as_u64().and_then(|rows| usize::try_from(rows).ok());
+        let rows = rows.ok_or_else(|| wrong("`rows` is no count"))?;
+        let entries = numbers(&value["r"], size * (size + 1) / 2, "`r`")?;
+        let sums = numbers(&value["sums"], size, "`sums`")?;
+        Ok(Self::of_entries(&entries, sums, rows))
+    }
+}

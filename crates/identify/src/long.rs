@@ -1,0 +1,41 @@
+//! What a long log says, whose head was identified as any log is.
+
+use super::estimate::long::LongRows;
+use super::estimate::{EstimateError, consistent, convergence, parameters, validate};
+use super::identification::{Identification, Request, left_out_rows, shares};
+use denavit_plants::regression::StandardParameter;
+
+impl Identification {
+    /// That of a long log of whose head this is one, with the rows of the whole. Parameters,
+    /// residuals and bodies are those of the whole; doubts are those of the head.
+    ///
+    /// # Errors
+    /// There are fewer rows than parameters, or none.
+    pub fn of_long(self, request: Request<'_>, rows: &LongRows) -> Result<Self, EstimateError> {
+        let Request { model, validate: held_out, options, .. } = request;
+        let (head, periods) = (self.train, self.periods);
+        let longer = rows.samples() as f64 / head.samples.max(1) as f64;
+        let found = self.estimate.of_long(model, rows, options)?;
+        let phi = found.solution.phi.as_slice();
+        let of_model = |one: &StandardParameter| one.value.unwrap_or(0.0);
+        let standard: Vec<f64> = model.standard.iter().map(of_model).collect();
+        let train = rows.left(model, phi, &head);
+        let left_out = left_out_rows(model, rows.left_out(), &shares(model, &found, &train));
+        let before = model.model_axes().map(|phi| match held_out.is_empty() {
+            true => rows.left(model, &phi, &head).relative,
+            false => validate(model, &phi, held_out).relative,
+        });
+        Ok(Self {
+            validate: (!held_out.is_empty()).then(|| validate(model, phi, held_out)),
+            parameters: parameters(model, &found),
+            convergence: convergence(model, &found),
+            consistent: consistent(model, &found, &standard),
+            periods: periods * longer,
+            train,
+            before,
+            left_out,
+            estimate: found,
+            ..self
+        })
+    }
+}

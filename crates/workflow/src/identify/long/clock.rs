@@ -1,0 +1,43 @@
+//! The clock of a long log: rows at equal distances of time, so that places are times.
+
+use denavit_measure::log::{LogFault, LogRemark, MeasuredLog};
+
+/// How far a sample may be from where equal distances have it, in steps: nearer to it than to any
+/// other.
+const MOST_OFF: f64 = 0.5;
+
+/// Times of the samples of a long log.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::identify) struct Clock {
+    /// Of the first \[s\].
+    pub(in crate::identify) start_s: f64,
+    /// The distance of samples \[s\].
+    pub(in crate::identify) step_s: f64,
+    /// Whether suspicions are no faults.
+    pub(in crate::identify) accepts_suspicious: bool,
+}
+
+impl Clock {
+    /// Gives a stretch that begins at a row of the log the clock of the whole; what is wrong if its
+    /// rows are not at their times, were repaired, or are suspicious by themselves.
+    pub(in crate::identify) fn set(self, log: &mut MeasuredLog, first: usize) -> Vec<LogFault> {
+        let start_s = self.start_s + first as f64 * self.step_s;
+        let last = log.samples().max(1) - 1;
+        let off_first = (log.start_s - start_s) / self.step_s;
+        let off_last = off_first + last as f64 * (log.step_s / self.step_s - 1.0);
+        let off = if off_last.abs() > off_first.abs() { off_last } else { off_first };
+        (log.start_s, log.step_s) = (start_s, self.step_s);
+        let of_clock = (off.abs() > MOST_OFF).then_some(LogFault::OffClock { steps: off.abs() });
+        let of_remark = |remark: LogRemark| match remark {
+            LogRemark::DroppedRepeats { .. }
+            | LogRemark::FilledGaps { .. }
+            | LogRemark::Resampled { .. } => Some(LogFault::Repaired { how: Box::new(remark) }),
+            LogRemark::Accepted(one) if !self.accepts_suspicious && one.is_of_samples() => {
+                Some(LogFault::Suspicion(one))
+            }
+            _ => None,
+        };
+        let remarks = std::mem::take(&mut log.remarks);
+        of_clock.into_iter().chain(remarks.into_iter().filter_map(of_remark)).collect()
+    }
+}

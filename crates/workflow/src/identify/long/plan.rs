@@ -1,0 +1,296 @@
+//! What the head of a long log says of the rest, and rows of its pieces, as JSON: so pieces are
+//! condensed where their rows are.
+
+use super::super::{Head, IdentifyOptions};
+use super::Clock;
+use super::reading::Survey;
+use crate::error::{Cause, Error};
+use denavit_identify::estimate::long::{LongRows, RowRule, pieces};
+use denavit_measure::JointIndex;
+use denavit_measure::condition::{Conditioning, Filter, Stretches};
+use denavit_plants::regression::RegressionModel;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::ops::Range;
+
+const PLAN: &str = "denavit-long-plan/1";
+const ROWS: &str = "denavit-long-rows/1";
+
+/// How the pieces of a long log are condensed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LongPlan {
+    /// Rows of the log.
+    pub rows: usize,
+    /// The time of the first row \[s\].
+    pub start_s: f64,
+    /// The distance of rows \[s\].
+    pub step_s: f64,
+    pub(super) how: Conditioning,
+    pub(super) rule: RowRule,
+    pub(super) position_noise: Vec<f64>,
+    /// Which rows these are of: the parameters that are found, and what their columns depend on.
+    identifies: String,
+    stretches: usize,
+}
+
+/// The rows of a piece of a long log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PieceRows {
+    /// Its number, from 0.
+    pub piece: usize,
+    /// The stretches that are in it.
+    pub stretches: Range<usize>,
+    pub(super) rows: Option<LongRows>,
+}
+
+/// A plan as its file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlanFile {
+    format: String,
+    identifies: String,
+    rows: usize,
+    start_s: f64,
+    step_s: f64,
+    filter: Option<FilterFile>,
+    decimation: usize,
+    widened: Vec<WidenedFile>,
+    position_noise: Vec<f64>,
+    stretches: usize,
+    pieces: usize,
+    /// For each stretch its first row, and the one behind its last; for each piece the same of
+    /// stretches. For those who read the rows.
+    rows_of_stretches: Vec<[usize; 2]>,
+    stretches_of_pieces: Vec<[usize; 2]>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FilterFile {
+    order: usize,
+    cutoff_hz: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WidenedFile {
+    joint: usize,
+    times: f64,
+}
+
+/// What rows depend on beside their log.
+fn identifies(model: &RegressionModel, options: &IdentifyOptions) -> String {
+    let names: Vec<&str> = model.listed.iter().map(|one| one.name.as_str()).collect();
+    let IdentifyOptions { slow, conditions, resolution, .. } = options;
+    format!(
+        "{} of {}; {:?}, {slow:?}, {:?}, {resolution:?}",
+        names.join(", "),
+        model.model,
+        model.law,
+        conditions.derivatives
+    )
+}
+
+impl LongPlan {
+    pub(super) fn new(head: &Head<'_>, survey: Survey) -> Self {
+        let work = head.estimation.work;
+        let Survey { rows, start_s, step_s } = survey;
+        let conditions = &work.options.conditions;
+        let how = Conditioning {
+            resolution: work.options.resolution,
+            ..conditions.of(step_s, rows, head.read.halvings)
+        };
+        let mut plan = Self {
+            rows,
+            start_s,
+            step_s,
+            how,
+            rule: head.found.estimate.row_rule(),
+            position_noise: head.read.position_noise.clone(),
+            identifies: identifies(work.model, work.options),
+            stretches: 0,
+        };
+        plan.stretches = plan.cut().map_or(0, |cut| cut.count());
+        plan
+    }
+
+    /// Where the log is cut; why not.
+    pub(super) fn cut(&self) -> Result<Stretches, String> {
+        let cut = Stretches::new(self.rows, self.step_s, &self.how);
+        cut.ok_or_else(|| format!("{} rows are too few for the filter", self.rows))
+    }
+
+    /// How many pieces there are.
+    pub fn pieces(&self) -> usize {
+        pieces(self.stretches)
+    }
+
+    /// The stretches of a piece.
+    pub fn stretches_of(&self, piece: usize) -> Range<usize> {
+        let first = |piece: usize| piece * self.stretches / self.pieces().max(1);
+        first(piece)..first(piece + 1)
+    }
+
+    /// Whether a piece is one part that errors are found from, and not its stretches.
+    pub(super) fn has_long_parts(&self) -> bool {
+        self.stretches > self.pieces()
+    }
+
+    pub(super) fn clock(&self, accepts_suspicious: bool) -> Clock {
+        Clock { start_s: self.start_s, step_s: self.step_s, accepts_suspicious }
+    }
+
+    /// The piece that a stretch is added to; why it cannot be.
+    pub(super) fn piece_of(
+        &self,
+        stretch: usize,
+        before: Option<PieceRows>,
+    ) -> Result<PieceRows, String> {
+        let holds = |piece: &usize| self.stretches_of(*piece).contains(&stretch);
+        let piece = (0..self.pieces()).find(holds);
+        let piece = piece.ok_or_else(|| format!("there is no stretch {stretch} in the plan"))?;
+        let first = self.stretches_of(piece).start;
+        let empty = || PieceRows { piece, stretches: first..first, rows: None };
+        let mut begun = before.unwrap_or_else(empty);
+        if begun.piece != piece || begun.stretches != (first..stretch) {
+            return Err(format!(
+                "stretch {stretch} follows stretches {first} to {stretch} of piece {piece}, and \
+                 these are others"
+            ));
+        }
+        begun.stretches.end = stretch + 1;
+        Ok(begun)
+    }
+
+    /// Sees to it that a plan is of this robot and these options.
+    pub(super) fn check(
+        &self,
+        model: &RegressionModel,
+        options: &IdentifyOptions,
+        name: &str,
+    ) -> Result<(), Error> {
+        let own = identifies(model, options);
+        match own == self.identifies {
+            true => Ok(()),
+            false => Err(Cause::Long(
+                name.to_owned(),
+                format!("the plan is for {}, and this is {own}", self.identifies),
+            )
+            .into()),
+        }
+    }
+
+    /// As JSON.
+    pub fn to_json(&self) -> Value {
+        let cut = self.cut().ok();
+        let read = |number: usize| {
+            let rows = cut.map_or(0..0, |cut| cut.get(number).read);
+            [rows.start, rows.end]
+        };
+        let of_piece = |piece: usize| {
+            let all = self.stretches_of(piece);
+            [all.start, all.end]
+        };
+        json!(PlanFile {
+            format: PLAN.to_owned(),
+            identifies: self.identifies.clone(),
+            rows: self.rows,
+            start_s: self.start_s,
+            step_s: self.step_s,
+            filter: self
+                .how
+                .filter
+                .map(|Filter { order, cutoff_hz }| FilterFile { order, cutoff_hz }),
+            decimation: self.how.decimation,
+            widened: self
+                .rule
+                .widened
+                .iter()
+                .map(|&(joint, times)| WidenedFile { joint: joint.0, times })
+                .collect(),
+            position_noise: self.position_noise.clone(),
+            stretches: self.stretches,
+            pieces: self.pieces(),
+            rows_of_stretches: (0..self.stretches).map(read).collect(),
+            stretches_of_pieces: (0..self.pieces()).map(of_piece).collect(),
+        })
+    }
+
+    /// From JSON, for options that it was made with.
+    ///
+    /// # Errors
+    /// It is no plan, or contradicts itself; `name` is that of its file.
+    pub fn of_json(name: &str, text: &str, options: &IdentifyOptions) -> Result<Self, Error> {
+        let failed = |why: String| Error::from(Cause::Long(name.to_owned(), why));
+        let file: PlanFile =
+            serde_json::from_str(text).map_err(|error| failed(format!("no plan: {error}")))?;
+        if file.format != PLAN {
+            return Err(failed(format!("is `{}`, and no `{PLAN}`", file.format)));
+        }
+        let is_number = |one: &f64| one.is_finite();
+        let is_sound = file.start_s.is_finite()
+            && file.step_s.is_finite()
+            && file.step_s > 0.0
+            && file.position_noise.iter().all(is_number)
+            && file.widened.iter().all(|one| one.joint < file.position_noise.len());
+        let filter = file.filter.map(|FilterFile { order, cutoff_hz }| Filter { order, cutoff_hz });
+        let plan = Self {
+            rows: file.rows,
+            start_s: file.start_s,
+            step_s: file.step_s,
+            how: Conditioning {
+                filter,
+                derivatives: options.conditions.derivatives,
+                decimation: file.decimation,
+                resolution: options.resolution,
+                ..Conditioning::default()
+            },
+            rule: RowRule {
+                widened: file
+                    .widened
+                    .iter()
+                    .map(|one| (JointIndex(one.joint), one.times))
+                    .collect(),
+            },
+            position_noise: file.position_noise,
+            identifies: file.identifies,
+            stretches: file.stretches,
+        };
+        let count = plan.cut().map_err(failed)?.count();
+        match is_sound && count == plan.stretches && file.pieces == plan.pieces() {
+            true => Ok(plan),
+            false => Err(failed("contradicts itself".to_owned())),
+        }
+    }
+}
+
+impl PieceRows {
+    /// As JSON.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "format": ROWS,
+            "piece": self.piece,
+            "stretches": [self.stretches.start, self.stretches.end],
+            "rows": self.rows.as_ref().map(LongRows::to_json),
+        })
+    }
+
+    /// From JSON, of a model; why it is none.
+    pub(super) fn of_json(model: &RegressionModel, text: &str) -> Result<Self, String> {
+        let value: Value =
+            serde_json::from_str(text).map_err(|error| format!("no rows of a piece: {error}"))?;
+        if value["format"] != ROWS {
+            return Err(format!("is no `{ROWS}`"));
+        }
+        let count = |value: &Value| value.as_u64().and_then(|one| usize::try_from(one).ok());
+        let ends = [0, 1].map(|at| count(&value["stretches"][at]));
+        let (Some(piece), [Some(first), Some(end)]) = (count(&value["piece"]), ends) else {
+            return Err("does not say which piece it is".to_owned());
+        };
+        let rows = match &value["rows"] {
+            Value::Null => None,
+            rows => Some(LongRows::of_json(model, rows).map_err(|error| error.to_string())?),
+        };
+        Ok(Self { piece, stretches: first..end, rows })
+    }
+}

@@ -1,0 +1,223 @@
+"""Identification from one log that is larger than the memory, on one machine or on many.
+
+The head of the log is identified as any log is. That says how the rest is read: pieces of it become
+rows, anywhere and in any order, and these are added. Needs pyarrow; ``runner`` may be one of
+:mod:`denavit.studies`.
+
+>>> from denavit.long import identify_long
+>>> identify_long("arm.json", "year.parquet", head=100_000)  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _logs, _options, studies
+from ._arrays import Array
+from ._options import Columns, PathLike, Progress
+from ._results import answer
+from .errors import Error, Fault, _argument
+from .identify import Identification, answered_with_model, updated_model
+from .model import Model, as_place, load
+from .studies.here import Runner, in_process
+from .studies.parts import arrow
+
+USUAL_HEAD = 1 << 19
+"""Rows of a head if nothing is said."""
+
+BATCH = 1 << 16
+"""Rows that are read at once."""
+
+NUMBERS = ("int", "uint", "float", "double", "timestamp")
+"""Beginnings of the names of types that are numbers here."""
+
+
+class _Table:
+    """Rows of a Parquet file by their numbers."""
+
+    def __init__(self, path: Path) -> None:
+        parquet = arrow().parquet
+        try:
+            self.file = parquet.ParquetFile(path)
+        except (OSError, ValueError) as error:
+            cause = f"cannot be read as Parquet: {error}"
+            raise Error([Fault(str(path), None, None, cause, None)]) from None
+        self.path = path
+        self.rows = int(self.file.metadata.num_rows)
+        groups = range(self.file.num_row_groups)
+        counts = [self.file.metadata.row_group(group).num_rows for group in groups]
+        self.ends = np.cumsum(counts, dtype=np.int64)
+        self.kinds = {field.name: str(field.type) for field in self.file.schema_arrow}
+        self.names = [name for name, kind in self.kinds.items() if kind.startswith(NUMBERS)]
+        self.epochs: dict[str, int] = {}
+        if self.rows == 0:
+            raise Error([Fault(str(path), None, None, "has no rows", None)])
+
+    def read(self, start: int, end: int) -> dict[str, Array]:
+        """Columns of numbers of rows from ``start`` to before ``end``."""
+        first = int(np.searchsorted(self.ends, start, side="right"))
+        last = int(np.searchsorted(self.ends, end, side="left"))
+        at = int(self.ends[first - 1]) if first else 0
+        held: dict[str, list[Array]] = {name: [] for name in self.names}
+        groups = list(range(first, last + 1))
+        for batch in self.file.iter_batches(BATCH, row_groups=groups, columns=self.names):
+            rows = slice(max(0, start - at), max(0, end - at))
+            at += batch.num_rows
+            for name in self.names:
+                held[name].append(self._numbers(name, batch.column(name))[rows])
+            if at >= end:
+                break
+        return {name: np.concatenate(parts) for name, parts in held.items()}
+
+    def _numbers(self, name: str, column: Any) -> Array:
+        """A column as numbers; times as seconds since the first one of the file."""
+        if not self.kinds[name].startswith("timestamp"):
+            return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
+        nanoseconds = column.cast("timestamp[ns]").cast("int64").to_numpy(zero_copy_only=False)
+        if name not in self.epochs:
+            group = self.file.read_row_group(0, columns=[name]).column(name)
+            self.epochs[name] = int(group[0].cast("timestamp[ns]").cast("int64").as_py())
+        return np.asarray((nanoseconds - self.epochs[name]) / 1e9, dtype=np.float64)
+
+
+@lru_cache(maxsize=2)
+def _table(path: Path) -> _Table:
+    return _Table(path)
+
+
+@lru_cache(maxsize=2)
+def _model(text: bytes) -> Model:
+    return load(json.loads(text))
+
+
+@studies.rows(rows=str)
+def condensed(case: studies.Case) -> studies.Row:
+    """The rows of a piece of a long log. Inputs: ``model`` and ``plan``. Options: ``log``, the path
+    of a Parquet file that every worker can read, and ``arguments`` of the command."""
+    plan = json.loads(case.inputs["plan"])
+    table = _table(Path(case.options["log"]))
+    if table.rows != plan["rows"]:
+        cause = f"has {table.rows} rows, and the plan is for {plan['rows']}"
+        raise Error([Fault(str(table.path), None, None, cause, None)])
+    first, end = plan["stretches_of_pieces"][case.index]
+    text = None
+    with _options.folder() as inside:
+        model = _options.file_of(_model(case.inputs["model"]), "model", inside)
+        for name, content in case.inputs.items():
+            (inside / f"{name}.json").write_bytes(content)
+        for stretch in range(first, end):
+            start, stop = plan["rows_of_stretches"][stretch]
+            given, memory = _given(table.read(start, stop), f"{table.path.name}[{start}:{stop}]")
+            arguments = ["long", "condense", model, *given, *case.options["arguments"]]
+            if "columns" in case.inputs:
+                arguments += ["--columns", str(inside / "columns.json")]
+            arguments += ["--plan", str(inside / "plan.json"), f"--stretch={stretch}"]
+            if text is not None:
+                (inside / "rows.jsonl").write_text(text)
+                arguments += ["--onto", str(inside / "rows.jsonl")]
+            text = json.dumps(_options.answered(arguments, None, memory)[0])
+    return {"rows": text}
+
+
+def _given(columns: dict[str, Any], name: str) -> tuple[list[str], list[Columns]]:
+    """Arguments for rows in memory, and these by a name for messages."""
+    arguments, memory = _logs.given(train=columns)
+    return arguments, [(option, at, name, given) for option, at, _, given in memory]
+
+
+def identify_long(
+    model: Model | PathLike,
+    log: PathLike,
+    validate: _logs.Logs = (),
+    *,
+    head: int = USUAL_HEAD,
+    time: str = "t",
+    columns: PathLike | dict[str, Any] | None = None,
+    runner: Runner = in_process,
+    part: PathLike | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> Identification:
+    """Identifies base parameters from one log, a Parquet file that may be larger than the memory.
+
+    ``head`` is how many of its rows are identified as any log is; ``time`` the column of its times.
+    ``runner`` computes the pieces (:func:`denavit.studies.on_ray.on_ray` on many machines, each of
+    which reads the file by the same path); ``part`` is where rows of pieces are kept, so that a run
+    that was broken off goes on. ``options`` are those of :func:`denavit.identify`: ``method``
+    ("ols" or "wls"), ``errors``, ``seed``, ``filter_hz``, ``decimate``, ``rates``, ``skip_slow``,
+    ``friction``, ``joint_parameters``, ``keep``, ``prior``, ``resolution``, ``accept_suspicious``.
+    Rows stand at equal distances of time.
+    """
+    table = _table(Path(_options.place(log, "`log`")).resolve())
+    if time not in table.names:
+        raise _argument(f"`{table.path.name}` has no column of numbers `{time}`", "`time` names it")
+    robot = model if isinstance(model, Model) else load(model)
+    with _options.folder() as inside:
+        effects, place = as_place(robot, inside)
+        arguments = [*effects, *_arguments(options, head)]
+        inputs = {"model": robot.source.encode()}
+        mapped: list[str] = []
+        if columns is not None:
+            mapped = ["--columns", _options.file_of(columns, "columns", inside)]
+            inputs["columns"] = Path(mapped[1]).read_bytes()
+        of_head, memory = _given(table.read(0, min(head, table.rows)), table.path.name)
+        end = float(table.read(table.rows - 1, table.rows)[time][0])
+        planning = ["long", "plan", place, *of_head, *mapped, *arguments]
+        planning += [f"--rows={table.rows}", f"--end={end!r}"]
+        plan, _, _ = _options.answered(planning, progress, memory)
+        inputs["plan"] = json.dumps(plan).encode()
+        given = {"log": str(table.path), "arguments": arguments}
+        study = studies.Study("long", condensed, plan["pieces"], inputs=inputs, options=given)
+        (inside / "plan.json").write_bytes(inputs["plan"])
+        with open(inside / "rows.jsonl", "w", encoding="utf-8") as file:
+            for row in _computed(study, runner, part, progress):
+                file.write(row["rows"] + "\n")
+        judged, more = _logs.given(validate=validate)
+        estimating = ["long", "estimate", place, *of_head, *judged, *mapped, *arguments]
+        estimating += ["--plan", str(inside / "plan.json"), "--rows", str(inside / "rows.jsonl")]
+        out = inside / "updated.json"
+        found, refused = answered_with_model(estimating, out, progress, [*memory, *more])
+        updated = None if refused else updated_model(out, robot)
+    return answer(Identification, found, updated=updated, update_refused=refused)
+
+
+OPTIONS = (
+    "method", "errors", "seed", "keep", "friction", "skip_slow", "filter_hz", "decimate", "rates",
+    "prior", "resolution", "accept_suspicious", "joint_parameters",
+)  # fmt: skip
+"""Options of identification that a long log has, too."""
+
+
+def _arguments(options: dict[str, Any], head: int) -> list[str]:
+    """Options of :func:`denavit.identify` as arguments of the command."""
+    flags = {"filter_hz": "filter", "joint_parameters": "with"}
+    unknown = sorted(options.keys() - set(OPTIONS))
+    if unknown:
+        raise TypeError(f"identify_long() has no option {', '.join(unknown)}")
+    named = {flags.get(name, name): value for name, value in options.items()}
+    return _options.flags(**named, head=head)
+
+
+def _computed(
+    study: studies.Study, runner: Runner, part: PathLike | None, progress: Progress | None
+) -> Iterator[studies.Row]:
+    """Rows of all pieces in their order."""
+    with tempfile.TemporaryDirectory(prefix="denavit-") as inside:
+        kept = Path(inside) / "rows.parquet" if part is None else Path(part)
+
+        def told(done: int, count: int) -> None:
+            if progress is not None:
+                progress("reading the log piece by piece", done / count)
+
+        studies.run(study, kept, runner=runner, progress=told)
+        for row in studies.read_part(kept).to_pylist():
+            if row["failure"]:
+                raise Error([Fault(str(study.options["log"]), None, None, row["failure"], None)])
+            yield row

@@ -1,0 +1,153 @@
+"""A log that is read piece by piece gives the numbers of one that is held as a whole."""
+
+import numpy as np
+import pytest
+
+import denavit
+from denavit.errors import Error
+from denavit.fleet import example
+from denavit.long import identify_long
+from denavit.studies.here import in_processes
+
+pyarrow = pytest.importorskip("pyarrow")
+parquet = pytest.importorskip("pyarrow.parquet")
+
+STEP_S = 1e-3
+HEAD = 150_000
+FILTERED = {"filter_hz": 20, "skip_slow": "off"}
+
+
+def motion(rows):
+    """Sums of incommensurable sines, with torques of the equations of motion and noise."""
+    t = STEP_S * np.arange(rows)
+    q, qd, qdd = (np.zeros((rows, 2)) for _ in range(3))
+    for joint, waves in enumerate([(0.31, 0.57, 0.83), (0.41, 0.67, 1.03)]):
+        for hz, size in zip(waves, (0.6, 0.3, 0.2)):
+            w = 2 * np.pi * hz
+            q[:, joint] += size * np.sin(w * t + joint)
+            qd[:, joint] += size * w * np.cos(w * t + joint)
+            qdd[:, joint] -= size * w * w * np.sin(w * t + joint)
+    return t, q, qd, qdd
+
+
+@pytest.fixture(scope="module")
+def columns():
+    random = np.random.default_rng(5)
+    t, q, qd, qdd = motion(600_000)
+    tau = denavit.load(example.NOMINAL).inverse_dynamics(q, qd, qdd)
+    found = {"t": t}
+    for joint, name in enumerate(example.JOINTS):
+        found[f"q_{name}"] = q[:, joint] + 1e-5 * random.standard_normal(len(t))
+        found[f"tau_{name}"] = tau[:, joint] + 0.05 * random.standard_normal(len(t))
+    return found
+
+
+@pytest.fixture(scope="module")
+def log(columns, tmp_path_factory):
+    path = tmp_path_factory.mktemp("long") / "arm.parquet"
+    parquet.write_table(pyarrow.table(columns), path, row_group_size=50_000)
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(columns):
+    return denavit.identify(example.NOMINAL, columns, **FILTERED)
+
+
+@pytest.fixture(scope="module")
+def pieces(log):
+    return identify_long(example.NOMINAL, log, head=HEAD, **FILTERED)
+
+
+def test_numbers_are_those_of_the_whole(whole, pieces):
+    assert pieces.samples == whole.samples
+    for one, other in zip(pieces.parameters, whole.parameters):
+        assert one.name == other.name
+        assert one.value == pytest.approx(other.value, rel=1e-10, abs=1e-12)
+        assert one.std == pytest.approx(other.std, rel=0.3)
+    for one, other in zip(pieces.residual.per_joint, whole.residual.per_joint):
+        assert one.residual_rms == pytest.approx(other.residual_rms, rel=1e-10)
+        assert one.torque_rms == pytest.approx(other.torque_rms, rel=1e-10)
+
+
+def test_true_values_are_within_their_errors(pieces):
+    shown = [one for one in pieces.parameters if one.identifiable]
+    assert len(shown) == len(pieces.parameters)
+    off = [abs(one.value - one.model_value) / one.std for one in shown]
+    assert np.sqrt(np.mean(np.square(off))) < 2.0, off
+
+
+def test_processes_give_the_same_bits(pieces, log, tmp_path):
+    part = tmp_path / "rows.parquet"
+    options = FILTERED | {"head": HEAD, "part": part}
+    again = identify_long(example.NOMINAL, log, runner=in_processes(2), **options)
+    assert again.json == pieces.json
+    # and from the rows that were kept
+    assert identify_long(example.NOMINAL, log, **options).json == pieces.json
+
+
+def test_default_rows_agree_within_errors(columns, log):
+    whole = denavit.identify(example.NOMINAL, columns, filter_hz=20)
+    pieces = identify_long(example.NOMINAL, log, head=HEAD, filter_hz=20)
+    for one, other in zip(pieces.parameters, whole.parameters):
+        assert abs(one.value - other.value) < 0.5 * other.std, one.name
+
+
+def test_times_of_a_clock_and_mapped_columns(columns, log, pieces, tmp_path):
+    """Times as timestamps, positions in degrees under other names."""
+    renamed = dict(columns)
+    first = 1_790_000_000_000_000_000
+    stamps = first + np.round(1e9 * renamed.pop("t")).astype(np.int64)
+    table = {"stamp": pyarrow.array(stamps, pyarrow.timestamp("ns"))}
+    mapping = {"t": {"column": "stamp"}}
+    for name in example.JOINTS:
+        table[f"angle {name}"] = np.degrees(renamed[f"q_{name}"])
+        table[f"torque {name}"] = renamed[f"tau_{name}"]
+        mapping[f"q_{name}"] = {"column": f"angle {name}", "scale": np.pi / 180}
+        mapping[f"tau_{name}"] = {"column": f"torque {name}"}
+    path = tmp_path / "other.parquet"
+    parquet.write_table(pyarrow.table(table), path)
+    options = FILTERED | {"head": HEAD, "time": "stamp", "columns": mapping}
+    found = identify_long(example.NOMINAL, path, **options)
+    for one, other in zip(found.parameters, pieces.parameters):
+        assert one.value == pytest.approx(other.value, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("fault", ["gap", "jump", "rest", "nan"])
+def test_faults_behind_the_head(columns, fault, tmp_path):
+    changed = {name: values.copy() for name, values in columns.items()}
+    place = 400_000
+    if fault == "gap":
+        changed["t"][place:] += 0.01
+    elif fault == "jump":
+        changed["q_elbow"][place] += 3.0
+    elif fault == "nan":
+        changed["tau_elbow"][place : place + 20_000] = np.nan
+    else:
+        # nothing moves for long: these stretches say nothing, and are no fault
+        for name in example.JOINTS:
+            changed[f"q_{name}"][200_000:] = changed[f"q_{name}"][200_000]
+            changed[f"tau_{name}"][200_000:] = changed[f"tau_{name}"][200_000]
+    path = tmp_path / "faulty.parquet"
+    parquet.write_table(pyarrow.table(changed), path)
+    if fault == "rest":
+        found = identify_long(example.NOMINAL, path, head=HEAD, **FILTERED)
+        assert found.samples < 600_000
+        return
+    with pytest.raises(Error) as error:
+        identify_long(example.NOMINAL, path, head=HEAD, **FILTERED)
+    expected = {"gap": "missing", "jump": "jumps", "nan": "tau_elbow"}[fault]
+    assert expected in str(error.value), error.value
+
+
+def test_what_is_no_long_log(columns, log, tmp_path):
+    with pytest.raises(Error, match="no more than those of its head"):
+        identify_long(example.NOMINAL, log, head=700_000)
+    with pytest.raises(Error, match="least squares alone"):
+        identify_long(example.NOMINAL, log, head=HEAD, method="huber")
+    with pytest.raises(TypeError, match="no option average"):
+        identify_long(example.NOMINAL, log, average=2.0)
+    text = tmp_path / "log.csv"
+    text.write_text("t,q_elbow\n")
+    with pytest.raises(Error, match="Parquet"):
+        identify_long(example.NOMINAL, text)

@@ -1,0 +1,162 @@
+//! `denavit identify --long` and `denavit long`: logs that are read piece by piece.
+
+use super::{Directory, Run, run_in};
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs;
+
+const ROWS: usize = 300_000;
+
+/// A pendulum of 2 kg, 0.3 m from its axis, with 0.05 kg m^2 about its centre of mass.
+const MODEL: &str = r#"{
+  "format": "denavit-model/1", "name": "pendulum", "convention": "standard",
+  "gravity": [0, -9.81, 0],
+  "links": [{"name": "swing", "joint": {"type": "revolute", "a": 0.5},
+    "body": {"mass": 2, "com": [-0.2, 0, 0], "inertia": {"zz": 0.05}, "about": "com"}}]
+}"#;
+
+/// Its log for five minutes: two waves, and the torque of its equation.
+fn pendulum(directory: &Directory) {
+    let mut text = String::from("t,q_swing,tau_swing\n");
+    for row in 0..ROWS {
+        let t = 1e-3 * row as f64;
+        let [mut q, mut qdd] = [0.0; 2];
+        for (hz, size) in [(0.37, 0.7), (0.91, 0.3)] {
+            let w = TAU * hz;
+            q += size * (w * t).sin();
+            qdd -= size * w * w * (w * t).sin();
+        }
+        let tau = (0.05 + 2.0 * 0.09) * qdd + 2.0 * 9.81 * 0.3 * f64::cos(q);
+        writeln!(text, "{t:.3},{q:.12},{tau:.12}").expect("text grows");
+    }
+    fs::write(directory.path.join("log.csv"), text).expect("written");
+    fs::write(directory.path.join("pendulum.json"), MODEL).expect("written");
+}
+
+const OPTIONS: [&str; 6] = ["pendulum.json", "--train", "log.csv", "--filter", "20", "--json"];
+
+fn run(directory: &Directory, words: &[&str], more: &[&str]) -> Run {
+    let all: Vec<&str> = words.iter().chain(&OPTIONS).chain(more).copied().collect();
+    run_in(&directory.path, &all)
+}
+
+/// Three stretches, of which the first is the head's: the closed form's values, and the same bytes
+/// from pieces that were condensed apart.
+#[test]
+fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
+    let directory = Directory::new("identify_long");
+    pendulum(&directory);
+    let head = ["--head", "100000"];
+    let together = run(&directory, &["identify", "--long"], &head);
+    assert_eq!(together.code, Some(0), "{}", together.stderr);
+    let found: Value = serde_json::from_str(&together.stdout).expect("JSON");
+    // edges are cut, and one sample in twenty is left
+    let samples = found["samples"].as_u64().expect("a count");
+    assert!((14_000..15_000).contains(&samples), "{samples}");
+    let parameters = found["parameters"].as_array().expect("a list");
+    for (value, expected) in [(0, 0.05 + 2.0 * 0.09), (1, 2.0 * 0.3)].map(|(at, expected)| {
+        let of = |at: usize| parameters[at]["value"].as_f64().expect("a number");
+        let name = parameters[at]["name"].as_str().expect("a name");
+        // about the axis: the inertia; the first moment
+        (of(at), if name.starts_with('I') { 0.23 } else { expected })
+    }) {
+        assert!((value / expected - 1.0).abs() < 1e-4, "{value} {expected}");
+    }
+
+    let plan = run(&directory, &["long", "plan"], &head);
+    assert_eq!(plan.code, Some(0), "{}", plan.stderr);
+    fs::write(directory.path.join("plan.json"), &plan.stdout).expect("written");
+    let plan: Value = serde_json::from_str(&plan.stdout).expect("JSON");
+    assert_eq!(plan["pieces"], 3);
+    let of_plan = ["--plan", "plan.json"];
+    let mut rows = String::new();
+    for (piece, name) in [("2:3", "c.jsonl"), ("0:2", "ab.jsonl")] {
+        let condensed = run(&directory, &["long", "condense", "--pieces", piece], &of_plan);
+        assert_eq!(condensed.code, Some(0), "{}", condensed.stderr);
+        fs::write(directory.path.join(name), &condensed.stdout).expect("written");
+        rows.insert_str(0, &condensed.stdout);
+    }
+    let estimate = |rows: &[&str]| {
+        let more: Vec<&str> =
+            head.iter().chain(&of_plan).chain(&["--rows"]).chain(rows).copied().collect();
+        run(&directory, &["long", "estimate"], &more)
+    };
+    let apart = estimate(&["ab.jsonl", "c.jsonl"]);
+    assert_eq!(apart.stdout, together.stdout, "{}", apart.stderr);
+    let (code, said) = (Some(2), "piece 0 is not there");
+    let turned = estimate(&["c.jsonl", "ab.jsonl"]);
+    assert!(turned.code == code && turned.stderr.contains(said), "{}", turned.stderr);
+    let few = estimate(&["ab.jsonl"]);
+    assert!(few.code == code && few.stderr.contains("piece 2 of 3"), "{}", few.stderr);
+    fs::write(directory.path.join("cut.jsonl"), &rows[..rows.len() / 2]).expect("written");
+    let cut = estimate(&["cut.jsonl"]);
+    assert!(cut.code == code && cut.stderr.contains("cut.jsonl:"), "{}", cut.stderr);
+    // a plan for other rows
+    let mut words = vec!["long", "condense", "--pieces", "0:1", "--skip-slow", "off"];
+    words.extend(of_plan);
+    let other = run(&directory, &words, &[]);
+    assert!(other.code == code && other.stderr.contains("the plan is for"), "{}", other.stderr);
+}
+
+/// A log no longer than its head is identified as any log is.
+#[test]
+fn a_short_log_is_identified_as_any_log_is() {
+    let directory = Directory::new("identify_long_short");
+    let run = run_in(&directory.path, &["simulate", "tulip_leg_tracking", "-o", "log.csv"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let words = ["identify", "tulip_leg", "--train", "log.csv", "--json"];
+    let usual = run_in(&directory.path, &words);
+    let long = run_in(&directory.path, &[&words[..], &["--long"]].concat());
+    assert_eq!(usual.stdout, long.stdout, "{}", long.stderr);
+}
+
+#[test]
+fn what_is_not_read_piece_by_piece_is_said() {
+    let directory = Directory::new("identify_long_wrong");
+    for file in ["log.csv", "log.mcap"] {
+        let run = run_in(&directory.path, &["simulate", "tulip_leg_tracking", "-o", file]);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+    }
+    fs::write(directory.path.join("plan.json"), "{}").expect("written");
+    let long = ["identify", "tulip_leg", "--long", "--head", "1000", "--train"];
+    for (words, says) in [
+        ([&long[..], &["log.csv", "--method", "huber"]].concat(), "least squares alone"),
+        ([&long[..], &["log.csv", "--average", "2"]].concat(), "laps are averaged"),
+        ([&long[..], &["log.csv", "log.csv"]].concat(), "one log is read piece by piece"),
+        ([&long[..], &["log.mcap"]].concat(), "hint: write them as a table"),
+        ([&long[..], &["no.csv"]].concat(), "no.csv"),
+        (
+            vec![
+                "long",
+                "condense",
+                "tulip_leg",
+                "--train",
+                "log.csv",
+                "--plan",
+                "plan.json",
+                "--pieces",
+                "0:1",
+            ],
+            "plan.json: no plan",
+        ),
+        (
+            vec![
+                "long",
+                "condense",
+                "tulip_leg",
+                "--train",
+                "log.csv",
+                "--plan",
+                "plan.json",
+                "--pieces",
+                "1:1",
+            ],
+            "the first below the second",
+        ),
+    ] {
+        let run = run_in(&directory.path, &words);
+        assert_eq!(run.code, Some(2), "{words:?}: {}", run.stderr);
+        assert!(run.stderr.contains(says), "{words:?}: {}", run.stderr);
+    }
+}

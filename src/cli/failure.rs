@@ -7,8 +7,6 @@ use denavit::demo::RobotError;
 use denavit::derive::MotionError;
 use denavit::emit::SourceError;
 use denavit::emit::latex::TooLongToSet;
-use denavit::excite::ExciteError;
-use denavit::identify::UpdateError;
 use denavit::import::{ExportError, ImportError};
 use denavit::model::ModelError;
 use denavit::program::{CodeError, StatesError};
@@ -75,7 +73,7 @@ pub(crate) enum Misuse {
     /// A picture of a simulation that was not made.
     NotSimulated,
     /// What was found makes no model.
-    NoModel(UpdateError),
+    NoModel(denavit::identify::Error),
     /// A formula is not shown in a page.
     Formula(FormulaError),
 }
@@ -122,7 +120,14 @@ macro_rules! of_library {
     };
 }
 
-of_library!(CodeError, DecomposedError, ExciteError, ScenarioError, SourceError, TooLongToSet);
+of_library!(
+    CodeError,
+    DecomposedError,
+    denavit::excite::Error,
+    ScenarioError,
+    SourceError,
+    TooLongToSet
+);
 
 impl From<RobotError> for Failure {
     fn from(error: RobotError) -> Self {

@@ -9,9 +9,9 @@ use super::effects_found::{
     FoundEffect, GivenEffect, driven_names, found_effects, given_effects, separate, tell_aliases,
 };
 use super::elastic::SeriesSpring;
+use super::error::Error;
 use super::excitation::{Visible, visible};
 use super::experiment::ExperimentOptions;
-use super::fault::DiagnosisError;
 use super::floor::NoiseFloor;
 use super::gap::{Gap, share_closed};
 use super::leftover::{Leftover, leftovers};
@@ -21,7 +21,7 @@ use super::regime::{Where, where_left};
 use super::rounds::Found;
 use super::search::{Search, SearchOptions, Step};
 use super::signals::{Filters, Signals};
-use super::simulated::{MotionGap, MotionGaps, Moved, NotMoved};
+use super::simulated::{MotionGap, MotionGaps, Moved};
 use super::state::{Effects, Setting, State, Taken};
 use super::structure::{Structure, describe};
 use super::verdict::{Verdict, judge};
@@ -112,7 +112,7 @@ pub struct Diagnosis {
     /// Gaps of the logs that were held out.
     pub held_out: Gaps,
     /// Gaps of the models in motion, or why they are not moved; none if that was not asked for.
-    pub motion: Option<Result<MotionGaps, NotMoved>>,
+    pub motion: Option<Result<MotionGaps, Error>>,
     /// Torques of held-out logs over time.
     pub curves: Vec<Curve>,
     /// How the robot moved in these logs.
@@ -137,8 +137,8 @@ pub enum Progress {
 pub fn diagnose(
     request: Request<'_>,
     watch: &mut dyn FnMut(&Progress) -> bool,
-) -> Result<Diagnosis, DiagnosisError> {
-    DiagnosisError::check(&request)?;
+) -> Result<Diagnosis, Error> {
+    Error::check(&request)?;
     let nominal = Nominal::new(request.model, request.uncertainty)
         .with_springs(request.springs, request.uncertainty);
     let filters = request
@@ -261,9 +261,9 @@ impl Told<'_, '_> {
     }
 
     /// The gaps of the models before and after in motion.
-    fn motion_gaps(&self, moved: &Moved<'_>) -> Result<MotionGaps, NotMoved> {
+    fn motion_gaps(&self, moved: &Moved<'_>) -> Result<MotionGaps, Error> {
         let Self { setting, filters, before, after, .. } = self;
-        let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], NotMoved> {
+        let of = |logs: &[MeasuredLog]| -> Result<[MotionGap; 2], Error> {
             let [before, after] = [before, after].map(|State { taken, z, .. }| {
                 let at = NominalAt { nominal: setting.data.train.nominal, z };
                 moved.gap(logs, filters.motion_hz, at, setting.effects(taken))
@@ -278,16 +278,16 @@ impl Told<'_, '_> {
 const MOST_MOVES: usize = 2;
 
 /// Logs through filters.
-fn conditioned(logs: Vec<MeasuredLog>, filters: Filters) -> Result<Vec<Signals>, DiagnosisError> {
+fn conditioned(logs: Vec<MeasuredLog>, filters: Filters) -> Result<Vec<Signals>, Error> {
     let of = |log: MeasuredLog| {
         let file = log.file.clone();
-        Signals::new(log, filters).map_err(|error| DiagnosisError::Condition { file, error })
+        Signals::new(log, filters).map_err(|error| Error::condition(file, error))
     };
     logs.into_iter().map(of).collect()
 }
 
 /// Filters that leave bands above the motion, which tell noise.
-fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, DiagnosisError> {
+fn filters_of(logs: &[MeasuredLog]) -> Result<Filters, Error> {
     let [least_hz, most_hz] = policy::CUTOFF_HZ;
     let step_s = logs.iter().map(|log| log.step_s).fold(f64::MIN_POSITIVE, f64::max);
     let widest_hz = most_hz.min(policy::CUTOFF_OF_RATE / step_s);

@@ -3,7 +3,8 @@
 
 use super::alias::{ExactAliases, Named};
 use super::candidate::Candidate;
-use super::experiment::{Ambiguity, Experiment, ExperimentOptions, NoExperiment};
+use super::error::Error;
+use super::experiment::{Ambiguity, Experiment, ExperimentOptions};
 use super::gap::Gap;
 use super::given::is_driven;
 use super::hypothesis::Hypothesis;
@@ -67,7 +68,7 @@ pub struct FoundEffect {
     pub exact: Vec<String>,
     /// A motion that would tell it from these, or why there is none; none if it was not asked for,
     /// or if nothing is to be told apart.
-    pub experiment: Option<Result<Experiment, NoExperiment>>,
+    pub experiment: Option<Result<Experiment, Error>>,
     /// What it adds over what it depends on; none where it adds nothing to held-out logs.
     pub curve: Option<LawCurve>,
 }

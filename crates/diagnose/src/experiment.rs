@@ -9,6 +9,7 @@
 use super::blocks::{block_costs, paired};
 use super::candidate::Candidate;
 use super::data::{Data, ModelTorques};
+use super::error::Error;
 use super::floor::{NoiseFloor, rms};
 use super::followed::Follower;
 use super::nominal::Nominal;
@@ -19,7 +20,7 @@ use super::turning::turning;
 use crate::policy::experiment::{DISTINCT, ROWS_PER_SAMPLE};
 use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::functions::modelled;
-use denavit_excite::{Ends, ExciteError, ExciteOptions, Family, Feasible};
+use denavit_excite::{Ends, ExciteOptions, Family, Feasible};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_numerics::Random;
@@ -76,9 +77,9 @@ pub struct Experiment {
 
 /// Why there is no experiment.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NoExperiment {
+pub(crate) enum NoExperiment {
     /// The robot has no limits to stay within, or none that let it move.
-    Limits(ExciteError),
+    Limits(denavit_excite::Error),
     /// Even rest exceeds a limit.
     Rest,
     /// The motor of a joint was measured, and the model gives the spring behind it no stiffness, so
@@ -129,14 +130,15 @@ impl Ambiguity<'_> {
         &self,
         robot: &Robot,
         options: &ExperimentOptions,
-    ) -> Result<Experiment, NoExperiment> {
+    ) -> Result<Experiment, Error> {
         let nominal = self.nominal;
         let is_lost = |joint: &usize| {
             self.log.motor[*joint].is_some()
                 && nominal.spring_equation(JointIndex(*joint)).is_none()
         };
         if let Some(joint) = (0..nominal.model.joints.len()).find(is_lost) {
-            return Err(NoExperiment::NoStiffness(nominal.model.joints[joint].name.clone()));
+            let joint = nominal.model.joints[joint].name.clone();
+            return Err(NoExperiment::NoStiffness(joint).into());
         }
         let of_harmonics = |harmonics: usize| {
             let excite = ExciteOptions {

@@ -10,7 +10,7 @@ use crate::policy::simulated::LONGEST_S;
 use denavit_codegen::effect::{Effect, EffectSite, read_estimated_model, read_model};
 use denavit_codegen::model::{LinkId, ModelError, Robot};
 use denavit_codegen::number::parse_decimal;
-use denavit_identify::forward::{Forward, ForwardError, MotionLog, Windows, in_windows};
+use denavit_identify::forward::{Forward, MotionLog, Windows, in_windows};
 use denavit_identify::{
     EffectValues, NewEffect, NewPlace, NewValue, undo_logged_torques, undo_readings, updated_text,
     with_effects,
@@ -48,7 +48,7 @@ pub struct MotionGaps {
 
 /// Why a model is not moved.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NotMoved {
+pub(crate) enum NotMoved {
     /// Its file has no place for what was estimated; holds its name.
     NoPlace(String),
     /// Its file with what was found is not that of a model.
@@ -60,7 +60,7 @@ pub enum NotMoved {
     /// A log cannot be filtered; holds its name.
     Condition(String, ConditionError),
     /// A log cannot be simulated again; holds its name.
-    Forward(String, ForwardError),
+    Forward(String, denavit_identify::Error),
     /// The motor of a joint is in the logs, and the model gives the spring behind it no stiffness:
     /// holds the joint.
     NoStiffness(String),
@@ -86,8 +86,6 @@ impl fmt::Display for NotMoved {
         }
     }
 }
-
-impl std::error::Error for NotMoved {}
 
 /// A model as a file, with the logs that it is moved along.
 pub struct Moved<'a> {

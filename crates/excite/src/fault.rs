@@ -1,4 +1,4 @@
-//! Why no excitation is looked for: everything that is wrong with model and options, at once.
+//! What may be wrong with a model and with options, so that no excitation is looked for.
 
 use super::options::DURATIONS_S;
 use denavit_codegen::model::BakeError;
@@ -42,7 +42,7 @@ impl LimitKind {
 
 /// Something that is wrong.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ExciteFault {
+pub(crate) enum ExciteFault {
     /// The model has no regressor.
     Regression(RegressionError),
     /// Values are missing that torques or points need.
@@ -147,7 +147,7 @@ impl fmt::Display for ExciteFault {
 
 impl ExciteFault {
     /// What to do about it.
-    pub fn hint(&self) -> Option<String> {
+    pub(crate) fn hint(&self) -> Option<String> {
         Some(match self {
             Self::MissingLimit { joint, limit } => format!(
                 "add `\"limits\": {{\"{}\": {}}}` to the link `{joint}` of the model, or hold it: \
@@ -183,33 +183,3 @@ impl ExciteFault {
         })
     }
 }
-
-/// Everything that is wrong with an excitation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExciteError {
-    /// The model.
-    pub model: String,
-    /// The faults, at least one.
-    pub faults: Vec<ExciteFault>,
-}
-
-impl fmt::Display for ExciteError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, fault) in self.faults.iter().enumerate() {
-            if index > 0 {
-                writeln!(f)?;
-            }
-            match fault {
-                // these name the model themselves
-                ExciteFault::Regression(_) | ExciteFault::Bake(_) => write!(f, "{fault}")?,
-                _ => write!(f, "{}: {fault}", self.model)?,
-            }
-            if let Some(hint) = fault.hint() {
-                write!(f, "\n  hint: {hint}")?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for ExciteError {}

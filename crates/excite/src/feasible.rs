@@ -1,7 +1,7 @@
 //! Trajectories within the limits of a robot, for who wants something else of them than a small
 //! condition number.
 
-use super::fault::ExciteError;
+use super::error::Error;
 use super::model::Evaluators;
 use super::{
     Check, ExciteOptions, ExcitedModel, SAFE, Search, Space, Stack, prepared, references,
@@ -25,7 +25,7 @@ impl Feasible {
     ///
     /// # Errors
     /// As for [`excite`](super::excite): limits that are missing, options that contradict.
-    pub fn new(robot: &Robot, options: &ExciteOptions) -> Result<Self, ExciteError> {
+    pub fn new(robot: &Robot, options: &ExciteOptions) -> Result<Self, Error> {
         let (model, space, stack, evaluators) = prepared(robot, options)?;
         Ok(Self { options: options.clone(), model, space, stack, evaluators })
     }

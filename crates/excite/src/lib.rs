@@ -6,6 +6,7 @@
 //! - [`Feasible`]: trajectories within the limits, for who judges them otherwise
 //! - [`Family`], [`Ends`]: samples, Fourier series, polynomials, and what is asked of their ends
 //! - [`Objective`], [`Check`]: what is made small, and what a trajectory is judged by
+//! - [`Error`]: all that is wrong with model and options
 //!
 //! Several starts are made from a seed, each on its own, in as many threads as there are; the
 //! result does not depend on their number. A start is solved twice, the second time with sharper
@@ -13,6 +14,7 @@
 //! motion is made smaller about the middle posture until it holds.
 
 mod check;
+mod error;
 mod fault;
 mod feasible;
 mod model;
@@ -26,7 +28,8 @@ mod stack;
 
 use crate::policy::excite::{FIRST_SHARE, RESERVE, SAFE, SHARPNESS};
 pub use check::{Check, Extremes, JointUse};
-pub use fault::{ExciteError, ExciteFault, LimitKind};
+pub use error::{Error, ErrorKind};
+pub use fault::LimitKind;
 pub use feasible::Feasible;
 pub use model::{Columns, ExcitedModel, JointLimits};
 pub use objective::{Excitation, Objective};
@@ -40,6 +43,7 @@ use denavit_codegen::model::Robot;
 use denavit_numerics::Random;
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::scenario::{TRAJECTORY_FORMAT, Trajectory};
+use fault::ExciteFault;
 use model::Evaluators;
 use problem::Problem;
 use serde_json::{Map, Value, json};
@@ -137,11 +141,11 @@ pub struct Progress {
 fn prepared(
     robot: &Robot,
     options: &ExciteOptions,
-) -> Result<(ExcitedModel, Space, Stack, Evaluators), ExciteError> {
+) -> Result<(ExcitedModel, Space, Stack, Evaluators), Error> {
     let mut faults = Vec::new();
     let space = options.space(&mut faults);
     let model = options.model(robot, &mut faults);
-    ExciteOptions::error(robot, faults)?;
+    Error::of(&robot.name, faults)?;
     let (Some(space), Some(model)) = (space, model) else {
         unreachable!("what is missing has been reported")
     };
@@ -150,11 +154,11 @@ fn prepared(
 }
 
 /// The columns that motions of a robot excite, if there are any.
-fn stacked(robot: &Robot, model: &ExcitedModel) -> Result<(Stack, Evaluators), ExciteError> {
+fn stacked(robot: &Robot, model: &ExcitedModel) -> Result<(Stack, Evaluators), Error> {
     let mut evaluators = model.evaluators();
     let stack = Stack::new(model, &mut evaluators);
     if stack.names.is_empty() {
-        ExciteOptions::error(robot, vec![ExciteFault::NothingExcited])?;
+        Error::of(&robot.name, vec![ExciteFault::NothingExcited])?;
     }
     Ok((stack, evaluators))
 }
@@ -166,7 +170,7 @@ pub fn excite(
     robot: &Robot,
     options: &ExciteOptions,
     tell: &(dyn Fn(&Progress) -> bool + Sync),
-) -> Result<Excited, ExciteError> {
+) -> Result<Excited, Error> {
     let (model, space, stack, _) = prepared(robot, options)?;
     let search = Search { options, model: &model, space: &space, stack: &stack };
     let starts = search.run(tell);
@@ -184,7 +188,7 @@ pub fn check_trajectory(
     robot: &Robot,
     options: &ExciteOptions,
     trajectory: &Trajectory,
-) -> Result<(Check, Stack), ExciteError> {
+) -> Result<(Check, Stack), Error> {
     let joints: Vec<&String> = robot.joints().map(|(link, _)| &robot.links[link].name).collect();
     let unknown = |(name, _): &(String, Reference)| {
         let nearest = denavit_codegen::expr::text::nearest(name, joints.iter().map(|j| j.as_str()));
@@ -192,7 +196,7 @@ pub fn check_trajectory(
         let is_unknown = !joints.contains(&name);
         is_unknown.then(|| ExciteFault::UnknownJoint { option, name: name.clone(), nearest })
     };
-    ExciteOptions::error(robot, trajectory.joints.iter().filter_map(unknown).collect())?;
+    Error::of(&robot.name, trajectory.joints.iter().filter_map(unknown).collect())?;
     let mut options = options.clone();
     options.duration_s = trajectory.duration_s;
     for &joint in &joints {
@@ -203,7 +207,7 @@ pub fn check_trajectory(
     }
     let mut faults = Vec::new();
     let model = options.model(robot, &mut faults);
-    ExciteOptions::error(robot, faults)?;
+    Error::of(&robot.name, faults)?;
     let Some(model) = model else { unreachable!("what is missing has been reported") };
     let (stack, mut evaluators) = stacked(robot, &model)?;
     let reference = |joint: &JointLimits| match (trajectory.find(&joint.name), joint.held) {

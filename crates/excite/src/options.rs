@@ -1,6 +1,6 @@
 //! What an excitation is asked for, compared with what the model can do.
 
-use super::fault::{ExciteError, ExciteFault, LimitKind};
+use super::fault::{ExciteFault, LimitKind};
 use super::model::{Columns, ExcitedModel, JointLimits};
 use super::objective::Objective;
 use super::space::{Ends, Family, Space};
@@ -254,13 +254,5 @@ impl ExciteOptions {
             faults.push(ExciteFault::NoRoom { joint: name.clone(), limit });
         }
         limits
-    }
-
-    /// The error that faults make, if there are any.
-    pub(super) fn error(robot: &Robot, faults: Vec<ExciteFault>) -> Result<(), ExciteError> {
-        match faults.is_empty() {
-            true => Ok(()),
-            false => Err(ExciteError { model: robot.name.clone(), faults }),
-        }
     }
 }

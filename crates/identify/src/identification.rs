@@ -1,12 +1,12 @@
 //! All that identification says: data alone, for tables, files and reports to show.
 
 use super::doubt::{GivenValues, MisreadColumns, misread_apart, misread_columns};
+use super::error::Error;
 use super::estimate::{
-    Consistent, ContradictingLog, Convergence, Estimate, EstimateError, IdentifiedParameter,
-    Judgement, Options, ShownLogs, SlowRows, Standing, Status, Unexplained, Validation,
-    biased_frictions, consistent, contradicting_held_out, contradicting_logs, convergence,
-    estimate, exceeding_joints, filter_errors, long_enough, noise_in_torques, parameters,
-    unexplained_joints, validate,
+    Consistent, ContradictingLog, Convergence, Estimate, IdentifiedParameter, Judgement, Options,
+    ShownLogs, SlowRows, Standing, Status, Unexplained, Validation, biased_frictions, consistent,
+    contradicting_held_out, contradicting_logs, convergence, estimate, exceeding_joints,
+    filter_errors, long_enough, noise_in_torques, parameters, unexplained_joints, validate,
 };
 use super::lacking::{lacking, other_robot, said};
 use super::no_bodies::no_bodies;
@@ -266,12 +266,12 @@ pub struct Estimated {
 }
 
 /// Estimates, judges, and finds the nearest bodies that exist.
-pub fn identify(request: Request<'_>) -> Result<Identification, EstimateError> {
+pub fn identify(request: Request<'_>) -> Result<Identification, Error> {
     Ok(estimated(request)?.judged(request))
 }
 
 /// Estimates alone: what filters are chosen by.
-pub fn estimated(request: Request<'_>) -> Result<Estimated, EstimateError> {
+pub fn estimated(request: Request<'_>) -> Result<Estimated, Error> {
     let Request { model, train, instruments, options, .. } = request;
     let start = model.model_axes().unwrap_or_else(|| vec![0.0; model.rank()]);
     let found = estimate(model, train, instruments, options, &start)?;

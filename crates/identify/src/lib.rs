@@ -11,9 +11,11 @@
 //! - [`updated_model`], [`model_values`], [`updated_text`]: back into the model file
 //! - [`statics`], [`read_statics`]: what weighings and held postures say
 //! - [`knowledge`]: equations of parameters from all sources, joined, and what follows from them
+//! - [`Error`]: why there is no answer, of all of these
 
 mod contact_forces;
 pub mod doubt;
+mod error;
 pub mod estimate;
 pub mod forward;
 mod identification;
@@ -34,6 +36,7 @@ pub mod two_stage;
 mod updated_model;
 
 pub use contact_forces::{Ground, add_contact_forces, add_wrenches};
+pub use error::{Error, ErrorKind};
 pub use identification::{Estimated, Identification, LeftOutRows, Request, estimated, identify};
 pub use idle::leave_out_idle_motors;
 pub use known_effects::{take_out, undo_logged_torques, undo_readings};
@@ -43,4 +46,4 @@ pub use model_text::{
 pub use model_values::model_values;
 pub use noisy_logs::{Added, NoisyLog};
 pub use statics_file::{STATICS_FORMAT, read_statics, statics_schema};
-pub use updated_model::{UpdateError, UpdatedModel, updated_model};
+pub use updated_model::{UpdatedModel, updated_model};

@@ -1,7 +1,8 @@
 //! What a long log says, whose head was identified as any log is.
 
+use super::error::Error;
 use super::estimate::long::LongRows;
-use super::estimate::{EstimateError, consistent, convergence, parameters, validate};
+use super::estimate::{consistent, convergence, parameters, validate};
 use super::identification::{Identification, Request, left_out_rows, shares};
 use denavit_plants::regression::StandardParameter;
 
@@ -11,7 +12,7 @@ impl Identification {
     ///
     /// # Errors
     /// There are fewer rows than parameters, or none.
-    pub fn of_long(self, request: Request<'_>, rows: &LongRows) -> Result<Self, EstimateError> {
+    pub fn of_long(self, request: Request<'_>, rows: &LongRows) -> Result<Self, Error> {
         let Request { model, validate: held_out, options, .. } = request;
         let (head, periods) = (self.train, self.periods);
         let longer = rows.samples() as f64 / head.samples.max(1) as f64;

@@ -6,11 +6,11 @@
 //! across the axes. Where links are held one after the other, differences of postures give them
 //! link by link; least squares in all rows does the subtraction.
 
+use super::error::{Error, MisreadPostures, StaticFault};
 use super::knowledge::Knowledge;
 use crate::policy::statics::{BETTER, FAR, NEAR, OF_ANGLES, OF_TORQUES, OTHER_UNIT};
 use denavit_codegen::expr::text::nearest;
 use denavit_plants::regression::{RegressionJoint, RegressionModel, RegressionRows};
-use std::fmt;
 
 /// Something that was measured at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,112 +44,14 @@ pub struct HoldingTorque {
     pub std: f64,
 }
 
-/// Why a measurement is no knowledge; each holds the measurement's number, from 0.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StaticFault {
-    /// The model has no such link or joint; holds it and the one that is meant, perhaps.
-    UnknownName(usize, String, Option<String>),
-    /// A link has no mass among the unknowns: it is known, or written in symbols of its own.
-    NoMass(usize, String),
-    /// A link stands on the scale twice.
-    Repeated(usize, String),
-    /// Nothing is on the scale.
-    NothingWeighed(usize),
-    /// Links weigh so many times what the model says, as if in another unit: mass \[kg\], that of
-    /// the model \[kg\].
-    Unit(usize, f64, f64),
-    /// Torques or positions of all postures seem to be in another unit, or of the other sign.
-    Postures(MisreadPostures),
-    /// A posture has not one position for each joint: expected, found.
-    WrongPosture(usize, usize, usize),
-    /// A standard deviation is not positive, or a number not finite.
-    BadNumber(usize),
-}
-
-impl fmt::Display for StaticFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::UnknownName(at, name, near) => {
-                write!(f, "measurement {}: nothing is called `{name}`", at + 1)?;
-                match near {
-                    Some(near) => write!(f, "\n  hint: `{near}` is meant, perhaps"),
-                    None => Ok(()),
-                }
-            }
-            Self::NoMass(at, link) => write!(
-                f,
-                "measurement {}: the mass of `{link}` is not among the unknown parameters",
-                at + 1
-            ),
-            Self::Repeated(at, link) => {
-                write!(f, "measurement {}: `{link}` is named twice", at + 1)
-            }
-            Self::NothingWeighed(at) => write!(
-                f,
-                "measurement {}: `links` is empty\n  hint: name the links on the scale",
-                at + 1
-            ),
-            Self::Unit(at, mass, expected) => write!(
-                f,
-                "measurement {}: {mass} kg, and the model says {expected} kg: is it in {}?\n  \
-                 hint: `logs.accepts_suspicious` takes it as it is",
-                at + 1,
-                if mass > expected { "grams" } else { "tonnes" }
-            ),
-            Self::Postures(one) => write!(f, "{one}"),
-            Self::WrongPosture(at, expected, found) => write!(
-                f,
-                "measurement {}: a posture has {expected} positions, {found} are given",
-                at + 1
-            ),
-            Self::BadNumber(at) => write!(
-                f,
-                "measurement {}: numbers must be finite, and standard deviations positive",
-                at + 1
-            ),
-        }
-    }
-}
-
-impl std::error::Error for StaticFault {}
-
-/// Torques or positions of all postures that seem to be in another unit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MisreadPostures {
-    /// Whether it is the torques, or the positions of joints that turn.
-    pub of_torques: bool,
-    /// What they are to be multiplied with.
-    pub factor: f64,
-    /// The share of the torques (roots of mean squares) that the model's own values leave, as they
-    /// are and with the factor.
-    pub left: [f64; 2],
-}
-
-impl fmt::Display for MisreadPostures {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { of_torques, factor, left: [before, after] } = self;
-        let what = if *of_torques { "torques" } else { "positions" };
-        let how = match *factor == -1.0 {
-            true => "to have the wrong sign".to_owned(),
-            false => "to be in another unit".to_owned(),
-        };
-        write!(
-            f,
-            "{what} of the postures seem {how}: the model's own values leave {:.0} % of the \
-             torques, and {:.0} % with {factor} times the {what}\n  hint: \
-             `logs.accepts_suspicious` \
-             takes them as they are",
-            100.0 * before,
-            100.0 * after
-        )
-    }
-}
-
-/// Weighings that seem to be in another unit, by the masses of the model.
-pub fn suspicious_units(
+/// Whether weighings and postures seem to be in the units that the model has.
+///
+/// # Errors
+/// Those that do not: what is known of them may still be in order.
+pub fn check_units(
     model: &RegressionModel,
     measurements: &[StaticMeasurement],
-) -> Vec<StaticFault> {
+) -> Result<(), Error> {
     let mass = |link: &String| {
         let name = format!("m_{link}");
         model.standard.iter().find(|one| one.name == name)?.value
@@ -163,7 +65,9 @@ pub fn suspicious_units(
         is_other.then_some(StaticFault::Unit(at, *mass_kg, expected))
     };
     let weighed = measurements.iter().enumerate().filter_map(suspicious);
-    weighed.chain(misread_postures(model, measurements).map(StaticFault::Postures)).collect()
+    let faults: Vec<StaticFault> =
+        weighed.chain(misread_postures(model, measurements).map(StaticFault::Postures)).collect();
+    if faults.is_empty() { Ok(()) } else { Err(faults.into()) }
 }
 
 /// The unit of torques or positions with which the model's own values make far more of what holds
@@ -220,7 +124,7 @@ fn misread_postures(
 pub fn static_knowledge(
     model: &RegressionModel,
     measurements: &[StaticMeasurement],
-) -> Result<Knowledge, Vec<StaticFault>> {
+) -> Result<Knowledge, Error> {
     let mut knowledge = Knowledge::none(model.standard.len());
     let mut faults = Vec::new();
     let mut evaluator = model.evaluator();
@@ -258,7 +162,7 @@ pub fn static_knowledge(
             }
         }
     }
-    if faults.is_empty() { Ok(knowledge) } else { Err(faults) }
+    if faults.is_empty() { Ok(knowledge) } else { Err(faults.into()) }
 }
 
 /// The masses of links, with factor 1.

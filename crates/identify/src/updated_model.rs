@@ -1,12 +1,12 @@
 //! The model with the identified values, as text that every command reads and as a robot.
 
+use super::error::{Error, UpdateError};
 use super::estimate::{Consistent, IdentifiedParameter};
 use super::model_text::{NewValue, updated};
 use super::model_values::{model_values, with_effect};
-use denavit_codegen::model::{self, About, BodyEntry, ModelError, Robot, Role};
+use denavit_codegen::model::{self, About, BodyEntry, Robot, Role};
 use denavit_plants::regression::{ModelParameter, RegressionModel};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// A model with new values.
 #[derive(Clone, Debug)]
@@ -20,28 +20,6 @@ pub struct UpdatedModel {
     pub errors: BTreeMap<String, f64>,
 }
 
-/// Why identified values make no model.
-#[derive(Clone, Debug, PartialEq)]
-pub enum UpdateError {
-    /// A value has no place in the file; holds the model's name.
-    NoPlace(String),
-    /// The file with the values is not that of a model.
-    Unsound(ModelError),
-}
-
-impl fmt::Display for UpdateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoPlace(model) => {
-                write!(f, "{model}: the identified values have no place in its file")
-            }
-            Self::Unsound(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl std::error::Error for UpdateError {}
-
 /// Writes the bodies nearest to an estimate into a model's file, `source`, and reads it again.
 /// Parameters that stand alone get their standard error, if `listed` has it and the file means the
 /// same by them: a moment of inertia about the centre of mass is not the one about the origin of
@@ -52,7 +30,7 @@ pub fn updated_model(
     found: &Consistent,
     listed: &[IdentifiedParameter],
     source: &str,
-) -> Result<UpdatedModel, UpdateError> {
+) -> Result<UpdatedModel, Error> {
     let is_about_com = |link: &str| {
         let body = robot.find_link(link).and_then(|link| robot.links[link].body);
         body.is_some_and(|body| body.about == About::Com)
@@ -102,7 +80,7 @@ pub fn updated_model(
     // What moves nothing stays as it is written, unless no body has it beside the rest.
     match read(text(&|place| effects[place])?) {
         Ok(updated) => Ok(updated),
-        Err(_) => read(text(&|_| true)?).map_err(UpdateError::Unsound),
+        Err(_) => read(text(&|_| true)?).map_err(Error::from),
     }
 }
 

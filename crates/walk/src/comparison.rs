@@ -5,7 +5,8 @@
 //! the unit circle. The exact zero moment point may be on the edge, where a foot begins to turn:
 //! forces of the ground have no other place. The outcome is that of the run.
 
-use crate::balance::{BalanceError, Course, Criterion, Energy, Over, course_of_scenario};
+use crate::balance::{Course, Criterion, Energy, Over, course_of_scenario};
+use crate::error::Error;
 use crate::poincare::{Fate, Multiplier, PoincareOptions, analyse};
 use denavit_simulate::Stop;
 use denavit_simulate::scenario::Scenario;
@@ -108,7 +109,7 @@ impl Compared {
 ///
 /// # Errors
 /// Robots that do not walk, runs that do not begin.
-pub fn compare(scenario: &mut Scenario, period_s: f64) -> Result<Compared, BalanceError> {
+pub fn compare(scenario: &mut Scenario, period_s: f64) -> Result<Compared, Error> {
     let course = course_of_scenario(scenario, period_s, true)?;
     let options = PoincareOptions { checks: false, ..PoincareOptions::default() };
     let cycle = analyse(scenario, &options);

@@ -2,6 +2,7 @@
 //!
 //! As many conditions as coordinates, solved by Newton's method.
 
+use crate::error::{Error, PostureError};
 use denavit_numerics::MinimumNorm;
 use denavit_plants::Plant;
 
@@ -46,38 +47,6 @@ impl Condition {
     }
 }
 
-/// Why there is no posture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PostureError {
-    /// There are more or fewer conditions than coordinates.
-    Count {
-        /// Number of conditions.
-        conditions: usize,
-        /// Number of coordinates.
-        coordinates: usize,
-    },
-    /// The conditions cannot be met, or not from this start: the largest error left [m, rad].
-    OutOfReach {
-        /// The largest error of a condition.
-        residual: f64,
-    },
-}
-
-impl std::fmt::Display for PostureError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Count { conditions, coordinates } => {
-                write!(f, "{conditions} conditions for {coordinates} coordinates")
-            }
-            Self::OutOfReach { residual } => {
-                write!(f, "no posture meets the conditions; the best found misses by {residual:e}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for PostureError {}
-
 /// Errors below this are none [m, rad].
 const EXACT: f64 = 1e-11;
 const ITERATIONS: usize = 60;
@@ -85,7 +54,15 @@ const ITERATIONS: usize = 60;
 const STRIDE: f64 = 0.2;
 
 /// Moves `q` to the posture near it that meets all conditions.
-pub fn solve(
+///
+/// # Errors
+/// Conditions that cannot be met, or that are not as many as there are coordinates.
+pub fn solve(plant: &mut dyn Plant, conditions: &[Condition], q: &mut [f64]) -> Result<(), Error> {
+    Ok(place(plant, conditions, q)?)
+}
+
+/// The same, with what a plan of a gait says of it in its own words.
+pub(crate) fn place(
     plant: &mut dyn Plant,
     conditions: &[Condition],
     q: &mut [f64],

@@ -13,11 +13,13 @@
 //! - [`robustness`]: basins of attraction, and the least push that fells
 //! - [`ScenarioHead`]: what the scenario file of a designed gait says besides it
 //! - [`read_scenario`]: scenarios whose gait is planned
+//! - [`Error`]: why there is no answer, of all of these
 
 pub mod balance;
 pub mod capturability;
 pub mod capture_step;
 pub mod comparison;
+mod error;
 mod fading;
 pub mod foot_placement;
 pub mod gait_file;
@@ -30,6 +32,7 @@ pub mod robustness;
 mod scenario;
 mod scenario_file;
 
+pub use error::{Error, ErrorKind, Violated};
 pub use leg_exchange::LegExchange;
 pub use scenario::read_scenario;
 pub use scenario_file::ScenarioHead;

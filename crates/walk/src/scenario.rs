@@ -1,9 +1,10 @@
 //! Scenarios with gaits: the key `gait` is planned here, then the simulation sees references.
 
 use crate::capture_step::read as read_capture_step;
+use crate::error::Error;
 use crate::foot_placement::{self, FootPlacement};
 use crate::gait_file::divergent_component;
-use crate::gait_plan::{DivergentComponentProblem, PlanError, SpaceWalk, plan_space_walk};
+use crate::gait_plan::{DivergentComponentProblem, SpaceWalk, plan_space_walk};
 use denavit_codegen::model::Node;
 use denavit_plants::Plant;
 use denavit_simulate::scenario::{
@@ -58,7 +59,7 @@ fn planned_walk(
     let (gait, walk) = match followed(plant, &problem) {
         Ok(planned) => planned,
         Err(error) => {
-            report.push(node.at(), Cause::Gait(error.to_string(), error.hint()));
+            report.push(node.at(), error.of_gait());
             return None;
         }
     };
@@ -71,7 +72,7 @@ fn planned_walk(
 fn followed(
     plant: &mut dyn Plant,
     problem: &DivergentComponentProblem,
-) -> Result<(PlannedGait, SpaceWalk), PlanError> {
+) -> Result<(PlannedGait, SpaceWalk), Error> {
     let (plan, walk) = plan_space_walk(plant, problem)?;
     let references = plan.references(plant.model())?;
     let mut torques = vec![None; references.len()];

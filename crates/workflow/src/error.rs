@@ -3,14 +3,7 @@
 use crate::files::reason;
 use crate::mistaken::Mistaken;
 use denavit_codegen::model::ModelError;
-use denavit_diagnose::DiagnosisError;
-use denavit_excite::ExciteError;
-use denavit_identify::UpdateError;
 use denavit_identify::doubt::MisreadColumns;
-use denavit_identify::estimate::EstimateError;
-use denavit_identify::forward::ForwardError;
-use denavit_identify::statics::StaticFault;
-use denavit_identify::two_stage::TwoStageError;
 use denavit_import::ImportError;
 use denavit_measure::condition::ConditionError;
 use denavit_measure::log::{LogFault, LogFaults as MeasuredFaults, MappingError};
@@ -114,7 +107,7 @@ pub(crate) enum Cause {
     /// A scenario, a controller or a file of statics is wrong.
     Scenario(ScenarioError),
     /// No trajectory excites a robot as it is asked for.
-    Excite(ExciteError),
+    Excite(denavit_excite::Error),
     /// A log of the project's own columns is wrong.
     Log(LogFaults),
     /// A model has no regression.
@@ -127,20 +120,16 @@ pub(crate) enum Cause {
     Condition(String, ConditionError),
     /// A model has no plant; holds its name.
     Plant(String, PlantError),
-    /// Nothing can be estimated; holds the model's name.
-    Estimate(String, EstimateError),
+    /// Nothing can be identified; holds the name of the model or of the log.
+    Identify(String, denavit_identify::Error),
     /// Columns seem to be other ones than they are taken for.
     Misread(Vec<MisreadColumns>),
     /// What was found makes no model.
-    Update(UpdateError),
-    /// A log cannot be simulated again; holds its name.
-    Forward(String, ForwardError),
+    Update(denavit_identify::Error),
     /// Two stages need one log.
     OneLog,
-    /// A log does not give springs and load; holds its name.
-    TwoStage(String, TwoStageError),
     /// Measurements at rest do not fit the model; holds their file.
-    Statics(String, Vec<StaticFault>),
+    Statics(String, denavit_identify::Error),
     /// Instrumental variables without instruments, and nothing to simulate them with.
     NoInstruments,
     /// Instruments that are a log for training itself, noise and all: its name.
@@ -154,7 +143,7 @@ pub(crate) enum Cause {
     /// Something good stands where something else should.
     Mistaken(Mistaken),
     /// Nothing is diagnosed.
-    Diagnosis(DiagnosisError),
+    Diagnosis(denavit_diagnose::Error),
     /// A log is not identified piece by piece; holds its name and why.
     Long(String, String),
     /// Stopped before there was anything.
@@ -319,13 +308,12 @@ impl fmt::Display for Cause {
             Self::Logs(all) => lines(f, all),
             Self::Condition(file, error) => write!(f, "{file}: {error}"),
             Self::Plant(model, error) => write!(f, "{model}: {error}"),
-            Self::Estimate(model, error) => write!(f, "{model}: {error}"),
+            Self::Identify(name, error) => write!(f, "{name}: {error}"),
             Self::Misread(all) => lines(f, all),
             Self::Update(error) => write!(f, "{error}"),
-            Self::Forward(file, error) => write!(f, "{file}: {error}"),
             Self::OneLog => write!(f, "`identify_two_stage` takes one log for training"),
-            Self::TwoStage(file, error) => write!(f, "{file}: {error}"),
-            Self::Statics(file, faults) => {
+            Self::Statics(file, error) => {
+                let faults = error.faults();
                 let all: Vec<String> =
                     faults.iter().map(|fault| format!("{file}: {fault}")).collect();
                 lines(f, &all)
@@ -375,10 +363,8 @@ impl std::error::Error for Error {
             Cause::Mapping(error) => Some(error),
             Cause::Condition(_, error) => Some(error),
             Cause::Plant(_, error) => Some(error),
-            Cause::Estimate(_, error) => Some(error),
+            Cause::Identify(_, error) | Cause::Statics(_, error) => Some(error),
             Cause::Update(error) => Some(error),
-            Cause::Forward(_, error) => Some(error),
-            Cause::TwoStage(_, error) => Some(error),
             Cause::Diagnosis(error) => Some(error),
             Cause::NoModel { .. }
             | Cause::NoShipped { .. }
@@ -387,7 +373,6 @@ impl std::error::Error for Error {
             | Cause::Logs(_)
             | Cause::Misread(_)
             | Cause::OneLog
-            | Cause::Statics(..)
             | Cause::NoInstruments
             | Cause::OwnInstruments(_)
             | Cause::NoPrior(_)

@@ -20,7 +20,7 @@ use denavit_codegen::model::Robot;
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_identify::estimate::{Errors, Method, Options, SlowRows};
-use denavit_identify::{Identification, UpdateError, UpdatedModel};
+use denavit_identify::{Identification, UpdatedModel};
 use denavit_measure::log::LogRemark;
 use denavit_plants::effect::{AddedLaw, ApartEffects};
 use denavit_plants::regression::{CoulombLaw, RegressionModel};
@@ -91,7 +91,7 @@ pub struct Identified {
     /// What was found of them.
     pub found: Identification,
     /// The model with what was found.
-    pub updated: Result<UpdatedModel, UpdateError>,
+    pub updated: Result<UpdatedModel, denavit_identify::Error>,
     /// What was noticed of logs, each with its file.
     pub remarks: Vec<(String, LogRemark)>,
     /// What became of the model's effects.
@@ -151,7 +151,7 @@ struct Head<'a> {
     read: Read,
     how: Options,
     found: Identification,
-    updated: Result<UpdatedModel, UpdateError>,
+    updated: Result<UpdatedModel, denavit_identify::Error>,
     /// Which logs for validation say the same as others.
     same: Vec<(String, LogRemark)>,
 }

@@ -4,8 +4,8 @@
 use denavit_codegen::effect;
 use denavit_codegen::regressor::functions::modelled;
 use denavit_diagnose::{
-    BeforeSprings, Candidate, Diagnosis, DiagnosisError, Moved, Request, SearchOptions,
-    Uncertainty, Verdict, before_springs, candidates, diagnose, spring_candidates,
+    BeforeSprings, Candidate, Diagnosis, Error, Moved, Request, SearchOptions, Uncertainty,
+    Verdict, before_springs, candidates, diagnose, spring_candidates,
 };
 use denavit_measure::Split;
 use denavit_measure::log::{JointSignals, MeasuredLog};
@@ -141,7 +141,7 @@ fn log(seed: u64, Hidden { drag, across, damping, zero }: Hidden) -> MeasuredLog
 /// Verdict, and names of what was found with the first value of each and its error.
 type Said = (Verdict, Vec<(String, [f64; 2])>);
 
-fn found(hidden: Hidden) -> Result<Said, DiagnosisError> {
+fn found(hidden: Hidden) -> Result<Said, Error> {
     let (diagnosis, candidates) = diagnosed(hidden)?;
     let named = diagnosis.effects.iter().map(|one| {
         let first = &one.parameters[0];
@@ -150,7 +150,7 @@ fn found(hidden: Hidden) -> Result<Said, DiagnosisError> {
     Ok((diagnosis.verdict, named.collect()))
 }
 
-fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), DiagnosisError> {
+fn diagnosed(hidden: Hidden) -> Result<(Diagnosis, Vec<Candidate>), Error> {
     let robot =
         denavit_codegen::model::read("elastic_pendulum", MODEL.as_bytes()).expect("a model");
     let model = RegressionModel::new(&robot, modelled(&robot), &[]).expect("parameters");

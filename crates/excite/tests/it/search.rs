@@ -4,7 +4,7 @@ use super::{arm, shipped_robot};
 use denavit_codegen::model::{self, Robot};
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_excite::{
-    Columns, Excitation, ExciteFault, ExciteOptions, Excited, Family, LimitKind, Objective,
+    Columns, Error, ErrorKind, Excitation, ExciteOptions, Excited, Family, LimitKind, Objective,
     check_trajectory, excite,
 };
 use denavit_plants::{LoadedPlant, Plant};
@@ -163,24 +163,27 @@ fn all_faults_are_found_at_once() {
         ..options()
     };
     let error = excite(&robot, &bad, &|_| true).expect_err("nothing is right");
-    let missing = |joint: &str, limit| ExciteFault::MissingLimit { joint: joint.to_owned(), limit };
+    let faults = error.faults();
+    let position = Some(LimitKind::Position);
     for fault in [
-        ExciteFault::Duration(0.0),
-        ExciteFault::UnknownJoint {
-            option: "`options.hold`",
-            name: "link3".to_owned(),
-            nearest: Some("link1".to_owned()),
-        },
-        missing("link1", LimitKind::Position),
-        missing("link2", LimitKind::Position),
-        ExciteFault::Weight { joint: "link1".to_owned(), weight: -1.0 },
+        (ErrorKind::Options, None, None),
+        (ErrorKind::UnknownJoint, Some("link3"), None),
+        (ErrorKind::Limits, Some("link1"), position),
+        (ErrorKind::Limits, Some("link2"), position),
+        (ErrorKind::Options, Some("link1"), None),
     ] {
-        assert!(error.faults.contains(&fault), "{fault:?} is not in {error:?}");
+        let is_it = |one: &Error| (one.kind(), one.joint(), one.limit()) == fault;
+        assert!(faults.iter().any(is_it), "{fault:?} is not in {error:?}");
     }
-    assert_eq!(error.faults.len(), 5, "{error:?}");
+    assert_eq!(faults.len(), 5, "{error:?}");
+    let said = error.to_string();
+    for part in ["a duration of 0 s", "`link1` is meant, perhaps", "the weight -1 of `link1`"] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
     let narrow = excite(&arm("[0.5, 0.5]", ""), &options(), &|_| true).expect_err("no room");
-    let limit = LimitKind::Position;
-    assert_eq!(narrow.faults, [ExciteFault::NoRoom { joint: "link2".to_owned(), limit }]);
+    assert_eq!(narrow.faults().len(), 1, "{narrow}");
+    assert_eq!((narrow.joint(), narrow.limit()), (Some("link2"), position));
+    assert!(narrow.to_string().contains("leaves it no room"), "{narrow}");
 }
 
 #[test]

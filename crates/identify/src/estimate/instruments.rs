@@ -6,9 +6,10 @@
 //! 2014). With [Z | W | y] = Q R the equation is the upper block of R, and no square is formed.
 
 use super::condensed::{Condensed, Rows};
-use super::least_squares::{Estimate, EstimateError};
+use super::least_squares::Estimate;
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
+use crate::error::EstimateError;
 use crate::policy::instruments::{MOVES, OTHER};
 use denavit_measure::LogIndex;
 use denavit_measure::condition::Conditioned;

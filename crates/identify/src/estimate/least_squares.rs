@@ -13,12 +13,12 @@ use super::solve::{PriorRow, Solution, solve};
 use super::total;
 use super::triangle::Triangle;
 use super::weights::{ByLog, MAX_REWEIGHTING, SETTLED, Settled, moved};
+use crate::error::{Error, EstimateError};
 use crate::policy::least_squares::{FEWEST_DEGREES, MOVES_LITTLE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};
 use denavit_plants::regression::RegressionModel;
 use nalgebra::{DMatrix, DVector};
-use std::fmt;
 
 /// Samples that are independent of each other which a parameter needs, at least: with fewer,
 /// residuals are far smaller than errors and standard errors say nothing.
@@ -66,64 +66,6 @@ pub struct Options {
     pub slow: SlowRows,
 }
 
-/// Why there is no estimate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EstimateError {
-    /// No torque was measured.
-    NoTorque,
-    /// All rows are left out.
-    NothingLeft,
-    /// Fewer rows than parameters: rows, parameters.
-    TooFewRows(usize, usize),
-    /// Logs too short for their filter: independent samples of all torques, parameters.
-    TooShort(usize, usize),
-    /// Instruments that have other samples than the logs.
-    Instruments,
-    /// Instruments of another motion: their number, from 0, and the share of a joint's variance by
-    /// which its positions differ, in percent.
-    OtherMotion(LogIndex, usize),
-    /// Weights that do not settle.
-    NotSettled,
-}
-
-impl fmt::Display for EstimateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoTorque => write!(f, "no torque was measured"),
-            Self::NothingLeft => write!(
-                f,
-                "no joint is ever as fast as `options.slow` says: nothing is left of the logs\n  \
-                 hint: a lower rate, or `options.slow=biasing`, which is the default"
-            ),
-            Self::TooFewRows(rows, parameters) => {
-                write!(f, "{rows} rows are too few for {parameters} parameters")
-            }
-            Self::TooShort(independent, parameters) => write!(
-                f,
-                "the logs are too short: all torques have about {independent} samples that are \
-                 independent of each other after the filter, and {parameters} parameters need \
-                 {}\n  hint: more of the motion, or a higher cutoff (`conditions.filter`) if the \
-                 log has little noise",
-                ROWS_OF_ONE * parameters
-            ),
-            Self::Instruments => write!(
-                f,
-                "instruments must be as many logs as there are for training, each with as many \
-                 samples"
-            ),
-            Self::OtherMotion(number, percent) => write!(
-                f,
-                "instruments must be of the motion of their log, without its noise: in log {} \
-                 positions of a joint differ by {percent} % of its variance",
-                number.0 + 1
-            ),
-            Self::NotSettled => write!(f, "the weights do not settle"),
-        }
-    }
-}
-
-impl std::error::Error for EstimateError {}
-
 /// Base parameters on the joint axes, with their errors.
 #[derive(Clone, Debug)]
 pub struct Estimate {
@@ -162,7 +104,7 @@ pub fn estimate(
     instruments: &[Conditioned],
     options: &Options,
     start: &[f64],
-) -> Result<Estimate, EstimateError> {
+) -> Result<Estimate, Error> {
     let fit = Fit { options, start };
     let (mut first, left_out) = fit.counted(model, logs)?;
     first.left_out = left_out.clone();
@@ -232,11 +174,12 @@ fn independent(logs: &[Conditioned]) -> f64 {
 }
 
 /// Whether logs have enough samples for an estimate.
-pub fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
+pub(crate) fn long_enough(logs: &[Conditioned], found: &Estimate) -> Result<(), EstimateError> {
     let independent = independent(logs) as usize;
     let parameters = found.solution.excited();
-    match independent < ROWS_OF_ONE * parameters {
-        true => Err(EstimateError::TooShort(independent, parameters)),
+    let needed = ROWS_OF_ONE * parameters;
+    match independent < needed {
+        true => Err(EstimateError::TooShort(independent, parameters, needed)),
         false => Ok(()),
     }
 }

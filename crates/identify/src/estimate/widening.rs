@@ -6,8 +6,9 @@
 //! (after Lepski 1990).
 
 use super::errors::Errors;
-use super::least_squares::{Estimate, EstimateError, Fit};
+use super::least_squares::{Estimate, Fit};
 use super::left_out::{LeftOut, SlowRows, biased_frictions};
+use crate::error::EstimateError;
 use crate::policy::widening::{LEAST, SURE};
 use denavit_measure::condition::Conditioned;
 use denavit_measure::{JointIndex, LogIndex};

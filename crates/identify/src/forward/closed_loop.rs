@@ -1,9 +1,10 @@
 //! The whole log again, under the controller that the robot had.
 
 use super::{
-    Compared, Controller, Forward, ForwardError, ForwardJoint, ForwardKind, LONGEST_S, MotionLog,
-    column, names, rms, simulation,
+    Compared, Controller, Forward, ForwardJoint, ForwardKind, LONGEST_S, MotionLog, column, names,
+    rms, simulation,
 };
+use crate::error::{Error, ForwardError};
 use denavit_measure::SampleIndex;
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::Plant;
@@ -18,13 +19,14 @@ pub fn closed_loop(
     believed: Option<&mut (dyn Plant + 'static)>,
     controller: &Controller,
     log: &MotionLog,
-) -> Result<Forward, ForwardError> {
+) -> Result<Forward, Error> {
     let settling = log.filter.as_ref().map_or(0, |filter| filter.settling());
     let most = (LONGEST_S / log.step_s) as usize;
     let from = log.range.start;
     let rows = (log.range.end - from).min(most.max(1));
     if rows <= 2 * settling + 1 {
-        return Err(ForwardError::TooShort((2 * settling + 1) as f64 * log.step_s));
+        let needed_s = (2 * settling + 1) as f64 * log.step_s;
+        return Err(ForwardError::TooShort(needed_s).into());
     }
     let run = run(plant, believed, controller, log, from, rows)?;
     let kept = settling..rows - settling;
@@ -68,7 +70,7 @@ pub fn simulated_log(
     believed: Option<&mut (dyn Plant + 'static)>,
     controller: &Controller,
     log: &MotionLog,
-) -> Result<MeasuredLog, ForwardError> {
+) -> Result<MeasuredLog, Error> {
     let rows = log.samples();
     let run = run(plant, believed, controller, log, 0, rows)?;
     let signals = |name: &str| JointSignals {

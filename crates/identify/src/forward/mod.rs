@@ -13,17 +13,15 @@ mod windows;
 pub use closed_loop::{closed_loop, simulated_log};
 pub use windows::{Windows, in_windows};
 
+use crate::error::ForwardError;
 use denavit_measure::SampleIndex;
 use denavit_measure::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
-use denavit_numerics::short;
 use denavit_plants::PlantModel;
 use denavit_simulate::scenario::Controller;
 use denavit_simulate::{
-    DriveModelling, Log, STICTION_RATE, Simulation, StartError, State, Stop, integrate::Accuracy,
-    integrate::Method,
+    DriveModelling, Log, STICTION_RATE, Simulation, State, integrate::Accuracy, integrate::Method,
 };
-use std::fmt;
 use std::ops::Range;
 
 /// The longest motion that is compared \[s\]: what a run costs grows with it.
@@ -298,63 +296,6 @@ impl Forward {
         rms(self.joints.iter().map(|joint| joint.position.relative))
     }
 }
-
-/// Why a log is not simulated again.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ForwardError {
-    /// The robot does not stand on a fixed base.
-    FloatingBase,
-    /// The log cannot be filtered; holds its name.
-    Condition(String, ConditionError),
-    /// A joint that is controlled has no reference, neither of the controller's nor of the log's.
-    NoReference(String),
-    /// The reference of a joint has empty cells, or times that do not increase.
-    BadReference(String),
-    /// The torque of a joint was not measured.
-    NoTorque(String),
-    /// The log is shorter than a window; holds the length of a window \[s\].
-    TooShort(f64),
-    /// The run does not begin.
-    Start(StartError),
-    /// The run broke off.
-    Stopped {
-        /// When \[s\].
-        t_s: f64,
-        /// Why.
-        stop: Stop,
-    },
-}
-
-impl fmt::Display for ForwardError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::FloatingBase => {
-                write!(f, "only robots on a fixed base are simulated against their logs")
-            }
-            Self::Condition(file, error) => write!(f, "{file}: {error}"),
-            Self::NoReference(joint) => write!(
-                f,
-                "`{joint}` is controlled and follows nothing\n  hint: give it a `reference`, or \
-                 the log a column `ref_{joint}`"
-            ),
-            Self::BadReference(joint) => write!(f, "`ref_{joint}` is no motion to follow"),
-            Self::NoTorque(joint) => write!(
-                f,
-                "the torque of `{joint}` was not measured\n  hint: `options.controller` simulates \
-                 without"
-            ),
-            Self::TooShort(length_s) => {
-                write!(f, "the log is shorter than a window of {} s", short(*length_s))
-            }
-            Self::Start(error) => write!(f, "{error}"),
-            Self::Stopped { t_s, stop } => {
-                write!(f, "the simulation broke off at {t_s:.3} s: {stop}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ForwardError {}
 
 /// Names of the joints of a plant on a fixed base.
 fn names(model: &PlantModel) -> Result<Vec<&str>, ForwardError> {

@@ -4,9 +4,10 @@
 //! and the torques are those of the motors: springs pass on what the model makes of them.
 
 use super::{
-    ACCURACY, Compared, Forward, ForwardError, ForwardJoint, ForwardKind, MotionLog, column, names,
-    rms, simulation,
+    ACCURACY, Compared, Forward, ForwardJoint, ForwardKind, MotionLog, column, names, rms,
+    simulation,
 };
+use crate::error::{Error, ForwardError};
 use denavit_measure::SampleIndex;
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
@@ -34,7 +35,7 @@ pub fn in_windows(
     plant: &mut dyn Plant,
     log: &MotionLog,
     windows: Windows,
-) -> Result<Forward, ForwardError> {
+) -> Result<Forward, Error> {
     let model = plant.model().clone();
     names(&model)?;
     let torques = given(plant, log)?;
@@ -44,7 +45,7 @@ pub fn in_windows(
     let whole = log.range.len().saturating_sub(1) / steps;
     let count = whole.min(windows.most);
     if count == 0 {
-        return Err(ForwardError::TooShort(length_s));
+        return Err(ForwardError::TooShort(length_s).into());
     }
     let spare = log.range.len() - 1 - count * steps;
     let begin = |k: usize| log.range.start + k * steps + spare * k / (count - 1).max(1);
@@ -61,7 +62,7 @@ pub fn in_windows(
         let how = Simulation { method: Method::Radau(ACCURACY), ..how };
         let run = simulate(plant, &torques, &initial, &how).map_err(ForwardError::Start)?;
         if run.stop != Stop::End {
-            return Err(ForwardError::Stopped { t_s: run.end.t_s, stop: run.stop });
+            return Err(ForwardError::Stopped { t_s: run.end.t_s, stop: run.stop }.into());
         }
         let samples = from + 1..from + steps + 1;
         t_s.extend(samples.clone().map(|sample| log.time_s(SampleIndex(sample))));

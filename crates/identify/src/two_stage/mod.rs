@@ -15,11 +15,9 @@
 //! loads: with d = phi(k + s) - phi(k), s the deviation of k and F0 along a column of the root of
 //! their covariance, the covariance of phi grows by d d^T.
 
-mod fault;
 mod readings;
 
-pub use fault::TwoStageError;
-
+use super::error::{Error, TwoStageError};
 use super::estimate::{self, SlowRows, estimate};
 use denavit_measure::JointIndex;
 use denavit_measure::condition::{Conditioned, Conditioning};
@@ -109,10 +107,10 @@ pub fn two_stage(
     model: &RegressionModel,
     log: &MeasuredLog,
     how: &TwoStageOptions,
-) -> Result<TwoStage, TwoStageError> {
+) -> Result<TwoStage, Error> {
     let elastic = elastic_joints(plant)?;
     if elastic.is_empty() {
-        return Err(TwoStageError::NoSprings);
+        return Err(TwoStageError::NoSprings.into());
     }
     let measured = measured(plant, &elastic, log)?;
     let names: Vec<String> = plant
@@ -322,7 +320,7 @@ struct Load<'a> {
 }
 
 impl Load<'_> {
-    fn identify(&self, springs: Vec<Spring>) -> Result<TwoStage, TwoStageError> {
+    fn identify(&self, springs: Vec<Spring>) -> Result<TwoStage, Error> {
         let forces: Vec<[f64; 2]> =
             springs.iter().map(|one| [one.stiffness.value, one.preload.value]).collect();
         let mut found = self.estimate(&forces)?;
@@ -349,14 +347,13 @@ impl Load<'_> {
         Ok(TwoStage { springs, listed, load: found, residuals })
     }
 
-    fn estimate(&self, forces: &[[f64; 2]]) -> Result<estimate::Estimate, TwoStageError> {
+    fn estimate(&self, forces: &[[f64; 2]]) -> Result<estimate::Estimate, Error> {
         let logs = [self.loads(forces)];
         let start = vec![0.0; self.model.rank()];
-        let found = estimate(self.model, &logs, &[], &self.options, &start);
-        let found = found.map_err(TwoStageError::Estimate)?;
+        let found = estimate(self.model, &logs, &[], &self.options, &start)?;
         match found.solution.excited() == self.model.rank() {
             true => Ok(found),
-            false => Err(TwoStageError::NotExcited("the load".to_owned())),
+            false => Err(TwoStageError::NotExcited("the load".to_owned()).into()),
         }
     }
 

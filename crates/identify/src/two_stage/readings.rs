@@ -1,7 +1,8 @@
 //! Whether the columns of a motor behind a spring are what they are taken for: its angle against
 //! that of the joint times the gear ratio, its torque against the spring of the model.
 
-use super::{Estimate, TwoStageError};
+use super::Estimate;
+use crate::error::TwoStageError;
 use crate::policy::readings::{OTHER, SURE, TURNS, WRONG_SPRING};
 use std::f64::consts::TAU;
 
@@ -95,6 +96,9 @@ pub(super) fn check_torque(
 pub(super) fn check_stiffness(joint: &str, stiffness: Estimate) -> Result<(), TwoStageError> {
     match stiffness.value > SURE * stiffness.std {
         true => Ok(()),
-        false => Err(TwoStageError::NoStiffness { joint: joint.to_owned(), stiffness }),
+        false => Err(TwoStageError::NoStiffness {
+            joint: joint.to_owned(),
+            stiffness: [stiffness.value, stiffness.std],
+        }),
     }
 }

@@ -2,8 +2,9 @@
 
 use super::robot;
 use denavit_codegen::regressor::functions::modelled;
+use denavit_identify::ErrorKind;
 use denavit_identify::forward::{
-    Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
+    Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
 use denavit_measure::condition::Filter;
 use denavit_measure::log::{ColumnMapping, JointSignals, LogOf, MeasuredLog, read_log};
@@ -160,8 +161,9 @@ fn references_are_those_of_the_log_where_a_controller_has_none() {
     let mut silent = log;
     silent.joints[2].reference = None;
     let refused = closed_loop(own.as_mut(), None, &follows, &motion(&silent, None));
-    let Err(ForwardError::NoReference(joint)) = refused else { panic!("{refused:?}") };
-    assert_eq!(joint, "hip_y");
+    let error = refused.expect_err("nothing to follow");
+    assert_eq!(error.kind(), ErrorKind::MissingColumn);
+    assert_eq!(error.column().as_deref(), Some("ref_hip_y"));
 }
 
 #[test]
@@ -169,15 +171,19 @@ fn what_cannot_be_simulated_again_is_refused() {
     let log = motion(&pushed(95.0, 200.0, 20.0), None);
     let mut own = plant("emps", &[]);
     let long = Windows { length_s: 2.0, most: 5 };
-    assert_eq!(in_windows(own.as_mut(), &log, long), Err(ForwardError::TooShort(2.0)));
+    let short = in_windows(own.as_mut(), &log, long).expect_err("a window of 2 s");
+    assert_eq!(short.kind(), ErrorKind::TooShort);
+    assert!(short.to_string().ends_with("a window of 2 s"), "{short}");
     let mut untold = pushed(95.0, 200.0, 20.0);
     untold.joints[0].tau = None;
     let refused = in_windows(own.as_mut(), &motion(&untold, None), Windows::default());
-    assert_eq!(refused, Err(ForwardError::NoTorque("carriage".to_owned())));
+    let untold = refused.expect_err("no torque");
+    assert_eq!(untold.kind(), ErrorKind::MissingColumn);
+    assert_eq!(untold.column().as_deref(), Some("tau_carriage"));
     let mut walker = plant("planar_biped", &[]);
     let n = walker.model().joints.len();
     let mut log = pushed(95.0, 200.0, 20.0);
     log.joints = vec![log.joints[0].clone(); n];
     let refused = in_windows(walker.as_mut(), &motion(&log, None), Windows::default());
-    assert_eq!(refused, Err(ForwardError::FloatingBase));
+    assert_eq!(refused.expect_err("its base floats").kind(), ErrorKind::Unsuitable);
 }

@@ -3,7 +3,8 @@
 use super::robot;
 use denavit_codegen::regressor::RegressorOptions;
 use denavit_identify::knowledge::Knowledge;
-use denavit_identify::statics::{HoldingTorque, StaticFault, StaticMeasurement, static_knowledge};
+use denavit_identify::statics::{HoldingTorque, StaticMeasurement, static_knowledge};
+use denavit_identify::{Error, ErrorKind};
 use denavit_numerics::Random;
 use denavit_plants::regression::RegressionModel;
 use nalgebra::DMatrix;
@@ -150,17 +151,23 @@ fn all_faults_are_found_at_once() {
         },
     ];
     let faults = static_knowledge(&model, &wrong).expect_err("nothing is right");
-    assert_eq!(faults.len(), 4, "{faults:?}");
-    assert_eq!(faults[1], StaticFault::WrongPosture(1, 2, 1));
-    assert_eq!(faults[2], StaticFault::BadNumber(2));
+    assert_eq!(faults.kind(), ErrorKind::Measurements);
+    let faults = faults.faults();
+    let of: Vec<Option<usize>> = faults.iter().map(Error::measurement).collect();
+    assert_eq!(of, [Some(0), Some(1), Some(2), Some(3)], "{faults:?}");
+    assert!(faults[1].to_string().contains("has 2 positions, 1 are given"), "{}", faults[1]);
+    assert!(faults[2].to_string().contains("must be finite"), "{}", faults[2]);
 }
 
 #[test]
 fn a_scale_bears_each_link_once() {
     let wrong = [weighing(&["link1", "link1"], 4.0), weighing(&[], 1.0)];
     let faults = static_knowledge(&arm(), &wrong).expect_err("neither is a weighing");
-    let repeated = StaticFault::Repeated(0, "link1".to_owned());
-    assert_eq!(faults, [repeated, StaticFault::NothingWeighed(1)]);
+    let faults = faults.faults();
+    let of: Vec<Option<usize>> = faults.iter().map(Error::measurement).collect();
+    assert_eq!(of, [Some(0), Some(1)], "{faults:?}");
+    assert!(faults[0].to_string().contains("`link1` is named twice"), "{}", faults[0]);
+    assert!(faults[1].to_string().contains("`links` is empty"), "{}", faults[1]);
 }
 
 /// Five deviations of a normal distribution are the bound: 1 degree of freedom, by hand.

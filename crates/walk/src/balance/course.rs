@@ -2,12 +2,12 @@
 
 use super::columns::Columns;
 use super::instant::{Instant, Moving};
+use crate::error::{BalanceError, Error};
 use crate::poincare::{PoincareOptions, WantedSection, analyse};
 use denavit_plants::Plant;
 use denavit_simulate::scenario::{RunScheme, Scenario};
-use denavit_simulate::{Log, LogFaults, LogFile, Run, Simulation, StartError, Stop, simulate};
+use denavit_simulate::{Log, LogFile, Run, Simulation, Stop, simulate};
 use nalgebra::{Cholesky, DMatrix, DVector};
-use std::fmt;
 
 /// The time that a course covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,41 +43,6 @@ pub struct Course {
     pub run: Option<Run>,
 }
 
-/// Why there is no course.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BalanceError {
-    /// A log is wrong.
-    Log(LogFaults),
-    /// A course would have more instants than are kept; holds how many.
-    TooMany(f64),
-    /// The robot has no contact points, or its base is fixed: no point of the ground tells of it.
-    NotWalking,
-    /// The run does not begin.
-    Start(StartError),
-    /// The mass matrix is singular at this time \[s\].
-    Singular(f64),
-}
-
-impl fmt::Display for BalanceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Log(faults) => write!(f, "{faults}"),
-            Self::TooMany(count) => write!(
-                f,
-                "{count:.0} instants, where at most {MOST_INSTANTS} are kept\n  hint: a longer \
-                 period: `options.period_s`"
-            ),
-            Self::NotWalking => {
-                write!(f, "only robots with a floating base and contact points can fall")
-            }
-            Self::Start(error) => write!(f, "{error}"),
-            Self::Singular(t_s) => write!(f, "at {t_s} s the mass matrix is singular"),
-        }
-    }
-}
-
-impl std::error::Error for BalanceError {}
-
 /// Balance along a scenario, at this distance of instants \[s\]: over one cycle where its gait has
 /// one and `whole` is false, else from its start to its end.
 ///
@@ -87,7 +52,7 @@ pub fn course_of_scenario(
     scenario: &mut Scenario,
     period_s: f64,
     whole: bool,
-) -> Result<Course, BalanceError> {
+) -> Result<Course, Error> {
     course_on_grid(scenario, Grid::Every(period_s), whole)
 }
 
@@ -107,10 +72,10 @@ const ENOUGH_INSTANTS: f64 = 200_000.0;
 
 impl Grid {
     /// The distance of instants over a time, both \[s\].
-    fn period_s(self, over_s: f64) -> Result<f64, BalanceError> {
+    fn period_s(self, over_s: f64) -> Result<f64, Error> {
         match self {
             Self::Every(period_s) if over_s / period_s > f64::from(MOST_INSTANTS) => {
-                Err(BalanceError::TooMany((over_s / period_s).ceil()))
+                Err(BalanceError::TooMany((over_s / period_s).ceil(), MOST_INSTANTS).into())
             }
             Self::Every(period_s) => Ok(period_s),
             Self::From(mut period_s) => {
@@ -128,11 +93,7 @@ impl Grid {
 ///
 /// # Errors
 /// Robots that do not walk, runs that do not begin, more instants than are kept.
-pub fn course_on_grid(
-    scenario: &mut Scenario,
-    grid: Grid,
-    whole: bool,
-) -> Result<Course, BalanceError> {
+pub fn course_on_grid(scenario: &mut Scenario, grid: Grid, whole: bool) -> Result<Course, Error> {
     check_walker(scenario.plant.as_mut())?;
     let is_pushed = !scenario.simulation.pushes.is_empty();
     let cycle = if whole || is_pushed || scenario.scheme == RunScheme::TimeStepping {
@@ -180,7 +141,7 @@ pub fn course_on_grid(
 ///
 /// # Errors
 /// Robots that do not walk, columns that are not there, cells that are empty or no digits.
-pub fn course_of_log(plant: &mut dyn Plant, file: &LogFile) -> Result<Course, BalanceError> {
+pub fn course_of_log(plant: &mut dyn Plant, file: &LogFile) -> Result<Course, Error> {
     check_walker(plant)?;
     let columns = Columns::of_file(plant.model(), file).map_err(BalanceError::Log)?;
     let instants = instants(plant, &file.log, &columns)?;
@@ -192,7 +153,7 @@ pub fn course_of_log(plant: &mut dyn Plant, file: &LogFile) -> Result<Course, Ba
 ///
 /// # Errors
 /// Robots that do not walk, logs without velocities or forces.
-pub fn course_of_run(plant: &mut dyn Plant, log: &Log) -> Result<Course, BalanceError> {
+pub fn course_of_run(plant: &mut dyn Plant, log: &Log) -> Result<Course, Error> {
     check_walker(plant)?;
     let columns = Columns::of(plant.model(), log).map_err(|_| BalanceError::NotWalking)?;
     let instants = instants(plant, log, &columns)?;
@@ -204,19 +165,15 @@ pub fn course_of_run(plant: &mut dyn Plant, log: &Log) -> Result<Course, Balance
 ///
 /// # Errors
 /// Robots that cannot.
-pub fn check_walker(plant: &mut dyn Plant) -> Result<(), BalanceError> {
+pub fn check_walker(plant: &mut dyn Plant) -> Result<(), Error> {
     let model = plant.model();
     let floats = model.joints.first().is_some_and(|joint| !joint.drivable);
     let walks = floats && !model.contacts.is_empty() && plant.walking().is_some();
-    if walks { Ok(()) } else { Err(BalanceError::NotWalking) }
+    if walks { Ok(()) } else { Err(BalanceError::NotWalking.into()) }
 }
 
 /// The instants of the rows that have forces, or accelerations.
-fn instants(
-    plant: &mut dyn Plant,
-    log: &Log,
-    columns: &Columns,
-) -> Result<Vec<Instant>, BalanceError> {
+fn instants(plant: &mut dyn Plant, log: &Log, columns: &Columns) -> Result<Vec<Instant>, Error> {
     let mut instants = Vec::with_capacity(log.len());
     for row in log.rows().filter(|row| columns.has_forces(row)) {
         let take = |columns: &[usize]| -> Vec<f64> { columns.iter().map(|c| row[*c]).collect() };

@@ -12,7 +12,7 @@ mod instant;
 mod summary;
 
 pub use course::{
-    BalanceError, Course, Grid, MOST_INSTANTS, Over, check_walker, course_of_log, course_of_run,
+    Course, Grid, MOST_INSTANTS, Over, check_walker, course_of_log, course_of_run,
     course_of_scenario, course_on_grid,
 };
 pub use energy::Energy;

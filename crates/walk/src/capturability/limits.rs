@@ -1,6 +1,6 @@
 //! What a robot on feet can do: its height, its sole, how fast and how far it steps.
 
-use std::fmt;
+use crate::error::Error;
 
 /// The linear inverted pendulum of a robot, and its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,24 +19,12 @@ pub struct StepLimits {
     pub longest_m: [f64; 2],
 }
 
-/// A limit that is not usable; holds its name and value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LimitError(pub &'static str, pub f64);
-
-impl fmt::Display for LimitError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the {} cannot be {}", self.0, self.1)
-    }
-}
-
-impl std::error::Error for LimitError {}
-
 impl StepLimits {
     /// Checks that all are finite, height, gravity and step time positive, lengths not negative.
     ///
     /// # Errors
     /// The first that is not.
-    pub fn check(&self) -> Result<(), LimitError> {
+    pub fn check(&self) -> Result<(), Error> {
         let [back, forward] = self.longest_m;
         let positive = [
             ("acceleration of free fall", self.gravity_m_s2),
@@ -51,12 +39,12 @@ impl StepLimits {
         ];
         for (name, value) in positive {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(LimitError(name, value));
+                return Err(Error::limit(name, value));
             }
         }
         for (name, value) in lengths {
             if !(value >= 0.0 && value.is_finite()) {
-                return Err(LimitError(name, value));
+                return Err(Error::limit(name, value));
             }
         }
         Ok(())

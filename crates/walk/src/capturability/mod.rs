@@ -15,6 +15,6 @@ mod limits;
 mod reach;
 mod region;
 
-pub use limits::{LimitError, StepLimits};
+pub use limits::StepLimits;
 pub use reach::{Capturability, Steps};
 pub use region::CaptureRegion;

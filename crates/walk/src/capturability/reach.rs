@@ -14,7 +14,8 @@
 //!
 //! With heel = toe these are Koolen's d_N, whose lengths are in units of z and times of 1/w.
 
-use super::limits::{LimitError, StepLimits};
+use super::limits::StepLimits;
+use crate::error::Error;
 
 /// How many steps a capture point needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,7 @@ impl Capturability {
     ///
     /// # Errors
     /// Limits that are not usable.
-    pub fn new(limits: StepLimits) -> Result<Self, LimitError> {
+    pub fn new(limits: StepLimits) -> Result<Self, Error> {
         limits.check()?;
         Ok(Self { limits })
     }

@@ -5,7 +5,7 @@ use denavit_codegen::model::Node;
 use denavit_plants::Plant;
 use denavit_plants::trajectory::Reference;
 use denavit_simulate::Planning;
-use denavit_simulate::scenario::{Cause, FieldsNumbers, PlannedGait, Range, Report};
+use denavit_simulate::scenario::{FieldsNumbers, PlannedGait, Range, Report};
 
 const KEYS: &[&str] = &[
     "center_of_mass_height_m",
@@ -51,7 +51,7 @@ pub(crate) fn read(
     let prepared = match capture_step(plant, &numbers) {
         Ok(prepared) => prepared,
         Err(error) => {
-            report.push(node.at(), Cause::Gait(error.to_string(), error.hint()));
+            report.push(node.at(), error.of_gait());
             return None;
         }
     };

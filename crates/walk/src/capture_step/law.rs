@@ -2,7 +2,8 @@
 
 use super::planner::CaptureStepper;
 use crate::capturability::StepLimits;
-use crate::gait_plan::{Height, PlanError, Pose, Sought, Walker};
+use crate::error::{Error, PlanError};
+use crate::gait_plan::{Height, Pose, Sought, Walker};
 use denavit_plants::Plant;
 use denavit_simulate::{PlanningLaw, ReferencePlanner};
 
@@ -75,7 +76,7 @@ pub struct Prepared {
 /// # Errors
 /// Robots that are no planar walkers, postures out of reach, a margin that leaves nothing of the
 /// sole.
-pub fn capture_step(plant: &mut dyn Plant, numbers: &CaptureStep) -> Result<Prepared, PlanError> {
+pub fn capture_step(plant: &mut dyn Plant, numbers: &CaptureStep) -> Result<Prepared, Error> {
     let walker = Walker::of(plant)?;
     let foot = walker.feet[0];
     let half_m = 0.5 * (foot.heel_to_ankle_m + foot.ankle_to_toe_m);
@@ -86,7 +87,8 @@ pub fn capture_step(plant: &mut dyn Plant, numbers: &CaptureStep) -> Result<Prep
             t_s: 0.0,
             margin_m: half_m,
             least_m: numbers.margin_m,
-        });
+        }
+        .into());
     }
     let pose = Pose {
         feet_m: [[0.0; 2]; 2],

@@ -2,7 +2,8 @@
 
 use super::law::{CaptureStep, CaptureStepLaw};
 use crate::capturability::StepLimits;
-use crate::gait_plan::{PlanError, Walker};
+use crate::error::Error;
+use crate::gait_plan::Walker;
 use denavit_simulate::scenario::Scenario;
 
 /// The controller of a scenario that steps onto the capture point, if it has one.
@@ -16,7 +17,7 @@ pub fn law_of(scenario: &Scenario) -> Option<&CaptureStepLaw> {
 ///
 /// # Errors
 /// Robots that are no planar walkers.
-pub fn step_limits(scenario: &mut Scenario) -> Result<StepLimits, PlanError> {
+pub fn step_limits(scenario: &mut Scenario) -> Result<StepLimits, Error> {
     if let Some(law) = law_of(scenario) {
         return Ok(law.limits());
     }

@@ -1,7 +1,8 @@
 //! The kind `limit_cycle` of gait files.
 
+use crate::error::NoStep;
 use crate::optimal::{
-    Aspects, CostKind, Guess, LimitCycleProblem, NoStep, Phase, Role, StepLimits, check_phases,
+    Aspects, CostKind, Guess, LimitCycleProblem, Phase, Role, StepLimits, check_phases,
 };
 use denavit_codegen::model::{Fields, Node};
 use denavit_simulate::scenario::{Cause, FieldsNumbers, NodeNumbers, Range, Report};

@@ -1,7 +1,7 @@
 //! A robot in space with two legs, and its joint positions for given places of its soles.
 
-use super::fault::PlanError;
 use super::posture::{Conditions, Posture, Sought, bent, first, placed, reach};
+use crate::error::{Error, PlanError};
 use crate::inverse_kinematics::{Condition, largest_error};
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::SupportPolygon;
@@ -105,8 +105,8 @@ impl Biped {
     ///
     /// # Errors
     /// Robots in the plane, on a slope, without two soles.
-    pub fn of(plant: &mut dyn Plant) -> Result<Self, PlanError> {
-        let lacks = |what: &str| PlanError::NoBiped(what.to_owned());
+    pub fn of(plant: &mut dyn Plant) -> Result<Self, Error> {
+        let lacks = |what: &str| Error::from(PlanError::NoBiped(what.to_owned()));
         let model = plant.model().clone();
         if model.planar {
             return Err(lacks("freedom to move in space"));
@@ -116,7 +116,7 @@ impl Biped {
             .ok_or_else(|| lacks("gravity straight down onto level ground"))?;
         let joint = |name: &str| {
             let found = model.find_joint(name);
-            found.ok_or_else(|| PlanError::NoBiped(format!("joint `{name}`")))
+            found.ok_or_else(|| lacks(&format!("joint `{name}`")))
         };
         let places = [joint("base_x")?, joint("base_y")?, joint("base_z")?];
         let turns = [joint("base_yaw")?, joint("base_roll")?, joint("base_pitch")?];
@@ -284,8 +284,8 @@ impl Biped {
         pose: &BipedPose,
         near: &[f64],
         at: Sought<'_>,
-    ) -> Result<Posture, PlanError> {
-        reach(plant, &self.conditions(pose), near, at)
+    ) -> Result<Posture, Error> {
+        Ok(reach(plant, &self.conditions(pose), near, at)?)
     }
 
     /// The posture of a pose, looked for from several starts: of those within limits that with the
@@ -298,13 +298,13 @@ impl Biped {
         plant: &mut dyn Plant,
         pose: &BipedPose,
         at: Sought<'_>,
-    ) -> Result<Posture, PlanError> {
+    ) -> Result<Posture, Error> {
         let mut start = bent(plant.model(), &self.drivable);
         let [x, y, z] = pose.center_m;
         for (place, value) in self.base.places.into_iter().zip([x, y, self.ground_m + z]) {
             start[place] = value;
         }
-        first(plant, &self.conditions(pose), &start, &self.drivable, at)
+        Ok(first(plant, &self.conditions(pose), &start, &self.drivable, at)?)
     }
 
     /// All coordinates for these joint positions while a foot stands at a place.
@@ -318,11 +318,11 @@ impl Biped {
         place: &SolePlace,
         q: &[f64],
         at: Sought<'_>,
-    ) -> Result<Vec<f64>, PlanError> {
+    ) -> Result<Vec<f64>, Error> {
         let mut conditions = self.sole(side, place).to_vec();
         let joints = self.drivable.iter();
         conditions.extend(joints.map(|joint| Condition::Coordinate(*joint, q[*joint])));
-        placed(plant, &conditions, q, at)
+        Ok(placed(plant, &conditions, q, at)?)
     }
 
     /// The largest error of a pose's conditions at these coordinates [m, rad].
@@ -354,8 +354,8 @@ impl Upright {
         [0, 1, 2].map(|axis| sum(axis) / points.len().max(1) as f64)
     }
 
-    fn sole(&self, model: &PlantModel, side: &str) -> Result<Sole, PlanError> {
-        let lacks = |what: &str| PlanError::NoBiped(format!("sole `{side}..` {what}"));
+    fn sole(&self, model: &PlantModel, side: &str) -> Result<Sole, Error> {
+        let lacks = |what: &str| Error::from(PlanError::NoBiped(format!("sole `{side}..` {what}")));
         let own = (0..model.contacts.len()).filter(|c| model.contacts[*c].name.starts_with(side));
         let points: Vec<usize> = own.collect();
         let link = points.first().map(|point| model.contacts[*point].link);

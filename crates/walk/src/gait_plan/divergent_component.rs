@@ -8,12 +8,12 @@
 
 use super::biped::{Biped, BipedPose, RollCondition};
 use super::curve::{Curve, JointPath, Piece};
-use super::fault::PlanError;
 use super::footsteps::{AnkleRolls, DivergentComponentProblem, Phase, phases};
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, Knot, ROUNDING_M};
 use super::posture::{Posture, Sought};
 use super::torque::{Bearing, Moment, torques};
+use crate::error::{Error, PlanError};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, Setpoint};
 
@@ -28,7 +28,7 @@ const MAX_KNOTS: usize = 20_000;
 pub fn plan_divergent_component(
     plant: &mut dyn Plant,
     problem: &DivergentComponentProblem,
-) -> Result<GaitPlan, PlanError> {
+) -> Result<GaitPlan, Error> {
     Ok(plan_space_walk(plant, problem)?.0)
 }
 
@@ -53,16 +53,16 @@ impl SpaceWalk {
 pub(crate) fn plan_space_walk(
     plant: &mut dyn Plant,
     problem: &DivergentComponentProblem,
-) -> Result<(GaitPlan, SpaceWalk), PlanError> {
+) -> Result<(GaitPlan, SpaceWalk), Error> {
     let (double_support_s, step_s) = (problem.double_support_s, problem.step_s);
     // written so that NaN fails as well
     if !(double_support_s > 0.0 && double_support_s < step_s) {
-        return Err(PlanError::Overlap { double_support_s, step_s });
+        return Err(PlanError::Overlap { double_support_s, step_s }.into());
     }
     let biped = Biped::of(plant)?;
     let is_passive = problem.ankle_rolls == AnkleRolls::Passive;
     if is_passive && biped.rolls().is_none() {
-        return Err(PlanError::NoBiped("joint that rolls each foot".to_owned()));
+        return Err(PlanError::NoBiped("joint that rolls each foot".to_owned()).into());
     }
     let phases = phases(problem, biped.width_m(plant), biped.rolls());
     let times = times(&phases, problem.interval_s)?;
@@ -95,13 +95,13 @@ struct Time {
 }
 
 /// Knots from a phase's beginning up to before its end; then the end.
-fn times(phases: &[Phase], interval_s: f64) -> Result<Vec<Time>, PlanError> {
+fn times(phases: &[Phase], interval_s: f64) -> Result<Vec<Time>, Error> {
     let mut times = Vec::new();
     for (phase, own) in phases.iter().enumerate() {
         // an even number: in the middle of standing the centre of pressure turns around
         let count = 2.0 * (0.5 * own.duration_s / interval_s).ceil().max(1.0);
         if times.len() as f64 + count > MAX_KNOTS as f64 {
-            return Err(PlanError::TooManyKnots(MAX_KNOTS));
+            return Err(PlanError::TooManyKnots(MAX_KNOTS).into());
         }
         let t_s = |index: usize| own.start_s + own.duration_s * (index as f64 / count);
         times.extend((0..count as usize).map(|index| Time { t_s: t_s(index), phase }));
@@ -139,7 +139,7 @@ impl Motion {
     }
 
     /// The zero moment point of all bodies \[m\].
-    fn zero_moment_point(&self, plant: &mut dyn Plant, t_s: f64) -> Result<[f64; 2], PlanError> {
+    fn zero_moment_point(&self, plant: &mut dyn Plant, t_s: f64) -> Result<[f64; 2], Error> {
         let Moment { q, qd, qdd } = self.moment(t_s);
         let lacks = || PlanError::NoBiped("zero moment point of its bodies".to_owned());
         let mut walking = plant.walking().ok_or_else(lacks)?;
@@ -170,7 +170,7 @@ impl Planner<'_> {
     }
 
     /// The motion, its centre of pressure corrected.
-    fn motion(&self, plant: &mut dyn Plant) -> Result<Motion, PlanError> {
+    fn motion(&self, plant: &mut dyn Plant) -> Result<Motion, Error> {
         let wanted: Vec<[f64; 2]> = self.times.iter().map(|time| self.wanted(*time)).collect();
         let mut planned = wanted.clone();
         let mut motion = self.planned(plant, &planned, None)?;
@@ -196,7 +196,7 @@ impl Planner<'_> {
         plant: &mut dyn Plant,
         pressures_m: &[[f64; 2]],
         near: Option<&Motion>,
-    ) -> Result<Motion, PlanError> {
+    ) -> Result<Motion, Error> {
         let center = [self.center(pressures_m, 0)?, self.center(pressures_m, 1)?];
         let mut postures: Vec<Posture> = Vec::new();
         for (index, time) in self.times.iter().enumerate() {
@@ -215,13 +215,13 @@ impl Planner<'_> {
             Ok(Reference::Cubic(CubicSpline::new(times_s.clone(), values, ends)?))
         };
         let splines = (0..plant.model().joints.len()).map(spline);
-        let splines = splines.collect::<Result<Vec<_>, PlanError>>()?;
+        let splines = splines.collect::<Result<Vec<_>, Error>>()?;
         Ok(Motion { center, postures, splines })
     }
 
     /// The centre of mass along an axis, from rest to rest: while it stands the centre of pressure
     /// goes back and forth for that.
-    fn center(&self, pressures_m: &[[f64; 2]], axis: usize) -> Result<PendulumPath, PlanError> {
+    fn center(&self, pressures_m: &[[f64; 2]], axis: usize) -> Result<PendulumPath, Error> {
         let omega = (self.biped.gravity / self.problem.center_of_mass_height_m).sqrt();
         let pairs = self.times.windows(2).zip(pressures_m.windows(2));
         let segment = |(times, places): (&[Time], &[[f64; 2]])| PressureSegment {
@@ -240,7 +240,7 @@ impl Planner<'_> {
         let shapes = [shape(0), shape(self.phases.len().saturating_sub(1))];
         let start_m = pressures_m.first().map_or(0.0, |place| place[axis]);
         PendulumPath::resting_by(omega, &segments, start_m, &shapes)
-            .ok_or_else(|| PlanError::NoBiped("walk from rest to rest".to_owned()))
+            .ok_or_else(|| PlanError::NoBiped("walk from rest to rest".to_owned()).into())
     }
 
     fn at(&self, time: Time) -> Sought<'_> {
@@ -275,7 +275,7 @@ impl Planner<'_> {
     }
 
     /// The knots with the times halfway between them, where curves pass, and all margins checked.
-    fn checked(&self, plant: &mut dyn Plant, motion: &Motion) -> Result<Vec<Knot>, PlanError> {
+    fn checked(&self, plant: &mut dyn Plant, motion: &Motion) -> Result<Vec<Knot>, Error> {
         let mut all = Vec::with_capacity(2 * self.times.len());
         for (index, time) in self.times.iter().enumerate() {
             let posture = motion.postures[index].clone();
@@ -301,11 +301,11 @@ impl Planner<'_> {
         time: Time,
         posture: Posture,
         is_solved: bool,
-    ) -> Result<Knot, PlanError> {
+    ) -> Result<Knot, Error> {
         let (phase, pose) = (&self.phases[time.phase], self.pose(&motion.center, time));
         let (name, t_s) = (phase.name.clone(), time.t_s);
         if !self.biped.are_apart(&pose.soles) {
-            return Err(PlanError::Collision { posture: name, t_s });
+            return Err(PlanError::Collision { posture: name, t_s }.into());
         }
         let pressure = motion.zero_moment_point(plant, t_s)?;
         let standing = phase.standing();
@@ -314,7 +314,7 @@ impl Planner<'_> {
         let least_m = self.problem.margin_m;
         if margin_m < least_m - ROUNDING_M || margin_m.is_nan() {
             let point = "planned zero moment point";
-            return Err(PlanError::Margin { point, posture: name, t_s, margin_m, least_m });
+            return Err(PlanError::Margin { point, posture: name, t_s, margin_m, least_m }.into());
         }
         Ok(Knot {
             t_s,

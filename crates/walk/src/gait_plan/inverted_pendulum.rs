@@ -3,12 +3,12 @@
 //! and the centre of mass follows from it; inverse kinematics makes joint positions of that.
 
 use super::curve::{Curve, JointPath, Piece};
-use super::fault::PlanError;
 use super::footsteps::smooth;
 use super::pendulum::{PendulumPath, PressureSegment};
 use super::plan::{GaitPlan, JointGains, Knot, ROUNDING_M};
 use super::posture::{Posture, Sought};
 use super::walker::{Height, Pose, Walker};
+use crate::error::{Error, PlanError};
 use denavit_plants::Plant;
 use denavit_runtime::Scalar;
 use std::f64::consts::PI;
@@ -159,16 +159,16 @@ struct Planner<'a> {
 pub fn plan_inverted_pendulum(
     plant: &mut dyn Plant,
     problem: &InvertedPendulumProblem,
-) -> Result<GaitPlan, PlanError> {
+) -> Result<GaitPlan, Error> {
     let (double_support_s, step_s) = (problem.double_support_s, problem.step_s);
     // written so that NaN fails as well
     if !(double_support_s > 0.0 && double_support_s < step_s) {
-        return Err(PlanError::Overlap { double_support_s, step_s });
+        return Err(PlanError::Overlap { double_support_s, step_s }.into());
     }
     let walker = Walker::of(plant)?;
     let course = course(problem, &walker);
     if course.end_s() / problem.interval_s > MAX_KNOTS as f64 {
-        return Err(PlanError::TooManyKnots(MAX_KNOTS));
+        return Err(PlanError::TooManyKnots(MAX_KNOTS).into());
     }
     let path = path(problem, &walker, &course)?;
     let duration_s = course.end_s();
@@ -196,12 +196,12 @@ fn path(
     problem: &InvertedPendulumProblem,
     walker: &Walker,
     course: &Course,
-) -> Result<PendulumPath, PlanError> {
+) -> Result<PendulumPath, Error> {
     let omega = (walker.gravity / problem.center_of_mass_height_m).sqrt();
     let segments = &course.segments;
     let ends = [0, segments.len().saturating_sub(2)];
     PendulumPath::resting(omega, segments, walker.middle_m(), ends)
-        .ok_or_else(|| PlanError::NoWalker("walk from rest to rest".to_owned()))
+        .ok_or_else(|| PlanError::NoWalker("walk from rest to rest".to_owned()).into())
 }
 
 impl Planner<'_> {
@@ -216,7 +216,7 @@ impl Planner<'_> {
     }
 
     /// The knots of all phases, from a phase's beginning up to before its end; then the end.
-    fn knots(&self, plant: &mut dyn Plant) -> Result<Vec<Knot>, PlanError> {
+    fn knots(&self, plant: &mut dyn Plant) -> Result<Vec<Knot>, Error> {
         let mut knots: Vec<Knot> = Vec::new();
         for phase in &self.course.phases {
             // an even number: in the middle of standing the centre of pressure turns around
@@ -267,7 +267,7 @@ impl Planner<'_> {
         plant: &mut dyn Plant,
         knots: Vec<Knot>,
         paths: &[JointPath],
-    ) -> Result<Vec<Knot>, PlanError> {
+    ) -> Result<Vec<Knot>, Error> {
         let references = paths.iter().map(|path| path.reference(false));
         let references = references.collect::<Result<Vec<_>, _>>()?;
         let times_s: Vec<f64> = knots.iter().map(|knot| knot.t_s).collect();
@@ -297,7 +297,7 @@ impl Planner<'_> {
             }
             let (posture, t_s) = (knot.name.clone(), knot.t_s);
             let point = "planned centre of pressure";
-            return Err(PlanError::Margin { point, posture, t_s, margin_m, least_m });
+            return Err(PlanError::Margin { point, posture, t_s, margin_m, least_m }.into());
         }
         Ok(all)
     }

@@ -12,7 +12,6 @@
 mod biped;
 mod curve;
 mod divergent_component;
-mod fault;
 mod files;
 mod footsteps;
 mod inverted_pendulum;
@@ -28,7 +27,6 @@ pub use biped::{AnkleRoll, Biped, BipedPose, RollCondition, Sole, SolePlace};
 pub use curve::{Curve, JointPath, Piece};
 pub use divergent_component::plan_divergent_component;
 pub(crate) use divergent_component::{SpaceWalk, plan_space_walk, pose};
-pub use fault::PlanError;
 pub(crate) use footsteps::Phase;
 pub use footsteps::{AnkleRolls, DivergentComponentProblem, Ending, Footstep, Side};
 pub use inverted_pendulum::{InvertedPendulumProblem, plan_inverted_pendulum};

@@ -1,7 +1,7 @@
 //! What a planner makes: joint references, a start, and every knot with its residual.
 
 use super::curve::JointPath;
-use super::fault::PlanError;
+use crate::error::{Error, PlanError};
 use crate::scenario_file::ContactFriction;
 use denavit_plants::PlantModel;
 use denavit_plants::trajectory::Reference;
@@ -80,11 +80,11 @@ impl GaitPlan {
     ///
     /// # Errors
     /// The time at which they leave it most.
-    pub(super) fn joined(self) -> Result<Self, PlanError> {
+    pub(super) fn joined(self) -> Result<Self, Error> {
         match self.worst(false) {
             Some(knot) if knot.residual > BETWEEN || knot.residual.is_nan() => {
                 let (posture, t_s, residual) = (knot.name.clone(), knot.t_s, knot.residual);
-                Err(PlanError::Between { posture, t_s, residual })
+                Err(PlanError::Between { posture, t_s, residual }.into())
             }
             _ => Ok(self),
         }
@@ -94,7 +94,7 @@ impl GaitPlan {
     ///
     /// # Errors
     /// Knots that make no curve.
-    pub fn references(&self, model: &PlantModel) -> Result<Vec<Option<Reference>>, PlanError> {
+    pub fn references(&self, model: &PlantModel) -> Result<Vec<Option<Reference>>, Error> {
         let mut references = vec![None; model.joints.len()];
         for path in &self.paths {
             references[path.joint] = Some(path.reference(self.repeats)?);

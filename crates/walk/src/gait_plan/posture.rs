@@ -1,7 +1,7 @@
 //! Joint positions that meet conditions, within limits: the search that all planners share.
 
-use super::fault::PlanError;
-use crate::inverse_kinematics::{Condition, PostureError, largest_error, solve};
+use crate::error::{PlanError, PostureError};
+use crate::inverse_kinematics::{Condition, largest_error, place};
 use denavit_numerics::Random;
 use denavit_plants::{Plant, PlantModel, point_positions};
 
@@ -43,7 +43,7 @@ pub(super) fn placed(
     at: Sought<'_>,
 ) -> Result<Vec<f64>, PlanError> {
     let mut q = near.to_vec();
-    match solve(plant, conditions, &mut q) {
+    match place(plant, conditions, &mut q) {
         Ok(()) => Ok(q),
         Err(PostureError::OutOfReach { residual }) => {
             Err(PlanError::OutOfReach { posture: at.name.to_owned(), t_s: at.t_s, residual })

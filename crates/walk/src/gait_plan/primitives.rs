@@ -2,10 +2,10 @@
 //! last one the legs swap and the first follows again.
 
 use super::curve::{Curve, JointPath, Piece};
-use super::fault::PlanError;
 use super::plan::{GaitPlan, JointGains, Knot, ROUNDING_M};
 use super::posture::{Posture, Sought};
 use super::walker::{Height, Pose, Walker};
+use crate::error::{Error, PlanError};
 use denavit_plants::Plant;
 
 /// How joint positions go from a posture to the next.
@@ -84,7 +84,7 @@ struct Step<'a> {
 pub fn plan_primitives(
     plant: &mut dyn Plant,
     problem: &PrimitivesProblem,
-) -> Result<GaitPlan, PlanError> {
+) -> Result<GaitPlan, Error> {
     let walker = Walker::of(plant)?;
     let step_length_m = length(problem)?;
     check_feet(problem)?;
@@ -126,28 +126,28 @@ pub fn plan_primitives(
 }
 
 /// The step's length, if the first posture may follow the last.
-fn length(problem: &PrimitivesProblem) -> Result<f64, PlanError> {
+fn length(problem: &PrimitivesProblem) -> Result<f64, Error> {
     let [Some(first), Some(last)] = [problem.postures.first(), problem.postures.last()] else {
-        return Err(PlanError::NoWalker("posture".to_owned()));
+        return Err(PlanError::NoWalker("posture".to_owned()).into());
     };
     let expected_m = [-first.swing_foot_m[0], 0.0];
     let off = [0, 1].map(|axis| (last.swing_foot_m[axis] - expected_m[axis]).abs());
     if off.iter().any(|off| *off > ONE_PLACE_M) || first.swing_foot_m[1].abs() > ON_GROUND_M {
         let (posture, foot_m) = (last.name.clone(), last.swing_foot_m);
-        return Err(PlanError::NotClosed { posture, foot_m, expected_m });
+        return Err(PlanError::NotClosed { posture, foot_m, expected_m }.into());
     }
     Ok(last.swing_foot_m[0])
 }
 
 /// Feet that stand in two postures, one after the other, do not slide in between.
-fn check_feet(problem: &PrimitivesProblem) -> Result<(), PlanError> {
+fn check_feet(problem: &PrimitivesProblem) -> Result<(), Error> {
     let mut t_s = 0.0;
     for pair in problem.postures.windows(2) {
         t_s += pair[0].duration_s;
         let [from, to] = [pair[0].swing_foot_m, pair[1].swing_foot_m];
         let distance_m = (to[0] - from[0]).abs();
         if from[1] <= ON_GROUND_M && to[1] <= ON_GROUND_M && distance_m > ONE_PLACE_M {
-            return Err(PlanError::Slides { posture: pair[1].name.clone(), t_s, distance_m });
+            return Err(PlanError::Slides { posture: pair[1].name.clone(), t_s, distance_m }.into());
         }
     }
     Ok(())
@@ -180,18 +180,18 @@ impl Step<'_> {
         self.is_double(before) && self.is_double(posture)
     }
 
-    fn check_margin(&self, knot: &Knot) -> Result<(), PlanError> {
+    fn check_margin(&self, knot: &Knot) -> Result<(), Error> {
         let least_m = self.problem.margin_m;
         // written so that NaN fails as well
         if knot.static_margin_m >= least_m - ROUNDING_M {
             return Ok(());
         }
         let (posture, t_s, margin_m) = (knot.name.clone(), knot.t_s, knot.static_margin_m);
-        Err(PlanError::Margin { point: "centre of mass", posture, t_s, margin_m, least_m })
+        Err(PlanError::Margin { point: "centre of mass", posture, t_s, margin_m, least_m }.into())
     }
 
     /// Postures, each with the times up to the next.
-    fn knots(&self, plant: &mut dyn Plant) -> Result<Vec<Knot>, PlanError> {
+    fn knots(&self, plant: &mut dyn Plant) -> Result<Vec<Knot>, Error> {
         let mut knots = Vec::new();
         let paths = self.paths();
         let references = paths.iter().map(|path| path.reference(false));
@@ -232,7 +232,7 @@ impl Step<'_> {
         part: usize,
         t_s: f64,
         q: &[f64],
-    ) -> Result<Knot, PlanError> {
+    ) -> Result<Knot, Error> {
         let name = format!("after {}", self.problem.postures[part].name);
         let at = Sought { name: &name, t_s };
         let q = self.walker.placed(plant, 0, [0.0; 2], q, at)?;

@@ -1,7 +1,7 @@
 //! A planar robot with two legs, and its joint positions for given places of its feet.
 
-use super::fault::PlanError;
 use super::posture::{Conditions, Posture, Sought, bent, first, placed, reach};
+use crate::error::{Error, PlanError};
 use crate::inverse_kinematics::{Condition, largest_error};
 use crate::leg_exchange::LegExchange;
 use denavit_plants::Plant;
@@ -66,15 +66,15 @@ impl Walker {
     ///
     /// # Errors
     /// Robots in space, on a slope, without two legs that are alike.
-    pub fn of(plant: &mut dyn Plant) -> Result<Self, PlanError> {
-        let lacks = |what: &str| PlanError::NoWalker(what.to_owned());
+    pub fn of(plant: &mut dyn Plant) -> Result<Self, Error> {
+        let lacks = |what: &str| Error::from(PlanError::NoWalker(what.to_owned()));
         let model = plant.model().clone();
         if !model.planar {
             return Err(lacks("plane that it moves in"));
         }
         let base = ["base_x", "base_z", "base_pitch"].map(|name| {
             let found = model.find_joint(name);
-            found.ok_or_else(|| PlanError::NoWalker(format!("joint `{name}`")))
+            found.ok_or_else(|| lacks(&format!("joint `{name}`")))
         });
         let [x, z, pitch] = base;
         let exchange = LegExchange::find(plant)
@@ -163,8 +163,8 @@ impl Walker {
         pose: &Pose,
         near: &[f64],
         at: Sought<'_>,
-    ) -> Result<Posture, PlanError> {
-        reach(plant, &self.conditions(pose), near, at)
+    ) -> Result<Posture, Error> {
+        Ok(reach(plant, &self.conditions(pose), near, at)?)
     }
 
     /// The posture of a pose, looked for from several starts: of those within limits that with the
@@ -177,7 +177,7 @@ impl Walker {
         plant: &mut dyn Plant,
         pose: &Pose,
         at: Sought<'_>,
-    ) -> Result<Posture, PlanError> {
+    ) -> Result<Posture, Error> {
         let mut start = bent(plant.model(), &self.driven);
         let height = match pose.height {
             Height::Hip(height) | Height::CenterOfMass(height) => height,
@@ -185,7 +185,7 @@ impl Walker {
         start[self.base[0]] = pose.center_m;
         start[self.base[1]] = self.ground_m + height;
         start[self.base[2]] = pose.pitch_rad;
-        first(plant, &self.conditions(pose), &start, &self.driven, at)
+        Ok(first(plant, &self.conditions(pose), &start, &self.driven, at)?)
     }
 
     /// All coordinates for these joint positions while a foot stands level at a place.
@@ -199,11 +199,11 @@ impl Walker {
         foot_m: [f64; 2],
         q: &[f64],
         at: Sought<'_>,
-    ) -> Result<Vec<f64>, PlanError> {
+    ) -> Result<Vec<f64>, Error> {
         let mut conditions = self.sole(side, foot_m).to_vec();
         let joints = (0..q.len()).filter(|joint| !self.base.contains(joint));
         conditions.extend(joints.map(|joint| Condition::Coordinate(joint, q[joint])));
-        placed(plant, &conditions, q, at)
+        Ok(placed(plant, &conditions, q, at)?)
     }
 
     /// How far a sole is from being level at a place \[m\].
@@ -233,14 +233,15 @@ impl Walker {
 }
 
 /// The foot of a side: the rearmost and the foremost of its contact points with straight legs.
-fn foot(plant: &mut dyn Plant, side: &str) -> Result<Foot, PlanError> {
+fn foot(plant: &mut dyn Plant, side: &str) -> Result<Foot, Error> {
     let model = plant.model().clone();
     let straight = vec![0.0; model.joints.len()];
     let mut positions = vec![0.0; 3 * model.contacts.len()];
     plant.contact_positions(&straight, &mut positions);
     let mut transforms = vec![0.0; 12 * model.links.len()];
     plant.link_transforms(&straight, &mut transforms);
-    let lacks = || PlanError::NoWalker(format!("sole with two contact points `{side}..`"));
+    let lacks =
+        || Error::from(PlanError::NoWalker(format!("sole with two contact points `{side}..`")));
     let own = (0..model.contacts.len()).filter(|c| model.contacts[*c].name.starts_with(side));
     let x = |contact: &usize| positions[3 * contact];
     let heel = own.clone().min_by(|a, b| x(a).total_cmp(&x(b))).ok_or_else(lacks)?;

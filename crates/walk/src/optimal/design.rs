@@ -1,20 +1,20 @@
 //! From what a walk is to be to a gait that walks: plan, gains, and a plan that costs less.
 
 use super::cost::{CostKind, CostSettings};
-use super::following::{FollowingError, Gains, Walk};
+use super::following::{Gains, Walk};
 use super::gains::{Found, Outcome, search};
 use super::guess::Guess;
 use super::layout::Layout;
-use super::legs::{Legs, NoWalker};
+use super::legs::Legs;
 use super::limits::StepLimits;
-use super::phases::{Aspects, Axis, NoStep, Phase, check, phases_of};
+use super::phases::{Aspects, Axis, Phase, check, phases_of};
 use super::planned::PlannedStep;
 use super::program::{Program, violation};
 use super::section::Cycle;
 use super::sqp::{Ending, Optimum, Settings, minimise};
 use super::step::Step;
+use crate::error::{DesignError, Error, Violated};
 use denavit_plants::Plant;
-use std::fmt;
 
 /// What a limit cycle is to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,70 +93,6 @@ pub struct Stage {
     pub cost_of_transport: Option<f64>,
 }
 
-/// The constraint that is violated most.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Violated {
-    /// What it says.
-    pub what: String,
-    /// The phase.
-    pub phase: String,
-    /// Time since the beginning of the step \[s\].
-    pub t_s: f64,
-    /// By how much.
-    pub residual: f64,
-    /// In which unit.
-    pub unit: &'static str,
-}
-
-/// Why there is no gait.
-#[derive(Clone, Debug, PartialEq)]
-pub enum DesignError {
-    /// The plant is no planar walker.
-    NoWalker(NoWalker),
-    /// The phases are no step.
-    NoStep(NoStep),
-    /// The plant has no derivatives.
-    NoDerivatives,
-    /// No step meets all constraints.
-    Infeasible(Violated),
-    /// No gains keep the largest multiplier below its bound; holds the least that was found.
-    Unstable(Option<f64>),
-    /// A plan could not be simulated.
-    Following(FollowingError),
-}
-
-impl fmt::Display for DesignError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoWalker(error) => write!(f, "{error}"),
-            Self::NoStep(error) => write!(f, "{error}"),
-            Self::NoDerivatives => write!(f, "the plant has no derivatives of its dynamics"),
-            Self::Infeasible(Violated { what, phase, t_s, residual, unit }) => write!(
-                f,
-                "no step meets all constraints: {what} is violated most, in phase `{phase}` at \
-                 {t_s:.3} s, by {residual:.2e} {unit}"
-            ),
-            Self::Unstable(Some(least)) => write!(
-                f,
-                "no gains that were tried keep the largest multiplier below its bound; the least \
-                 found is {least:.3}"
-            ),
-            Self::Unstable(None) => {
-                write!(f, "with none of the gains that were tried the walk comes to a cycle")
-            }
-            Self::Following(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl std::error::Error for DesignError {}
-
-impl From<FollowingError> for DesignError {
-    fn from(error: FollowingError) -> Self {
-        Self::Following(error)
-    }
-}
-
 /// Weights of squared torques beside the cost of transport, one stage after the other: the pure
 /// cost alone makes walks that hardly use their joints, and fall at the least push.
 const TORQUE_WEIGHTS: [f64; 2] = [0.3, 0.1];
@@ -170,15 +106,12 @@ const DRIFT: f64 = 5e-3;
 const ROUNDING: f64 = 0.01;
 
 /// Designs a limit cycle; deterministic.
-pub fn design(
-    plant: &mut dyn Plant,
-    problem: &LimitCycleProblem,
-) -> Result<LimitCycle, DesignError> {
-    let legs = Legs::of(plant).map_err(DesignError::NoWalker)?;
+pub fn design(plant: &mut dyn Plant, problem: &LimitCycleProblem) -> Result<LimitCycle, Error> {
+    let legs = Legs::of(plant)?;
     let phases = problem.phases.clone().unwrap_or_else(|| phases_of(problem.aspects));
     check(&phases).map_err(DesignError::NoStep)?;
     if !has_derivatives(plant) {
-        return Err(DesignError::NoDerivatives);
+        return Err(DesignError::NoDerivatives.into());
     }
     let intervals = problem.intervals;
     let mut designer = Designer { plant, problem, legs, phases, intervals, stages: Vec::new() };
@@ -190,7 +123,7 @@ pub fn design(
             Err(least) => unstable = least.or(unstable),
         }
     }
-    Err(DesignError::Unstable(unstable))
+    Err(DesignError::Unstable(unstable).into())
 }
 
 fn has_derivatives(plant: &mut dyn Plant) -> bool {
@@ -234,7 +167,7 @@ impl Designer<'_> {
         torque: f64,
         [firmness, softness]: [f64; 2],
         start: Option<&[f64]>,
-    ) -> Result<(Vec<f64>, Plan), DesignError> {
+    ) -> Result<(Vec<f64>, Plan), Error> {
         let problem = self.problem;
         let contact_force = firmness * problem.limits.contact_force;
         let limits = StepLimits { contact_force, ..limits_of(problem) };
@@ -264,7 +197,7 @@ impl Designer<'_> {
                 cost_of_transport: None,
             });
             if found.violation > FEASIBLE {
-                return Err(DesignError::Infeasible(most_violated(&step, &found)));
+                return Err(DesignError::Infeasible(most_violated(&step, &found)).into());
             }
             let drift = step.drift(&found.x);
             if drift.residual <= DRIFT * step.units.length_m {
@@ -273,14 +206,14 @@ impl Designer<'_> {
                 return Ok((found.x, Plan { step: planned, cost_of_transport, torque_squared }));
             }
             if self.intervals > problem.intervals {
-                return Err(DesignError::Infeasible(drift));
+                return Err(DesignError::Infeasible(drift).into());
             }
             self.intervals *= 2;
         }
     }
 
     /// Searches gains for a plan; the least of the largest multipliers if there are none.
-    fn gains(&mut self, plan: Plan) -> Result<Result<Gait, Option<f64>>, DesignError> {
+    fn gains(&mut self, plan: Plan) -> Result<Result<Gait, Option<f64>>, Error> {
         let (bound, steps) = (self.problem.largest_multiplier, self.problem.steps);
         let outcome = search(self.plant, &plan.step, bound, steps)?;
         let stage = self.stages.last_mut();
@@ -307,7 +240,7 @@ impl Designer<'_> {
         mut gait: Gait,
         mut x: Vec<f64>,
         firmness: [f64; 2],
-    ) -> Result<LimitCycle, DesignError> {
+    ) -> Result<LimitCycle, Error> {
         let weights: &[f64] = match self.problem.cost {
             CostKind::CostOfTransport => &TORQUE_WEIGHTS,
             CostKind::TorqueSquared => &[],

@@ -3,10 +3,11 @@
 use super::legs::Leg;
 use super::planned::{PlannedPhase, PlannedStep};
 use super::stance_foot::StanceFoot;
+use crate::error::{DesignError, Error};
 use denavit_plants::Plant;
 use denavit_plants::trajectory::{Reference, TrajectoryError};
 use denavit_simulate::integrate::{Accuracy, Method};
-use denavit_simulate::{Control, JointControl, Run, Simulation, StartError, State, simulate};
+use denavit_simulate::{Control, JointControl, Run, Simulation, State, simulate};
 
 /// Gains of a leg's joints: hip, knee, ankle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +29,7 @@ impl Gains {
         step: &PlannedStep,
         stiffness: f64,
         damping_s: f64,
-    ) -> Result<Self, FollowingError> {
+    ) -> Result<Self, Error> {
         let inertia = moved_inertias(plant, step)?;
         let leg = step.legs.swing;
         let flying = [leg.hip, leg.knee, leg.ankle]
@@ -39,10 +40,10 @@ impl Gains {
 
 /// The inertia that each joint moves at mid-swing while the others stand still and the stance foot
 /// stays on the ground [kg m^2].
-fn moved_inertias(plant: &mut dyn Plant, step: &PlannedStep) -> Result<Vec<f64>, FollowingError> {
+fn moved_inertias(plant: &mut dyn Plant, step: &PlannedStep) -> Result<Vec<f64>, Error> {
     let legs = step.legs.clone();
     let n = legs.coordinates;
-    let [q, ..] = step.motion(step.mid_swing().1).map_err(FollowingError::Reference)?;
+    let [q, ..] = step.motion(step.mid_swing().1).map_err(DesignError::Reference)?;
     let mut mass = vec![0.0; n * n];
     plant.mass_matrix(&q, &mut mass);
     let mut foot = StanceFoot::at_mid_swing(step);
@@ -147,11 +148,11 @@ pub fn walk(
     gains: &Gains,
     start: &State,
     steps: usize,
-) -> Result<Walk, FollowingError> {
-    let control = control(plant, step, gains).map_err(FollowingError::Reference)?;
+) -> Result<Walk, Error> {
+    let control = control(plant, step, gains).map_err(DesignError::Reference)?;
     let end_s = start.t_s + steps as f64 * step.period_s;
     let simulation = simulation(end_s, step.period_s / 400.0);
-    let run = simulate(plant, &control, start, &simulation).map_err(FollowingError::Start)?;
+    let run = simulate(plant, &control, start, &simulation).map_err(DesignError::Start)?;
     let walked = (run.end.t_s - start.t_s) / step.period_s + 1e-9;
     let half = start.t_s + 0.5 * steps as f64 * step.period_s;
     let figures = Figures::of(&run, step, plant.model(), half);
@@ -165,26 +166,6 @@ pub fn walk(
         run,
     })
 }
-
-/// Why a walk could not be simulated.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FollowingError {
-    /// The plan makes no references.
-    Reference(TrajectoryError),
-    /// The run cannot begin.
-    Start(StartError),
-}
-
-impl std::fmt::Display for FollowingError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Reference(error) => write!(f, "{error}"),
-            Self::Start(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl std::error::Error for FollowingError {}
 
 /// Sums over a log.
 #[derive(Default)]

@@ -1,9 +1,10 @@
 //! The gains of a planned step, by search: the softest by which it walks as steadily as asked for.
 
-use super::following::{FollowingError, Gains, Walk, walk};
+use super::following::{Gains, Walk, walk};
 use super::layout::Units;
 use super::planned::PlannedStep;
 use super::section::{Cycle, Section};
+use crate::error::Error;
 use denavit_plants::Plant;
 use denavit_simulate::Stop;
 
@@ -56,7 +57,7 @@ pub(super) fn search(
     step: &PlannedStep,
     bound: f64,
     steps: usize,
-) -> Result<Outcome, FollowingError> {
+) -> Result<Outcome, Error> {
     let units = Units::of(&step.legs);
     let mut least: Option<f64> = None;
     for [stiffness, damping] in TRIED {
@@ -81,7 +82,7 @@ fn settled_cycle(
     plant: &mut dyn Plant,
     step: &PlannedStep,
     gains: &Gains,
-) -> Result<Option<Cycle>, FollowingError> {
+) -> Result<Option<Cycle>, Error> {
     let mut section = Section::new(plant, step, gains)?;
     let start = section.planned()?;
     let Some(settled) = section.repeat(&start, SETTLING_STEPS)? else { return Ok(None) };

@@ -1,5 +1,6 @@
 //! Two legs in a plane: which coordinates and contact points are whose, and how legs swap.
 
+use crate::error::{DesignError, Error};
 use denavit_plants::{Plant, PlantModel};
 
 /// A contact point of a walker, seen from the step: the stance leg carries it until the swing leg
@@ -91,24 +92,17 @@ pub struct Legs {
     pub leg_m: f64,
 }
 
-/// The plant is no planar walker; holds what it lacks.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoWalker(pub String);
-
-impl std::fmt::Display for NoWalker {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the gait is one of planar walkers with two legs: there is no {}", self.0)
-    }
+/// The plant is no planar walker: there is no such part.
+fn lacks(what: String) -> Error {
+    DesignError::NoWalker(what).into()
 }
 
-impl std::error::Error for NoWalker {}
-
-fn joint(model: &PlantModel, name: &str) -> Result<usize, NoWalker> {
+fn joint(model: &PlantModel, name: &str) -> Result<usize, Error> {
     let found = model.joints.iter().position(|joint| joint.name == name);
-    found.ok_or_else(|| NoWalker(format!("joint `{name}`")))
+    found.ok_or_else(|| lacks(format!("joint `{name}`")))
 }
 
-fn leg(model: &PlantModel, side: &str) -> Result<Leg, NoWalker> {
+fn leg(model: &PlantModel, side: &str) -> Result<Leg, Error> {
     let part = |name: &str| joint(model, &format!("{side}_{name}"));
     Ok(Leg { hip: part("hip")?, knee: part("knee")?, ankle: part("ankle")? })
 }
@@ -124,17 +118,17 @@ fn mirrored(name: &str) -> String {
 
 impl Legs {
     /// The legs of a plant, by the names of joints and contact points.
-    pub fn of(plant: &mut dyn Plant) -> Result<Self, NoWalker> {
+    pub fn of(plant: &mut dyn Plant) -> Result<Self, Error> {
         let model = plant.model().clone();
         if !model.planar {
-            return Err(NoWalker("plane that it moves in".to_owned()));
+            return Err(lacks("plane that it moves in".to_owned()));
         }
         let gravity = model
             .fall_onto_level_ground()
-            .ok_or_else(|| NoWalker("gravity straight down onto level ground".to_owned()))?;
+            .ok_or_else(|| lacks("gravity straight down onto level ground".to_owned()))?;
         let contact = |name: &str| {
             let found = model.contacts.iter().position(|contact| contact.name == name);
-            found.ok_or_else(|| NoWalker(format!("contact point `{name}`")))
+            found.ok_or_else(|| lacks(format!("contact point `{name}`")))
         };
         let names = model.joints.iter().map(|own| joint(&model, &mirrored(&own.name)));
         let mirror = names.collect::<Result<Vec<_>, _>>()?;
@@ -143,7 +137,7 @@ impl Legs {
         let (stance, swing) = (leg(&model, "right")?, leg(&model, "left")?);
         let known = [stance.hip, stance.knee, stance.ankle, swing.hip, swing.knee, swing.ankle];
         if let Some(other) = driven.iter().find(|index| !known.contains(index)) {
-            return Err(NoWalker(format!("place for the joint `{}`", model.joints[*other].name)));
+            return Err(lacks(format!("place for the joint `{}`", model.joints[*other].name)));
         }
         let mut legs = Self {
             coordinates: model.joints.len(),
@@ -169,7 +163,7 @@ impl Legs {
         plant.contact_positions(&vec![0.0; legs.coordinates], &mut positions);
         legs.leg_m = -positions[3 * legs.contact(Role::StanceHeel) + 2];
         if !(legs.leg_m > 0.0 && legs.mass_kg > 0.0) {
-            return Err(NoWalker("weight on legs below a hip".to_owned()));
+            return Err(lacks("weight on legs below a hip".to_owned()));
         }
         Ok(legs)
     }

@@ -37,14 +37,13 @@ mod transition_rows;
 
 pub use crate::scenario_file::ScenarioHead;
 pub use cost::CostKind;
-pub use design::{DesignError, LimitCycle, LimitCycleProblem, Stage, Violated, design};
-pub use following::{FollowingError, Gains, Walk, control, simulation, walk};
+pub use design::{LimitCycle, LimitCycleProblem, Stage, design};
+pub use following::{Gains, Walk, control, simulation, walk};
 pub use guess::Guess;
-pub use legs::{Leg, Legs, NoWalker, Role};
+pub use legs::{Leg, Legs, Role};
 pub use limits::StepLimits;
-pub use phases::{
-    Aspects, Axis, NoStep, Phase, Transition, check as check_phases, phases_of, transitions,
-};
+pub(crate) use phases::check as check_phases;
+pub use phases::{Aspects, Axis, Phase, Transition, phases_of, transitions};
 pub use planned::{PlannedPhase, PlannedStep};
 pub use program::{Linearisation, Program};
 pub use scenario_text::scenario_text;

@@ -1,6 +1,7 @@
 //! The phases of a step as data: which contacts are closed in each, and what lies between two.
 
 use super::legs::Role;
+use crate::error::NoStep;
 
 /// A part of a step in which the closed contacts stay.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,34 +109,8 @@ pub fn transitions(phases: &[Phase]) -> Vec<Transition> {
     (0..phases.len()).map(between).collect()
 }
 
-/// Why a list of phases is no step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoStep {
-    /// There are no phases.
-    Empty,
-    /// The robot flies in this phase: no contact is closed.
-    Flight(usize),
-    /// No contact of the swing foot closes.
-    NoTouchdown,
-    /// The stance foot never stands flat, so that nothing can be said of its stability.
-    NeverFlat,
-}
-
-impl std::fmt::Display for NoStep {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Empty => write!(f, "a step has at least one phase"),
-            Self::Flight(phase) => write!(f, "no contact is closed in phase {}", phase + 1),
-            Self::NoTouchdown => write!(f, "the swing foot never touches the ground"),
-            Self::NeverFlat => {
-                write!(f, "in no phase the stance foot alone stands on heel and toe")
-            }
-        }
-    }
-}
-
 /// Checks that phases make a step.
-pub fn check(phases: &[Phase]) -> Result<(), NoStep> {
+pub(crate) fn check(phases: &[Phase]) -> Result<(), NoStep> {
     if phases.is_empty() {
         return Err(NoStep::Empty);
     }

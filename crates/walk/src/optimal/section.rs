@@ -4,9 +4,10 @@
 //! by joint positions and velocities alone: the base follows kinematically from the foot that
 //! stands, so that every perturbation stays inside the contact manifold.
 
-use super::following::{FollowingError, Gains, control, simulation};
+use super::following::{Gains, control, simulation};
 use super::planned::PlannedStep;
 use super::stance_foot::StanceFoot;
+use crate::error::{DesignError, Error};
 use denavit_plants::Plant;
 use denavit_simulate::{Control, State, Stop, simulate};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -49,15 +50,15 @@ impl<'a> Section<'a> {
         plant: &'a mut dyn Plant,
         step: &'a PlannedStep,
         gains: &Gains,
-    ) -> Result<Self, FollowingError> {
-        let control = control(plant, step, gains).map_err(FollowingError::Reference)?;
+    ) -> Result<Self, Error> {
+        let control = control(plant, step, gains).map_err(DesignError::Reference)?;
         let (foot, t_s) = (StanceFoot::at_mid_swing(step), step.mid_swing().1);
         Ok(Self { plant, step, control, t_s, foot })
     }
 
     /// Joint positions and velocities of the plan.
-    pub(super) fn planned(&self) -> Result<Vec<f64>, FollowingError> {
-        let [q, qd, _] = self.step.motion(self.t_s).map_err(FollowingError::Reference)?;
+    pub(super) fn planned(&self) -> Result<Vec<f64>, Error> {
+        let [q, qd, _] = self.step.motion(self.t_s).map_err(DesignError::Reference)?;
         let driven = &self.step.legs.driven;
         Ok(driven.iter().map(|j| q[*j]).chain(driven.iter().map(|j| qd[*j])).collect())
     }
@@ -78,16 +79,12 @@ impl<'a> Section<'a> {
 
     /// Joint positions and velocities one step later, with the legs swapped; none if the walk
     /// ended before, or stands on other contacts.
-    pub(super) fn map(&mut self, z: &[f64]) -> Result<Option<Vec<f64>>, FollowingError> {
+    pub(super) fn map(&mut self, z: &[f64]) -> Result<Option<Vec<f64>>, Error> {
         self.repeat(z, 1)
     }
 
     /// As `map`, so many steps later.
-    pub(super) fn repeat(
-        &mut self,
-        z: &[f64],
-        steps: usize,
-    ) -> Result<Option<Vec<f64>>, FollowingError> {
+    pub(super) fn repeat(&mut self, z: &[f64], steps: usize) -> Result<Option<Vec<f64>>, Error> {
         let state = self.state(z);
         let end_s = self.t_s + steps as f64 * self.step.period_s;
         let run = simulate(self.plant, &self.control, &state, &simulation(end_s, end_s));
@@ -109,7 +106,7 @@ impl<'a> Section<'a> {
     }
 
     /// The derivative of the map, by central differences; none if a walk ended before.
-    fn derivative(&mut self, z: &[f64]) -> Result<Option<DMatrix<f64>>, FollowingError> {
+    fn derivative(&mut self, z: &[f64]) -> Result<Option<DMatrix<f64>>, Error> {
         let mut matrix = DMatrix::zeros(z.len(), z.len());
         for column in 0..z.len() {
             let mut sides = Vec::new();
@@ -134,7 +131,7 @@ impl<'a> Section<'a> {
         &mut self,
         mut z: Vec<f64>,
         iterations: usize,
-    ) -> Result<Option<Cycle>, FollowingError> {
+    ) -> Result<Option<Cycle>, Error> {
         let size = z.len();
         let Some(matrix) = self.derivative(&z)? else { return Ok(None) };
         let mut residual = f64::INFINITY;

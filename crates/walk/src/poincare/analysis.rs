@@ -2,16 +2,16 @@
 //! found.
 
 use super::convergence::{Convergence, converge};
-use super::cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
+use super::cycle::{FixedPoint, by_differences, by_variation, fixed_point};
 use super::multipliers::{Multiplier, multipliers};
 use super::rhythm::{NotPeriodic, Rhythm};
 use super::section::{ReturnMap, Section};
+use crate::error::{CycleError, Error};
 use denavit_plants::Plant;
 use denavit_simulate::integrate::{Accuracy, Method};
 use denavit_simulate::scenario::Scenario;
-use denavit_simulate::{EventKind, Run, Simulation, StartError, State, Stop, simulate};
+use denavit_simulate::{EventKind, Run, Simulation, State, Stop, simulate};
 use nalgebra::DMatrix;
-use std::fmt;
 
 /// Where a gait is to be looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,46 +75,6 @@ pub struct PoincareAnalysis {
     pub convergence: Option<Convergence>,
 }
 
-/// Why there is no analysis.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PoincareError {
-    /// A reference does not repeat itself; holds the joint's name.
-    NotPeriodic(String),
-    /// The run of the scenario does not begin.
-    Start(StartError),
-    /// It stops before the cycle is reached, at this time \[s\].
-    Stopped(Stop, f64),
-    /// The swing foot does not strike in time \[s\].
-    NoStrike(f64),
-    /// The scenario pushes the robot.
-    Pushed,
-    /// A section of the clock of a controller that has none.
-    NoClock,
-    /// There is no cycle.
-    Cycle(CycleError),
-    /// The multipliers do not converge.
-    Multipliers,
-}
-
-impl fmt::Display for PoincareError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotPeriodic(joint) => {
-                write!(f, "the reference of `{joint}` does not repeat itself: there is no cycle")
-            }
-            Self::Start(error) => write!(f, "{error}"),
-            Self::Stopped(stop, t_s) => write!(f, "at {t_s:.6} s the run {stop}"),
-            Self::NoStrike(t_s) => write!(f, "no foot strikes the ground within {t_s} s"),
-            Self::Pushed => write!(f, "pushes come once: with them there is no cycle"),
-            Self::NoClock => write!(f, "the controller has no clock, and so no phase"),
-            Self::Cycle(error) => write!(f, "{error}"),
-            Self::Multipliers => write!(f, "the multipliers do not converge"),
-        }
-    }
-}
-
-impl std::error::Error for PoincareError {}
-
 /// Sections nearer to an event than this share of the cycle are not looked at.
 const CLEAR: f64 = 0.04;
 /// Multipliers below this may differ between sections: deviations that die within a step leave
@@ -132,13 +92,13 @@ const SECTIONS: usize = 3;
 pub fn analyse(
     scenario: &mut Scenario,
     options: &PoincareOptions,
-) -> Result<PoincareAnalysis, PoincareError> {
+) -> Result<PoincareAnalysis, Error> {
     if !scenario.simulation.pushes.is_empty() {
-        return Err(PoincareError::Pushed);
+        return Err(CycleError::Pushed.into());
     }
     let plant = scenario.plant.as_mut();
     let rhythm = Rhythm::of(plant, &scenario.control).map_err(|NotPeriodic(joint)| {
-        PoincareError::NotPeriodic(plant.model().joints[joint].name.clone())
+        CycleError::NotPeriodic(plant.model().joints[joint].name.clone())
     })?;
     let mut map = ReturnMap {
         plant,
@@ -151,13 +111,13 @@ pub fn analyse(
         clock_s: rhythm.clock_s,
     };
     let near = approach(&mut map, &scenario.initial, options)?;
-    let cycle = fixed_point(&mut map, &near).map_err(PoincareError::Cycle)?;
+    let cycle = fixed_point(&mut map, &near)?;
     let matrix = monodromy(&mut map, &cycle)?;
-    let own = multipliers(&matrix).ok_or(PoincareError::Multipliers)?;
+    let own = multipliers(&matrix).ok_or(CycleError::Multipliers)?;
     let section = map.section;
     let is_clock = matches!(section, Section::Clock { .. });
     let methods_apart = if options.checks && is_clock {
-        let other = by_differences(&mut map, &cycle.chart).map_err(PoincareError::Cycle)?;
+        let other = by_differences(&mut map, &cycle.chart)?;
         Some((&matrix - other).amax())
     } else {
         None
@@ -227,9 +187,9 @@ fn accurate(simulation: &Simulation) -> Simulation {
     Simulation { method, ..simulation.clone() }
 }
 
-fn run(map: &mut ReturnMap<'_>, start: &State, end_s: f64) -> Result<Run, PoincareError> {
+fn run(map: &mut ReturnMap<'_>, start: &State, end_s: f64) -> Result<Run, Error> {
     let simulation = Simulation { end_s, log_period_s: end_s.max(1.0), ..map.simulation.clone() };
-    simulate(map.plant, map.control, start, &simulation).map_err(PoincareError::Start)
+    Ok(simulate(map.plant, map.control, start, &simulation).map_err(CycleError::Start)?)
 }
 
 /// Walks some steps from the start, chooses the section, and returns a state on it.
@@ -237,19 +197,19 @@ fn approach(
     map: &mut ReturnMap<'_>,
     initial: &State,
     options: &PoincareOptions,
-) -> Result<State, PoincareError> {
+) -> Result<State, Error> {
     let Some(period_s) = map.clock_s else {
         if let WantedSection::Phase(_) = options.section {
-            return Err(PoincareError::NoClock);
+            return Err(CycleError::NoClock.into());
         }
         return first_strike(map, initial, options.patience_s);
     };
     let start_s = initial.t_s + options.approach_steps as f64 * period_s;
-    let until = |map: &mut ReturnMap<'_>, from: &State, end_s: f64| {
+    let until = |map: &mut ReturnMap<'_>, from: &State, end_s: f64| -> Result<Run, Error> {
         let run = run(map, from, end_s)?;
         match run.stop {
             Stop::End => Ok(run),
-            stop => Err(PoincareError::Stopped(stop, run.end.t_s)),
+            stop => Err(CycleError::Stopped(stop, run.end.t_s).into()),
         }
     };
     let begun = until(map, initial, start_s)?.end;
@@ -278,11 +238,7 @@ fn approach(
 }
 
 /// The first strike of a walker without a clock.
-fn first_strike(
-    map: &mut ReturnMap<'_>,
-    initial: &State,
-    patience_s: f64,
-) -> Result<State, PoincareError> {
+fn first_strike(map: &mut ReturnMap<'_>, initial: &State, patience_s: f64) -> Result<State, Error> {
     let run = run(map, initial, initial.t_s + patience_s)?;
     let strike = run.events.iter().find_map(|event| match event.kind {
         EventKind::Touch(contact) => Some((contact, event)),
@@ -290,8 +246,8 @@ fn first_strike(
     });
     let Some((contact, event)) = strike else {
         return Err(match run.stop {
-            Stop::End => PoincareError::NoStrike(patience_s),
-            stop => PoincareError::Stopped(stop, run.end.t_s),
+            Stop::End => CycleError::NoStrike(patience_s).into(),
+            stop => CycleError::Stopped(stop, run.end.t_s).into(),
         });
     };
     map.section = Section::Touch(contact);
@@ -300,11 +256,7 @@ fn first_strike(
 }
 
 /// The strongest impact in a cycle of the clock.
-fn strike_of_clock(
-    map: &mut ReturnMap<'_>,
-    begun: &State,
-    period_s: f64,
-) -> Result<State, PoincareError> {
+fn strike_of_clock(map: &mut ReturnMap<'_>, begun: &State, period_s: f64) -> Result<State, Error> {
     let run = run(map, begun, begun.t_s + period_s)?;
     let strength = |event: &denavit_simulate::Event| {
         event.impulses.iter().map(|(_, p)| p.iter().map(|x| x * x).sum::<f64>()).sum::<f64>()
@@ -314,7 +266,9 @@ fn strike_of_clock(
         _ => None,
     });
     let strongest = touches.max_by(|a, b| strength(a.1).total_cmp(&strength(b.1)));
-    let Some((contact, event)) = strongest else { return Err(PoincareError::NoStrike(period_s)) };
+    let Some((contact, event)) = strongest else {
+        return Err(CycleError::NoStrike(period_s).into());
+    };
     map.section = Section::Touch(contact);
     map.patience_s = 1.5 * period_s;
     let (q, qd) = (event.q.clone(), event.after.clone());
@@ -335,14 +289,14 @@ fn quiet_times(run: &Run, start_s: f64, period_s: f64) -> Vec<(f64, f64)> {
     quiet
 }
 
-fn monodromy(map: &mut ReturnMap<'_>, cycle: &FixedPoint) -> Result<DMatrix<f64>, PoincareError> {
+fn monodromy(map: &mut ReturnMap<'_>, cycle: &FixedPoint) -> Result<DMatrix<f64>, Error> {
     let varied = match map.section {
         Section::Clock { .. } => by_variation(map, &cycle.chart, cycle.period_s).ok(),
         _ => None,
     };
     match varied {
         Some(matrix) => Ok(matrix),
-        None => by_differences(map, &cycle.chart).map_err(PoincareError::Cycle),
+        None => by_differences(map, &cycle.chart),
     }
 }
 
@@ -351,7 +305,7 @@ fn spread(
     map: &mut ReturnMap<'_>,
     cycle: &FixedPoint,
     own: &[Multiplier],
-) -> Result<Option<(f64, usize)>, PoincareError> {
+) -> Result<Option<(f64, usize)>, Error> {
     let start = cycle.chart.base.clone();
     let step = run(map, &start, start.t_s + cycle.period_s)?;
     let section = map.section;
@@ -363,11 +317,9 @@ fn spread(
             near = map.exchanged(near);
         }
         map.section = Section::Clock { at_s: near.t_s, period_s: cycle.period_s };
-        let found = fixed_point(map, &near)
-            .map_err(PoincareError::Cycle)
-            .and_then(|other| monodromy(map, &other));
+        let found = fixed_point(map, &near).and_then(|other| monodromy(map, &other));
         map.section = section;
-        let found = multipliers(&found?).ok_or(PoincareError::Multipliers)?;
+        let found = multipliers(&found?).ok_or(CycleError::Multipliers)?;
         apart = apart.max(distance(own, &found)).max(distance(&found, own));
         count += 1;
     }

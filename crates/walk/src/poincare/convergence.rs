@@ -2,7 +2,8 @@
 
 use super::cycle::FixedPoint;
 use super::multipliers::Multiplier;
-use super::section::{ReturnError, ReturnMap};
+use super::section::ReturnMap;
+use crate::error::Error;
 use denavit_plants::PlantModel;
 use denavit_simulate::State;
 
@@ -18,7 +19,7 @@ pub struct Convergence {
     /// contacts, at the start and after each cycle [rad, rad/s, m, m/s].
     pub lengths: Vec<f64>,
     /// Why the robot did not come back again.
-    pub stopped: Option<ReturnError>,
+    pub stopped: Option<Error>,
 }
 
 /// Deviations are not followed further down [rad, rad/s]: what is left then is error.

@@ -1,10 +1,11 @@
 //! A cycle of a robot that walks: its fixed point on a section, and the linearised return map.
 
 use super::chart::Chart;
-use super::section::{ReturnError, ReturnMap, Returned, Section};
+use super::section::{ReturnMap, Returned, Section};
 use super::symmetry::{Symmetry, find};
+use crate::error::{CycleError, Error};
 use crate::leg_exchange::LegExchange;
-use denavit_simulate::{Simulation, State, VariationError, simulate_varied};
+use denavit_simulate::{Simulation, State, simulate_varied};
 use nalgebra::{DMatrix, DVector};
 
 /// A state that comes back to itself.
@@ -24,34 +25,6 @@ pub struct FixedPoint {
     pub travel_m: [f64; 3],
 }
 
-/// Why there is no cycle.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CycleError {
-    /// A state near the cycle does not come back.
-    Return(ReturnError),
-    /// Newton's method does not find one; holds the least residual.
-    NotFound(f64),
-    /// The cycle has no first-order changes.
-    Variation(VariationError),
-    /// What comes back has other contacts closed.
-    OtherContacts,
-}
-
-impl std::fmt::Display for CycleError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Return(error) => write!(f, "{error}"),
-            Self::NotFound(residual) => {
-                write!(f, "no cycle was found: what comes nearest misses itself by {residual:.1e}")
-            }
-            Self::Variation(error) => write!(f, "{error}"),
-            Self::OtherContacts => write!(f, "after a cycle other contacts are closed"),
-        }
-    }
-}
-
-impl std::error::Error for CycleError {}
-
 /// Half the distance of differences of the return map [rad, rad/s].
 const DIFFERENCE: f64 = 2e-5;
 /// A state this near to itself is a fixed point [rad, rad/s].
@@ -70,10 +43,10 @@ const SLOW: f64 = 0.2;
 ///
 /// # Errors
 /// States that do not come back, or no convergence.
-pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, CycleError> {
+pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, Error> {
     let symmetries = find(map.plant, map.control);
     let mut state = near.clone();
-    let mut returned = map.apply(&state).map_err(CycleError::Return)?;
+    let mut returned = map.apply(&state)?;
     let mut matrix: Option<DMatrix<f64>> = None;
     let mut best: Option<(f64, State)> = None;
     for _ in 0..ITERATIONS {
@@ -101,16 +74,16 @@ pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, 
         let size = chart.len();
         let newton = (DMatrix::identity(size, size) - &jacobian).lu().solve(&missed);
         let Some(step) = newton.filter(|step| step.iter().all(|entry| entry.is_finite())) else {
-            return Err(CycleError::NotFound(residual));
+            return Err(CycleError::NotFound(residual).into());
         };
         matrix = Some(jacobian);
         (state, returned) = advance(map, &chart, step.as_slice(), returned.took_s)?;
     }
     let (residual, state) = best.unwrap_or_else(|| (f64::INFINITY, near.clone()));
     if residual >= NEARLY_FIXED {
-        return Err(CycleError::NotFound(residual));
+        return Err(CycleError::NotFound(residual).into());
     }
-    let returned = map.apply(&state).map_err(CycleError::Return)?;
+    let returned = map.apply(&state)?;
     let chart = chart(map, &symmetries, &state, &returned);
     let travel_m = travel(map, &state, &returned);
     let (exchange, closed, period_s) = (map.exchange.clone(), returned.closed, returned.took_s);
@@ -118,11 +91,7 @@ pub fn fixed_point(map: &mut ReturnMap<'_>, near: &State) -> Result<FixedPoint, 
 }
 
 /// The linearised map in the quicker way, where that can be gone.
-fn linearised(
-    map: &mut ReturnMap<'_>,
-    chart: &Chart,
-    took_s: f64,
-) -> Result<DMatrix<f64>, CycleError> {
+fn linearised(map: &mut ReturnMap<'_>, chart: &Chart, took_s: f64) -> Result<DMatrix<f64>, Error> {
     if matches!(map.section, Section::Clock { .. })
         && map.cycles == 1
         && let Ok(matrix) = by_variation(map, chart, took_s)
@@ -138,7 +107,7 @@ fn advance(
     chart: &Chart,
     step: &[f64],
     took_s: f64,
-) -> Result<(State, Returned), CycleError> {
+) -> Result<(State, Returned), Error> {
     // a time on the clock far from here is that of another cycle
     let later_s = chart.later_s(step).abs();
     let mut share = if later_s > LATER * took_s { LATER * took_s / later_s } else { 1.0 };
@@ -147,7 +116,7 @@ fn advance(
         let state = chart.state(map.plant, &part);
         match map.apply(&state) {
             Ok(returned) => return Ok((state, returned)),
-            Err(error) if share < LEAST_SHARE => return Err(CycleError::Return(error)),
+            Err(error) if share < LEAST_SHARE => return Err(error),
             Err(_) => share *= 0.5,
         }
     }
@@ -176,7 +145,7 @@ fn chart(
 ///
 /// # Errors
 /// States that do not come back.
-pub fn by_differences(map: &mut ReturnMap<'_>, chart: &Chart) -> Result<DMatrix<f64>, CycleError> {
+pub fn by_differences(map: &mut ReturnMap<'_>, chart: &Chart) -> Result<DMatrix<f64>, Error> {
     let size = chart.len();
     let mut matrix = DMatrix::zeros(size, size);
     let mut coordinates = vec![0.0; size];
@@ -185,8 +154,8 @@ pub fn by_differences(map: &mut ReturnMap<'_>, chart: &Chart) -> Result<DMatrix<
             coordinates[column] = share * DIFFERENCE;
             let state = chart.state(map.plant, &coordinates);
             coordinates[column] = 0.0;
-            let returned = map.apply(&state).map_err(CycleError::Return)?;
-            Ok(chart.coordinates(&returned.state))
+            let returned = map.apply(&state)?;
+            Ok::<_, Error>(chart.coordinates(&returned.state))
         };
         let [far, ahead, behind, far_behind] = [at(2.0)?, at(1.0)?, at(-1.0)?, at(-2.0)?];
         for row in 0..size {
@@ -206,7 +175,7 @@ pub fn by_variation(
     map: &mut ReturnMap<'_>,
     chart: &Chart,
     period_s: f64,
-) -> Result<DMatrix<f64>, CycleError> {
+) -> Result<DMatrix<f64>, Error> {
     let size = chart.len();
     let unit = |column: usize| {
         let coordinates: Vec<f64> = (0..size).map(|k| f64::from(u8::from(k == column))).collect();

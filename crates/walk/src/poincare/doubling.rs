@@ -1,7 +1,7 @@
 //! Period doubling: where a multiplier passes -1, a cycle of twice the steps branches off.
 
-use super::cycle::CycleError;
 use super::multipliers::Multiplier;
+use crate::error::Error;
 
 /// Bisections of a range: more resolve nothing.
 const HALVINGS: usize = 60;
@@ -15,11 +15,11 @@ const HALVINGS: usize = 60;
 /// # Errors
 /// Values without a cycle.
 pub fn doubling(
-    multipliers: &mut dyn FnMut(f64) -> Result<Vec<Multiplier>, CycleError>,
+    multipliers: &mut dyn FnMut(f64) -> Result<Vec<Multiplier>, Error>,
     [low, high]: [f64; 2],
     resolution: f64,
-) -> Result<Option<f64>, CycleError> {
-    let mut test = |value: f64| -> Result<f64, CycleError> {
+) -> Result<Option<f64>, Error> {
+    let mut test = |value: f64| -> Result<f64, Error> {
         let product = multipliers(value)?.iter().fold([1.0, 0.0], |[re, im], multiplier| {
             let [a, b] = [1.0 + multiplier.value[0], multiplier.value[1]];
             [re * a - im * b, re * b + im * a]

@@ -19,13 +19,13 @@ mod section;
 mod symmetry;
 mod wording;
 
-pub use analysis::{PoincareAnalysis, PoincareError, PoincareOptions, WantedSection, analyse};
+pub use analysis::{PoincareAnalysis, PoincareOptions, WantedSection, analyse};
 pub use chart::Chart;
 pub use convergence::{Convergence, converge};
-pub use cycle::{CycleError, FixedPoint, by_differences, by_variation, fixed_point};
+pub use cycle::{FixedPoint, by_differences, by_variation, fixed_point};
 pub use doubling::doubling;
 pub use multipliers::{Fate, Multiplier, multipliers};
 pub use rhythm::{NotPeriodic, Rhythm};
-pub use section::{ReturnError, ReturnMap, Returned, Section};
+pub use section::{ReturnMap, Returned, Section};
 pub use symmetry::Symmetry;
 pub use wording::{Share, shares};

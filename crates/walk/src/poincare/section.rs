@@ -1,9 +1,9 @@
 //! Where a cycle is looked at, and the map from there to the next time.
 
+use crate::error::{CycleError, Error};
 use crate::leg_exchange::LegExchange;
 use denavit_plants::Plant;
-use denavit_simulate::{Control, EventKind, Run, Simulation, StartError, State, Stop, simulate};
-use std::fmt;
+use denavit_simulate::{Control, EventKind, Run, Simulation, State, Stop, simulate};
 
 /// A section through a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,34 +53,6 @@ pub struct Returned {
     pub took_s: f64,
 }
 
-/// Why a state does not come back to its section.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ReturnError {
-    /// The run does not begin.
-    Start(StartError),
-    /// It ended otherwise, at this time \[s\].
-    Stopped(Stop, f64),
-    /// The event of the section did not happen in time; holds the time \[s\].
-    NoEvent(f64),
-    /// States of motors or laws are not recorded at events: a section of the clock is needed.
-    HiddenStates,
-}
-
-impl fmt::Display for ReturnError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Start(error) => write!(f, "{error}"),
-            Self::Stopped(stop, t_s) => write!(f, "at {t_s:.6} s the run {stop}"),
-            Self::NoEvent(t_s) => write!(f, "within {t_s} s the event of the section is not met"),
-            Self::HiddenStates => {
-                write!(f, "events do not record the states of motors and of effects")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ReturnError {}
-
 /// Events this soon after the start are those of the start \[s\].
 const SAME_EVENT_S: f64 = 1e-7;
 
@@ -89,7 +61,7 @@ impl ReturnMap<'_> {
     ///
     /// # Errors
     /// A run that stops, or that does not come back.
-    pub fn apply(&mut self, start: &State) -> Result<Returned, ReturnError> {
+    pub fn apply(&mut self, start: &State) -> Result<Returned, Error> {
         let mut returned = self.one_cycle(start)?;
         for _ in 1..self.cycles {
             let next = self.one_cycle(&returned.state)?;
@@ -98,12 +70,12 @@ impl ReturnMap<'_> {
         Ok(returned)
     }
 
-    fn one_cycle(&mut self, start: &State) -> Result<Returned, ReturnError> {
+    fn one_cycle(&mut self, start: &State) -> Result<Returned, Error> {
         match self.section {
             Section::Clock { period_s, .. } => {
                 let run = self.run(start, period_s)?;
                 if run.stop != Stop::End {
-                    return Err(ReturnError::Stopped(run.stop, run.end.t_s));
+                    return Err(CycleError::Stopped(run.stop, run.end.t_s).into());
                 }
                 Ok(self.returned(run.end, &run.closed, period_s))
             }
@@ -137,17 +109,17 @@ impl ReturnMap<'_> {
         state
     }
 
-    fn until_event(&mut self, start: &State, kind: &EventKind) -> Result<Returned, ReturnError> {
+    fn until_event(&mut self, start: &State, kind: &EventKind) -> Result<Returned, Error> {
         if !start.motor.is_empty() || self.plant.law_states() > 0 {
-            return Err(ReturnError::HiddenStates);
+            return Err(CycleError::HiddenStates.into());
         }
         let run = self.run(start, self.patience_s)?;
         let after_s = start.t_s + SAME_EVENT_S;
         let mut events = run.events.iter();
         let Some(event) = events.find(|event| event.t_s > after_s && event.kind == *kind) else {
             return Err(match run.stop {
-                Stop::End => ReturnError::NoEvent(self.patience_s),
-                stop => ReturnError::Stopped(stop, run.end.t_s),
+                Stop::End => CycleError::NoEvent(self.patience_s).into(),
+                stop => CycleError::Stopped(stop, run.end.t_s).into(),
             });
         };
         let (q, qd) = (event.q.clone(), event.after.clone());
@@ -156,11 +128,11 @@ impl ReturnMap<'_> {
         Ok(self.returned(state, &closed, event.t_s - start.t_s))
     }
 
-    fn run(&mut self, start: &State, length_s: f64) -> Result<Run, ReturnError> {
+    fn run(&mut self, start: &State, length_s: f64) -> Result<Run, Error> {
         let end_s = start.t_s + length_s;
         let simulation =
             Simulation { end_s, log_period_s: 2.0 * length_s, ..self.simulation.clone() };
-        simulate(self.plant, self.control, start, &simulation).map_err(ReturnError::Start)
+        Ok(simulate(self.plant, self.control, start, &simulation).map_err(CycleError::Start)?)
     }
 
     fn returned(&self, state: State, closed: &[usize], took_s: f64) -> Returned {

@@ -5,8 +5,7 @@ use denavit_plants::{Plant, planar_biped};
 use denavit_simulate::Stop;
 use denavit_walk::gait_file::{GaitKind, read_gait};
 use denavit_walk::optimal::{
-    CostKind, DesignError, LimitCycle, LimitCycleProblem, ScenarioHead, StepLimits, design,
-    scenario_text,
+    CostKind, LimitCycle, LimitCycleProblem, ScenarioHead, StepLimits, design, scenario_text,
 };
 
 fn biped() -> Box<dyn Plant> {
@@ -67,13 +66,11 @@ fn a_step_longer_than_the_legs_allow_is_told_by_its_worst_constraint() {
     let mut plant = biped();
     let limits = StepLimits { speed_m_s: 0.7, step_length_m: Some(1.6), ..StepLimits::default() };
     let problem = LimitCycleProblem { limits, intervals: 10, ..LimitCycleProblem::default() };
-    match design(plant.as_mut(), &problem) {
-        Err(DesignError::Infeasible(violated)) => {
-            assert!(violated.residual > 0.0 && !violated.what.is_empty());
-            assert!(violated.t_s >= 0.0 && !violated.phase.is_empty());
-        }
-        other => panic!("{other:?}"),
-    }
+    let error = design(plant.as_mut(), &problem).expect_err("legs are shorter");
+    assert_eq!(error.kind(), denavit_walk::ErrorKind::Infeasible, "{error}");
+    let violated = error.violated().expect("a constraint");
+    assert!(violated.residual > 0.0 && !violated.what.is_empty());
+    assert!(violated.t_s >= 0.0 && !violated.phase.is_empty());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use denavit_simulate::integrate::{Accuracy, Method};
 use denavit_simulate::{Control, Scuffing, Simulation, State, Touching};
 use denavit_walk::LegExchange;
 use denavit_walk::poincare::{
-    CycleError, Multiplier, ReturnMap, Section, by_differences, doubling, fixed_point, multipliers,
+    Multiplier, ReturnMap, Section, by_differences, doubling, fixed_point, multipliers,
 };
 use std::path::Path;
 
@@ -217,7 +217,7 @@ fn from_vertical(state: &State) -> [f64; 4] {
 #[test]
 fn the_compass_doubles_its_period_where_it_is_published_to() {
     let mut near = compass_state(COMPASS[3].1);
-    let mut at = |degrees: f64| -> Result<Vec<Multiplier>, CycleError> {
+    let mut at = |degrees: f64| -> Result<Vec<Multiplier>, denavit_walk::Error> {
         let (mut walker, control) = (compass(degrees), Control::passive(5));
         let mut map = compass_map(&mut walker, &control);
         // the last cycle, with the swing foot on this slope

@@ -8,7 +8,7 @@ use crate::observer::{Reading, Stage, Watched};
 use denavit_codegen::effect::{self, Effect};
 use denavit_identify::estimate::{IdentifiedParameter, Method, Options};
 use denavit_identify::{
-    Estimated, Identification, Request, UpdateError, UpdatedModel, estimated, updated_model,
+    Estimated, Identification, Request, UpdatedModel, estimated, updated_model,
 };
 use denavit_measure::condition::Conditioned;
 
@@ -21,7 +21,7 @@ pub(super) struct Estimation<'a> {
 }
 
 /// What is found, and the model with it.
-pub(super) type Found = (Identification, Result<UpdatedModel, UpdateError>);
+pub(super) type Found = (Identification, Result<UpdatedModel, denavit_identify::Error>);
 
 impl Estimation<'_> {
     /// All logs, for the first time.
@@ -56,7 +56,7 @@ impl Estimation<'_> {
     }
 
     fn estimated(&self, read: &Read, options: &Options) -> Result<Estimated, Error> {
-        let failed = |error| Cause::Estimate(self.work.model.model.clone(), error).into();
+        let failed = |error| Cause::Identify(self.work.model.model.clone(), error).into();
         estimated(self.request(read, options)).map_err(failed)
     }
 
@@ -67,7 +67,10 @@ impl Estimation<'_> {
     }
 
     /// The model with what is found.
-    pub(super) fn updated(&self, found: &Identification) -> Result<UpdatedModel, UpdateError> {
+    pub(super) fn updated(
+        &self,
+        found: &Identification,
+    ) -> Result<UpdatedModel, denavit_identify::Error> {
         let Work { robot, model, .. } = self.work;
         let (bodies, listed) = (&found.consistent, &found.parameters);
         let updated = updated_model(robot, model, bodies, listed, self.source);
@@ -198,8 +201,11 @@ fn growth_of_errors(parameters: &[IdentifiedParameter], others: &[IdentifiedPara
 }
 
 /// The identified model with all of its effects: what is simulated.
-fn with_all_effects(updated: UpdatedModel, own: &[Effect]) -> Result<UpdatedModel, UpdateError> {
+fn with_all_effects(
+    updated: UpdatedModel,
+    own: &[Effect],
+) -> Result<UpdatedModel, denavit_identify::Error> {
     let UpdatedModel { text, errors, .. } = updated;
-    let robot = effect::read_model("the identified model", text.as_bytes(), own);
-    robot.map(|robot| UpdatedModel { text, robot, errors }).map_err(UpdateError::Unsound)
+    let robot = effect::read_model("the identified model", text.as_bytes(), own)?;
+    Ok(UpdatedModel { text, robot, errors })
 }

@@ -8,9 +8,9 @@ use crate::mistaken::FileKind;
 use crate::observer::{Stage, Watched};
 use denavit_codegen::model::Robot;
 use denavit_identify::forward::{
-    Forward, ForwardError, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
+    Forward, ForwardKind, MotionLog, Windows, closed_loop, in_windows, simulated_log,
 };
-use denavit_identify::{UpdateError, UpdatedModel};
+use denavit_identify::{ErrorKind, UpdatedModel};
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::short;
 use denavit_plants::{PlantError, plant_of, shipped};
@@ -61,7 +61,7 @@ impl Controlled {
         let names: Vec<String> =
             plant.model().joints.iter().map(|joint| joint.name.clone()).collect();
         let mut one = |log: &MotionLog| {
-            let failed = |error| Cause::Forward(log.file.clone(), error);
+            let failed = |error| Cause::Identify(log.file.clone(), error);
             let believed = Some(believed.as_mut());
             let simulated = simulated_log(plant.as_mut(), believed, &self.controller, log);
             let simulated = simulated.map_err(failed)?;
@@ -77,11 +77,11 @@ impl Controlled {
 #[derive(Clone, Debug)]
 pub enum NotMoved {
     /// What was found makes no model.
-    Update(UpdateError),
+    Update(denavit_identify::Error),
     /// A model has no plant.
     Plant(PlantError),
     /// A log cannot be simulated; holds its file.
-    Forward(String, ForwardError),
+    Forward(String, denavit_identify::Error),
     /// The observer stopped the work before.
     Stopped,
 }
@@ -119,7 +119,7 @@ impl Again<'_> {
     pub(super) fn gap(
         self,
         robot: &Robot,
-        updated: &Result<UpdatedModel, UpdateError>,
+        updated: &Result<UpdatedModel, denavit_identify::Error>,
         watched: &mut Watched<'_>,
     ) -> SimulationGap {
         let before =
@@ -170,10 +170,10 @@ impl SimulationGap {
     /// A controller that does not fit its log is the user's fault, and no result.
     pub(super) fn check(&self) -> Result<(), Error> {
         match &self.after {
-            Err(NotMoved::Forward(_, ForwardError::Stopped { .. })) | Ok(_) => Ok(()),
-            Err(NotMoved::Forward(file, error)) => {
-                Err(Cause::Forward(file.clone(), error.clone()).into())
+            Err(NotMoved::Forward(file, error)) if error.kind() != ErrorKind::BrokeOff => {
+                Err(Cause::Identify(file.clone(), error.clone()).into())
             }
+            Ok(_) | Err(NotMoved::Forward(..)) => Ok(()),
             Err(NotMoved::Plant(_) | NotMoved::Update(_) | NotMoved::Stopped) => Ok(()),
         }
     }

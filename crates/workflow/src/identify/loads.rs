@@ -1,7 +1,7 @@
 //! Logs as the second stage sees them: with the torques on the loads, which springs measure.
 
 use crate::error::{Cause, Error};
-use denavit_identify::two_stage::{Spring, TwoStageError};
+use denavit_identify::two_stage::Spring;
 use denavit_measure::condition::{Conditioned, Conditioning};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::{JointModel, PlantModel, SeriesElasticModel};
@@ -23,8 +23,8 @@ pub(super) fn conditioned(
         };
         Ok(JointSignals { q: own.q.clone(), tau: Some(tau?), ..JointSignals::default() })
     });
-    let joints: Result<Vec<JointSignals>, TwoStageError> = joints.collect();
-    let failed = |error| Cause::TwoStage(log.file.clone(), error);
+    let joints: Result<Vec<JointSignals>, denavit_identify::Error> = joints.collect();
+    let failed = |error| Cause::Identify(log.file.clone(), error);
     let MeasuredLog { start_s, step_s, .. } = *log;
     let loads = MeasuredLog {
         file: log.file.clone(),
@@ -40,8 +40,8 @@ pub(super) fn conditioned(
     Ok(conditioned)
 }
 
-fn missing(prefix: &str, joint: &JointModel) -> TwoStageError {
-    TwoStageError::MissingColumn(format!("{prefix}_{}", joint.name))
+fn missing(prefix: &str, joint: &JointModel) -> denavit_identify::Error {
+    denavit_identify::Error::missing_column(format!("{prefix}_{}", joint.name))
 }
 
 fn of_spring(
@@ -49,7 +49,7 @@ fn of_spring(
     elastic: SeriesElasticModel,
     spring: &Spring,
     own: &JointSignals,
-) -> Result<Vec<f64>, TwoStageError> {
+) -> Result<Vec<f64>, denavit_identify::Error> {
     let gear = joint.drive.map_or(1.0, |drive| drive.gear_ratio);
     let SeriesElasticModel { motor_radius, load_radius, .. } = elastic;
     let [stiffness, preload] = [spring.stiffness.value, spring.preload.value];

@@ -7,7 +7,7 @@ use crate::observer::Observer;
 use crate::robot_file::RobotFile;
 use denavit_identify::knowledge::{Consequences, Knowledge};
 use denavit_identify::read_statics;
-use denavit_identify::statics::{static_knowledge, suspicious_units};
+use denavit_identify::statics::{check_units, static_knowledge};
 use denavit_plants::regression::RegressionModel;
 
 /// What follows from measurements at rest.
@@ -50,12 +50,11 @@ pub fn identify_statics(
     }
     let model = regression(&robot.apart.robot, options)?;
     let measured = read_statics(name, bytes, &model).map_err(Cause::Scenario)?;
-    let suspicious = suspicious_units(&model, &measured);
-    if !(suspicious.is_empty() || logs.accepts_suspicious) {
-        return Err(Cause::Statics(name.to_owned(), suspicious).into());
+    let wrong = |error| Cause::Statics(name.to_owned(), error);
+    if !logs.accepts_suspicious {
+        check_units(&model, &measured).map_err(wrong)?;
     }
-    let mut knowledge = static_knowledge(&model, &measured)
-        .map_err(|faults| Cause::Statics(name.to_owned(), faults))?;
+    let mut knowledge = static_knowledge(&model, &measured).map_err(wrong)?;
     let mut remarks = Vec::new();
     let mut is_stopped = false;
     if !logs.train.is_empty() {

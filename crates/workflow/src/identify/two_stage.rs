@@ -13,7 +13,7 @@ use denavit_identify::estimate::{
     Consistent, IdentifiedParameter, JointResidual, Validation, consistent, parameters, validate,
 };
 use denavit_identify::two_stage::{Estimate, TwoStage, TwoStageOptions, two_stage};
-use denavit_identify::{NewValue, UpdateError, updated_model, updated_text};
+use denavit_identify::{NewValue, updated_model, updated_text};
 use denavit_measure::condition::{Conditioning, Filter};
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_numerics::short;
@@ -78,7 +78,7 @@ pub fn identify_two_stage(
     let of_springs = Conditioning { filter: Some(tenth), decimation: 1, ..of_load };
     let how = TwoStageOptions { of_springs, of_load, slow: options.slow };
     let stages = two_stage(plant, &model, &log, &how)
-        .map_err(|error| Cause::TwoStage(log.file.clone(), error))?;
+        .map_err(|error| Cause::Identify(log.file.clone(), error))?;
     let parameters = parameters(&model, &stages.load);
     let standard: Vec<f64> = model.standard.iter().map(|one| one.value.unwrap_or(0.0)).collect();
     let bodies = consistent(&model, &stages.load, &standard);
@@ -184,7 +184,7 @@ impl TwoStageFound {
             })
             .collect();
         let text = updated_text(&updated.text, &new)
-            .ok_or_else(|| Cause::Update(UpdateError::NoPlace(robot.name.clone())))?;
+            .ok_or_else(|| Cause::Update(denavit_identify::Error::no_place(&robot.name)))?;
         model::read("the identified model", text.as_bytes()).map_err(Cause::Model)?;
         Ok(text)
     }

@@ -10,7 +10,7 @@ use denavit_plants::{Plant, PlantModel, plant_of, shipped};
 use denavit_simulate::scenario::Scenario;
 use denavit_walk::gait_file::{FORMAT, GaitFile, GaitKind, read_gait};
 use denavit_walk::gait_plan::{
-    GaitPlan, Knot, PlanError, plan_divergent_component, plan_inverted_pendulum, plan_primitives,
+    GaitPlan, Knot, plan_divergent_component, plan_inverted_pendulum, plan_primitives,
 };
 use denavit_walk::optimal::{LimitCycle, design, scenario_text};
 use denavit_walk::{ScenarioHead, read_scenario};
@@ -174,8 +174,10 @@ fn designed(
         parameters: &gait.parameters,
         steps: 0,
     };
-    let refuse =
-        |error: PlanError| refused(name, format_args!("{error}\n  hint: {}", error.hint()));
+    let refuse = |error: denavit_walk::Error| match error.hint() {
+        Some(hint) => refused(name, format_args!("{error}\n  hint: {hint}")),
+        None => refused(name, error),
+    };
     let plant = plant.as_mut();
     match &gait.kind {
         GaitKind::Primitives(problem) => {
@@ -191,7 +193,7 @@ fn designed(
             Ok(planned("divergent component of motion", plan, plant, &head).map_err(refuse)?)
         }
         GaitKind::LimitCycle(problem) => {
-            let found = design(plant, problem).map_err(|error| refused(name, error))?;
+            let found = design(plant, problem).map_err(refuse)?;
             let head = ScenarioHead { steps: problem.steps, ..head };
             limit_cycle(found, plant, &head).map_err(|error| refused(name, error))
         }
@@ -246,7 +248,7 @@ fn planned(
     plan: GaitPlan,
     plant: &mut dyn Plant,
     head: &ScenarioHead<'_>,
-) -> Result<Designed, PlanError> {
+) -> Result<Designed, denavit_walk::Error> {
     let model = plant.model().clone();
     let references = plan.references(&model)?;
     // of a step where one is like the other

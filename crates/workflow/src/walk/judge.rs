@@ -5,7 +5,7 @@ use crate::files::Files;
 use denavit_codegen::model::Robot;
 use denavit_plants::{PlantError, PlantModel, plant_of};
 use denavit_simulate::scenario::{RunScheme, Scenario};
-use denavit_walk::balance::{BalanceError, Course, Grid, course_of_log, course_on_grid};
+use denavit_walk::balance::{Course, Grid, course_of_log, course_on_grid};
 use std::path::Path;
 
 /// A judged robot: its name, its description, and what was found.
@@ -72,10 +72,11 @@ pub fn judge_log(robot: &Robot, log: &Path, files: &Files) -> Result<Judged, Err
         }
         error => Cause::Walk(robot.name.clone(), error.to_string()),
     })?;
-    let course = course_of_log(plant.as_mut(), &file).map_err(|error| match error {
-        BalanceError::Log(faults) => Cause::Log(faults),
-        error => Cause::Walk(name.clone(), error.to_string()),
-    })?;
+    let course =
+        course_of_log(plant.as_mut(), &file).map_err(|error| match error.log_faults() {
+            Some(faults) => Cause::Log(faults.clone()),
+            None => Cause::Walk(name.clone(), error.to_string()),
+        })?;
     let model = plant.model().clone();
     let mut notes = Vec::new();
     if !parameters.is_empty() {

@@ -8,15 +8,15 @@ mod text;
 
 use super::condensed::{Condensed, PARTS, part_length, plain};
 use super::half_cutoff::SAMPLES;
-use super::least_squares::{Estimate, EstimateError, Fit, Method, Options};
+use super::least_squares::{Estimate, Fit, Method, Options};
 use super::left_out::LeftOut;
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
 use super::validate::{JointResidual, Validation};
+use crate::error::EstimateError;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
-pub use text::PieceError;
 
 /// What the head of a long log says of the rows of the rest.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -248,7 +248,7 @@ impl Estimate {
     ///
     /// # Errors
     /// There are fewer rows than parameters, or none.
-    pub fn of_long(
+    pub(crate) fn of_long(
         self,
         model: &RegressionModel,
         rows: &LongRows,

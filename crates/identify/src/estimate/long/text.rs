@@ -4,24 +4,11 @@
 use super::super::condensed::Condensed;
 use super::super::triangle::Triangle;
 use super::LongRows;
+use crate::error::{Error, PieceError};
 use denavit_measure::LogIndex;
 use denavit_plants::regression::RegressionModel;
 use serde_json::{Value, json};
 use std::fmt;
-
-/// Why a text is no piece of a log of a model.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PieceError {
-    reason: String,
-}
-
-impl fmt::Display for PieceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.reason)
-    }
-}
-
-impl std::error::Error for PieceError {}
 
 fn wrong(reason: impl fmt::Display) -> PieceError {
     PieceError { reason: reason.to_string() }
@@ -44,7 +31,7 @@ impl LongRows {
     ///
     /// # Errors
     /// It is something else, or of another model.
-    pub fn of_json(model: &RegressionModel, value: &Value) -> Result<Self, PieceError> {
+    pub fn of_json(model: &RegressionModel, value: &Value) -> Result<Self, Error> {
         let samples = value["samples"].as_u64().ok_or_else(|| wrong("`samples` is no count"))?;
         let joints = model.joints.len();
         let half = |at: usize| condensed_of_json(model, &value["halved"][at]);
@@ -52,7 +39,7 @@ impl LongRows {
             condensed: condensed_of_json(model, &value["counted"])?,
             all: of_joints(model, &value["all"])?,
             torque_squares: numbers(&value["torque_squares"], joints, "`torque_squares`")?,
-            samples: usize::try_from(samples).map_err(wrong)?,
+            samples: usize::try_from(samples).map_err(|error| wrong(error))?,
             halved: [half(0)?, half(1)?],
         })
     }

@@ -18,8 +18,7 @@ use crate::logs::{LogSource, Logs};
 use crate::observer::{Observer, Reading, Stage, Watched};
 use crate::robot_file::RobotFile;
 pub(super) use clock::Clock;
-use denavit_identify::estimate::Method;
-use denavit_identify::estimate::long::{LongRows, WholeLog};
+use denavit_identify::estimate::long::{LongRows, WholeLog, is_of_triangles};
 use denavit_measure::condition::Averaging;
 use denavit_plants::regression::RegressionModel;
 pub use plan::{LongPlan, PieceRows};
@@ -214,7 +213,7 @@ impl LongLog<'_> {
         let Self { options, logs, .. } = self;
         let refused = if logs.train.len() != 1 {
             Some("one log is read piece by piece, and not several".to_owned())
-        } else if !matches!(options.method, Method::Ordinary | Method::Weighted) {
+        } else if !is_of_triangles(options.method) {
             Some("least squares alone, weighted or not, forget the rows of a log".to_owned())
         } else if options.conditions.averaging != Averaging::No {
             Some("laps are averaged of logs that are held as a whole".to_owned())
@@ -317,7 +316,7 @@ impl LongLog<'_> {
         let rows = rows.ok_or_else(|| self.wrong("no joint moves".to_owned()))?;
         let Head { estimation, read, how, found, same, .. } = head;
         let Estimation { work, .. } = estimation;
-        let failed = |error| Cause::Estimate(work.model.model.clone(), error);
+        let failed = |error| Cause::Identify(work.model.model.clone(), error);
         let found = found.of_long(estimation.request(&read, &how), &rows).map_err(failed)?;
         let updated = estimation.updated(&found);
         Head { estimation, read, how, found, updated, same }.answered(self.file, watched)

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Why there is no plan; what is named is at fault.
 #[derive(Clone, Debug, PartialEq)]
-pub enum PlanError {
+pub(crate) enum PlanError {
     /// The plant is no planar walker with two legs that are alike; holds what it lacks.
     NoWalker(String),
     /// The plant is no robot in space with two legs; holds what it lacks.
@@ -180,17 +180,29 @@ impl fmt::Display for PlanError {
     }
 }
 
-impl std::error::Error for PlanError {}
-
-impl From<TrajectoryError> for PlanError {
-    fn from(error: TrajectoryError) -> Self {
-        Self::Curve(error)
-    }
-}
-
 impl PlanError {
+    /// The posture, or the phase, with its time \[s\].
+    pub(crate) fn posture(&self) -> Option<(&str, f64)> {
+        match self {
+            Self::Collision { posture, t_s }
+            | Self::OutOfReach { posture, t_s, .. }
+            | Self::Limit { posture, t_s, .. }
+            | Self::Fallen { posture, t_s, .. }
+            | Self::Between { posture, t_s, .. }
+            | Self::Margin { posture, t_s, .. }
+            | Self::Slides { posture, t_s, .. } => Some((posture, *t_s)),
+            Self::NoWalker(_)
+            | Self::NoBiped(_)
+            | Self::Undetermined { .. }
+            | Self::NotClosed { .. }
+            | Self::Overlap { .. }
+            | Self::TooManyKnots(_)
+            | Self::Curve(_) => None,
+        }
+    }
+
     /// What may help.
-    pub fn hint(&self) -> &'static str {
+    pub(crate) fn hint(&self) -> &'static str {
         match self {
             Self::NoWalker(_) => {
                 "joints and contact points are named right_.. and left_.., the base base_x, \

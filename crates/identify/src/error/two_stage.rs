@@ -1,21 +1,17 @@
 //! Why a log does not give springs and load.
 
-use super::Estimate;
-use crate::estimate::EstimateError;
 use denavit_measure::condition::ConditionError;
 use std::fmt;
 
 /// Why a log does not give the parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub enum TwoStageError {
+pub(crate) enum TwoStageError {
     /// No joint is behind a spring.
     NoSprings,
     /// The log has no such column.
     MissingColumn(String),
     /// The log cannot be conditioned.
     Condition(ConditionError),
-    /// The load cannot be estimated.
-    Estimate(EstimateError),
     /// The motion does not tell these parameters apart; holds a joint, or the load.
     NotExcited(String),
     /// The gear ratio of an elastic drive is 0; holds the joint.
@@ -45,8 +41,8 @@ pub enum TwoStageError {
     NoStiffness {
         /// The joint.
         joint: String,
-        /// What comes out [N/m].
-        stiffness: Estimate,
+        /// What comes out, and its standard deviation [N/m].
+        stiffness: [f64; 2],
     },
 }
 
@@ -56,7 +52,6 @@ impl fmt::Display for TwoStageError {
             Self::MissingColumn(column) => write!(f, "the log has no column `{column}`"),
             Self::NoSprings => write!(f, "the model has no series elastic drive"),
             Self::Condition(error) => write!(f, "{error}"),
-            Self::Estimate(error) => write!(f, "{error}"),
             Self::NotExcited(what) => {
                 write!(f, "the motion does not tell the parameters of {what} apart")
             }
@@ -88,7 +83,7 @@ impl fmt::Display for TwoStageError {
                  {{\"scale\": {scale}}}}} mends that; or write a stiffness \
                  near the true one into the model"
             ),
-            Self::NoStiffness { joint, stiffness: Estimate { value, std } } => write!(
+            Self::NoStiffness { joint, stiffness: [value, std] } => write!(
                 f,
                 "the spring of `{joint}` comes out as {value:.5e} +- {std:.1e} N/m: no spring \
                  is seen\n  hint: its elongation must be large against the steps of the encoders \
@@ -97,5 +92,3 @@ impl fmt::Display for TwoStageError {
         }
     }
 }
-
-impl std::error::Error for TwoStageError {}

@@ -337,3 +337,16 @@ def test_the_command_makes_and_judges_an_example(tmp_path, capsys):
         other = tmp_path / "b" / one.relative_to(tmp_path / "a")
         assert one.read_bytes() == other.read_bytes()
     assert main(["fleet-example", str(tmp_path / "c"), "--robots", "0"]) == 2
+
+
+def test_the_page_of_an_example_is_opened_in_the_browser(tmp_path):
+    """As `BROWSER` names it: here a script that copies the page it is sent to."""
+    copied_page, browser = tmp_path / "opened.html", tmp_path / "browser"
+    browser.write_text(f'#!/bin/sh\ncp "${{1#file://}}" "{copied_page}"\n')
+    browser.chmod(0o755)
+    command = [sys.executable, "-m", "denavit", "fleet-example", str(tmp_path / "out")]
+    command += ["--robots=2", "--nights=2", "--changed=0", "--diagnose=none", "--run", "--open"]
+    environment = {**os.environ, "BROWSER": str(browser)}
+    subprocess.run(command, check=True, env=environment, stdout=subprocess.DEVNULL)
+    page = (tmp_path / "out" / "found" / "index.html").read_bytes()
+    assert copied_page.read_bytes() == page and b"arm-" in page

@@ -73,6 +73,14 @@ pub(crate) mod overlap {
     pub(crate) const MOVES: f64 = 0.1;
 }
 
+/// `condition/stretch.rs`: A log that is too long to be held at once, as stretches of it that are
+/// conditioned one by one.
+pub(crate) mod stretch {
+    /// What the rest of a log may change in a stretch, as a share of its signals: some hundred
+    /// roundings, so that pieces have the numbers of the whole.
+    pub(crate) const FORGOTTEN: f64 = 1e-13;
+}
+
 /// `condition/reversals.rs`: Where the sign of a joint's rate says little: near its reversals, and
 /// while it hardly moves; and functions of a rate that pass the filter as the torque does.
 pub(crate) mod reversals {

@@ -1,6 +1,7 @@
 //! Parameters from logs: read, conditioned behind the filter that noise asks for, estimated,
 //! judged, and simulated again.
 
+mod clock;
 mod conditions;
 mod estimation;
 mod forward;

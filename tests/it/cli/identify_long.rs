@@ -55,13 +55,11 @@ fn pieces_give_the_values_of_the_closed_form_and_the_bytes_of_one_process() {
     let samples = found["samples"].as_u64().expect("a count");
     assert!((14_000..15_000).contains(&samples), "{samples}");
     let parameters = found["parameters"].as_array().expect("a list");
-    for (value, expected) in [(0, 0.05 + 2.0 * 0.09), (1, 2.0 * 0.3)].map(|(at, expected)| {
-        let of = |at: usize| parameters[at]["value"].as_f64().expect("a number");
-        let name = parameters[at]["name"].as_str().expect("a name");
-        // about the axis: the inertia; the first moment
-        (of(at), if name.starts_with('I') { 0.23 } else { expected })
-    }) {
-        assert!((value / expected - 1.0).abs() < 1e-4, "{value} {expected}");
+    // about the link's own frame, 0.5 m from the axis: m - 4 Izz, mx + 2 Izz, my
+    let izz = 0.05 + 2.0 * 0.04;
+    for (parameter, expected) in parameters.iter().zip([2.0 - 4.0 * izz, -0.4 + 2.0 * izz, 0.0]) {
+        let value = parameter["value"].as_f64().expect("a number");
+        assert!((value - expected).abs() < 1e-4, "{parameter}");
     }
 
     let plan = run(&directory, &["long", "plan"], &head);

@@ -4,7 +4,7 @@ use super::root;
 use std::fs;
 use std::process::Command;
 
-const COMMANDS: [&str; 33] = [
+const COMMANDS: [&str; 37] = [
     "demo",
     "list",
     "inspect",
@@ -21,6 +21,10 @@ const COMMANDS: [&str; 33] = [
     "simulate",
     "excite",
     "identify",
+    "long",
+    "long plan",
+    "long condense",
+    "long estimate",
     "diagnose",
     "walk",
     "walk design",
@@ -75,7 +79,7 @@ fn the_page_of_the_command_is_that_of_its_help() {
 
 #[test]
 fn the_page_has_every_command() {
-    for parent in ["", "walk "] {
+    for parent in ["", "walk ", "long "] {
         let text = help(parent);
         let (_, listed) = text.split_once("Commands:\n").expect("commands");
         let lines = listed.lines().take_while(|line| !line.is_empty());

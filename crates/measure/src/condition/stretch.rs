@@ -6,10 +6,8 @@
 //! that are left after decimation, which stand where they do in the whole.
 
 use super::{Butterworth, Conditioned, Conditioning, Decimator, Derivatives, STENCIL, lawful};
+use crate::policy::stretch::FORGOTTEN;
 use std::ops::Range;
-
-/// What the rest of a log may change in a stretch, of the size of the signal.
-const FORGOTTEN: f64 = 1e-13;
 
 /// Samples that are regressed at once: stretches have whole blocks, so that these are of the same
 /// samples as in the whole log.

@@ -220,6 +220,23 @@ fn shared_column(f: &mut fmt::Formatter<'_>, column: &str, ours: &[String]) -> f
     )
 }
 
+fn off_clock(f: &mut fmt::Formatter<'_>, steps: f64) -> fmt::Result {
+    write!(
+        f,
+        "samples are {steps:.1} steps from where equal distances of time have them\n  hint: a log \
+         that is read piece by piece has all of its samples: cut it where some are missing, or \
+         resample it"
+    )
+}
+
+fn repaired(f: &mut fmt::Formatter<'_>, how: &LogRemark) -> fmt::Result {
+    write!(
+        f,
+        "{how}: a log that is read piece by piece is not repaired\n  hint: cut it before and behind \
+         these rows, or resample it"
+    )
+}
+
 impl fmt::Display for LogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -285,17 +302,8 @@ impl fmt::Display for LogFault {
                  can be filled in\n  hint: cut the log at its gaps"
             ),
             Self::Suspicion(suspicion) => write!(f, "{suspicion}"),
-            Self::OffClock { steps } => write!(
-                f,
-                "samples are {steps:.1} steps from where equal distances of time have them\n  hint: a \
-                 log that is read piece by piece has all of its samples: cut it where some are \
-                 missing, or resample it"
-            ),
-            Self::Repaired { how } => write!(
-                f,
-                "{how}: a log that is read piece by piece is not repaired\n  hint: cut it before and \
-                 behind these rows, or resample it"
-            ),
+            Self::OffClock { steps } => off_clock(f, *steps),
+            Self::Repaired { how } => repaired(f, how),
             Self::NothingMoves => write!(f, "no joint moves"),
         }
     }

@@ -1,7 +1,7 @@
 //! Logs read, checked and conditioned as the options say.
 
 use super::Work;
-use super::long::Clock;
+use super::clock::Clock;
 use crate::error::{Cause, Error};
 use crate::logs::LogSource;
 use crate::observer::Reading;

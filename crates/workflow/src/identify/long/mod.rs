@@ -5,10 +5,10 @@
 //! remembers, to triangles, which are added. Pieces of the log can so be condensed anywhere, in any
 //! order, and are added in theirs: the same numbers to the last bit.
 
-mod clock;
 mod plan;
 mod reading;
 
+use super::clock::Clock;
 use super::estimation::Estimation;
 use super::logs::Reader;
 use super::{Head, Identified, IdentifyOptions, Work, regression};
@@ -17,7 +17,6 @@ use crate::files::Files;
 use crate::logs::{LogSource, Logs};
 use crate::observer::{Observer, Reading, Stage, Watched};
 use crate::robot_file::RobotFile;
-pub(super) use clock::Clock;
 use denavit_identify::estimate::long::{LongRows, WholeLog, is_of_triangles};
 use denavit_measure::condition::Averaging;
 use denavit_plants::regression::RegressionModel;
@@ -223,8 +222,8 @@ impl LongLog<'_> {
             let laws = &self.file.apart.laws;
             laws.first().map(|law| {
                 format!(
-                    "`{}` is beside the equations of the model and remembers what was before: it is \
-                     not taken out of a log piece by piece\n  hint: leave it out of the model",
+                    "`{}` is beside the equations of the model and remembers what was before: it \
+                     is not taken out of a log piece by piece\n  hint: leave it out of the model",
                     law.title
                 )
             })

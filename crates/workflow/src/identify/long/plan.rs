@@ -1,8 +1,8 @@
 //! What the head of a long log says of the rest, and rows of its pieces, as JSON: so pieces are
 //! condensed where their rows are.
 
+use super::super::clock::Clock;
 use super::super::{Head, IdentifyOptions};
-use super::Clock;
 use super::reading::Survey;
 use crate::error::{Cause, Error};
 use denavit_identify::estimate::long::{LongRows, RowRule, pieces};

@@ -8,19 +8,19 @@ const MOST_OFF: f64 = 0.5;
 
 /// Times of the samples of a long log.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::identify) struct Clock {
+pub(super) struct Clock {
     /// Of the first \[s\].
-    pub(in crate::identify) start_s: f64,
+    pub(super) start_s: f64,
     /// The distance of samples \[s\].
-    pub(in crate::identify) step_s: f64,
+    pub(super) step_s: f64,
     /// Whether suspicions are no faults.
-    pub(in crate::identify) accepts_suspicious: bool,
+    pub(super) accepts_suspicious: bool,
 }
 
 impl Clock {
     /// Gives a stretch that begins at a row of the log the clock of the whole; what is wrong if its
     /// rows are not at their times, were repaired, or are suspicious by themselves.
-    pub(in crate::identify) fn set(self, log: &mut MeasuredLog, first: usize) -> Vec<LogFault> {
+    pub(super) fn set(self, log: &mut MeasuredLog, first: usize) -> Vec<LogFault> {
         let start_s = self.start_s + first as f64 * self.step_s;
         let last = log.samples().max(1) - 1;
         let off_first = (log.start_s - start_s) / self.step_s;

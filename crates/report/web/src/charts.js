@@ -1,7 +1,8 @@
 // Curves over time, or over another quantity: panels below each other, with one horizontal axis.
 // Charts of a group have their zoom and their cursor in common.
 import uPlot from "uplot";
-import { colour, onTheme } from "./theme.js";
+import { makeWhenSeen } from "./seen.js";
+import { colour, isPaper, onTheme } from "./theme.js";
 
 /** How a curve looks by what it is; others have the colours of a palette in turn. */
 const LOOKS = {
@@ -151,7 +152,10 @@ function drawChart(figure) {
   const x = data.x;
   own.full ??= [x[0], x[x.length - 1]];
   own.full = [Math.min(own.full[0], x[0]), Math.max(own.full[1], x[x.length - 1])];
-  const width = () => Math.max(200, room.clientWidth);
+  // paper is not as wide as a screen, and what is in a tab has no width there
+  const width = () => (isPaper() ? PAPER_WIDTH : Math.max(200, room.clientWidth));
+  // a chart that is come to later shows what the others of its group show
+  const shown = own.plots[0] && { min: own.plots[0].scales.x.min, max: own.plots[0].scales.x.max };
   const plots = data.panels.map((panel, place) => {
     const legend = document.createElement("div");
     legend.className = "legend";
@@ -162,31 +166,20 @@ function drawChart(figure) {
     own.plots.push(plot);
     return plot;
   });
+  if (shown) plots[0].setScale("x", shown);
   room.addEventListener("keydown", keys(own, plots[0]));
   const resize = to => plots.forEach(plot => {
     if (plot.width !== to) plot.setSize({ width: to, height: plot.height });
   });
   new ResizeObserver(() => {
-    if (room.clientWidth > 0) resize(width());
+    if (room.clientWidth > 0 && !isPaper()) resize(width());
   }).observe(room);
   onTheme(() => {
-    const isPaper = document.documentElement.classList.contains("paper");
-    resize(isPaper ? PAPER_WIDTH : width());
+    resize(width());
     plots.forEach(plot => plot.redraw(false, true));
   });
 }
 
-/** Draws the first charts at once and the others one by one, so that the page answers meanwhile. */
 export function drawCharts(root) {
-  const left = [...root.querySelectorAll("figure.chart")];
-  const next = count => left.splice(0, count).forEach(drawChart);
-  const rest = () => {
-    next(1);
-    if (left.length > 0) setTimeout(rest, 0);
-    else document.documentElement.dataset.charts = "yes";
-  };
-  // paper has all of them
-  addEventListener("beforeprint", () => next(left.length));
-  next(2);
-  rest();
+  makeWhenSeen(root.querySelectorAll("figure.chart"), "charts", drawChart);
 }

@@ -73,7 +73,7 @@ export class Hints {
       const at = own.is_joint_marked && own.carrier < 0 && !this.data.is_modified
         ? new Vector3(...this.data.base) : seat;
       const seen = at.clone().project(this.stage.camera);
-      const x = (0.5 + 0.5 * seen.x) * wide + 10;
+      const x = (0.5 + 0.5 * seen.x) * wide + 14;
       let y = (0.5 - 0.5 * seen.y) * tall - 8;
       while (taken.some(([a, b]) => Math.abs(a - x) < 60 && Math.abs(b - y) < APART)) y += APART;
       taken.push([x, y]);

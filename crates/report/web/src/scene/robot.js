@@ -8,6 +8,8 @@ import {
 const UP = new Vector3(0, 1, 0);
 const AXIS = new Vector3(0, 0, 1);
 const ROUND = 20;
+/** The radius of a link per size of what is seen. */
+const THICK = 0.018;
 /** What is marked has the colour of faults. */
 const COLOURS = { marked: "bad" };
 
@@ -33,10 +35,10 @@ class Capsule {
   }
 }
 
-function jointMesh(slides, size, material) {
+function jointMesh(slides, radius, material) {
   const along = slides
-    ? new BoxGeometry(0.05 * size, 0.09 * size, 0.05 * size)
-    : new CylinderGeometry(0.024 * size, 0.024 * size, 0.075 * size, ROUND);
+    ? new BoxGeometry(3.3 * radius, 6 * radius, 3.3 * radius)
+    : new CylinderGeometry(1.55 * radius, 1.55 * radius, 4.4 * radius, ROUND);
   return new Mesh(along, material);
 }
 
@@ -59,7 +61,9 @@ export class Robot {
     this.group = new Group();
     const material = () => new MeshLambertMaterial({ side: DoubleSide });
     this.materials = { link: material(), joint: material(), foot: material(), marked: material() };
-    const radius = 0.015 * data.size;
+    // as many pixels in every picture, however far its joints reach
+    const extent = data.view ?? data.size;
+    const radius = THICK * extent;
     const { link: body, joint, foot, marked } = this.materials;
     this.links = data.links.map((link, place) => {
       const of = link.is_marked ? marked : body;
@@ -68,7 +72,7 @@ export class Robot {
         along: new Capsule(wide, of),
         across: new Capsule(wide, of),
         joint: link.is_joint
-          ? jointMesh(link.slides, (link.is_joint_marked ? 1.5 : 1) * data.size,
+          ? jointMesh(link.slides, (link.is_joint_marked ? 1.5 : 1) * radius,
             link.is_joint_marked ? marked : joint)
           : null,
         ball: link.radius ? new Mesh(new SphereGeometry(link.radius, 24, 16), body) : null,

@@ -6,7 +6,7 @@ use crate::mistaken::{FileKind, Mistaken};
 use denavit_codegen::model::Robot;
 use denavit_logs::{self as logs, MemoryLog, Opening};
 use denavit_measure::log::{ColumnMapping, LogOf, MeasuredLog, of_file, read_opened};
-use denavit_plants::regression::RegressionModel;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::fmt;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -91,6 +91,20 @@ impl Logs {
             contacts: &contacts,
             accepts_suspicious: self.accepts_suspicious,
         };
+        self.of_robot(source, of)
+    }
+
+    /// One of them, of these joints alone, however wrong it looks.
+    pub(crate) fn of_joints(
+        &self,
+        source: &LogSource,
+        model: &str,
+        joints: &[RegressionJoint],
+    ) -> Result<MeasuredLog, Error> {
+        self.of_robot(source, LogOf { model, joints, contacts: &[], accepts_suspicious: true })
+    }
+
+    fn of_robot(&self, source: &LogSource, of: LogOf<'_>) -> Result<MeasuredLog, Error> {
         match source {
             LogSource::File(path) => self.of_file(path, of),
             LogSource::Memory { name, log } => self.of_memory(name, log, of),

@@ -14,6 +14,8 @@ const LOOKS = {
   law: { colour: "computed", points: true },
 };
 const PALETTE = 8;
+/** How much is seen through a band: the last two digits of its colour. */
+const BAND = "55";
 const PAPER_WIDTH = 640;
 
 const groups = new Map();
@@ -37,11 +39,34 @@ function shown(value) {
   return String(Number(value.toPrecision(4)));
 }
 
-function series(curve, place) {
-  const look = LOOKS[curve.look] ?? { colour: `c${place % PALETTE}`, width: 1.2 };
+function lookOf(curve, place) {
+  return LOOKS[curve.look] ?? { colour: `c${place % PALETTE}`, width: 1.2 };
+}
+
+/** The curves of a panel: of one that chatters its least and its greatest, with what is between. */
+function lines(panel) {
+  const all = [];
+  const bands = [];
+  panel.curves.forEach((curve, place) => {
+    const look = lookOf(curve, place);
+    if (!curve.band) {
+      all.push({ name: curve.name, look, y: curve.y });
+      return;
+    }
+    // the first series is the axis
+    const at = all.length + 1;
+    const edge = { ...look, width: 0.8, dash: undefined };
+    all.push({ name: `${curve.name}, greatest`, look: edge, y: curve.band.high });
+    all.push({ name: `${curve.name}, least`, look: edge, y: curve.band.low });
+    bands.push({ series: [at, at + 1], fill: () => `${colour(look.colour)}${BAND}` });
+  });
+  return { all, bands };
+}
+
+function series({ name, look }) {
   const stroke = () => colour(look.colour);
   return {
-    label: curve.name,
+    label: name,
     stroke,
     width: look.width ?? 0,
     dash: look.dash,
@@ -84,7 +109,7 @@ function powers(_, ticks) {
   return ticks.map(tick => (Math.abs(Math.log10(tick) % 1) < 1e-9 ? tick : null));
 }
 
-function options(data, panel, isLast, own, box, width) {
+function options(data, panel, { all, bands }, isLast, own, box, width) {
   const many = panel.curves.length > 4;
   const left = axis(panel.label, true);
   if (panel.log) for (const lines of [left, left.grid, left.ticks]) lines.filter = powers;
@@ -97,8 +122,9 @@ function options(data, panel, isLast, own, box, width) {
       values: (_, ticks) => ticks.map(() => "") }, left],
     series: [
       { label: data.x_name, value: (_, value) => shown(value) },
-      ...panel.curves.map(series),
+      ...all.map(series),
     ],
+    bands,
     legend: { mount: (_, table) => box.append(table) },
     // of many curves the one below the cursor stands out
     focus: { alpha: many ? 0.2 : 1 },
@@ -161,8 +187,9 @@ function drawChart(figure) {
     legend.className = "legend";
     room.append(legend);
     const isLast = place === data.panels.length - 1;
-    const given = options(data, panel, isLast, own, legend, width());
-    const plot = new uPlot(given, [x, ...panel.curves.map(curve => curve.y)], room);
+    const curves = lines(panel);
+    const given = options(data, panel, curves, isLast, own, legend, width());
+    const plot = new uPlot(given, [x, ...curves.all.map(line => line.y)], room);
     own.plots.push(plot);
     return plot;
   });

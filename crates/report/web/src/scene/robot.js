@@ -10,6 +10,8 @@ const AXIS = new Vector3(0, 0, 1);
 const ROUND = 20;
 /** The radius of a link per size of what is seen. */
 const THICK = 0.018;
+/** A ghost is as much thicker, so that both are seen where they are in one place. */
+const WIDER = 1.2;
 /** What is marked has the colour of faults. */
 const COLOURS = { marked: "bad" };
 
@@ -56,14 +58,19 @@ function footMesh(count, material) {
 }
 
 export class Robot {
-  constructor(data) {
+  /** `ghost`: another motion of the same robot, through which the first is seen. */
+  constructor(data, ghost = false) {
     this.data = data;
+    this.ghost = ghost;
     this.group = new Group();
-    const material = () => new MeshLambertMaterial({ side: DoubleSide });
+    const look = ghost ? { transparent: true, opacity: 0.45, depthWrite: false } : {};
+    const material = () => new MeshLambertMaterial({ side: DoubleSide, ...look });
     this.materials = { link: material(), joint: material(), foot: material(), marked: material() };
     // as many pixels in every picture, however far its joints reach
     const extent = data.view ?? data.size;
-    const radius = THICK * extent;
+    const radius = THICK * extent * (ghost ? WIDER : 1);
+    this.radius = radius;
+    this.seats = [];
     const { link: body, joint, foot, marked } = this.materials;
     this.links = data.links.map((link, place) => {
       const of = link.is_marked ? marked : body;
@@ -94,7 +101,9 @@ export class Robot {
   }
 
   paint(colour) {
-    for (const [name, material] of Object.entries(this.materials)) material.color.set(colour(COLOURS[name] ?? name));
+    for (const [name, material] of Object.entries(this.materials)) {
+      material.color.set(colour(this.ghost ? "measured" : COLOURS[name] ?? name));
+    }
   }
 
   /** Moves all parts to where the links are. */
@@ -109,6 +118,8 @@ export class Robot {
       const [foot, head] = data.is_modified ? [origin, from] : [from, origin];
       const corner = foot.clone().addScaledVector(axis, head.clone().sub(foot).dot(axis));
       const parts = this.links[place];
+      // where its joint is, with the frame that it turns in
+      this.seats[place] = [foot, data.is_modified ? own : turn];
       if (link.is_body) {
         parts.along.put(from, corner);
         parts.across.put(corner, origin);

@@ -2,17 +2,17 @@
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::FILES;
+use super::files::{FILES, mapping};
 use super::json::write_json;
-use super::logs::run_file;
+use super::logs::{log_source, note_logs, run_file};
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use denavit::report::answer::{drawn_run, run_json, run_page, run_text};
 use denavit::report::html::Fact;
-use denavit::simulate::scenario::RunScheme;
+use denavit::simulate::scenario::{RunScheme, Scenario};
 use denavit::simulate::{Log, Stop};
-use denavit::workflow::simulate;
+use denavit::workflow::{LogBeside, LogSource, Logs, simulate};
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -28,6 +28,8 @@ Examples:
   denavit simulate bouncing_ball -o ball.csv
   denavit simulate tulip_leg_tracking -o tracking.mcap
   denavit simulate tulip_step --html step.html
+  denavit simulate tulip_leg_tracking --scheme time-stepping --beside tracking.mcap \
+    --html both.html
   denavit simulate planar_biped_zmp_gait --scheme time-stepping --step 0.0005 -o gait.csv")]
 pub(crate) struct Arguments {
     /// The path of a scenario file, or the name of a shipped scenario
@@ -51,6 +53,14 @@ pub(crate) struct Arguments {
     /// audit; - is standard output
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Show a log of the same robot on the page: as a second robot, and in the curves. Its times are
+    /// those of the run
+    #[arg(long, value_name = "LOG", value_parser = log_source(), requires = "html",
+        value_hint = ValueHint::AnyPath)]
+    beside: Option<LogSource>,
+    /// Which columns of that log are ours, as for `denavit identify`
+    #[arg(long, value_name = "MAP.json", requires = "beside")]
+    columns: Option<PathBuf>,
     /// The part of the run that is drawn
     #[arg(long, value_name = "FROM,TO", value_parser = window, requires = "svg")]
     window: Option<[f64; 2]>,
@@ -82,6 +92,14 @@ fn step(text: &str) -> Result<f64, String> {
     if (1e-9..=1.0).contains(&step) { Ok(step) } else { Err("not from 1e-9 to 1 s".to_owned()) }
 }
 
+/// The log that is shown beside the run.
+fn log_beside(arguments: &Arguments, scenario: &Scenario) -> Result<Option<LogBeside>, Failure> {
+    let Some(source) = &arguments.beside else { return Ok(None) };
+    let columns = mapping(arguments.columns.as_deref())?;
+    let logs = Logs { columns, ..Logs::default() };
+    Ok(Some(LogBeside::read(scenario.plant.model(), &logs, source)?))
+}
+
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     Ok(run_kept(arguments, out)?.0)
 }
@@ -109,7 +127,9 @@ pub(super) fn run_kept(
     if arguments.window.is_some_and(|[from, to]| from < whole[0] || to > whole[1]) {
         return Err(Failure::Window(whole));
     }
+    note_logs(&arguments.beside);
     check_outputs(&outputs)?;
+    let beside = log_beside(arguments, &scenario)?;
     let started = Instant::now();
     let progress = Progress::new();
     let run = simulate(&mut scenario, &mut progress.observer())?;
@@ -128,7 +148,8 @@ pub(super) fn run_kept(
     if let Some(path) = &arguments.html {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let facts = vec![Fact { name: "denavit".to_owned(), value: version }];
-        write_whole(path, run_page(&mut scenario, &run, &broken, facts).render().as_bytes())?;
+        let page = run_page(&mut scenario, &run, &broken, beside.as_ref(), facts);
+        write_whole(path, page.render().as_bytes())?;
     }
     match (is_answered, arguments.json) {
         (true, _) => {}

@@ -14,14 +14,17 @@ pub struct Curve {
     pub t_s: Vec<f64>,
     /// What was measured [N m, N].
     pub measured: Vec<f64>,
+    /// What the model leaves of it as it is given [N m, N].
+    pub as_given: Vec<f64>,
     /// What the nominal model, re-estimated, leaves of it [N m, N].
     pub before: Vec<f64>,
     /// What the model with the effects leaves [N m, N].
     pub after: Vec<f64>,
 }
 
-/// The curves of all logs, joint by joint, from what is left in the rows.
-pub(super) fn curves(data: &Data<'_>, before: &[f64], after: &[f64]) -> Vec<Curve> {
+/// The curves of all logs, joint by joint, from what is left in the rows by the model as it is
+/// given, by the re-estimated one, and with the effects.
+pub(super) fn curves(data: &Data<'_>, [as_given, before, after]: [&[f64]; 3]) -> Vec<Curve> {
     let of_stretch = |stretch: &super::Stretch| {
         let signals = &data.signals[stretch.log.0];
         let rows = stretch.first..stretch.first + stretch.rows;
@@ -30,6 +33,7 @@ pub(super) fn curves(data: &Data<'_>, before: &[f64], after: &[f64]) -> Vec<Curv
             at: data.nominal.equation_name(stretch.equation),
             t_s: signals.at_rows(&signals.t),
             measured: data.torque[rows.clone()].to_vec(),
+            as_given: as_given[rows.clone()].to_vec(),
             before: before[rows.clone()].to_vec(),
             after: after[rows].to_vec(),
         }

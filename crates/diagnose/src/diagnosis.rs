@@ -251,7 +251,14 @@ impl Told<'_, '_> {
             visible,
             leftovers,
             structures,
-            curves: curves(data.held_out, &before.residual.held_out, &after.residual.held_out),
+            curves: curves(
+                data.held_out,
+                [
+                    &setting.as_given(data.held_out),
+                    &before.residual.held_out,
+                    &after.residual.held_out,
+                ],
+            ),
             logged: logged(data.held_out),
             motion: moved.map(|moved| self.motion_gaps(moved)),
             filters: *filters,

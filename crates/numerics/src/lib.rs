@@ -3,13 +3,16 @@
 //! - [`Random`]: numbers from a seed, the same on every machine
 //! - [`MinimumNorm`]: square systems of any rank
 //! - [`extremes`]: the rows of long columns that a picture needs
+//! - [`envelope`]: what is between the ends of a signal that chatters
 //! - [`short`], [`percent`]: numbers as a person writes them
 
+mod envelope;
 mod extremes;
 mod minimum_norm;
 mod random;
 mod text;
 
+pub use envelope::{Span, envelope};
 pub use extremes::extremes;
 pub use minimum_norm::MinimumNorm;
 pub use random::Random;

@@ -68,7 +68,7 @@ impl Transform {
 }
 
 /// The least size of a robot \[m\].
-const LEAST_SIZE_M: f64 = 0.05;
+pub(super) const LEAST_SIZE_M: f64 = 0.05;
 
 /// The size of what some points are the ends of, and its middle.
 pub(super) fn extent(points: &[Vec3]) -> (f64, Vec3) {

@@ -8,12 +8,14 @@
 //!   parts for many machines
 //! - [`diagnose()`]: what a model lacks, by [`DiagnoseOptions`]
 //! - [`excite()`]: a trajectory that shows the parameters; [`simulate()`]: a run of a scenario
+//! - [`LogBeside`]: a log to be looked at beside a run
 //! - [`design_gait`], [`judge_run`], [`judge_log`]: gaits, and balance along runs and logs
 //! - [`Observer`]: hears of progress as data, and may stop the work, which then returns what it has
 //! - [`Error`]: why there is no answer, with its kind and hints
 //!
 //! Nothing here prints, and no option is taken from anywhere but the arguments of a call.
 
+mod beside;
 mod diagnose;
 mod error;
 mod excite;
@@ -27,6 +29,7 @@ mod scenario;
 mod simulate;
 mod walk;
 
+pub use beside::LogBeside;
 pub use diagnose::{Completed, DiagnoseOptions, Diagnosed, NamedEffect, diagnose};
 pub use error::{Error, ErrorKind, Hint, RobotFaults};
 pub use excite::excite;

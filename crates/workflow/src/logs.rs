@@ -8,7 +8,7 @@ use denavit_logs::{self as logs, MemoryLog, Opening};
 use denavit_measure::log::{
     ColumnMapping, LogFaults, LogOf, MeasuredLog, UsedColumns, of_file, read_opened, used_columns,
 };
-use denavit_plants::regression::RegressionModel;
+use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::fmt;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -93,6 +93,20 @@ impl Logs {
             contacts: &contacts,
             accepts_suspicious: self.accepts_suspicious,
         };
+        self.of_robot(source, of)
+    }
+
+    /// One of them, of these joints alone, however wrong it looks.
+    pub(crate) fn of_joints(
+        &self,
+        source: &LogSource,
+        model: &str,
+        joints: &[RegressionJoint],
+    ) -> Result<MeasuredLog, Error> {
+        self.of_robot(source, LogOf { model, joints, contacts: &[], accepts_suspicious: true })
+    }
+
+    fn of_robot(&self, source: &LogSource, of: LogOf<'_>) -> Result<MeasuredLog, Error> {
         match source {
             LogSource::File(path) => self.of_file(path, of),
             LogSource::Memory { name, log } => self.of_memory(name, log, of),

@@ -2,21 +2,24 @@
 
 use super::run::scheme_text;
 use crate::html::{Cell, Fact, Grade, Heading, HtmlTable, Page, Part, Row, Section, VerdictLine};
-use crate::run::{replay, run_charts};
+use crate::run::{beside_parts, replay, run_charts};
 use denavit_simulate::scenario::Scenario;
 use denavit_simulate::{EventKind, Run, Stop};
+use denavit_workflow::LogBeside;
 
 /// A run on one page: played back, with its curves and its audit; `broken` are the tolerances that
-/// it broke (law, found, allowed).
+/// it broke (law, found, allowed), `beside` is a log that is shown with it.
 pub fn run_page(
     scenario: &mut Scenario,
     run: &Run,
     broken: &[(&'static str, f64, f64)],
+    beside: Option<&LogBeside>,
     facts: Vec<Fact>,
 ) -> Page {
-    let motion = replay(scenario.plant.as_mut(), run).map(Part::Replay);
+    let motion = replay(scenario.plant.as_mut(), run, beside).map(Part::Replay);
     let model = scenario.plant.model().clone();
-    let charts: Vec<Part> = run_charts(&model, &run.log).into_iter().map(Part::Chart).collect();
+    let charts: Vec<Part> =
+        run_charts(&model, &run.log, beside).into_iter().map(Part::Chart).collect();
     let mut sections = Vec::new();
     let mut section = |heading: &str, parts: Vec<Part>| {
         if !parts.is_empty() {
@@ -24,6 +27,8 @@ pub fn run_page(
         }
     };
     section("Motion", motion.into_iter().collect());
+    let compared = beside.map(|beside| beside_parts(&model, &run.log, beside));
+    section("Measured beside simulated", compared.unwrap_or_default());
     section("Curves", charts);
     section("Audit", vec![Part::Table(audit(scenario, run, broken))]);
     let given = [("model", model.name.clone()), ("scheme", scheme_text(scenario))];

@@ -30,6 +30,9 @@ const DRAWN: usize = 3;
 /// The share of all that is left from which a joint is drawn.
 const LEAST: f64 = 0.02;
 
+/// The share of the gap from which an effect is said to close it.
+const LEAST_SHARE: f64 = 0.001;
+
 /// What a page about a diagnosis says.
 pub struct DiagnosisPage<'a> {
     model: &'a str,
@@ -277,7 +280,8 @@ impl DiagnosisPage<'_> {
     fn torques(&self) -> Section {
         let shown = self.torque_curves();
         let text = "Held-out logs, the joints that leave most: torques that were measured, and \
-                    that both models compute; below, what they leave. All through one filter."
+                    those of the nominal model, its own numbers estimated again, without and with \
+                    the effects; below, what both leave. All through one filter."
             .to_owned();
         let mut parts = vec![Part::Paragraph { text }];
         parts.extend(shown.iter().map(|(joint, curve)| Part::Chart(torque_chart(joint, curve))));
@@ -301,13 +305,14 @@ impl DiagnosisPage<'_> {
     fn term(&self, one: &FoundEffect) -> Vec<Part> {
         let own = &self.candidates[one.candidate];
         let doubt = if one.is_named { "New" } else { "Nearest to something without a name" };
-        let text = format!(
-            "{doubt}: {} at {}. Its odds are {}. It closes {} of the gap.",
-            own.title,
-            own.at,
-            odds(one.log_odds),
-            percent(one.share)
-        );
+        let closes = match one.share > LEAST_SHARE {
+            true => format!("It closes {} of the gap.", percent(one.share)),
+            false => "Without it the other terms, estimated again, leave no more of the held-out \
+                      logs: what speaks for it are its odds."
+                .to_owned(),
+        };
+        let (title, at, odds) = (&own.title, &own.at, odds(one.log_odds));
+        let text = format!("{doubt}: {title} at {at}. Its odds are {odds}. {closes}");
         let mut parts = vec![Part::Paragraph { text }];
         if let Some(effect) = self.effects.iter().find(|effect| effect.name == own.effect) {
             let new = formulas(effect).into_iter().map(|formula| marked(effect, &own.at, formula));
@@ -440,7 +445,12 @@ impl DiagnosisPage<'_> {
 /// Odds in words: as powers of ten where they are large.
 fn odds(log_odds: f64) -> String {
     let tens = log_odds / LN_10;
-    if tens.abs() < 3.0 { short(log_odds.exp()) } else { format!("10{}", raised(tens)) }
+    if tens.abs() < 3.0 { rough(log_odds.exp()) } else { format!("10{}", raised(tens)) }
+}
+
+/// In three digits.
+fn rough(value: f64) -> String {
+    format!("{value:.2e}").parse().map_or_else(|_| value.to_string(), short)
 }
 
 /// A whole number as an exponent.

@@ -2,8 +2,8 @@
 
 use super::super::html::{Cell, HtmlTable, Part, Row, SceneMark};
 use super::super::jointed::{JointMotion, JointedRobot, RATE};
-use super::super::{percent, short};
-use super::{DiagnosisPage, headings, odds};
+use super::super::percent;
+use super::{DiagnosisPage, headings, odds, rough};
 use denavit_diagnose::{Experiment, FoundEffect};
 
 impl DiagnosisPage<'_> {
@@ -65,8 +65,8 @@ impl DiagnosisPage<'_> {
             found.duration_s,
             percent(found.power),
             found.draws,
-            short(found.separation),
-            short(found.separation_before)
+            rough(found.separation),
+            rough(found.separation_before)
         );
         let motion = self.scene.as_ref().and_then(|scene| self.played(scene, one, found));
         [Some(Part::Paragraph { text }), motion].into_iter().flatten().collect()
@@ -81,7 +81,7 @@ impl DiagnosisPage<'_> {
         };
         let positions: Vec<Vec<f64>> = found.references.iter().map(of_joint).collect();
         let joints = self.joints.iter().copied().zip(positions.iter().map(Vec::as_slice));
-        let motion = JointMotion { t_s: &t_s, q: joints.collect() };
+        let motion = JointMotion { t_s: &t_s, q: joints.collect(), ..JointMotion::default() };
         let name = format!("The motion that tells {} apart", self.candidates[one.candidate].name());
         let caption =
             "The separating experiment, one lap. Its file is beside this page.".to_owned();

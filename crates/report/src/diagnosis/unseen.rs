@@ -1,8 +1,8 @@
 //! What the logs of a diagnosis could not have shown.
 
 use super::super::html::{Cell, HtmlTable, Part, Row, Section, unit};
-use super::super::{percent, short};
-use super::{DiagnosisPage, headings};
+use super::super::percent;
+use super::{DiagnosisPage, headings, rough};
 use denavit_diagnose::Visible;
 
 /// Effects of a joint that are listed at once; the others are folded.
@@ -60,8 +60,7 @@ impl DiagnosisPage<'_> {
 
 /// In three digits, with its unit.
 fn in_digits(value: f64, of: &str) -> String {
-    let digits = format!("{value:.2e}").parse().map_or_else(|_| value.to_string(), short);
-    format!("{digits} {}", unit(of)).trim_end().to_owned()
+    format!("{} {}", rough(value), unit(of)).trim_end().to_owned()
 }
 
 fn table(rows: Vec<Row>) -> HtmlTable {

@@ -104,6 +104,7 @@ mod tests {
             at: "joint".to_owned(),
             before: t_s.iter().map(bump).collect(),
             after: vec![0.0; 600],
+            as_given: t_s.iter().map(bump).collect(),
             measured: vec![0.0; 600],
             t_s,
         };

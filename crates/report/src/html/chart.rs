@@ -2,7 +2,7 @@
 
 use super::data::{embedded, times, values};
 use super::units::with_units;
-use denavit_numerics::extremes;
+use denavit_numerics::{envelope, extremes};
 use serde::{Serialize, Serializer};
 
 /// Spans of a long log: a picture is about as many pixels wide.
@@ -50,6 +50,31 @@ pub struct ChartCurve {
     /// A value for each of the chart's.
     #[serde(rename = "y", serialize_with = "values")]
     pub values: Vec<f64>,
+    /// What it is between, where it goes up and down faster than is seen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    band: Option<Band>,
+}
+
+/// The least and the greatest values of a curve, one for each of its own.
+#[derive(Clone, Debug, Serialize)]
+struct Band {
+    #[serde(serialize_with = "values")]
+    low: Vec<f64>,
+    #[serde(serialize_with = "values")]
+    high: Vec<f64>,
+}
+
+impl Band {
+    /// Of a curve that chatters.
+    fn of(curve: &ChartCurve) -> Option<Self> {
+        let is_line = !matches!(curve.look, Look::Points | Look::Law);
+        let spans = is_line.then(|| envelope(&curve.values, SPANS)).flatten()?;
+        let column = |end: usize| {
+            let ends = spans.iter().flat_map(|span| span.rows.clone().map(|_| span.ends[end]));
+            ends.collect::<Vec<f64>>()
+        };
+        Some(Self { low: column(0), high: column(1) })
+    }
 }
 
 /// How a curve looks.
@@ -91,7 +116,7 @@ struct Data<'a> {
 impl ChartCurve {
     /// A curve.
     pub fn new(name: impl Into<String>, look: Look, values: Vec<f64>) -> Self {
-        Self { name: name.into(), look, values }
+        Self { name: name.into(), look, values, band: None }
     }
 }
 
@@ -106,6 +131,13 @@ impl Chart {
     /// The chart with the rows that stand out, where it has more than can be seen; says so.
     #[must_use]
     pub fn thinned(mut self) -> Self {
+        for curve in self.panels.iter_mut().flat_map(|panel| &mut panel.curves) {
+            curve.band = Band::of(curve);
+        }
+        let mut curves = self.panels.iter().flat_map(|panel| &panel.curves);
+        if curves.any(|curve| curve.band.is_some()) {
+            self.caption = format!("{} {BAND_NOTE}", self.caption).trim().to_owned();
+        }
         let all = self.x.len();
         let kept = {
             let curves: Vec<&Vec<f64>> =
@@ -119,6 +151,9 @@ impl Chart {
         self.x = pick(&self.x);
         for curve in self.panels.iter_mut().flat_map(|panel| &mut panel.curves) {
             curve.values = pick(&curve.values);
+            if let Some(band) = &mut curve.band {
+                (band.low, band.high) = (pick(&band.low), pick(&band.high));
+            }
         }
         let note = thinned_note(kept.len(), all);
         self.caption = format!("{} {note}", self.caption).trim().to_owned();
@@ -141,6 +176,10 @@ impl Chart {
         format!("{}, over {}: {}", self.name, self.over[1], ranges.join("; "))
     }
 }
+
+/// What is said of curves that are bands.
+const BAND_NOTE: &str = "A curve that goes up and down faster than is seen is a band between its \
+                         least and its greatest values.";
 
 /// What is said of rows that are not drawn.
 fn thinned_note(kept: usize, all: usize) -> String {
@@ -172,5 +211,32 @@ impl Serialize for Chart {
         let data = embedded(&data);
         let (name, caption) = (&self.name, &self.caption);
         Shown { name, caption, told: self.told(), data }.serialize(serializer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_chatters_is_a_band_and_what_does_not_is_a_line() {
+        let x: Vec<f64> = (0..4000).map(|row| 1e-3 * f64::from(row)).collect();
+        let slow: Vec<f64> = x.iter().map(|t| t.sin()).collect();
+        let fast = |(row, value): (usize, &f64)| value + if row % 2 == 0 { 0.3 } else { -0.3 };
+        let fast: Vec<f64> = slow.iter().enumerate().map(fast).collect();
+        let curves = vec![
+            ChartCurve::new("slow", Look::Measured, slow),
+            ChartCurve::new("fast", Look::Computed, fast),
+        ];
+        let panels = vec![Panel::new("torque [N m]", 100, curves)];
+        let chart = Chart { over: ["time [s]"; 2], x, panels, ..Chart::default() }.thinned();
+        assert!(chart.caption.contains("between its least and its greatest values"));
+        let [slow, fast] = &chart.panels[0].curves[..] else { panic!("two curves") };
+        assert!(slow.band.is_none());
+        let band = fast.band.as_ref().expect("a band");
+        assert_eq!(band.low.len(), chart.x.len());
+        for ((value, low), high) in fast.values.iter().zip(&band.low).zip(&band.high) {
+            assert!((low..=high).contains(&value) && high - low >= 0.6);
+        }
     }
 }

@@ -37,6 +37,11 @@ pub(crate) fn with_decimals(value: f64, decimals: usize) -> Brief {
     Brief(short.filter(|short| short.is_finite()).map(|short| short + 0.0))
 }
 
+/// A number in the digits of a curve; none where it is no number.
+pub(crate) fn with_digits(value: f64) -> Brief {
+    Brief(rounded(value, DIGITS))
+}
+
 /// Writes a number as short as it is: whole numbers without a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Brief(Option<f64>);
@@ -55,7 +60,7 @@ impl Serialize for Brief {
 
 /// Values of a curve, in few digits.
 pub(super) fn values<S: Serializer>(list: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(list.iter().map(|&value| Brief(rounded(value, DIGITS))))
+    serializer.collect_seq(list.iter().map(|&value| with_digits(value)))
 }
 
 /// What curves are over.

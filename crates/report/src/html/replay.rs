@@ -96,6 +96,21 @@ impl SceneMark {
         Mark::CenterOfMass.named()
     }
 
+    /// Another motion of the same robot.
+    pub(crate) fn beside(word: impl Into<String>) -> Self {
+        Self { key: "beside", word: word.into(), is_toggled: true }
+    }
+
+    /// What two models leave of torques.
+    pub(crate) fn left(words: [&str; 2]) -> [Self; 2] {
+        let [before, after] = words.map(str::to_owned);
+        [("before", before), ("after", after)].map(|(key, word)| Self {
+            key,
+            word,
+            is_toggled: true,
+        })
+    }
+
     /// A joint or a body that stands out.
     pub(crate) fn marked(word: impl Into<String>) -> Self {
         Self { key: "marked", word: word.into(), is_toggled: false }
@@ -110,14 +125,16 @@ struct ReplayEvent {
 }
 
 impl Replay {
-    /// A run with what is shown beside it and what happened; `data` is what the script draws.
+    /// A run with what is shown beside it, another motion if there is one, and what happened; `data`
+    /// is what the script draws.
     pub(crate) fn new(
         [name, caption]: [String; 2],
         marks: &[Mark],
+        ghost: Option<SceneMark>,
         events: impl Iterator<Item = (f64, String)>,
         data: &impl Serialize,
     ) -> Self {
-        let marks = marks.iter().map(|mark| mark.named()).collect();
+        let marks = marks.iter().map(|mark| mark.named()).chain(ghost).collect();
         let scene = Scene { name, caption, marks, has_time: true, ..Scene::default() };
         Self {
             events: events.map(|(t, text)| ReplayEvent { at: format!("{t:.4} s"), text }).collect(),

@@ -64,7 +64,7 @@ impl IdentificationPage<'_> {
         sections.push(residuals(&found.train, held_out));
         sections.extend(not_excited(self.model, &found.parameters));
         sections.push(self.convergence());
-        sections.extend(self.simulation.map(|simulation| simulation.section()));
+        sections.extend(self.simulation.map(|simulation| simulation.section(self.robot)));
         sections.extend(remarks(self.remarks));
         Ok(Page {
             watches: false,

@@ -58,7 +58,7 @@ pub(super) struct LinkData {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct JointData {
     pub(super) name: String,
-    slides: bool,
+    pub(super) slides: bool,
     low: f64,
     high: f64,
     pub(super) start: f64,

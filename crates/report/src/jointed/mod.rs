@@ -3,7 +3,7 @@
 
 mod geometry;
 
-use super::html::{Brief, Replay, Scene, SceneMark, with_decimals};
+use super::html::{Brief, Replay, Scene, SceneMark, with_decimals, with_digits};
 use super::pose::Pose;
 use denavit_codegen::model::Robot;
 use denavit_codegen::program::LowerError;
@@ -24,12 +24,25 @@ pub(crate) struct JointedRobot {
 }
 
 /// Positions of joints over time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct JointMotion<'a> {
     /// Times \[s\].
     pub(crate) t_s: &'a [f64],
     /// For each joint its name and its positions; others stay where they are.
     pub(crate) q: Vec<(&'a str, &'a [f64])>,
+    /// Another motion of the same times.
+    pub(crate) beside: Option<Vec<(&'a str, &'a [f64])>>,
+    /// What two models leave of the torques of joints at the same times.
+    pub(crate) left: Vec<(&'a str, [&'a [f64]; 2])>,
+}
+
+/// What two models leave of torques, frame after frame, with what the longest signs stand for.
+#[derive(Serialize)]
+struct LeftData {
+    full_nm: f64,
+    full_n: f64,
+    before: Vec<Brief>,
+    after: Vec<Brief>,
 }
 
 /// What the script draws.
@@ -40,6 +53,9 @@ struct Data<'a> {
     t: Vec<Brief>,
     /// Positions of all joints, frame after frame.
     q: Vec<Brief>,
+    /// The same of another motion.
+    beside: Option<Vec<Brief>>,
+    left: Option<LeftData>,
     events: [(); 0],
 }
 
@@ -76,7 +92,8 @@ impl JointedRobot {
             sliders: sliders.map(JointData::slider).collect(),
             ..Scene::default()
         };
-        scene.shown(&Data { geometry: &self.geometry, t: vec![], q: vec![], events: [] })
+        let (t, q, beside, left) = (vec![], vec![], None, None);
+        scene.shown(&Data { geometry: &self.geometry, t, q, beside, left, events: [] })
     }
 
     /// Along a motion; none of one that is too short to be played.
@@ -90,26 +107,74 @@ impl JointedRobot {
         let rows = motion.t_s.len();
         let wanted = ((RATE * (last - first)) as usize).clamp(2, MOST_FRAMES);
         let stride = rows.div_ceil(wanted).max(1);
-        let of_joint = |joint: &JointData| {
-            let own = motion.q.iter().find(|(name, _)| *name == joint.name);
-            own.map(|(_, positions)| *positions).filter(|positions| positions.len() == rows)
-        };
-        let columns: Vec<Option<&[f64]>> = self.geometry.joints.iter().map(of_joint).collect();
-        let shown = || (0..rows).step_by(stride);
-        let row = |at: usize| {
-            let joints = self.geometry.joints.iter().zip(&columns);
-            joints.map(move |(joint, own)| own.map_or(joint.start, |own| own[at]))
-        };
-        let brief = |value: f64| with_decimals(value, DECIMALS);
+        let shown: Vec<usize> = (0..rows).step_by(stride).collect();
         let data = Data {
             geometry: &self.geometry,
-            t: shown().map(|at| brief(motion.t_s[at])).collect(),
-            q: shown().flat_map(row).map(brief).collect(),
+            t: shown.iter().map(|&at| brief(motion.t_s[at])).collect(),
+            q: self.positions(&motion.q, rows, &shown),
+            beside: motion.beside.as_ref().map(|q| self.positions(q, rows, &shown)),
+            left: self.left(motion, &shown),
             events: [],
         };
         let scene = Scene { name, caption, marks, has_time: true, ..Scene::default() };
         (last > first).then(|| scene.shown(&data))
     }
+
+    /// Positions of all joints in some rows.
+    fn positions(&self, q: &[(&str, &[f64])], rows: usize, shown: &[usize]) -> Vec<Brief> {
+        let of_joint = |joint: &JointData| {
+            let own = q.iter().find(|(name, _)| *name == joint.name);
+            own.map(|(_, positions)| *positions).filter(|positions| positions.len() == rows)
+        };
+        let columns: Vec<Option<&[f64]>> = self.geometry.joints.iter().map(of_joint).collect();
+        let row = |at: usize| {
+            let joints = self.geometry.joints.iter().zip(&columns);
+            joints.map(move |(joint, own)| own.map_or(joint.start, |own| own[at]))
+        };
+        shown.iter().flat_map(|&at| row(at)).map(brief).collect()
+    }
+
+    /// What the longest signs of a motion stand for [N m, N]: the most that is left of any joint.
+    pub(crate) fn most_left(&self, motion: &JointMotion<'_>) -> [f64; 2] {
+        let most = |slides: bool| {
+            let own = self.geometry.joints.iter().filter(|joint| joint.slides == slides);
+            let left = own.filter_map(|joint| left_of(motion, joint));
+            let all = left.flatten().flatten().copied().filter(|value| value.is_finite());
+            all.fold(0.0, |most: f64, value| most.max(value.abs()))
+        };
+        [most(false), most(true)]
+    }
+
+    fn left(&self, motion: &JointMotion<'_>, shown: &[usize]) -> Option<LeftData> {
+        let [full_nm, full_n] = self.most_left(motion);
+        if full_nm.max(full_n) == 0.0 {
+            return None;
+        }
+        let columns: Vec<_> =
+            self.geometry.joints.iter().map(|joint| left_of(motion, joint)).collect();
+        let of = |which: usize| {
+            let row = |&at: &usize| {
+                let values = columns.iter().map(move |own| own.map(|own| own[which][at]));
+                values.map(|value| with_digits(value.unwrap_or(f64::NAN))).collect::<Vec<_>>()
+            };
+            shown.iter().flat_map(row).collect()
+        };
+        // of joints of one kind alone the other has no largest
+        let [full_nm, full_n] =
+            [full_nm, full_n].map(|most| if most > 0.0 { most } else { f64::MAX });
+        Some(LeftData { full_nm, full_n, before: of(0), after: of(1) })
+    }
+}
+
+fn brief(value: f64) -> Brief {
+    with_decimals(value, DECIMALS)
+}
+
+/// What models leave of the torque of a joint, if that is known in every row.
+fn left_of<'a>(motion: &JointMotion<'a>, joint: &JointData) -> Option<[&'a [f64]; 2]> {
+    let own = motion.left.iter().find(|(name, _)| *name == joint.name);
+    let rows = motion.t_s.len();
+    own.map(|(_, both)| *both).filter(|both| both.iter().all(|left| left.len() == rows))
 }
 
 #[cfg(test)]

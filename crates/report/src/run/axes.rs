@@ -2,10 +2,14 @@
 
 use super::super::camera::Vec2;
 use super::super::svg::{Svg, number};
+use denavit_numerics::{Span, envelope};
 
 /// Decimals of a mark, at most: longer ones have a power of ten, so that they do not reach into the
 /// name of the axis.
 const LONGEST: usize = 3;
+
+/// Pixels of a span in which a signal may go up and down too fast to be seen.
+const SPAN: f64 = 2.0;
 
 /// The numbers of a scale: a range whose ends are marks, or that is cut where the data end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,8 +135,14 @@ impl Axes {
     }
 
     fn piece(&self, svg: &mut Svg, points: &[Vec2], style: &str) {
-        if points.len() > 1 {
-            svg.line(&simplified(&thinned(points)), style);
+        if points.len() < 2 {
+            return;
+        }
+        let heights: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        let spans = self.size[0] / SPAN;
+        match envelope(&heights, spans as usize).filter(|_| points.len() as f64 > spans) {
+            Some(spans) => band(svg, points, &spans, style),
+            None => svg.line(&simplified(&thinned(points)), style),
         }
     }
 
@@ -148,6 +158,24 @@ impl Axes {
         let [x, y] = [self.corner[0] - 46.0, self.corner[1] + 0.5 * self.size[1]];
         let turned = format!("{TICK} transform=\"rotate(-90 {} {})\"", number(x), number(y));
         svg.label([x, y], "middle", &turned, text);
+    }
+}
+
+/// What a curve is between that goes up and down faster than is seen.
+fn band(svg: &mut Svg, points: &[Vec2], spans: &[Span], style: &str) {
+    let middle = |span: &Span| {
+        let [first, last] = [span.rows.start, span.rows.end - 1].map(|row| points[row][0]);
+        0.5 * (first + last)
+    };
+    let edge = |end: usize| spans.iter().map(move |span| [middle(span), span.ends[end]]);
+    let [low, high] = [0, 1].map(|end| simplified(&edge(end).collect::<Vec<Vec2>>()));
+    // the colour of the line
+    let colour = style.split("stroke=\"").nth(1).and_then(|rest| rest.split('"').next());
+    let fill = format!("fill=\"{}\" fill-opacity=\"0.35\"", colour.unwrap_or("#5a6472"));
+    let outline: Vec<Vec2> = low.iter().copied().chain(high.iter().rev().copied()).collect();
+    svg.polygon(&outline, &fill);
+    for edge in [low, high] {
+        svg.line(&edge, &format!("{style} stroke-opacity=\"0.7\""));
     }
 }
 

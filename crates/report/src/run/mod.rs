@@ -3,6 +3,7 @@
 
 mod axes;
 mod balance;
+mod beside;
 mod compared;
 mod curves;
 mod excitation;
@@ -12,6 +13,7 @@ mod replay;
 mod torques;
 
 pub(crate) use balance::{BalanceCurve, BalancePicture};
+pub(crate) use beside::beside_parts;
 pub(crate) use compared::diagnosis_picture;
 pub(crate) use curves::run_charts;
 pub(crate) use gait::{GaitCurve, GaitPicture};

@@ -3,12 +3,13 @@
 
 use super::super::outline::{hull, round_step};
 use super::super::quaternion::pose_of;
-use super::super::space::{Transform, Vec3, add, extent, norm, scale, sub};
+use super::super::space::{LEAST_SIZE_M, Transform, Vec3, add, extent, norm, scale, sub};
 use super::figures::{feet, generated};
-use crate::html::{Brief, Mark, Replay, with_decimals};
+use crate::html::{Brief, Mark, Replay, SceneMark, with_decimals};
 use denavit_plants::{Plant, PlantModel};
 use denavit_simulate::{Event, EventKind, Log, Run};
 use denavit_walk::balance::{Instant, course_of_run};
+use denavit_workflow::LogBeside;
 use serde::Serialize;
 
 /// Frames of a second, and of a run at least and at most.
@@ -34,6 +35,8 @@ struct Data {
     links: Vec<LinkData>,
     /// Place and quaternion (x, y, z, w) of each link, frame after frame.
     poses: Vec<Brief>,
+    /// The same of a log beside the run; nothing where it has none.
+    beside: Option<Vec<Brief>>,
     tips: Vec<PointData>,
     feet: Vec<FootData>,
     contacts: Vec<PointData>,
@@ -86,8 +89,9 @@ struct EventData {
     text: String,
 }
 
-/// A run that is played back; none of a log without positions.
-pub(crate) fn replay(plant: &mut dyn Plant, run: &Run) -> Option<Replay> {
+/// A run that is played back, with what a log has of the same robot; none of a run without
+/// positions.
+pub(crate) fn replay(plant: &mut dyn Plant, run: &Run, log: Option<&LogBeside>) -> Option<Replay> {
     let model = plant.model().clone();
     let shown = displayed(&run.log)?;
     let times = shown.column("t")?;
@@ -104,6 +108,7 @@ pub(crate) fn replay(plant: &mut dyn Plant, run: &Run) -> Option<Replay> {
         marks.extend([Mark::ZeroMomentPoint, Mark::CapturePoint, Mark::Support]);
     }
     marks.extend(forces.is_some().then_some(Mark::Forces));
+    let beside = log.map(|log| beside(plant, log, &times));
     let events = events(&model, &run.events);
     let listed: Vec<(f64, String)> = events.iter().map(|one| (one.t, one.text.clone())).collect();
     let name = format!("{} in motion, in three dimensions", model.name);
@@ -113,8 +118,24 @@ pub(crate) fn replay(plant: &mut dyn Plant, run: &Run) -> Option<Replay> {
          scroll to come closer. Marks on the time line are events.",
         frames.len()
     );
-    let data = data(&model, &times, &frames, balance, forces.map(|f| (f, force_n)), events);
-    Some(Replay::new([name, caption], &marks, listed.into_iter(), &data))
+    let forces = forces.map(|f| (f, force_n));
+    let data = Data { beside, ..data(&model, &times, &frames, balance, forces, events) };
+    let ghost = log.map(|log| SceneMark::beside(format!("measured: {}", log.file)));
+    Some(Replay::new([name, caption], &marks, ghost, listed.into_iter(), &data))
+}
+
+/// Places and turns of the links as a log has them, frame after frame.
+fn beside(plant: &mut dyn Plant, log: &LogBeside, times: &[f64]) -> Vec<Brief> {
+    let links = plant.model().links.len();
+    let mut all = Vec::new();
+    for &t in times {
+        let q: Option<Vec<f64>> = log.q.iter().map(|signal| log.at(signal, t)).collect();
+        match q {
+            Some(q) => all.extend(Frame::of(plant, &q).links.iter().flat_map(pose)),
+            None => all.extend((0..7 * links).map(|_| with_decimals(f64::NAN, PLACE))),
+        }
+    }
+    all
 }
 
 /// The rows of a log at the times of a display.
@@ -258,6 +279,7 @@ fn data(
         up,
         base: [0.0; 3],
         t: times.iter().map(|time| with_decimals(*time, TIME)).collect(),
+        beside: None,
         poses: frames.iter().flat_map(|frame| &frame.links).flat_map(pose).collect(),
         links,
         tips: model
@@ -351,11 +373,16 @@ fn size_and_middle(model: &PlantModel, links: &[LinkData], frames: &[Frame]) -> 
         points.extend(bodies.map(|(frame, _)| frame.origin));
         let ends = model.contacts.iter().chain(&model.fall_points);
         points.extend(ends.map(|point| frame.links[point.link].point(point.position)));
-        points.push(frame.center);
     }
     if generated(model) == 0 {
         points.push([0.0; 3]);
     }
+    let (size, center) = extent(&points);
+    if size > LEAST_SIZE_M && !points.is_empty() {
+        return (size, center);
+    }
+    // a robot that is a point is as large as its way
+    points.extend(frames.iter().map(|frame| frame.center));
     extent(&points)
 }
 

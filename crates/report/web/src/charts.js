@@ -1,7 +1,8 @@
 // Curves over time, or over another quantity: panels below each other, with one horizontal axis.
 // Charts of a group have their zoom and their cursor in common.
 import uPlot from "uplot";
-import { colour, onTheme } from "./theme.js";
+import { makeWhenSeen } from "./seen.js";
+import { colour, isPaper, onTheme } from "./theme.js";
 
 /** How a curve looks by what it is; others have the colours of a palette in turn. */
 const LOOKS = {
@@ -13,6 +14,8 @@ const LOOKS = {
   law: { colour: "computed", points: true },
 };
 const PALETTE = 8;
+/** How much is seen through a band: the last two digits of its colour. */
+const BAND = "55";
 const PAPER_WIDTH = 640;
 
 const groups = new Map();
@@ -36,11 +39,34 @@ function shown(value) {
   return String(Number(value.toPrecision(4)));
 }
 
-function series(curve, place) {
-  const look = LOOKS[curve.look] ?? { colour: `c${place % PALETTE}`, width: 1.2 };
+function lookOf(curve, place) {
+  return LOOKS[curve.look] ?? { colour: `c${place % PALETTE}`, width: 1.2 };
+}
+
+/** The curves of a panel: of one that chatters its least and its greatest, with what is between. */
+function lines(panel) {
+  const all = [];
+  const bands = [];
+  panel.curves.forEach((curve, place) => {
+    const look = lookOf(curve, place);
+    if (!curve.band) {
+      all.push({ name: curve.name, look, y: curve.y });
+      return;
+    }
+    // the first series is the axis
+    const at = all.length + 1;
+    const edge = { ...look, width: 0.8, dash: undefined };
+    all.push({ name: `${curve.name}, greatest`, look: edge, y: curve.band.high });
+    all.push({ name: `${curve.name}, least`, look: edge, y: curve.band.low });
+    bands.push({ series: [at, at + 1], fill: () => `${colour(look.colour)}${BAND}` });
+  });
+  return { all, bands };
+}
+
+function series({ name, look }) {
   const stroke = () => colour(look.colour);
   return {
-    label: curve.name,
+    label: name,
     stroke,
     width: look.width ?? 0,
     dash: look.dash,
@@ -83,7 +109,7 @@ function powers(_, ticks) {
   return ticks.map(tick => (Math.abs(Math.log10(tick) % 1) < 1e-9 ? tick : null));
 }
 
-function options(data, panel, isLast, own, box, width) {
+function options(data, panel, { all, bands }, isLast, own, box, width) {
   const many = panel.curves.length > 4;
   const left = axis(panel.label, true);
   if (panel.log) for (const lines of [left, left.grid, left.ticks]) lines.filter = powers;
@@ -96,8 +122,9 @@ function options(data, panel, isLast, own, box, width) {
       values: (_, ticks) => ticks.map(() => "") }, left],
     series: [
       { label: data.x_name, value: (_, value) => shown(value) },
-      ...panel.curves.map(series),
+      ...all.map(series),
     ],
+    bands,
     legend: { mount: (_, table) => box.append(table) },
     // of many curves the one below the cursor stands out
     focus: { alpha: many ? 0.2 : 1 },
@@ -151,42 +178,35 @@ function drawChart(figure) {
   const x = data.x;
   own.full ??= [x[0], x[x.length - 1]];
   own.full = [Math.min(own.full[0], x[0]), Math.max(own.full[1], x[x.length - 1])];
-  const width = () => Math.max(200, room.clientWidth);
+  // paper is not as wide as a screen, and what is in a tab has no width there
+  const width = () => (isPaper() ? PAPER_WIDTH : Math.max(200, room.clientWidth));
+  // a chart that is come to later shows what the others of its group show
+  const shown = own.plots[0] && { min: own.plots[0].scales.x.min, max: own.plots[0].scales.x.max };
   const plots = data.panels.map((panel, place) => {
     const legend = document.createElement("div");
     legend.className = "legend";
     room.append(legend);
     const isLast = place === data.panels.length - 1;
-    const given = options(data, panel, isLast, own, legend, width());
-    const plot = new uPlot(given, [x, ...panel.curves.map(curve => curve.y)], room);
+    const curves = lines(panel);
+    const given = options(data, panel, curves, isLast, own, legend, width());
+    const plot = new uPlot(given, [x, ...curves.all.map(line => line.y)], room);
     own.plots.push(plot);
     return plot;
   });
+  if (shown) plots[0].setScale("x", shown);
   room.addEventListener("keydown", keys(own, plots[0]));
   const resize = to => plots.forEach(plot => {
     if (plot.width !== to) plot.setSize({ width: to, height: plot.height });
   });
   new ResizeObserver(() => {
-    if (room.clientWidth > 0) resize(width());
+    if (room.clientWidth > 0 && !isPaper()) resize(width());
   }).observe(room);
   onTheme(() => {
-    const isPaper = document.documentElement.classList.contains("paper");
-    resize(isPaper ? PAPER_WIDTH : width());
+    resize(width());
     plots.forEach(plot => plot.redraw(false, true));
   });
 }
 
-/** Draws the first charts at once and the others one by one, so that the page answers meanwhile. */
 export function drawCharts(root) {
-  const left = [...root.querySelectorAll("figure.chart")];
-  const next = count => left.splice(0, count).forEach(drawChart);
-  const rest = () => {
-    next(1);
-    if (left.length > 0) setTimeout(rest, 0);
-    else document.documentElement.dataset.charts = "yes";
-  };
-  // paper has all of them
-  addEventListener("beforeprint", () => next(left.length));
-  next(2);
-  rest();
+  makeWhenSeen(root.querySelectorAll("figure.chart"), "charts", drawChart);
 }

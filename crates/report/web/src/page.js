@@ -6,7 +6,6 @@ import { watch } from "./watch.js";
 
 document.querySelectorAll("table.sortable").forEach(makeSortable);
 drawCharts(document);
-// after the curves: what is hidden has no width to draw them in
 document.querySelectorAll(".tabs").forEach(makeTabs);
 if (document.documentElement.dataset.watches) watch();
 document.documentElement.dataset.ready = "yes";

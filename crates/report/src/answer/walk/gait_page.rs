@@ -22,7 +22,7 @@ pub fn gait_page(
 ) -> Page {
     let mut moves = vec![figure(joints(scenario, &course), "Joint angles (figures 4.2 and 4.4).")];
     if let Some(run) = &course.run {
-        let motion = replay(scenario.plant.as_mut(), run);
+        let motion = replay(scenario.plant.as_mut(), run, None);
         moves.splice(0..0, motion.map(Part::Replay));
         let caption = "Snapshots, joints, forces of the ground (figures 4.3 and 4.5).";
         moves.push(figure(drawn_run(scenario, run, None), caption));

@@ -26,12 +26,20 @@ export function place(list, [frame, share], stride = 1, offset = 0) {
   return first && second ? first.lerp(second, share) : null;
 }
 
-/** Place and turn of a link: seven numbers per frame and link. */
-export function pose(data, [frame, share], link) {
-  const count = data.links.length;
+/**
+ * Places and turns of all links, of a list of seven numbers per frame and link; none where one of
+ * the frames has none.
+ */
+export function posesOfList(list, count, [frame, share]) {
+  const isKnown = which => (list[7 * which * count] ?? null) !== null;
+  if (!isKnown(frame) || (share > 0 && !isKnown(frame + 1))) return null;
+  return Array.from({ length: count }, (_, link) => pose(list, count, [frame, share], link));
+}
+
+function pose(list, count, [frame, share], link) {
   const at = which => {
     const from = 7 * (which * count + link);
-    const [x, y, z, a, b, c, d] = data.poses.slice(from, from + 7);
+    const [x, y, z, a, b, c, d] = list.slice(from, from + 7);
     return [new Vector3(x, y, z), new Quaternion(a, b, c, d)];
   };
   const [origin, turn] = at(frame);

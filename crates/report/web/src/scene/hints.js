@@ -65,6 +65,8 @@ export class Hints {
     if (!this.poses) return;
     const { clientWidth: wide, clientHeight: tall } = this.stage.canvas;
     const taken = [];
+    const side = new Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 0)
+      .multiplyScalar(2 * this.robot.radius);
     this.labels.forEach((label, link) => {
       if (!label) return;
       const own = this.data.links[link];
@@ -72,8 +74,10 @@ export class Hints {
         ? this.poses[own.carrier][0] : this.poses[link][0];
       const at = own.is_joint_marked && own.carrier < 0 && !this.data.is_modified
         ? new Vector3(...this.data.base) : seat;
-      const seen = at.clone().project(this.stage.camera);
-      const x = (0.5 + 0.5 * seen.x) * wide + 10;
+      // beside what is drawn there
+      const wider = own.is_joint_marked ? 1.5 : 1;
+      const seen = at.clone().addScaledVector(side, wider).project(this.stage.camera);
+      const x = (0.5 + 0.5 * seen.x) * wide + 5;
       let y = (0.5 - 0.5 * seen.y) * tall - 8;
       while (taken.some(([a, b]) => Math.abs(a - x) < 60 && Math.abs(b - y) < APART)) y += APART;
       taken.push([x, y]);

@@ -29,11 +29,11 @@ export function posesOf(data, q) {
 }
 
 /** Positions of the joints at a time between frames. */
-export function positionsAt(data, [frame, share]) {
+export function positionsAt(data, [frame, share], q = data.q) {
   const count = data.joints.length;
   return data.joints.map((_, joint) => {
-    const first = data.q[frame * count + joint];
-    return share > 0 ? first + share * (data.q[(frame + 1) * count + joint] - first) : first;
+    const first = q[frame * count + joint];
+    return share > 0 ? first + share * (q[(frame + 1) * count + joint] - first) : first;
   });
 }
 
@@ -72,13 +72,17 @@ export function fit(data) {
   const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
   const step = Math.max(1, Math.floor(frames / POSTURES));
   for (let frame = 0; frame < frames; frame += step) {
-    const q = data.t.length > 0 ? positionsAt(data, [frame, 0]) : posture(data, frame);
-    const poses = posesOf(data, q);
-    data.links.forEach((link, place) => {
-      if (!link.is_body) return;
-      low.min(poses[place][0]);
-      high.max(poses[place][0]);
-    });
+    const of = list => positionsAt(data, [frame, 0], list);
+    const moved = data.t.length > 0
+      ? [data.q, data.beside].filter(Boolean).map(of) : [posture(data, frame)];
+    for (const q of moved) {
+      const poses = posesOf(data, q);
+      data.links.forEach((link, place) => {
+        if (!link.is_body) return;
+        low.min(poses[place][0]);
+        high.max(poses[place][0]);
+      });
+    }
   }
   if (!data.follows) {
     low.min(new Vector3(...data.base));

@@ -1,6 +1,7 @@
 // The controls of a run: play, time, speed, what is shown, events.
 import { Vector3 } from "three";
-import { between, place, pose } from "./frames.js";
+import { Arcs } from "./arcs.js";
+import { between, place, posesOfList } from "./frames.js";
 import { Hints } from "./hints.js";
 import { centerOf, fit, posesOf, positionsAt, startOf } from "./jointed.js";
 import { Marks } from "./marks.js";
@@ -20,7 +21,12 @@ class Player {
     this.robot = new Robot(data);
     this.marks = new Marks(data);
     this.hints = new Hints(figure, data, this.robot, this.stage);
-    this.stage.scene.add(this.robot.group, this.marks.group, this.hints.group);
+    this.arcs = new Arcs(data, this.robot.radius);
+    // the same robot in another motion
+    this.ghost = data.beside ? new Robot(data, true) : null;
+    this.isGhostShown = true;
+    this.stage.scene.add(this.robot.group, this.marks.group, this.hints.group, this.arcs.group);
+    if (this.ghost) this.stage.scene.add(this.ghost.group);
     const find = name => figure.querySelector(name);
     this.slider = find(".line input");
     this.clock = find(".controls output");
@@ -50,7 +56,9 @@ class Player {
     figure.querySelectorAll(".marks input").forEach(box => {
       box.addEventListener("change", () => {
         if (box.value === "frames") this.hints.toggle(box.checked);
+        if (box.value === "beside") this.isGhostShown = box.checked;
         this.marks.toggle(box.value, box.checked);
+        this.arcs.toggle(box.value, box.checked);
         this.show(this.time);
       });
     });
@@ -105,15 +113,26 @@ class Player {
   }
 
   paint() {
-    for (const part of [this.robot, this.marks, this.hints, this.stage]) part.paint(colour);
+    const parts = [this.robot, this.ghost, this.marks, this.hints, this.arcs, this.stage];
+    for (const part of parts) part?.paint(colour);
     this.show(this.time);
   }
 
   /** Where the links are at a time. */
   poses(at) {
     const { data } = this;
-    if (!this.isJointed) return data.links.map((_, link) => pose(data, at, link));
+    if (!this.isJointed) return posesOfList(data.poses, data.links.length, at);
     return posesOf(data, this.button ? positionsAt(data, at) : this.q);
+  }
+
+  /** The other motion, where there is any at that time. */
+  showGhost(at) {
+    const { data, ghost } = this;
+    const poses = this.isJointed
+      ? posesOf(data, positionsAt(data, at, data.beside))
+      : posesOfList(data.beside, data.links.length, at);
+    ghost.group.visible = this.isGhostShown && poses !== null;
+    if (poses) ghost.show(poses);
   }
 
   show(time) {
@@ -122,6 +141,8 @@ class Player {
     const at = this.button ? between(data.t, time) : [0, 0];
     const poses = this.poses(at);
     this.robot.show(poses);
+    if (this.ghost) this.showGhost(at);
+    this.arcs.show(at, this.robot);
     this.hints.show(poses);
     if (this.isJointed) this.marks.stay(centerOf(data, poses));
     else this.marks.show(at, poses);

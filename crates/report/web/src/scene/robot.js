@@ -8,6 +8,10 @@ import {
 const UP = new Vector3(0, 1, 0);
 const AXIS = new Vector3(0, 0, 1);
 const ROUND = 20;
+/** The radius of a link per size of what is seen. */
+const THICK = 0.018;
+/** A ghost is as much thicker, so that both are seen where they are in one place. */
+const WIDER = 1.2;
 /** What is marked has the colour of faults. */
 const COLOURS = { marked: "bad" };
 
@@ -33,10 +37,10 @@ class Capsule {
   }
 }
 
-function jointMesh(slides, size, material) {
+function jointMesh(slides, radius, material) {
   const along = slides
-    ? new BoxGeometry(0.05 * size, 0.09 * size, 0.05 * size)
-    : new CylinderGeometry(0.024 * size, 0.024 * size, 0.075 * size, ROUND);
+    ? new BoxGeometry(3.3 * radius, 6 * radius, 3.3 * radius)
+    : new CylinderGeometry(1.55 * radius, 1.55 * radius, 4.4 * radius, ROUND);
   return new Mesh(along, material);
 }
 
@@ -54,12 +58,19 @@ function footMesh(count, material) {
 }
 
 export class Robot {
-  constructor(data) {
+  /** `ghost`: another motion of the same robot, through which the first is seen. */
+  constructor(data, ghost = false) {
     this.data = data;
+    this.ghost = ghost;
     this.group = new Group();
-    const material = () => new MeshLambertMaterial({ side: DoubleSide });
+    const look = ghost ? { transparent: true, opacity: 0.45, depthWrite: false } : {};
+    const material = () => new MeshLambertMaterial({ side: DoubleSide, ...look });
     this.materials = { link: material(), joint: material(), foot: material(), marked: material() };
-    const radius = 0.015 * data.size;
+    // as many pixels in every picture, however far its joints reach
+    const extent = data.view ?? data.size;
+    const radius = THICK * extent * (ghost ? WIDER : 1);
+    this.radius = radius;
+    this.seats = [];
     const { link: body, joint, foot, marked } = this.materials;
     this.links = data.links.map((link, place) => {
       const of = link.is_marked ? marked : body;
@@ -68,7 +79,7 @@ export class Robot {
         along: new Capsule(wide, of),
         across: new Capsule(wide, of),
         joint: link.is_joint
-          ? jointMesh(link.slides, (link.is_joint_marked ? 1.5 : 1) * data.size,
+          ? jointMesh(link.slides, (link.is_joint_marked ? 1.5 : 1) * radius,
             link.is_joint_marked ? marked : joint)
           : null,
         ball: link.radius ? new Mesh(new SphereGeometry(link.radius, 24, 16), body) : null,
@@ -90,7 +101,9 @@ export class Robot {
   }
 
   paint(colour) {
-    for (const [name, material] of Object.entries(this.materials)) material.color.set(colour(COLOURS[name] ?? name));
+    for (const [name, material] of Object.entries(this.materials)) {
+      material.color.set(colour(this.ghost ? "measured" : COLOURS[name] ?? name));
+    }
   }
 
   /** Moves all parts to where the links are. */
@@ -105,6 +118,8 @@ export class Robot {
       const [foot, head] = data.is_modified ? [origin, from] : [from, origin];
       const corner = foot.clone().addScaledVector(axis, head.clone().sub(foot).dot(axis));
       const parts = this.links[place];
+      // where its joint is, with the frame that it turns in
+      this.seats[place] = [foot, data.is_modified ? own : turn];
       if (link.is_body) {
         parts.along.put(from, corner);
         parts.across.put(corner, origin);

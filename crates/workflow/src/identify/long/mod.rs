@@ -8,7 +8,6 @@
 mod plan;
 mod reading;
 
-use super::clock::Clock;
 use super::estimation::Estimation;
 use super::logs::Reader;
 use super::{Head, Identified, IdentifyOptions, Work, regression};

@@ -7,7 +7,7 @@ use denavit::demo::RobotError;
 use denavit::derive::MotionError;
 use denavit::emit::SourceError;
 use denavit::emit::latex::TooLongToSet;
-use denavit::import::{ExportError, ImportError};
+use denavit::import;
 use denavit::model::ModelError;
 use denavit::program::{CodeError, StatesError};
 use denavit::regressor::{DecomposedError, ProvenBaseError};
@@ -23,9 +23,9 @@ pub(crate) enum Failure {
     /// The model file is wrong.
     Model(ModelError),
     /// A description of a robot in another format is wrong.
-    Import(ImportError),
+    Import(import::Error),
     /// A model is not described in another format; holds the model.
-    Export(String, ExportError),
+    Export(String, import::Error),
     /// A file of states is wrong; holds the file and why.
     States(String, StatesError),
     /// A file cannot be read.
@@ -290,7 +290,9 @@ impl Failure {
     fn of_others(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Import(error) => write!(f, "{error}"),
-            Self::Export(_, ExportError::Description(error)) => write!(f, "{error}"),
+            Self::Export(_, error) if error.kind() == import::ErrorKind::Description => {
+                write!(f, "{error}")
+            }
             Self::Export(model, error) => write!(f, "{model}: {error}"),
             Self::States(file, error) => write!(f, "{file}: {error}"),
             _ => Ok(()),

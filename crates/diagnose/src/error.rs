@@ -3,7 +3,6 @@
 use super::diagnosis::Request;
 use super::experiment::NoExperiment;
 use super::simulated::NotMoved;
-use denavit_measure::condition::ConditionError;
 use denavit_measure::log::MeasuredLog;
 use std::fmt;
 
@@ -39,7 +38,7 @@ enum Cause {
         /// The log's name.
         file: String,
         /// Why.
-        error: ConditionError,
+        error: denavit_measure::Error,
     },
     /// A model is not moved.
     Moved(NotMoved),
@@ -70,7 +69,7 @@ impl Error {
     }
 
     /// A log that cannot be filtered.
-    pub(super) fn condition(file: String, error: ConditionError) -> Self {
+    pub(super) fn condition(file: String, error: denavit_measure::Error) -> Self {
         Cause::Condition { file, error }.into()
     }
 
@@ -96,14 +95,14 @@ impl fmt::Display for Error {
                 "{file}: no joint has a torque\n  hint: give columns `tau_JOINT`, or name them \
                  with `logs.columns`"
             ),
-            Cause::Condition { file, error: ConditionError::TooShort { samples, needed } } => {
-                write!(
+            Cause::Condition { file, error } => match error.rows() {
+                Some([samples, needed]) => write!(
                     f,
                     "{file}: {samples} rows: with its edges cut off by the filters a log needs at \
                      least {needed}\n  hint: a longer log, or one sampled faster"
-                )
-            }
-            Cause::Condition { file, error } => write!(f, "{file}: {error}"),
+                ),
+                None => write!(f, "{file}: {error}"),
+            },
             Cause::Moved(error) => write!(f, "{error}"),
             Cause::Experiment(error) => write!(f, "{error}"),
         }

@@ -13,7 +13,7 @@ use super::standstill::{self, Rest};
 use crate::policy::signals::{ENOUGH_ROWS, LEAST_RATE_HZ, LEAST_ROWS, ROWS_PER_PERIOD};
 use denavit_evidence::policy;
 use denavit_measure::JointIndex;
-use denavit_measure::condition::{Butterworth, ConditionError, STENCIL, acceleration, rate};
+use denavit_measure::condition::{Butterworth, STENCIL, acceleration, rate};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_numerics::Random;
 use std::ops::Range;
@@ -111,10 +111,10 @@ impl Rows {
         filter: &Butterworth,
         stride: usize,
         within: usize,
-    ) -> Result<Self, ConditionError> {
+    ) -> Result<Self, denavit_measure::Error> {
         let needed = 2 * (edge + filter.smear()) + LEAST_ROWS * stride;
         if samples < needed {
-            return Err(ConditionError::TooShort { samples, needed });
+            return Err(denavit_measure::Error::too_short(samples, needed));
         }
         let spare = samples.saturating_sub(2 * (edge + ENOUGH_ROWS * stride)) / 2;
         let first = spare.clamp(filter.smear(), filter.settling());
@@ -124,12 +124,12 @@ impl Rows {
 
 impl Signals {
     /// Filters a log.
-    pub fn new(log: MeasuredLog, filters: Filters) -> Result<Self, ConditionError> {
+    pub fn new(log: MeasuredLog, filters: Filters) -> Result<Self, denavit_measure::Error> {
         let MeasuredLog { file, start_s, step_s, joints, .. } = log;
         let filter_of = |cutoff_hz: f64| {
             let nyquist_hz = 0.5 / step_s;
             let found = Butterworth::new(ORDER, cutoff_hz, step_s);
-            found.ok_or(ConditionError::Cutoff { cutoff_hz, nyquist_hz })
+            found.ok_or_else(|| denavit_measure::Error::cutoff(cutoff_hz, nyquist_hz))
         };
         let (wide, filter) = (filter_of(filters.motion_hz)?, filter_of(filters.torque_hz)?);
         let samples = joints.first().map_or(0, |joint| joint.q.len());

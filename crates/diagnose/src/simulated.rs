@@ -16,10 +16,10 @@ use denavit_identify::{
     with_effects,
 };
 use denavit_measure::Split;
-use denavit_measure::condition::{ConditionError, Filter};
+use denavit_measure::condition::Filter;
 use denavit_measure::log::MeasuredLog;
 use denavit_plants::effect::apart;
-use denavit_plants::{PlantError, PlantModel, plant_of};
+use denavit_plants::{PlantModel, plant_of};
 use std::fmt;
 
 /// How far simulated motions run away from measured ones.
@@ -54,11 +54,11 @@ pub(crate) enum NotMoved {
     /// Its file with what was found is not that of a model.
     Unsound(Box<ModelError>),
     /// It cannot be simulated.
-    Plant(PlantError),
+    Plant(denavit_plants::Error),
     /// A law lacks a value or a place.
     Law(String),
     /// A log cannot be filtered; holds its name.
-    Condition(String, ConditionError),
+    Condition(String, denavit_measure::Error),
     /// A log cannot be simulated again; holds its name.
     Forward(String, denavit_identify::Error),
     /// The motor of a joint is in the logs, and the model gives the spring behind it no stiffness:

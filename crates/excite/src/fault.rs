@@ -3,7 +3,6 @@
 use super::options::DURATIONS_S;
 use denavit_codegen::model::BakeError;
 use denavit_codegen::program::LowerError;
-use denavit_plants::regression::RegressionError;
 use std::fmt;
 
 /// A limit of a joint in the model file.
@@ -44,7 +43,7 @@ impl LimitKind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ExciteFault {
     /// The model has no regressor.
-    Regression(RegressionError),
+    Regression(denavit_plants::Error),
     /// Values are missing that torques or points need.
     Bake(BakeError),
     /// A number that no computer arithmetic holds.

@@ -8,9 +8,7 @@
 //! have their frequencies as coordinates too, and P depends on them.
 
 use crate::policy::space::ROUNDING;
-use denavit_plants::trajectory::{
-    Bezier, CubicSpline, EndCondition, Fourier, Reference, Setpoint, TrajectoryError,
-};
+use denavit_plants::trajectory::{Bezier, CubicSpline, EndCondition, Fourier, Reference, Setpoint};
 use denavit_runtime::Scalar;
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
@@ -228,7 +226,7 @@ impl Space {
         coordinates: &[f64],
         center: f64,
         scale: f64,
-    ) -> Result<Reference, TrajectoryError> {
+    ) -> Result<Reference, denavit_plants::Error> {
         let c = self.placed(coordinates, center, scale);
         let range = [0.0, self.duration_s];
         match self.family {

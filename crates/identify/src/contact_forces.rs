@@ -8,7 +8,7 @@ use crate::policy::contact_forces::DIFFERENCE;
 use denavit_codegen::model::Robot;
 use denavit_measure::log::{LogRemark, MeasuredLog};
 use denavit_plants::regression::RegressionModel;
-use denavit_plants::{Plant, PlantError, plant_of};
+use denavit_plants::{Plant, plant_of};
 
 /// The ground under a robot on a floating base, as its logs know it.
 pub struct Ground {
@@ -21,7 +21,10 @@ impl Ground {
     ///
     /// # Errors
     /// If the robot's contacts cannot be derived.
-    pub fn under(robot: &Robot, model: &RegressionModel) -> Result<Option<Self>, PlantError> {
+    pub fn under(
+        robot: &Robot,
+        model: &RegressionModel,
+    ) -> Result<Option<Self>, denavit_plants::Error> {
         let floats = model.joints.iter().any(|joint| joint.is_base);
         floats.then(|| Self::around(robot, model)).transpose()
     }
@@ -30,7 +33,7 @@ impl Ground {
     ///
     /// # Errors
     /// If the robot's contacts cannot be derived.
-    pub fn around(robot: &Robot, model: &RegressionModel) -> Result<Self, PlantError> {
+    pub fn around(robot: &Robot, model: &RegressionModel) -> Result<Self, denavit_plants::Error> {
         let is_base = model.joints.iter().map(|joint| joint.is_base).collect();
         Ok(Self { plant: plant_of(robot, &[])?, is_base })
     }

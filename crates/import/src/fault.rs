@@ -4,7 +4,7 @@ use denavit_codegen::model::{Explained, FileError, Report};
 use std::fmt;
 
 /// Everything that is wrong with a robot description: place, cause and hint of each fault.
-pub type ImportError = FileError<Cause>;
+pub(crate) type ImportError = FileError<Cause>;
 
 /// The faults found so far.
 pub(crate) type Faults = Report<Cause>;

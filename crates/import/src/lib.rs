@@ -12,6 +12,7 @@
 mod body;
 mod chain;
 mod contact;
+mod error;
 mod exact;
 mod export;
 mod fault;
@@ -28,8 +29,9 @@ mod tree;
 mod urdf;
 mod xml;
 
-pub use export::{ExportError, Exported, Format, export, export_into};
-pub use fault::{Cause, ImportError};
+pub use error::{Error, ErrorKind};
+pub use export::{Exported, Format, export, export_into};
+pub use fault::Cause;
 pub use options::{BaseChoice, Mimic, Options};
 
 use denavit_codegen::model::Report;
@@ -72,10 +74,10 @@ pub fn import(
     bytes: &[u8],
     options: &Options,
     include: &mut Include<'_>,
-) -> Result<Imported, ImportError> {
+) -> Result<Imported, Error> {
     let source = Source::read(file, bytes)?;
     let mut faults = Report::default();
-    let refused = |faults: fault::Faults| Err(faults.into_error(file, bytes, None));
+    let refused = |faults: fault::Faults| Err(Error::from(faults.into_error(file, bytes, None)));
     let Some(document) = source.document() else { return refused(faults) };
     let root = source.root(&document);
     let name = short_name(file);

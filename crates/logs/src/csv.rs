@@ -1,5 +1,6 @@
 //! Logs as text: streamed, only the columns that are wanted.
 
+use super::error::Error;
 use super::fault::{FileFault, of_io};
 use super::remark::FileRemark;
 use super::source::{Batches, Column, Log, Rows};
@@ -61,7 +62,7 @@ impl<R: BufRead> Rows for Text<R> {
 ///
 /// # Errors
 /// There are no names of columns, or the source cannot be read.
-pub fn open_csv<'a>(source: impl BufRead + 'a) -> Result<Log<'a>, Vec<FileFault>> {
+pub fn open_csv<'a>(source: impl BufRead + 'a) -> Result<Log<'a>, Error> {
     let mut lines = Lines::new(source);
     let head = read_head(&mut lines)?;
     let column = |name: &String| Column { name: name.clone(), known: None };

@@ -1,6 +1,7 @@
 //! Which format a file has, by its first bytes, and what reads it.
 
 use super::csv::open_csv;
+use super::error::Error;
 use super::fault::{FileFault, of_io};
 use super::opening::Opening;
 use super::source::Log;
@@ -48,25 +49,21 @@ impl Format {
 ///
 /// # Errors
 /// The file cannot be read, or is none of these formats, or nothing in it has columns.
-pub fn open(
-    path: &Path,
-    file: Option<File>,
-    how: &Opening,
-) -> Result<Log<'static>, Vec<FileFault>> {
+pub fn open(path: &Path, file: Option<File>, how: &Opening) -> Result<Log<'static>, Error> {
     let failed = |error| vec![of_io(&error)];
     if path.is_dir() {
-        return bag(path, how);
+        return Ok(bag(path, how)?);
     }
     let file = file.map_or_else(|| File::open(path), Ok).map_err(failed)?;
     let mut source = BufReader::with_capacity(BUFFER, file);
     let first = source.fill_buf().map_err(failed)?;
     match Format::of(&first[..first.len().min(MAGIC)]) {
         Format::Text => open_csv(source),
-        Format::Mcap => mcap(source, how),
-        Format::Parquet => parquet(source),
-        Format::Arrow => arrow(source),
-        Format::Sqlite => sqlite(path, how),
-        Format::Other(format, hint) => Err(vec![FileFault::OtherFormat { format, hint }]),
+        Format::Mcap => Ok(mcap(source, how)?),
+        Format::Parquet => Ok(parquet(source)?),
+        Format::Arrow => Ok(arrow(source)?),
+        Format::Sqlite => Ok(sqlite(path, how)?),
+        Format::Other(format, hint) => Err(vec![FileFault::OtherFormat { format, hint }].into()),
     }
 }
 

@@ -5,6 +5,7 @@
 //! - [`MemoryLog`]: columns that a program has
 //! - [`Log`]: what a log says of itself and which columns it has; [`Log::read`] reads some,
 //!   [`Log::batches`] some rows at a time
+//! - [`Error`]: all that is wrong with a file
 //! - `write_mcap`: a table as messages of ROS 2
 
 #[cfg(feature = "mcap")]
@@ -12,6 +13,7 @@ mod bag;
 #[cfg(feature = "parquet")]
 mod columnar;
 mod csv;
+mod error;
 mod fault;
 mod format;
 #[cfg(feature = "mcap")]
@@ -29,6 +31,7 @@ mod sqlite;
 mod table;
 
 pub use csv::open_csv;
+pub use error::{Error, ErrorKind};
 pub use fault::FileFault;
 pub use format::open;
 #[cfg(feature = "mcap")]

@@ -1,5 +1,6 @@
 //! Logs in memory: columns of numbers that a program has, and no file.
 
+use super::error::Error;
 use super::fault::FileFault;
 use super::source::{Column, Log, Rows};
 use super::table::{Places, Table};
@@ -27,9 +28,9 @@ impl MemoryLog {
     ///
     /// # Errors
     /// There are no columns, two of one name, or columns of different lengths.
-    pub fn open(&self) -> Result<Log<'_>, Vec<FileFault>> {
+    pub fn open(&self) -> Result<Log<'_>, Error> {
         let Some((first, of_first)) = self.columns.first() else {
-            return Err(vec![FileFault::NoColumns]);
+            return Err(vec![FileFault::NoColumns].into());
         };
         let mut faults = Vec::new();
         for (at, (name, values)) in self.columns.iter().enumerate() {
@@ -43,7 +44,7 @@ impl MemoryLog {
             }
         }
         if !faults.is_empty() {
-            return Err(faults);
+            return Err(faults.into());
         }
         let named = |(name, _): &(String, Vec<f64>)| Column { name: name.clone(), known: None };
         let columns = self.columns.iter().map(named).collect();
@@ -86,9 +87,9 @@ mod tests {
 
     #[test]
     fn all_that_is_wrong_is_said() {
-        assert_eq!(log(&[]).open().unwrap_err(), [FileFault::NoColumns]);
+        assert_eq!(log(&[]).open().unwrap_err().faults(), [FileFault::NoColumns]);
         let wrong = log(&[("t", &[0.0, 0.1]), ("q", &[0.0]), ("t", &[0.0, 0.1])]);
-        let said: Vec<String> = wrong.open().unwrap_err().iter().map(ToString::to_string).collect();
-        assert_eq!(said, ["column `q` has 1 rows, and `t` has 2", "two columns `t`"]);
+        let said = wrong.open().unwrap_err().to_string();
+        assert_eq!(said, "column `q` has 1 rows, and `t` has 2\ntwo columns `t`");
     }
 }

@@ -1,6 +1,7 @@
 //! An open log: what it says of itself and which columns it has. Values are read when it is known
 //! which of them are wanted.
 
+use super::error::Error;
 use super::fault::FileFault;
 use super::table::Table;
 use std::fmt;
@@ -84,8 +85,8 @@ impl<'a> Log<'a> {
     ///
     /// # Errors
     /// All that is wrong with the file.
-    pub fn read(self, places: &[usize], clocks: &[usize]) -> Result<Table, Vec<FileFault>> {
-        self.rows.read(places, clocks)
+    pub fn read(self, places: &[usize], clocks: &[usize]) -> Result<Table, Error> {
+        Ok(self.rows.read(places, clocks)?)
     }
 
     /// The column of a name: of that very name; one that the project calls so; or one whose name

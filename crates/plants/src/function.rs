@@ -4,14 +4,14 @@
 //! each function by itself, called from any thread: on one sample, or on many by all processors.
 
 use super::native::{NativeBatch, NativeRoutine};
+use crate::error::Error;
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
-use denavit_codegen::model::{BakeError, Robot};
+use denavit_codegen::model::Robot;
 use denavit_codegen::program::{
-    ArgumentShape, EvaluateBatch, LowerError, OutputShape, Routine, ShapeMismatch, lower,
+    ArgumentShape, EvaluateBatch, OutputShape, Routine, ShapeMismatch, lower,
 };
 use rayon::prelude::*;
-use std::fmt;
 use std::sync::OnceLock;
 
 /// Numbers that a thread has in columns at a time: they stay in a processor's nearest cache, beside
@@ -29,26 +29,6 @@ const MOST_AT_A_TIME: usize = 256;
 
 /// Below so many samples other threads are woken for longer than they work.
 const FEWEST_FOR_THREADS: usize = 2 * MOST_AT_A_TIME;
-
-/// Why a robot has no such function.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FunctionError {
-    /// Numbers are missing in the model.
-    Bake(BakeError),
-    /// The model has numbers that computer arithmetic does not hold.
-    Lower(LowerError),
-}
-
-impl fmt::Display for FunctionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bake(error) => write!(f, "{error}"),
-            Self::Lower(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl std::error::Error for FunctionError {}
 
 /// An argument of many samples, in whatever order its numbers are in memory.
 pub trait Samples: Sync {
@@ -76,10 +56,9 @@ impl RobotFunction {
     ///
     /// # Errors
     /// If the model lacks numbers, or has numbers that computer arithmetic does not hold.
-    pub fn of(robot: &Robot, name: FunctionName) -> Result<Vec<Self>, FunctionError> {
-        let derivation = derive(robot, Flavour::Baked, &[name]).map_err(FunctionError::Bake)?;
-        let program =
-            lower(&derivation.dag, &derivation.functions).map_err(FunctionError::Lower)?;
+    pub fn of(robot: &Robot, name: FunctionName) -> Result<Vec<Self>, Error> {
+        let derivation = derive(robot, Flavour::Baked, &[name])?;
+        let program = lower(&derivation.dag, &derivation.functions)?;
         let made = program.routines.into_iter().map(|routine| {
             // baked: there is nothing left that depends on parameters alone
             let single = NativeRoutine::new(&routine, &[]);

@@ -2,15 +2,14 @@
 
 use super::model::baked;
 use super::on_demand::OnDemand;
-use super::{
-    ContactDerivatives, LoadedPlant, Override, Plant, PlantError, PlantModel, WalkingFunctions,
-};
+use super::{ContactDerivatives, LoadedPlant, Override, Plant, PlantModel, WalkingFunctions};
+use crate::error::Error;
 use crate::shipped;
 use denavit_codegen::model::{self, Robot};
 
 /// The plant of a robot: the generated module if it is the shipped model that the module was made
 /// of and no value differs that the module's plant cannot set, else loaded and compiled in memory.
-pub fn plant_of(robot: &Robot, overrides: &[Override]) -> Result<Box<dyn Plant>, PlantError> {
+pub fn plant_of(robot: &Robot, overrides: &[Override]) -> Result<Box<dyn Plant>, Error> {
     let made: [(&str, Make); 3] =
         [("tulip", tulip), ("puma560", puma560), ("planar_biped", planar_biped)];
     for (name, make) in made {

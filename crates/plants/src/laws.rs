@@ -1,7 +1,7 @@
 //! Laws of added effects in a simulation: their torques, and the rates of their states.
 
-use super::PlantError;
 use super::native::NativeRoutine;
+use crate::error::{Cause, Error};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::dynamics::implicit_effects;
 use denavit_codegen::expr::{
@@ -79,7 +79,7 @@ pub(super) struct Laws {
 impl Laws {
     /// Takes the laws out of a robot of numbers, but for those that are inertia: these stay part of
     /// D, unless they are that of a drive before a spring. None if nothing is left.
-    pub(super) fn take(robot: &mut Robot) -> Result<Option<Self>, PlantError> {
+    pub(super) fn take(robot: &mut Robot) -> Result<Option<Self>, Error> {
         let implicit = implicit_effects(robot);
         let is_inertia = |law: &JointLaw| {
             let accelerated = robot.dag.classes(law.torque).contains(SymbolClass::Acceleration);
@@ -93,7 +93,7 @@ impl Laws {
         if let (Some(law), true) = (heavy, touches) {
             // Where drives count as stiff, it is a part of D that contacts have to know.
             let what = "the acceleration of a motor before a spring";
-            return Err(PlantError::Effect(law.effect.clone(), what));
+            return Err(Cause::NotFollowed(law.effect.clone(), what).into());
         }
         let (kept, own): (Vec<_>, Vec<_>) =
             std::mem::take(&mut robot.laws).into_iter().zip(keep).partition(|(_, keep)| *keep);
@@ -105,12 +105,12 @@ impl Laws {
         }
         if let (Some(law), true) = (own.iter().find(|law| !law.loads.is_empty()), touches) {
             let what = "the load, which forces at contact points share";
-            return Err(PlantError::Effect(law.effect.clone(), what));
+            return Err(Cause::NotFollowed(law.effect.clone(), what).into());
         }
         Self::of(robot, &own, &springs).map(Some)
     }
 
-    fn of(robot: &Robot, own: &[JointLaw], springs: &[SpringLaw]) -> Result<Self, PlantError> {
+    fn of(robot: &Robot, own: &[JointLaw], springs: &[SpringLaw]) -> Result<Self, Error> {
         let rows: Vec<LinkId> = robot.joints().map(|(link, _)| link).collect();
         let row = |link: LinkId| {
             let row = rows.iter().position(|known| *known == link);
@@ -163,7 +163,7 @@ impl Laws {
         drives: Drives,
         slope: ExprId,
         parts: Parts,
-    ) -> Result<Self, PlantError> {
+    ) -> Result<Self, Error> {
         let Parts { torques, passed, states, rates, initial } = parts;
         let accelerated = |expr: &ExprId| dag.classes(*expr).contains(SymbolClass::Acceleration);
         let is_accelerated = torques.iter().any(accelerated);
@@ -335,7 +335,7 @@ fn loads(
     own: &[JointLaw],
     dag: &mut Dag,
     row: &dyn Fn(LinkId) -> usize,
-) -> Result<FxHashMap<ExprId, ExprId>, PlantError> {
+) -> Result<FxHashMap<ExprId, ExprId>, Error> {
     let mut replaced = FxHashMap::default();
     if own.iter().all(|law| law.loads.is_empty()) {
         return Ok(replaced);
@@ -344,8 +344,7 @@ fn loads(
     rigid.laws.clear();
     rigid.terms = Terms { friction: false, rotor: false, spring: false, ..rigid.terms };
     rigid.links.values_mut().for_each(|link| link.drive = None);
-    let derivation = derive(&rigid, Flavour::Tunable, &[FunctionName::InverseDynamics])
-        .map_err(PlantError::Bake)?;
+    let derivation = derive(&rigid, Flavour::Tunable, &[FunctionName::InverseDynamics])?;
     let torques = derivation.functions[0].entries();
     *dag = derivation.dag;
     for (link, symbol) in own.iter().flat_map(|law| &law.loads) {
@@ -388,7 +387,7 @@ fn evaluator(
     dag: &Dag,
     arguments: &[Argument],
     entries: Vec<ExprId>,
-) -> Result<NativeRoutine, PlantError> {
+) -> Result<NativeRoutine, Error> {
     let output = Output {
         name: "tau",
         shape: vec![entries.len()],
@@ -403,6 +402,6 @@ fn evaluator(
         outputs: vec![output],
         form: Form::Plain,
     };
-    let program = lower(dag, &[function]).map_err(PlantError::Lower)?;
+    let program = lower(dag, &[function])?;
     Ok(NativeRoutine::new(&program.routines[0], &[]))
 }

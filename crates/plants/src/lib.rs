@@ -16,6 +16,7 @@
 //! - [`shipped`]: robots whose model files are part of the library
 //! - [`emitted`]: what the compiler made of some of them when this library was built
 //! - [`batch`]: emitted functions on many samples, on all processors
+//! - [`Error`]: why a robot is no plant, has no regression, or numbers are no reference
 //!
 //! Matrices are row-major slices, the shape in which emitted code returns them. All units are SI,
 //! all vectors and positions are those of the world frame.
@@ -25,6 +26,7 @@ mod cradle;
 mod derivatives;
 pub mod effect;
 pub mod emitted;
+mod error;
 mod function;
 mod generated;
 mod laws;
@@ -44,13 +46,14 @@ mod walking;
 
 pub use cradle::Cradle;
 pub use derivatives::ContactDerivatives;
-pub use function::{FunctionError, RobotFunction, Samples};
+pub use error::{Error, ErrorKind};
+pub use function::{RobotFunction, Samples};
 pub use generated::{planar_biped, plant_of, puma560, tulip};
 pub use laws::{DriveMoment, LawMoment, LawResponse};
 pub use loaded::LoadedPlant;
 pub use model::{
-    DriveModel, GroundModel, JointModel, Override, PlantError, PlantModel, PointModel,
-    SeriesElasticModel, fall_points,
+    DriveModel, GroundModel, JointModel, Override, PlantModel, PointModel, SeriesElasticModel,
+    fall_points,
 };
 pub use native::{Native, NativeBatch, native_code};
 pub use passive_walkers::{KneedWalker, SimplestWalker};

@@ -4,7 +4,8 @@ use super::laws::{LawMoment, LawResponse, Laws};
 use super::model::baked;
 use super::native::NativeRoutine;
 use super::on_demand::OnDemand;
-use super::{ContactDerivatives, Override, Plant, PlantError, PlantModel, WalkingFunctions};
+use super::{ContactDerivatives, Override, Plant, PlantModel, WalkingFunctions};
+use crate::error::Error;
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::function::FunctionName;
 use denavit_codegen::model::Robot;
@@ -37,7 +38,7 @@ pub struct LoadedPlant {
 
 impl LoadedPlant {
     /// Derives the functions of a robot, with values that replace the model's own.
-    pub fn new(robot: &Robot, overrides: &[Override]) -> Result<Self, PlantError> {
+    pub fn new(robot: &Robot, overrides: &[Override]) -> Result<Self, Error> {
         let mut robot = baked(robot, overrides)?;
         let model = PlantModel::of_baked(&robot);
         for link in robot.links.values_mut() {
@@ -47,8 +48,8 @@ impl LoadedPlant {
             }
         }
         let laws = Laws::take(&mut robot)?;
-        let derivation = derive(&robot, Flavour::Baked, &FUNCTIONS).map_err(PlantError::Bake)?;
-        let program = lower(&derivation.dag, &derivation.functions).map_err(PlantError::Lower)?;
+        let derivation = derive(&robot, Flavour::Baked, &FUNCTIONS)?;
+        let program = lower(&derivation.dag, &derivation.functions)?;
         let evaluators = FUNCTIONS.map(|function| evaluator(&program, function));
         Ok(Self { model, evaluators, laws, on_demand: OnDemand::new(robot) })
     }

@@ -1,12 +1,12 @@
 //! What a simulation knows of a robot besides its functions: names, drives, points, ground.
 
+use crate::error::{Cause, Error};
 use denavit_codegen::arena::Handle;
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::expr::text::nearest;
-use denavit_codegen::model::{BakeError, Base, Contact, Drive, JointKind, Link, Robot, bake};
+use denavit_codegen::model::{Base, Contact, Drive, JointKind, Link, Robot, bake};
 use denavit_codegen::number::parse_decimal;
-use denavit_codegen::program::{LowerError, constant_values};
-use std::fmt;
+use denavit_codegen::program::constant_values;
 
 /// Names, drives, contact points and ground of a plant, with the values of its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,70 +173,20 @@ pub struct Override {
     pub value: f64,
 }
 
-/// Why a robot does not become a plant.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PlantError {
-    /// The model has no parameter of that name; holds it and the one that was meant, perhaps.
-    UnknownParameter(String, Option<String>),
-    /// A value that is not finite.
-    NotFinite(String),
-    /// With the given values, something of a link would be negative.
-    Negative {
-        /// What, as "the mass".
-        what: &'static str,
-        /// The link.
-        link: String,
-        /// Its value.
-        value: f64,
-    },
-    /// Parameters without a value.
-    Bake(BakeError),
-    /// A number that no computer arithmetic holds.
-    Lower(LowerError),
-    /// An added effect that a simulation cannot follow; holds its name and what it depends on.
-    Effect(String, &'static str),
-}
-
-impl fmt::Display for PlantError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::UnknownParameter(name, Some(nearest)) => {
-                write!(f, "the model has no parameter `{name}`\n  hint: `{nearest}` is one")
-            }
-            Self::UnknownParameter(name, None) => {
-                write!(f, "the model has no parameter `{name}`")
-            }
-            Self::NotFinite(name) => write!(f, "the value of `{name}` is not a finite number"),
-            Self::Negative { what, link, value } => {
-                write!(f, "with these values {what} of `{link}` is {value}")
-            }
-            Self::Bake(error) => write!(f, "{error}"),
-            Self::Lower(error) => write!(f, "{error}"),
-            Self::Effect(name, what) => write!(
-                f,
-                "the effect `{name}` depends on {what}, which simulations do not follow\n  hint: \
-                 take it out of the model, or the contact points"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for PlantError {}
-
 /// The robot with overridden values, all of them numbers.
-pub(super) fn baked(robot: &Robot, overrides: &[Override]) -> Result<Robot, PlantError> {
+pub(super) fn baked(robot: &Robot, overrides: &[Override]) -> Result<Robot, Error> {
     let mut robot = robot.clone();
     for Override { parameter, value } in overrides {
         let Some(id) = robot.find_parameter(parameter) else {
             let names = robot.parameters.values().map(|p| p.name.as_str());
             let meant = nearest(parameter, names).map(str::to_owned);
-            return Err(PlantError::UnknownParameter(parameter.clone(), meant));
+            return Err(Cause::UnknownParameter(parameter.clone(), meant).into());
         };
         let exact = parse_decimal(&format!("{value:?}"))
-            .map_err(|_| PlantError::NotFinite(parameter.clone()))?;
+            .map_err(|_| Cause::NotFinite(parameter.clone()))?;
         robot.parameters[id].default = Some(robot.dag.constant(exact));
     }
-    let robot = bake(&robot).map_err(PlantError::Bake)?;
+    let robot = bake(&robot)?;
     // the model's own values have been checked
     if !overrides.is_empty() {
         robot.links.values().try_for_each(|link| check_signs(&robot, link))?;
@@ -244,7 +194,7 @@ pub(super) fn baked(robot: &Robot, overrides: &[Override]) -> Result<Robot, Plan
     Ok(robot)
 }
 
-fn check_signs(robot: &Robot, link: &Link) -> Result<(), PlantError> {
+fn check_signs(robot: &Robot, link: &Link) -> Result<(), Error> {
     let mut given: Vec<(&'static str, Option<ExprId>)> = vec![
         ("the damping", link.joint.damping),
         ("the spring's stiffness", link.joint.spring.map(|spring| spring.stiffness)),
@@ -267,7 +217,7 @@ fn check_signs(robot: &Robot, link: &Link) -> Result<(), PlantError> {
     for (what, entry) in given {
         let value = entry.map_or(0.0, |entry| value(robot, entry));
         if value < 0.0 {
-            return Err(PlantError::Negative { what, link: link.name.clone(), value });
+            return Err(Cause::Negative { what, link: link.name.clone(), value }.into());
         }
     }
     Ok(())

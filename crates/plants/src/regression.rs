@@ -9,6 +9,7 @@
 use super::native::NativeBatch;
 use super::regression_model::{described_joints, with_joint_parameters};
 use super::regression_values::{not_negative_program, theta0_program, values_of};
+use crate::error::{Cause, Error, ErrorKind};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::emit::latex::{base_notation, base_sum};
 use denavit_codegen::expr::{Dag, ExprId, substitute};
@@ -25,7 +26,7 @@ use nalgebra::DMatrix;
 use rustc_hash::FxHashMap;
 use std::sync::OnceLock;
 
-pub use super::regression_model::{MotionError, RegressionError, RegressionJoint, SpringStiffness};
+pub use super::regression_model::{RegressionJoint, SpringStiffness};
 pub use super::regression_parameter::{ModelParameter, RegressionParameter, StandardParameter};
 pub use super::regression_rows::{CoulombLaw, RegressionEvaluator, RegressionRows};
 
@@ -71,11 +72,7 @@ impl RegressionModel {
     /// Rank and formulas are exact for the constants as symbols. Where their values make more
     /// columns depend on others (a length that is 0, a centre of mass that is known to be on an
     /// axis), or the change of basis singular, those of the values are taken.
-    pub fn new(
-        robot: &Robot,
-        options: RegressorOptions,
-        keep: &[String],
-    ) -> Result<Self, RegressionError> {
+    pub fn new(robot: &Robot, options: RegressorOptions, keep: &[String]) -> Result<Self, Error> {
         let side = robot.torque_side;
         let robot = with_joint_parameters(robot, options);
         let base = reduced(&robot, keep)?;
@@ -86,32 +83,27 @@ impl RegressionModel {
         let special = special();
         let is_less = special.as_ref().is_some_and(|(special, _)| special.rank() < base.rank());
         let general = match is_less {
-            true => Err(RegressionError::Singular(robot.name.clone())),
+            true => Err(Cause::Singular(robot.name.clone()).into()),
             false => Self::of(&robot, base, side),
         };
         // a symbol whose value is 0 may be what a column was kept for
         match (general, special) {
-            (Err(RegressionError::Singular(_)), Some((special, numeric))) => {
+            (Err(error), Some((special, numeric))) if error.kind() == ErrorKind::Singular => {
                 Self::of(&numeric, special, side)
             }
             (general, _) => general,
         }
     }
 
-    fn of(
-        robot: &Robot,
-        mut base: BaseParameters,
-        side: TorqueSide,
-    ) -> Result<Self, RegressionError> {
-        let axes = joint_basis(&mut base, robot).map_err(RegressionError::base)?;
+    fn of(robot: &Robot, mut base: BaseParameters, side: TorqueSide) -> Result<Self, Error> {
+        let axes = joint_basis(&mut base, robot)?;
         let mut numbers = Numbers::new(&base.regressor.dag, robot);
-        let derivation = derive(robot, Flavour::Tunable, &[FunctionName::BaseRegressor])
-            .map_err(RegressionError::Bake)?;
-        let none = || RegressionError::NothingUnknown(robot.name.clone());
+        let derivation = derive(robot, Flavour::Tunable, &[FunctionName::BaseRegressor])?;
+        let none = || Error::from(Cause::NothingUnknown(robot.name.clone()));
         let function = derivation.functions.first().ok_or_else(none)?;
         let (sparse, pattern, known) =
             without_zeros(&derivation.dag, function, axes.len(), robot.degrees_of_freedom());
-        let program = lower(&derivation.dag, &[sparse]).map_err(RegressionError::Lower)?;
+        let program = lower(&derivation.dag, &[sparse])?;
         let given = parameter_defaults(&program, robot);
         let missing: Vec<String> = program
             .parameters
@@ -122,13 +114,13 @@ impl RegressionModel {
             .collect();
         if !missing.is_empty() {
             let (model, parameters) = (robot.name.clone(), missing);
-            return Err(RegressionError::NoValue { model, parameters });
+            return Err(Cause::NoValues { model, parameters }.into());
         }
         let given: Vec<f64> = given.into_iter().flatten().collect();
         let prelude = prelude_values(&program, &given).expect("one value for each parameter");
         let to_axes = change_of_basis(&mut numbers, &axes, base.rank());
         let to_listed = to_axes.clone().try_inverse().filter(|m| m.iter().all(|x| x.is_finite()));
-        let to_listed = to_listed.ok_or_else(|| RegressionError::Singular(robot.name.clone()))?;
+        let to_listed = to_listed.ok_or_else(|| Cause::Singular(robot.name.clone()))?;
         let theta0 = theta0_program(&base, robot)?;
         let joints = described_joints(robot, side);
         let axes = on_axes(&mut numbers, robot, &base, &axes)?;
@@ -233,8 +225,8 @@ impl RegressionModel {
 }
 
 /// The base parameters with the joint parameters that the robot has.
-fn reduced(robot: &Robot, keep: &[String]) -> Result<BaseParameters, RegressionError> {
-    base_parameters(robot, modelled(robot), keep).map_err(RegressionError::base)
+fn reduced(robot: &Robot, keep: &[String]) -> Result<BaseParameters, Error> {
+    Ok(base_parameters(robot, modelled(robot), keep)?)
 }
 
 /// Where the columns of Coulomb friction stand: each is a parameter of its joint alone.
@@ -332,10 +324,10 @@ fn change_of_basis(numbers: &mut Numbers, axes: &[JointParameter], rank: usize) 
 }
 
 /// Factors that must be numbers.
-fn finite(robot: &Robot, members: Vec<(usize, f64)>) -> Result<Vec<(usize, f64)>, RegressionError> {
+fn finite(robot: &Robot, members: Vec<(usize, f64)>) -> Result<Vec<(usize, f64)>, Error> {
     match members.iter().all(|(_, factor)| factor.is_finite()) {
         true => Ok(members),
-        false => Err(RegressionError::Singular(robot.name.clone())),
+        false => Err(Cause::Singular(robot.name.clone()).into()),
     }
 }
 
@@ -343,7 +335,7 @@ fn listed(
     numbers: &mut Numbers,
     robot: &Robot,
     base: &BaseParameters,
-) -> Result<Vec<RegressionParameter>, RegressionError> {
+) -> Result<Vec<RegressionParameter>, Error> {
     let notation = base_notation(robot, base);
     let one = |parameter: &denavit_codegen::regressor::BaseParameter| {
         let column = &base.regressor.columns[parameter.column];
@@ -365,7 +357,7 @@ fn on_axes(
     robot: &Robot,
     base: &BaseParameters,
     axes: &[JointParameter],
-) -> Result<Vec<RegressionParameter>, RegressionError> {
+) -> Result<Vec<RegressionParameter>, Error> {
     let notation = base_notation(robot, base);
     let one = |parameter: &JointParameter| {
         Ok(RegressionParameter {

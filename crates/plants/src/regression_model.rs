@@ -2,12 +2,9 @@
 
 use denavit_codegen::arena::Handle;
 use denavit_codegen::expr::{ExprId, SymbolClass};
-use denavit_codegen::model::{
-    BakeError, Base, Drive, JointKind, Link, Robot, TorqueSide, bake_geometry,
-};
-use denavit_codegen::program::{LowerError, constant_values};
-use denavit_codegen::regressor::{BaseError, RegressorOptions};
-use std::fmt;
+use denavit_codegen::model::{Base, Drive, JointKind, Link, Robot, TorqueSide, bake_geometry};
+use denavit_codegen::program::constant_values;
+use denavit_codegen::regressor::RegressorOptions;
 
 /// A joint of a regression.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,81 +47,6 @@ pub struct SpringStiffness {
     /// Its standard deviation, where the model states it.
     pub std: Option<f64>,
 }
-
-/// Why a robot has no regression model.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RegressionError {
-    /// No base parameters are found.
-    Base(Box<BaseError>),
-    /// Parameters without a value.
-    Bake(BakeError),
-    /// A number that no computer arithmetic holds.
-    Lower(LowerError),
-    /// Everything that the torques depend on is known; holds the model's name.
-    NothingUnknown(String),
-    /// Known parameters that need a value.
-    NoValue {
-        /// The model.
-        model: String,
-        /// The parameters' names.
-        parameters: Vec<String>,
-    },
-    /// The values of constants make columns that are independent for almost all values depend on
-    /// each other, or a factor infinite; holds the model's name.
-    Singular(String),
-}
-
-impl RegressionError {
-    pub(super) fn base(error: BaseError) -> Self {
-        Self::Base(Box::new(error))
-    }
-}
-
-impl fmt::Display for RegressionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Base(error) => write!(f, "{error}"),
-            Self::Bake(error) => write!(f, "{error}"),
-            Self::Lower(error) => write!(f, "{error}"),
-            Self::NothingUnknown(model) => write!(
-                f,
-                "{model}: the torques depend on nothing unknown\n  hint: give links a `body`, or \
-                 add joint parameters with `options.with`"
-            ),
-            Self::NoValue { model, parameters } => write!(
-                f,
-                "{model}: these known parameters need a value: {}\n  hint: give each one in the \
-                 model file",
-                parameters.join(", ")
-            ),
-            Self::Singular(model) => write!(
-                f,
-                "{model}: with the values of its constants the base parameters have no finite \
-                 change of basis\n  hint: write constants that are 0 as numbers in the table"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for RegressionError {}
-
-/// Motion that does not have one column of equal length for q, qd and qdd of every joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MotionError {
-    /// Columns that are expected.
-    pub expected: usize,
-    /// Columns that were given.
-    pub found: usize,
-}
-
-impl fmt::Display for MotionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { expected, found } = self;
-        write!(f, "{found} columns of motion, perhaps of unequal length, in place of {expected}")
-    }
-}
-
-impl std::error::Error for MotionError {}
 
 /// The robot with exactly the joint parameters that `options` ask for: what is asked for of every
 /// joint gets a symbol where the model has none, what is not asked for is gone.

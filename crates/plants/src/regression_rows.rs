@@ -1,7 +1,7 @@
 //! Rows of a regression, a block of samples at once.
 
 use super::native::NativeBatch;
-use super::regression_model::MotionError;
+use crate::error::{Cause, Error};
 use denavit_codegen::program::EvaluateBatch;
 use denavit_runtime::Transcendental;
 
@@ -115,16 +115,12 @@ impl RegressionEvaluator {
 
     /// The rows of samples. `motion` are 3 n columns, q of every joint, then qd, then qdd [rad, m;
     /// per s; per s^2], all of one length. `rows` is used again from call to call.
-    pub fn evaluate(
-        &mut self,
-        motion: &[&[f64]],
-        rows: &mut RegressionRows,
-    ) -> Result<(), MotionError> {
+    pub fn evaluate(&mut self, motion: &[&[f64]], rows: &mut RegressionRows) -> Result<(), Error> {
         let expected = 3 * self.widths.len();
         let samples = motion.first().map_or(0, |column| column.len());
         let is_even = motion.iter().all(|column| column.len() == samples);
         if motion.len() != expected || !is_even {
-            return Err(MotionError { expected, found: motion.len() });
+            return Err(Cause::Motion { expected, found: motion.len() }.into());
         }
         rows.first.clear();
         let mut total = 0;

@@ -1,7 +1,7 @@
 //! Programs of the numbers of a model's file: what the regressor's columns are multiplied with, and
 //! what must not be negative.
 
-use super::regression_model::RegressionError;
+use crate::error::Error;
 use denavit_codegen::expr::{ExprId, substitute};
 use denavit_codegen::function::{Form, Function, FunctionName, Output};
 use denavit_codegen::model::Robot;
@@ -10,10 +10,7 @@ use denavit_codegen::regressor::BaseParameters;
 use rustc_hash::FxHashMap;
 
 /// theta0 as a function of the numbers of the file, constants folded in.
-pub(super) fn theta0_program(
-    base: &BaseParameters,
-    robot: &Robot,
-) -> Result<Program, RegressionError> {
+pub(super) fn theta0_program(base: &BaseParameters, robot: &Robot) -> Result<Program, Error> {
     let values = base.regressor.columns.iter().map(|column| column.value).collect();
     program_of(base, robot, values)
 }
@@ -23,7 +20,7 @@ pub(super) fn theta0_program(
 pub(super) fn not_negative_program(
     base: &BaseParameters,
     robot: &Robot,
-) -> Result<Option<Program>, RegressionError> {
+) -> Result<Option<Program>, Error> {
     let entries = robot.links.values().filter_map(|link| link.body).flat_map(|body| {
         let [xx, yy, zz, ..] = body.inertia;
         [body.mass, xx, yy, zz]
@@ -38,11 +35,7 @@ pub(super) fn not_negative_program(
 }
 
 /// Values as a function of the numbers of the file, constants folded in.
-fn program_of(
-    base: &BaseParameters,
-    robot: &Robot,
-    values: Vec<ExprId>,
-) -> Result<Program, RegressionError> {
+fn program_of(base: &BaseParameters, robot: &Robot, values: Vec<ExprId>) -> Result<Program, Error> {
     let mut dag = base.regressor.dag.clone();
     let known = robot.parameters.values().filter(|parameter| parameter.known);
     let known: FxHashMap<ExprId, ExprId> =
@@ -54,7 +47,7 @@ fn program_of(
     let output = Output { name: name.as_str(), shape, entries, doc, details };
     let (arguments, outputs) = (Vec::new(), vec![output]);
     let function = Function { name, link: None, arguments, outputs, form: Form::Plain };
-    lower(&dag, &[function]).map_err(RegressionError::Lower)
+    Ok(lower(&dag, &[function])?)
 }
 
 /// The outputs of a program of parameters alone; a parameter without a value is 0.

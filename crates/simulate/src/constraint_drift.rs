@@ -14,7 +14,7 @@ use denavit_codegen::expr::ExprId;
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::model::{Robot, bake};
 use denavit_codegen::program::{Evaluator, constant_values, lower};
-use denavit_plants::{Plant, PlantError};
+use denavit_plants::Plant;
 use nalgebra::{DMatrix, DVector};
 
 /// Entries of the state of a link: place of its centre of mass, rotation by rows, velocity, angular
@@ -56,8 +56,8 @@ pub struct DriftSample {
 
 impl ConstrainedBodies {
     /// The equations of a robot all of whose parameters have values.
-    pub fn new(robot: &Robot, stabilisation_per_s: f64) -> Result<Self, PlantError> {
-        let robot = bake(robot).map_err(PlantError::Bake)?;
+    pub fn new(robot: &Robot, stabilisation_per_s: f64) -> Result<Self, denavit_plants::Error> {
+        let robot = bake(robot)?;
         let mut dag = robot.dag.clone();
         let equations = dae(&mut dag, &robot);
         let (mut positions, mut velocities) = (Vec::new(), Vec::new());
@@ -96,7 +96,7 @@ impl ConstrainedBodies {
             outputs: vec![output(entries)],
             form: Form::Plain,
         };
-        let program = lower(&dag, &[function]).map_err(PlantError::Lower)?;
+        let program = lower(&dag, &[function])?;
         let routine = program.routines.first().expect("one function was lowered");
         let center = |link: &denavit_codegen::model::Link| {
             let com = link.body.map(|body| constant_values(&robot.dag, &body.com));

@@ -5,6 +5,7 @@
 //! - [`scenario`]: files that say what is simulated
 //! - [`contact`]: forces and impulses of contacts and their modes, decided by complementarity
 //! - [`constraint_drift`]: how far joints come apart where they are explicit constraints
+//! - [`Error`]: why a run does not begin, or a log is wrong
 //! - [`time_stepping`]: the schemes that take contacts into account over whole steps
 
 mod alighting;
@@ -14,6 +15,7 @@ pub mod constraint_drift;
 pub mod contact;
 mod control;
 mod drive;
+mod error;
 mod event;
 mod ground;
 pub mod integrate;
@@ -44,9 +46,10 @@ pub use audit::{Audit, Tolerances};
 pub use breakdown::{Breakdown, Stop};
 pub use control::{Compensation, Control, Damped, Feedback, JointControl};
 pub use drive::{DriveModelling, STICTION_RATE};
+pub use error::{Error, ErrorKind};
 pub use joint_record::{JointRecord, Peak, TrackingError};
 pub use log::Log;
-pub use log_fault::{LogError, LogFault, LogFaults};
+pub use log_fault::{LogFault, LogFaults, PlacedLogFault};
 pub use log_file::LogFile;
 pub use log_origin::model_of_header;
 pub use measure::Measurement;
@@ -57,7 +60,5 @@ pub use run::{
 };
 pub use settle::{Scuffing, Touching};
 pub use simulation::Simulation;
-pub use start::StartError;
 pub use state::State;
 pub use support::{SupportForm, SupportPolygon};
-pub use variation::VariationError;

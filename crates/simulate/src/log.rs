@@ -1,6 +1,6 @@
 //! Logs: a table in time, with what it was made of in its header.
 
-use super::log_fault::LogFaults;
+use super::error::Error;
 use super::log_file::LogFile;
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -21,7 +21,7 @@ pub struct Log {
 impl Log {
     /// Reads CSV: lines `# name: value`, the names of the columns, rows of numbers; empty cells are
     /// undefined (NaN), and empty lines are nothing. `file` is its name, for messages alone.
-    pub fn from_csv(file: &str, source: &[u8]) -> Result<Self, LogFaults> {
+    pub fn from_csv(file: &str, source: &[u8]) -> Result<Self, Error> {
         LogFile::from_csv(file, source).map(|read| read.log)
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// What is wrong with a log, where.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LogError {
+pub struct PlacedLogFault {
     /// The name of the file, as it was given.
     pub file: String,
     /// The line, from 1.
@@ -113,13 +113,11 @@ impl fmt::Display for LogFault {
     }
 }
 
-impl fmt::Display for LogError {
+impl fmt::Display for PlacedLogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}:{}: {}", self.file, self.line, self.cell, self.cause)
     }
 }
-
-impl std::error::Error for LogError {}
 
 /// So many faults are told one by one.
 const TOLD: usize = 10;
@@ -127,13 +125,13 @@ const TOLD: usize = 10;
 /// All that is wrong with a log: the first faults, and how many there are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LogFaults {
-    told: Vec<LogError>,
+    told: Vec<PlacedLogFault>,
     count: usize,
 }
 
 impl LogFaults {
     /// Adds one.
-    pub fn push(&mut self, fault: LogError) {
+    pub fn push(&mut self, fault: PlacedLogFault) {
         self.count += 1;
         if self.told.len() < TOLD {
             self.told.push(fault);
@@ -141,7 +139,7 @@ impl LogFaults {
     }
 
     /// The first ones, in the order of the file.
-    pub fn told(&self) -> &[LogError] {
+    pub fn told(&self) -> &[PlacedLogFault] {
         &self.told
     }
 
@@ -156,8 +154,8 @@ impl LogFaults {
     }
 }
 
-impl From<LogError> for LogFaults {
-    fn from(fault: LogError) -> Self {
+impl From<PlacedLogFault> for LogFaults {
+    fn from(fault: PlacedLogFault) -> Self {
         Self { told: vec![fault], count: 1 }
     }
 }
@@ -175,5 +173,3 @@ impl fmt::Display for LogFaults {
         }
     }
 }
-
-impl std::error::Error for LogFaults {}

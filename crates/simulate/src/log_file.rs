@@ -1,7 +1,8 @@
 //! A log as it stands in a file: with the place of all that is in it, for messages.
 
+use super::error::Error;
 use super::log::Log;
-use super::log_fault::{LogError, LogFault, LogFaults};
+use super::log_fault::{LogFault, LogFaults, PlacedLogFault};
 
 /// A log, and where its parts stand in its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,12 +35,12 @@ impl LogFile {
     ///
     /// # Errors
     /// All that is wrong with it.
-    pub fn from_csv(file: &str, source: &[u8]) -> Result<Self, LogFaults> {
+    pub fn from_csv(file: &str, source: &[u8]) -> Result<Self, Error> {
         let mut read = Self::of(file, Log::default());
         read.columns_line = 0;
         let text = std::str::from_utf8(source).map_err(|invalid| {
             let line = source[..invalid.valid_up_to()].iter().filter(|b| **b == b'\n').count();
-            read.fault(line + 1, 1, LogFault::NotUtf8)
+            LogFaults::from(read.fault(line + 1, 1, LogFault::NotUtf8))
         })?;
         let (mut faults, mut has_rows) = (LogFaults::default(), false);
         for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
@@ -64,7 +65,7 @@ impl LogFile {
             (_, false) => faults.push(read.fault(lines, 1, LogFault::NoRows)),
             _ => {}
         }
-        faults.or(read)
+        Ok(faults.or(read)?)
     }
 
     fn name_columns(&mut self, number: usize, line: &str, faults: &mut LogFaults) {
@@ -118,22 +119,22 @@ impl LogFile {
         }
     }
 
-    fn fault(&self, line: usize, cell: usize, cause: LogFault) -> LogError {
-        LogError { file: self.file.clone(), line, cell, cause }
+    fn fault(&self, line: usize, cell: usize, cause: LogFault) -> PlacedLogFault {
+        PlacedLogFault { file: self.file.clone(), line, cell, cause }
     }
 
     /// A fault of a cell; row and column from 0.
-    pub fn fault_of_cell(&self, row: usize, column: usize, cause: LogFault) -> LogError {
+    pub fn fault_of_cell(&self, row: usize, column: usize, cause: LogFault) -> PlacedLogFault {
         self.fault(self.row_lines.get(row).copied().unwrap_or(1), column + 1, cause)
     }
 
     /// A fault of the names of the columns.
-    pub fn fault_of_columns(&self, cause: LogFault) -> LogError {
+    pub fn fault_of_columns(&self, cause: LogFault) -> PlacedLogFault {
         self.fault(self.columns_line, 1, cause)
     }
 
     /// A fault of the header's line of this name.
-    pub fn fault_of_header(&self, name: &str, cause: LogFault) -> LogError {
+    pub fn fault_of_header(&self, name: &str, cause: LogFault) -> PlacedLogFault {
         let place = self.log.header.iter().position(|(known, _)| known == name);
         let line = place.and_then(|place| self.header_lines.get(place).copied());
         self.fault(line.unwrap_or(1), 1, cause)
@@ -147,7 +148,8 @@ mod tests {
     #[test]
     fn faults_have_their_place() {
         let fault = |text: &str| {
-            let faults = Log::from_csv("a.csv", text.as_bytes()).unwrap_err();
+            let error = Log::from_csv("a.csv", text.as_bytes()).unwrap_err();
+            let faults = error.log_faults().expect("faults of the log");
             assert_eq!(faults.count(), 1, "{faults}");
             let error = faults.told()[0].clone();
             (error.line, error.cell, error.cause)
@@ -161,7 +163,8 @@ mod tests {
         assert_eq!(fault("t,q\nx,1\n"), (2, 1, LogFault::NotANumber("x".to_owned())));
         assert_eq!(fault("t,q\n0,1\n0,2\n"), (3, 1, LogFault::NotIncreasing));
         assert_eq!(fault("t,q\n,1\n"), (2, 1, LogFault::NotIncreasing));
-        let wide = Log::from_csv("a.csv", b"t,q\n0,\xff\n").unwrap_err();
+        let error = Log::from_csv("a.csv", b"t,q\n0,\xff\n").unwrap_err();
+        let wide = error.log_faults().expect("faults of the log");
         assert_eq!((wide.told()[0].line, &wide.told()[0].cause), (2, &LogFault::NotUtf8));
     }
 
@@ -169,11 +172,13 @@ mod tests {
     #[test]
     fn all_faults_are_told_at_once() {
         let text = "t,q\n0,1\n\n1\n# note: x\n2,y\n1,3\n";
-        let faults = Log::from_csv("a.csv", text.as_bytes()).unwrap_err();
+        let error = Log::from_csv("a.csv", text.as_bytes()).unwrap_err();
+        let faults = error.log_faults().expect("faults of the log");
         let places: Vec<_> = faults.told().iter().map(|one| (one.line, one.cell)).collect();
         assert_eq!(places, [(4, 1), (6, 2), (7, 1)]);
         let many = "t,q\n".to_owned() + &"1\n".repeat(25);
-        let faults = Log::from_csv("a.csv", many.as_bytes()).unwrap_err();
+        let error = Log::from_csv("a.csv", many.as_bytes()).unwrap_err();
+        let faults = error.log_faults().expect("faults of the log");
         assert_eq!((faults.told().len(), faults.count()), (10, 25));
         assert!(faults.to_string().ends_with("and 15 more faults"), "{faults}");
         assert_eq!(faults.to_string().matches("hint: ").count(), 10);

@@ -1,5 +1,6 @@
 //! Of which robot a log is, by its header.
 
+use super::error::Error;
 use super::log::Log;
 use super::log_fault::{LogFault, LogFaults};
 use super::log_file::LogFile;
@@ -50,16 +51,16 @@ impl LogFile {
     ///
     /// # Errors
     /// The header says that the log is of another model, or has no values where they should be.
-    pub fn parameters(&self, model: &str, hash: u64) -> Result<Vec<Override>, LogFaults> {
+    pub fn parameters(&self, model: &str, hash: u64) -> Result<Vec<Override>, Error> {
         let header = &self.log.header;
         if let Some(log) = model_of_header(header).filter(|log| *log != model) {
             let cause = LogFault::OtherModel(log.to_owned(), model.to_owned());
-            return Err(self.fault_of_header(MODEL, cause).into());
+            return Err(LogFaults::from(self.fault_of_header(MODEL, cause)).into());
         }
         let own = hash_text(hash);
         if let Some(log) = said(header, MODEL_HASH).filter(|log| *log != own) {
             let cause = LogFault::OtherHash(log.to_owned(), own, model.to_owned());
-            return Err(self.fault_of_header(MODEL_HASH, cause).into());
+            return Err(LogFaults::from(self.fault_of_header(MODEL_HASH, cause)).into());
         }
         let (mut faults, mut parameters) = (LogFaults::default(), Vec::new());
         for entry in said(header, PARAMETERS).into_iter().flat_map(|text| text.split(';')) {
@@ -76,13 +77,13 @@ impl LogFile {
                 }
             }
         }
-        faults.or(parameters)
+        Ok(faults.or(parameters)?)
     }
 
     /// The fault of a parameter that the header names, and the model does not have.
-    pub fn unknown_parameter(&self, name: &str) -> LogFaults {
+    pub fn unknown_parameter(&self, name: &str) -> Error {
         let cause = LogFault::UnknownParameter(name.to_owned());
-        self.fault_of_header(PARAMETERS, cause).into()
+        LogFaults::from(self.fault_of_header(PARAMETERS, cause)).into()
     }
 }
 
@@ -110,7 +111,12 @@ mod tests {
     fn a_log_of_another_model_says_so() {
         let place = |header: &str| {
             let faults = file(header).parameters("a", 255).unwrap_err();
-            let places = faults.told().iter().map(|one| (one.line, one.cause.clone()));
+            let places = faults
+                .log_faults()
+                .expect("faults")
+                .told()
+                .iter()
+                .map(|one| (one.line, one.cause.clone()));
             places.collect::<Vec<_>>()
         };
         let [a, b, ff, fe] = ["a", "b", "00000000000000ff", "00000000000000fe"].map(str::to_owned);

@@ -5,6 +5,7 @@ use super::breakdown::Stop;
 use super::contact::Tolerance;
 use super::control::Control;
 use super::drive::Drives;
+use super::error::Error;
 use super::integrate::Statistics;
 use super::joint_record::JointRecord;
 use super::laws::LawForces;
@@ -96,7 +97,7 @@ pub fn simulate(
     control: &Control,
     initial: &State,
     simulation: &Simulation,
-) -> Result<Run, StartError> {
+) -> Result<Run, Error> {
     simulate_believing(plant, None, control, initial, simulation)
 }
 
@@ -110,7 +111,7 @@ pub fn simulate_told(
     initial: &State,
     simulation: &Simulation,
     told: &mut Told<'_>,
-) -> Result<Run, StartError> {
+) -> Result<Run, Error> {
     let (motion, t_s, y) = prepare(plant, control, initial, simulation)?;
     Ok(Runner::begin(motion, simulation, t_s, y, None)?.told(told).go().0)
 }
@@ -123,7 +124,7 @@ pub fn simulate_believing(
     control: &Control,
     initial: &State,
     simulation: &Simulation,
-) -> Result<Run, StartError> {
+) -> Result<Run, Error> {
     let (mut motion, t_s, y) = prepare(plant, control, initial, simulation)?;
     motion.believed = believed;
     Ok(Runner::begin(motion, simulation, t_s, y, None)?.go().0)
@@ -142,17 +143,16 @@ pub fn simulate_varied(
     initial: &State,
     simulation: &Simulation,
     changes: &[State],
-) -> Result<(Run, Vec<State>), VariationError> {
-    let (motion, t_s, y) =
-        prepare(plant, control, initial, simulation).map_err(VariationError::Start)?;
+) -> Result<(Run, Vec<State>), Error> {
+    let (motion, t_s, y) = prepare(plant, control, initial, simulation)?;
     let layout = motion.layout;
     let variation = Some(Variation::new(layout, changes));
     let runner = Runner::begin(motion, simulation, t_s, y, variation);
-    let (run, variation) = runner.map_err(VariationError::Start)?.go();
+    let (run, variation) = runner?.go();
     let changes = variation.map_or_else(|| Ok(Vec::new()), |variation| variation.finish(layout))?;
     match run.stop {
         Stop::End => Ok((run, changes)),
-        stop => Err(VariationError::Stopped(stop, run.end.t_s)),
+        stop => Err(VariationError::Stopped(stop, run.end.t_s).into()),
     }
 }
 

@@ -12,7 +12,7 @@ use std::fmt;
 
 /// Why a run does not begin.
 #[derive(Clone, Debug, PartialEq)]
-pub enum StartError {
+pub(crate) enum StartError {
     /// A vector has not one entry for each joint (or motor): name, entries needed and found.
     Length(&'static str, usize, usize),
     /// A number of the initial state or of the options is not finite, or not positive.
@@ -54,8 +54,6 @@ impl fmt::Display for StartError {
         }
     }
 }
-
-impl std::error::Error for StartError {}
 
 /// Checks the numbers of a run and completes its initial state: motors with relaxed springs.
 pub(super) fn check(

@@ -10,16 +10,13 @@ use super::event::{Fired, Watch};
 use super::integrate::{Rates, Stepper};
 use super::motion::{Closed, Motion};
 use super::settle::{Onset, Settler, Touching};
-use super::start::StartError;
 use super::state::{INTEGRALS, Layout, State};
 use nalgebra::DMatrix;
 use std::fmt;
 
 /// Why changes cannot be followed along a run.
 #[derive(Clone, Debug, PartialEq)]
-pub enum VariationError {
-    /// The run does not begin.
-    Start(StartError),
+pub(crate) enum VariationError {
     /// The run stops before its end.
     Stopped(Stop, f64),
     /// A sampled controller holds torques between samples, or plans references at them.
@@ -38,7 +35,6 @@ pub enum VariationError {
 impl fmt::Display for VariationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Start(error) => write!(f, "{error}"),
             Self::Stopped(stop, t_s) => write!(f, "at {t_s} s the run {stop}"),
             Self::Sampled => write!(f, "a sampled controller has no variational equation here"),
             Self::Jumps => write!(f, "the plant jumps by a rule of its own"),
@@ -50,8 +46,6 @@ impl fmt::Display for VariationError {
         }
     }
 }
-
-impl std::error::Error for VariationError {}
 
 /// Changes of positions and velocities, relative to entries of size 1, that differences are taken
 /// with: the error of order 2 and rounding are both about 1e-10 then.

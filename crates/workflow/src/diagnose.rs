@@ -212,7 +212,7 @@ fn places(candidates: &[Candidate], taken: &[usize]) -> Vec<[String; 2]> {
 
 fn regression(robot: &Robot) -> Result<RegressionModel, Error> {
     let model = RegressionModel::new(robot, modelled(robot), &[]);
-    Ok(model.map_err(|error| Cause::Regression(Box::new(error)))?)
+    Ok(model.map_err(Cause::Regression)?)
 }
 
 /// The logs that are searched, the first ones, and those that judge; none says the same as another

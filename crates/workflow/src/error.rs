@@ -2,16 +2,10 @@
 
 use crate::files::reason;
 use crate::mistaken::Mistaken;
-use denavit_codegen::model::ModelError;
+use denavit_codegen::model::{FileError, ModelError};
 use denavit_identify::doubt::MisreadColumns;
-use denavit_import::ImportError;
-use denavit_measure::condition::ConditionError;
-use denavit_measure::log::{LogFault, LogFaults as MeasuredFaults, MappingError};
-use denavit_plants::PlantError;
-use denavit_plants::effect::AddedError;
-use denavit_plants::regression::RegressionError;
+use denavit_measure::log::LogFault;
 use denavit_plants::shipped::{self, ShippedModel};
-use denavit_simulate::LogFaults;
 use denavit_simulate::scenario::ScenarioError;
 use std::fmt;
 use std::io;
@@ -74,7 +68,7 @@ pub enum RobotFaults<'a> {
     /// With a model file.
     Model(&'a ModelError),
     /// With a URDF or MJCF.
-    Description(&'a ImportError),
+    Description(&'a FileError<denavit_import::Cause>),
 }
 
 /// What is wrong.
@@ -83,7 +77,7 @@ pub(crate) enum Cause {
     /// A model file is wrong.
     Model(ModelError),
     /// A description of a robot in another format is wrong.
-    Import(ImportError),
+    Import(denavit_import::Error),
     /// Neither a file nor a shipped model has this name; holds the name, the shipped model that was
     /// meant, perhaps, and whether it can only be a file.
     NoModel { name: String, nearest: Option<&'static str>, is_path: bool },
@@ -103,23 +97,23 @@ pub(crate) enum Cause {
     /// effect.
     Effect(String, String),
     /// The effects of a model cannot be taken apart; holds the model.
-    Apart(String, AddedError),
+    Apart(String, denavit_plants::Error),
     /// A scenario, a controller or a file of statics is wrong.
     Scenario(ScenarioError),
     /// No trajectory excites a robot as it is asked for.
     Excite(denavit_excite::Error),
     /// A log of the project's own columns is wrong.
-    Log(LogFaults),
+    Log(denavit_simulate::Error),
     /// A model has no regression.
-    Regression(Box<RegressionError>),
+    Regression(denavit_plants::Error),
     /// A mapping of columns is wrong.
-    Mapping(MappingError),
+    Mapping(denavit_measure::Error),
     /// Logs are wrong.
-    Logs(Vec<MeasuredFaults>),
+    Logs(Vec<denavit_measure::Error>),
     /// A log cannot be conditioned; holds its name.
-    Condition(String, ConditionError),
+    Condition(String, denavit_measure::Error),
     /// A model has no plant; holds its name.
-    Plant(String, PlantError),
+    Plant(String, denavit_plants::Error),
     /// Nothing can be identified; holds the name of the model or of the log.
     Identify(String, denavit_identify::Error),
     /// Columns seem to be other ones than they are taken for.
@@ -182,7 +176,7 @@ impl Error {
     pub fn robot_faults(&self) -> Option<RobotFaults<'_>> {
         match &*self.0 {
             Cause::Model(error) => Some(RobotFaults::Model(error)),
-            Cause::Import(error) => Some(RobotFaults::Description(error)),
+            Cause::Import(error) => error.description().map(RobotFaults::Description),
             _ => None,
         }
     }
@@ -359,7 +353,7 @@ impl std::error::Error for Error {
             Cause::Scenario(error) => Some(error),
             Cause::Excite(error) => Some(error),
             Cause::Log(error) => Some(error),
-            Cause::Regression(error) => Some(error.as_ref()),
+            Cause::Regression(error) => Some(error),
             Cause::Mapping(error) => Some(error),
             Cause::Condition(_, error) => Some(error),
             Cause::Plant(_, error) => Some(error),

@@ -214,7 +214,7 @@ impl<'a> Head<'a> {
 fn regression(robot: &Robot, options: &IdentifyOptions) -> Result<RegressionModel, Error> {
     let columns = options.with.unwrap_or_else(|| modelled(robot));
     let model = RegressionModel::new(robot, columns, &options.keep);
-    let mut model = model.map_err(|error| Cause::Regression(Box::new(error)))?;
+    let mut model = model.map_err(Cause::Regression)?;
     model.law = options.friction;
     Ok(model)
 }

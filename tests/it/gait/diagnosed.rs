@@ -114,7 +114,8 @@ fn a_log_of_a_floating_base_has_forces_of_all_contacts() {
             accepts_suspicious: true,
         };
         let mapping = ColumnMapping::from_json("map.json", mapping.as_bytes()).expect("a mapping");
-        read_log("step.csv", csv.as_bytes(), of, &mapping).map_err(|all| all.faults)
+        read_log("step.csv", csv.as_bytes(), of, &mapping)
+            .map_err(|error| error.log_faults().expect("faults").faults.clone())
     };
     assert!(read(&forces, "{}").is_ok());
     let missing = LogFault::MissingForces { columns: forces[3..].to_vec() };

@@ -1,7 +1,7 @@
 //! Why a log is not simulated again.
 
 use denavit_numerics::short;
-use denavit_simulate::{StartError, Stop};
+use denavit_simulate::Stop;
 use std::fmt;
 
 /// Why a log is not simulated again.
@@ -18,7 +18,7 @@ pub(crate) enum ForwardError {
     /// The log is shorter than a window; holds the length of a window \[s\].
     TooShort(f64),
     /// The run does not begin.
-    Start(StartError),
+    Start(denavit_simulate::Error),
     /// The run broke off.
     Stopped {
         /// When \[s\].

@@ -1,6 +1,5 @@
 //! Why a log does not give springs and load.
 
-use denavit_measure::condition::ConditionError;
 use std::fmt;
 
 /// Why a log does not give the parameters.
@@ -11,7 +10,7 @@ pub(crate) enum TwoStageError {
     /// The log has no such column.
     MissingColumn(String),
     /// The log cannot be conditioned.
-    Condition(ConditionError),
+    Condition(denavit_measure::Error),
     /// The motion does not tell these parameters apart; holds a joint, or the load.
     NotExcited(String),
     /// The gear ratio of an elastic drive is 0; holds the joint.

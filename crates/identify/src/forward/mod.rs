@@ -15,7 +15,7 @@ pub use windows::{Windows, in_windows};
 
 use crate::error::ForwardError;
 use denavit_measure::SampleIndex;
-use denavit_measure::condition::{Butterworth, ConditionError, Conditioned, Conditioning, Filter};
+use denavit_measure::condition::{Butterworth, Conditioned, Conditioning, Filter};
 use denavit_measure::log::{JointSignals, MeasuredLog};
 use denavit_plants::PlantModel;
 use denavit_simulate::scenario::Controller;
@@ -76,7 +76,7 @@ impl MotionLog {
         log: &MeasuredLog,
         names: &[String],
         filter: Option<Filter>,
-    ) -> Result<Self, ConditionError> {
+    ) -> Result<Self, denavit_measure::Error> {
         let how = Conditioning { filter, ..Conditioning::default() };
         let kept = |joint: &JointSignals| {
             let (q, tau) = (joint.q.clone(), joint.tau.clone());
@@ -124,7 +124,7 @@ impl MotionLog {
         names: &[String],
         filter: Option<Filter>,
         zeros: &[f64],
-    ) -> Result<Self, ConditionError> {
+    ) -> Result<Self, denavit_measure::Error> {
         let mut motion = Self::new(log, names, filter)?;
         // Motors in place of their joints, through the same filter.
         let mut turned = log.clone();

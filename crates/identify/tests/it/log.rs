@@ -60,7 +60,7 @@ impl Made {
         let mapping = ColumnMapping::from_json("map.json", map.as_bytes()).expect("a mapping");
         read_log("log.csv", text.as_bytes(), of, &mapping).map_err(|faults| {
             assert!(faults.to_string().starts_with("log.csv"), "{faults}");
-            faults.faults
+            faults.log_faults().expect("faults of the log").faults.clone()
         })
     }
 
@@ -408,7 +408,7 @@ fn one_torque_far_beyond_its_limit_is_a_suspicion() {
         read_log("log.csv", text.as_bytes(), of, &ColumnMapping::default())
     };
     assert!(read(1.9).is_ok());
-    let found = suspicion(read(-40.0).unwrap_err().faults);
+    let found = suspicion(read(-40.0).unwrap_err().log_faults().expect("faults").faults.clone());
     assert!(matches!(found, Suspicion::BeyondTorque { samples: 1, .. }), "{found:?}");
 }
 

@@ -1,8 +1,9 @@
 //! Values of a model into the URDF that it was made of: every other byte stays.
 
+use super::Exported;
 use super::values::{BodyNumbers, Numbers};
-use super::{ExportError, Exported};
 use crate::body::{entries, tensor};
+use crate::error::Error;
 use crate::exact::{decimal, product, transposed, written};
 use crate::fault::listed;
 use crate::layout::{Layout, layout};
@@ -25,18 +26,18 @@ const ENTRIES: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// The description with the values of a model. Masses, centres of mass and inertias of its links,
 /// damping and friction of its joints become those of the model where they are others.
-pub fn export_into(robot: &Robot, file: &str, description: &[u8]) -> Result<Exported, ExportError> {
-    let source = Source::read(file, description).map_err(ExportError::Description)?;
+pub fn export_into(robot: &Robot, file: &str, description: &[u8]) -> Result<Exported, Error> {
+    let source = Source::read(file, description)?;
     let mut faults = Report::default();
     let base = if robot.base == Base::Fixed { BaseChoice::Fixed } else { BaseChoice::Floating };
     let options = Options { base, mimic: Mimic::Free, ..Options::default() };
     let document = source.document();
     let root = document.as_ref().map(|document| source.root(document));
     let Some(root) = root.filter(|root| root.name() == "robot") else {
-        return Err(ExportError::Model(format!("{file} is no URDF: values go into a URDF")));
+        return Err(Error::unsaid(format!("{file} is no URDF: values go into a URDF")));
     };
     let Some(tree) = urdf::tree(file, root, &options, &mut nothing_included, &mut faults) else {
-        return Err(ExportError::Description(faults.into_error(file, description, None)));
+        return Err(faults.into_error(file, description, None).into());
     };
     let mut writer = Writer {
         numbers: Numbers::new(robot)?,
@@ -62,7 +63,7 @@ pub fn export_into(robot: &Robot, file: &str, description: &[u8]) -> Result<Expo
         notes.push(format!("{said}: {}", listed(&writer.joined)));
     }
     if writer.missing.len() >= tree.links.len() {
-        return Err(ExportError::Model(format!("no row is that of a link of {file}")));
+        return Err(Error::unsaid(format!("no row is that of a link of {file}")));
     }
     Ok(Exported { text: writer.written(), notes })
 }

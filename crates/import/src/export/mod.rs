@@ -9,9 +9,8 @@ mod whole_urdf;
 
 pub use into::export_into;
 
-use crate::fault::ImportError;
+use crate::error::Error;
 use denavit_codegen::model::{Base, Robot};
-use std::fmt;
 use values::Numbers;
 
 /// A description made of a model.
@@ -33,10 +32,10 @@ pub enum Format {
 }
 
 /// The description of a model.
-pub fn export(robot: &Robot, format: Format) -> Result<Exported, ExportError> {
+pub fn export(robot: &Robot, format: Format) -> Result<Exported, Error> {
     if robot.base == Base::PlanarFloating {
         let said = "a description floats in space or not at all: this model floats in a plane";
-        return Err(ExportError::Model(said.to_owned()));
+        return Err(Error::unsaid(said.to_owned()));
     }
     let numbers = Numbers::new(robot)?;
     let (text, notes) = match format {
@@ -45,23 +44,3 @@ pub fn export(robot: &Robot, format: Format) -> Result<Exported, ExportError> {
     };
     Ok(Exported { text, notes })
 }
-
-/// Why there is no description.
-#[derive(Clone, Debug)]
-pub enum ExportError {
-    /// The description that values should go into is wrong.
-    Description(ImportError),
-    /// A description cannot say what the model says; holds what.
-    Model(String),
-}
-
-impl fmt::Display for ExportError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Description(error) => write!(f, "{error}"),
-            Self::Model(what) => f.write_str(what),
-        }
-    }
-}
-
-impl std::error::Error for ExportError {}

@@ -1,6 +1,6 @@
 //! Values of a model as numbers.
 
-use super::ExportError;
+use crate::error::Error;
 use crate::fault::listed;
 use denavit_codegen::expr::ExprId;
 use denavit_codegen::model::{About, Body, LinkId, Robot, bake};
@@ -57,8 +57,8 @@ pub(super) fn notes(numbers: &Numbers, is_urdf: bool) -> Vec<String> {
 
 impl Numbers {
     /// The numbers of a model.
-    pub(super) fn new(robot: &Robot) -> Result<Self, ExportError> {
-        let robot = bake(robot).map_err(|error| ExportError::Model(error.to_string()))?;
+    pub(super) fn new(robot: &Robot) -> Result<Self, Error> {
+        let robot = bake(robot).map_err(|error| Error::unsaid(error.to_string()))?;
         Ok(Self { robot })
     }
 

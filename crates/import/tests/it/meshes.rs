@@ -3,7 +3,7 @@
 
 use crate::evaluated::{Random, called};
 use denavit_codegen::function::FunctionName;
-use denavit_import::{Beside, ImportError, Imported, Options, import};
+use denavit_import::{Beside, Error, Imported, Options, import};
 use std::fmt::Write;
 
 /// A leg with a foot one metre up.
@@ -18,7 +18,7 @@ fn urdf(geometry: &str) -> String {
     )
 }
 
-fn read(text: &str, bytes: &[u8]) -> Result<Imported, ImportError> {
+fn read(text: &str, bytes: &[u8]) -> Result<Imported, Error> {
     let options = Options { contacts: vec!["foot".to_owned()], ..Options::default() };
     let mut include = |named: Beside<'_>| match named {
         Beside::Mesh("package://r/sole.stl" | "parts/sole.obj") => Ok(bytes.to_vec()),

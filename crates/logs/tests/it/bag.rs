@@ -52,7 +52,7 @@ fn nothing_outside_the_folder_is_read() {
     }
     for name in names {
         metadata(&folder, "mcap", &[&name]);
-        let faults = open(&folder, None, &Opening::default()).unwrap_err();
+        let faults = open(&folder, None, &Opening::default()).unwrap_err().into_faults();
         assert_eq!(faults, [FileFault::Outside { file: name }]);
     }
 }
@@ -61,7 +61,7 @@ fn nothing_outside_the_folder_is_read() {
 fn folders_that_are_no_bags_are_told_why() {
     let folder = TempDir::new().expect("a folder");
     let told = || {
-        let faults = open(folder.path(), None, &Opening::default()).unwrap_err();
+        let faults = open(folder.path(), None, &Opening::default()).unwrap_err().into_faults();
         faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     };
     assert!(told().contains("without metadata.yaml"), "{}", told());

@@ -127,7 +127,7 @@ fn try_mutations(count: usize) {
                     let places: Vec<usize> = (0..log.columns.len()).collect();
                     let clock = [1];
                     if let Err(faults) = log.read(&places, &clock) {
-                        assert!(faults.iter().all(|fault| !fault.to_string().is_empty()));
+                        assert!(faults.faults().iter().all(|fault| !fault.to_string().is_empty()));
                     }
                     outcomes[0] += 1;
                 }

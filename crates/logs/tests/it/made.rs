@@ -1,7 +1,7 @@
 //! Files for tests: MCAP record by record as the format's specification has it, CDR as that of OMG
 //! has it, both by hand.
 
-use denavit_logs::{FileFault, Found, Log, Opening, Table, open};
+use denavit_logs::{Error, FileFault, Found, Log, Opening, Table, open};
 use std::io::Write;
 use tempfile::NamedTempFile;
 
@@ -165,7 +165,7 @@ pub(crate) fn chunk(records: &[u8], compression: &str, pack: impl Fn(&[u8]) -> V
 pub(crate) fn opened(bytes: &[u8], how: &Opening) -> Result<Log<'static>, Vec<FileFault>> {
     let mut file = NamedTempFile::new().expect("a file");
     file.write_all(bytes).expect("written");
-    open(file.path(), None, how)
+    open(file.path(), None, how).map_err(Error::into_faults)
 }
 
 /// Columns by the names that the project has for them; the rows are those of the second.
@@ -176,7 +176,7 @@ pub(crate) fn columns(log: Log<'_>, names: &[&str]) -> Result<Table, Vec<FileFau
     };
     let places: Vec<usize> = names.iter().map(place).collect();
     let clocks = [places[1]];
-    log.read(&places, &clocks)
+    log.read(&places, &clocks).map_err(Error::into_faults)
 }
 
 pub(crate) fn read(bytes: &[u8], names: &[&str]) -> Table {

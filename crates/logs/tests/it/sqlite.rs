@@ -1,7 +1,7 @@
 //! SQLite storage of bags.
 
 use crate::made::{JOINT_STATE, Mcap, columns, joint_state, read};
-use denavit_logs::{FileFault, FileRemark, Log, Opening, open};
+use denavit_logs::{Error, FileFault, FileRemark, Log, Opening, open};
 use rusqlite::Connection;
 use std::fs;
 use std::path::Path;
@@ -48,7 +48,8 @@ fn bag(has_definitions: bool) -> TempDir {
 }
 
 fn opened(path: &Path, accepts_cut: bool) -> Result<Log<'static>, Vec<FileFault>> {
-    open(path, None, &Opening { accepts_cut, ..Opening::default() })
+    let how = Opening { accepts_cut, ..Opening::default() };
+    open(path, None, &how).map_err(Error::into_faults)
 }
 
 #[test]

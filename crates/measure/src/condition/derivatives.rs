@@ -4,8 +4,9 @@
 //! leaves of the derivatives. A column is compared by its factor and its delay, on which noise of
 //! its own has no influence.
 
-use super::{ConditionError, Conditioned, STENCIL, acceleration, rate};
+use super::{Conditioned, STENCIL, acceleration, rate};
 use crate::JointIndex;
+use crate::error::ConditionError;
 use crate::policy::derivatives::{DELAY, FACTOR, NOISE};
 
 impl Conditioned {

@@ -1,6 +1,6 @@
 //! Motion that repeats: its period, the mean of its laps, and the noise that laps show.
 
-use super::ConditionError;
+use crate::error::{ConditionError, Error};
 use crate::policy::laps::{COMPARED, DIGITS, FEWEST, LEFT_BY_LAP, MOVES, REPEATS, SETTLED};
 use std::ops::Range;
 
@@ -124,7 +124,7 @@ fn moving(positions: &[Vec<f64>], span: Range<usize>) -> Vec<(&[f64], f64)> {
 impl Laps {
     /// Laps of a given period, with which the positions must repeat. What it lacks in digits is
     /// found, as long as that is less than a sample in a lap.
-    pub fn given(
+    pub(crate) fn given(
         positions: &[Vec<f64>],
         period_s: f64,
         step_s: f64,
@@ -164,16 +164,12 @@ impl Laps {
 
     /// The shortest period with which all joints repeat, found by comparing the positions with
     /// themselves.
-    pub fn find(
-        positions: &[Vec<f64>],
-        step_s: f64,
-        span: Range<usize>,
-    ) -> Result<Self, ConditionError> {
+    pub fn find(positions: &[Vec<f64>], step_s: f64, span: Range<usize>) -> Result<Self, Error> {
         let samples = span.len();
         let stride = samples.div_ceil(SEARCHED).max(1);
         let moving = moving(positions, span.clone());
         if moving.is_empty() {
-            return Err(ConditionError::NoPeriod);
+            return Err(ConditionError::NoPeriod.into());
         }
         let compared = Compared::new(&moving, span.clone(), stride);
         // From the first lag at which the motion has become another one.
@@ -198,7 +194,7 @@ impl Laps {
             .map_or(near, |(lag, _)| lag);
         let count = samples / lag;
         let period = refined(&compared, lag as f64, count);
-        Self::of_period(period, step_s, span)
+        Ok(Self::of_period(period, step_s, span)?)
     }
 
     /// The distance of the mean lap's samples, in those of the log.
@@ -326,7 +322,7 @@ mod tests {
     #[test]
     fn what_never_repeats_has_no_period() {
         let slope: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(ConditionError::NoPeriod));
+        assert_eq!(Laps::find(&[slope], 1e-3, 0..1000), Err(ConditionError::NoPeriod.into()));
     }
 
     #[test]

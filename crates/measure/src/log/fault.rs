@@ -163,8 +163,6 @@ impl fmt::Display for LogFaults {
     }
 }
 
-impl std::error::Error for LogFaults {}
-
 impl LogFault {
     /// The place that it is about.
     pub fn place(&self) -> Option<Place> {

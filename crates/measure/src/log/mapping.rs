@@ -1,8 +1,8 @@
 //! Which column of a foreign log is which of ours.
 
+use crate::error::{Error, MappingError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// Where one of our columns stands in a log, and how its numbers become ours:
 /// scale * value + offset.
@@ -48,31 +48,6 @@ pub(super) enum Mapped {
 /// What stands for a joint, a contact or a link in names and sources.
 const SUBJECTS: [&str; 3] = ["{joint}", "{contact}", "{link}"];
 
-/// A mapping that cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MappingError {
-    /// The file, as it was given.
-    pub file: String,
-    /// Line and column, from 1.
-    pub at: (usize, usize),
-    /// What is wrong.
-    pub cause: String,
-}
-
-impl fmt::Display for MappingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, at: (line, column), cause } = self;
-        write!(
-            f,
-            "{file}:{line}:{column}: {cause}\n  hint: as {{\"q_knee\": {{\"column\": \"deg\", \
-             \"scale\": 0.0174533, \"offset\": 0}}, \"t\": \"time\", \"tau_hip\": \
-             null, \"q_{{joint}}\": \"/joint_states/{{joint}}/position\"}}"
-        )
-    }
-}
-
-impl std::error::Error for MappingError {}
-
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Entry {
@@ -90,8 +65,8 @@ struct Full {
 
 impl ColumnMapping {
     /// Reads a mapping from JSON. `file` is its name, for messages alone.
-    pub fn from_json(file: &str, source: &[u8]) -> Result<Self, MappingError> {
-        let error = |at, cause| MappingError { file: file.to_owned(), at, cause };
+    pub fn from_json(file: &str, source: &[u8]) -> Result<Self, Error> {
+        let error = |at, cause| Error::from(MappingError { file: file.to_owned(), at, cause });
         let raw: BTreeMap<String, Option<Entry>> =
             serde_json::from_slice(source).map_err(|problem| {
                 let text = problem.to_string();

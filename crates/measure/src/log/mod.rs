@@ -14,9 +14,10 @@ mod mapping;
 mod repair;
 mod wanted;
 
+use crate::error::Error;
 use crate::policy::log::{LARGEST, LARGEST_TIME};
 pub use fault::{LogFault, LogFaults, LogRemark, Suspicion};
-pub use mapping::{ColumnMapping, ColumnSource, MappingError};
+pub use mapping::{ColumnMapping, ColumnSource};
 
 pub use denavit_logs::{FileFault, FileRemark, Place};
 
@@ -124,7 +125,7 @@ impl MeasuredLog {
         &mut self,
         joints: &[RegressionJoint],
         accepts_suspicious: bool,
-    ) -> Result<(), LogFaults> {
+    ) -> Result<(), Error> {
         let mut faults = Vec::new();
         for (own, joint) in self.joints.iter_mut().zip(joints) {
             let (None, Some(command)) = (&own.tau, &own.motor_torque) else { continue };
@@ -137,7 +138,10 @@ impl MeasuredLog {
                 faults.push(LogFault::Suspicion(suspicion));
             }
         }
-        if faults.is_empty() { Ok(()) } else { Err(LogFaults { file: self.file.clone(), faults }) }
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(LogFaults { file: self.file.clone(), faults }.into()),
+        }
     }
 }
 
@@ -166,16 +170,15 @@ pub fn read_log(
     source: impl BufRead,
     robot: LogOf<'_>,
     mapping: &ColumnMapping,
-) -> Result<MeasuredLog, LogFaults> {
-    let failed = |faults: Vec<_>| of_file(file, faults);
-    let log = open_csv(source).map_err(failed)?;
+) -> Result<MeasuredLog, Error> {
+    let log = open_csv(source).map_err(|error| of_file(file, error))?;
     read_opened(file, log, robot, mapping)
 }
 
 /// What is wrong with a file itself.
-pub fn of_file(file: &str, faults: Vec<FileFault>) -> LogFaults {
-    let faults = faults.into_iter().map(LogFault::File).collect();
-    LogFaults { file: file.to_owned(), faults }
+pub fn of_file(file: &str, error: denavit_logs::Error) -> Error {
+    let faults = error.into_faults().into_iter().map(LogFault::File).collect();
+    LogFaults { file: file.to_owned(), faults }.into()
 }
 
 /// Reads a log of a robot that is open, of whatever format. `file` is its name, for messages alone.
@@ -187,12 +190,12 @@ pub fn read_opened(
     mut log: Log<'_>,
     robot: LogOf<'_>,
     mapping: &ColumnMapping,
-) -> Result<MeasuredLog, LogFaults> {
-    let failed = |faults| LogFaults { file: file.to_owned(), faults };
+) -> Result<MeasuredLog, Error> {
+    let failed = |faults| Error::from(LogFaults { file: file.to_owned(), faults });
     let wanted = Wanted::new(&log, robot, mapping).map_err(failed)?;
     let header = std::mem::take(&mut log.header);
     let read = log.read(&wanted.places(), &wanted.clocks());
-    let mut table = read.map_err(|faults| of_file(file, faults))?;
+    let mut table = read.map_err(|error| of_file(file, error))?;
     for (values, column) in table.columns.iter_mut().zip(&wanted.columns) {
         let WantedColumn { scale, offset, .. } = *column;
         if scale != 1.0 || offset != 0.0 {

@@ -1,11 +1,11 @@
 //! The effects that a model has, apart: what moves the robot stays in its equations; laws of joints
 //! and of what is logged stand beside them.
 
-use super::{EffectError, EffectLaw, LawParameter};
+use super::{EffectLaw, LawParameter};
+use crate::error::{Cause, Error};
 use denavit_codegen::effect::{Effect, Law, find, place_name};
 use denavit_codegen::model::{AddedEffect, EffectPlace, LinkId, Robot};
 use denavit_codegen::program::constant_values;
-use std::fmt;
 
 /// A law that a model has beside its equations, with the values that the model gives.
 #[derive(Clone, Debug)]
@@ -47,43 +47,12 @@ pub struct ApartEffects {
     pub laws: Vec<AddedLaw>,
 }
 
-/// Why effects of a model cannot be taken apart.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum AddedError {
-    /// A parameter has no value.
-    NoValue {
-        /// The effect.
-        effect: String,
-        /// Its place.
-        at: String,
-        /// The parameter.
-        parameter: String,
-    },
-    /// A constant of a law is no finite number; holds the effect's name.
-    Law(String, EffectError),
-}
-
-impl fmt::Display for AddedError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoValue { effect, at, parameter } => write!(
-                f,
-                "`{effect}` at {at} has no value for `{parameter}`\n  hint: give it one in \
-                 \"parameters\" of the effect"
-            ),
-            Self::Law(effect, error) => write!(f, "`{effect}`: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for AddedError {}
-
 /// Takes apart a robot that was read with its effects; `own` are definitions that stand before the
 /// shipped ones.
 ///
 /// # Errors
-/// [`AddedError`] where a law of a joint lacks a value.
-pub fn apart(robot: &Robot, own: &[Effect]) -> Result<ApartEffects, AddedError> {
+/// [`Error`] where a law of a joint lacks a value.
+pub fn apart(robot: &Robot, own: &[Effect]) -> Result<ApartEffects, Error> {
     let (mut taken_up, mut laws) = (Vec::new(), Vec::new());
     for (number, added) in robot.effects.iter().enumerate() {
         let at = place_name(robot, added.at);
@@ -108,7 +77,7 @@ fn law_of(
     added: &AddedEffect,
     effect: &Effect,
     at: String,
-) -> Result<AddedLaw, AddedError> {
+) -> Result<AddedLaw, Error> {
     let row = |link: LinkId| {
         let row = robot.joints().position(|(joint, _)| joint == link);
         row.expect("an effect of a joint acts on one that moves")
@@ -121,13 +90,13 @@ fn law_of(
         }
     };
     let kind = robot.links[link].joint.kind;
-    let law = EffectLaw::new(effect, kind)
-        .map_err(|error| AddedError::Law(added.effect.clone(), error))?;
+    let law =
+        EffectLaw::new(effect, kind).map_err(|error| Cause::Law(added.effect.clone(), error))?;
     let (mut values, mut deviations) = (Vec::new(), Vec::new());
     for LawParameter { name, .. } in &law.parameters {
         let Some(given) = added.parameters.iter().find(|given| given.name == *name) else {
             let (effect, parameter) = (added.effect.clone(), name.clone());
-            return Err(AddedError::NoValue { effect, at, parameter });
+            return Err(Cause::NoEffectValue { effect, at, parameter }.into());
         };
         values.push(constant_values(&robot.dag, &[given.value])[0]);
         deviations.push(given.std.map(|std| constant_values(&robot.dag, &[std])[0]));

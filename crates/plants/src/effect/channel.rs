@@ -5,7 +5,8 @@
 
 use super::program::LawProgram;
 use super::transmission::TransmissionLaw;
-use super::{EffectError, EffectLaw, JointSamples, columns, gradient, inputs, names};
+use super::{EffectLaw, JointSamples, columns, gradient, inputs, names};
+use crate::error::Error;
 use denavit_codegen::effect::{Channel, Effect, Measured};
 use denavit_codegen::expr::{Dag, ExprId};
 
@@ -28,11 +29,7 @@ pub(super) struct ChannelLaw {
 }
 
 impl ChannelLaw {
-    pub(super) fn new(
-        dag: &mut Dag,
-        effect: &Effect,
-        measured: &Measured,
-    ) -> Result<Self, EffectError> {
+    pub(super) fn new(dag: &mut Dag, effect: &Effect, measured: &Measured) -> Result<Self, Error> {
         let parameters: Vec<ExprId> = effect.parameters.iter().map(|p| p.symbol).collect();
         let timing = [measured.delay_s, measured.lag_s];
         let mut entries = timing.to_vec();

@@ -15,41 +15,20 @@ mod robot;
 mod states;
 mod transmission;
 
-pub use added::{AddedError, AddedLaw, ApartEffects, apart};
-pub use robot::{AddedTorques, RobotEffect, RobotEffectError};
+pub use added::{AddedLaw, ApartEffects, apart};
+pub use robot::{AddedTorques, RobotEffect};
 pub use transmission::{Drive, GivesWay, Transmitted};
 
+use crate::error::{Cause, Error};
 use denavit_codegen::effect::{
     COLUMNS, Channel, Effect, EffectParameter, EffectSite, Law, SpringSide,
 };
 use denavit_codegen::expr::{Dag, ExprId, derivative, free_symbols};
 use denavit_codegen::model::JointKind;
 use denavit_codegen::number::to_f64;
-use denavit_codegen::program::LowerError;
 use program::LawProgram;
 use rustc_hash::FxHashMap;
 use states::StateLaw;
-use std::fmt;
-
-/// Why an effect has no law of one joint.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum EffectError {
-    /// It changes the model, and with it the torques of all joints; holds its name.
-    WholeRobot(String),
-    /// A constant of the law is no finite number.
-    Lower(LowerError),
-}
-
-impl fmt::Display for EffectError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::WholeRobot(name) => write!(f, "`{name}` acts on the whole robot, not on a joint"),
-            Self::Lower(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl std::error::Error for EffectError {}
 
 /// A parameter of a law, for a joint of one kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,7 +149,7 @@ pub struct EffectLaw {
 
 impl EffectLaw {
     /// The law of `effect` on a joint of this kind.
-    pub fn new(effect: &Effect, joint: JointKind) -> Result<Self, EffectError> {
+    pub fn new(effect: &Effect, joint: JointKind) -> Result<Self, Error> {
         let mut law = Self::of_first(effect, joint)?;
         if let Some(second) = effect.on_second() {
             law.on_second = Some(Box::new(Self::of_first(&second, joint)?));
@@ -184,13 +163,13 @@ impl EffectLaw {
         self.on_second.as_deref()
     }
 
-    fn of_first(effect: &Effect, joint: JointKind) -> Result<Self, EffectError> {
+    fn of_first(effect: &Effect, joint: JointKind) -> Result<Self, Error> {
         let mut dag = effect.dag.clone();
         let (value, timing) = match &effect.law {
             Law::Torque(torque) => (*torque, None),
             Law::Measured(measured) => (measured.value, Some(measured)),
             Law::Moves(_) | Law::Term(_) => {
-                return Err(EffectError::WholeRobot(effect.name.clone()));
+                return Err(Cause::WholeRobot(effect.name.clone()).into());
             }
         };
         let parameters: Vec<ExprId> = effect.parameters.iter().map(|p| p.symbol).collect();

@@ -1,6 +1,6 @@
 //! Expressions of a law as a program whose parameters stand in the order of the effect's.
 
-use super::EffectError;
+use crate::error::Error;
 use denavit_codegen::expr::{Dag, ExprId};
 use denavit_codegen::function::{Argument, Form, Function, FunctionName, Output};
 use denavit_codegen::program::{BatchEvaluator, Evaluator, Program, lower, prelude_values};
@@ -20,7 +20,7 @@ impl LawProgram {
         parameters: &[String],
         inputs: Vec<ExprId>,
         entries: Vec<ExprId>,
-    ) -> Result<Self, EffectError> {
+    ) -> Result<Self, Error> {
         let output = Output {
             name: "tau",
             shape: vec![entries.len()],
@@ -35,7 +35,7 @@ impl LawProgram {
             outputs: vec![output],
             form: Form::Plain,
         };
-        let program = lower(dag, &[function]).map_err(EffectError::Lower)?;
+        let program = lower(dag, &[function])?;
         let place = |name: &String| {
             let place = parameters.iter().position(|known| known == name);
             place.expect("a law depends on its own parameters alone")

@@ -1,45 +1,14 @@
 //! Effects that change the model of a robot: the difference of inverse dynamics with and without.
 
 use super::program::LawProgram;
-use super::{EffectError, LawParameter, gradient};
+use super::{LawParameter, gradient};
+use crate::error::{Cause, Error};
 use denavit_codegen::derive::{Flavour, derive};
 use denavit_codegen::effect::{Effect, Law, ModelTerm, Property, attach, with_term};
 use denavit_codegen::expr::{ExprId, substitute};
 use denavit_codegen::function::FunctionName;
-use denavit_codegen::model::{
-    AddedEffect, BakeError, Cause, EffectPlace, JointKind, Robot, Terms, bake_where,
-};
+use denavit_codegen::model::{AddedEffect, EffectPlace, JointKind, Robot, Terms, bake_where};
 use rustc_hash::FxHashMap;
-use std::fmt;
-
-/// Why a robot cannot have an effect.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RobotEffectError {
-    /// It adds a law to one joint; holds its name.
-    OneJoint(String),
-    /// The place or the robot lacks what it would change.
-    Place(Vec<Cause>),
-    /// The model lacks a value.
-    Bake(BakeError),
-    /// A constant is no finite number.
-    Lower(EffectError),
-}
-
-impl fmt::Display for RobotEffectError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OneJoint(name) => write!(f, "`{name}` adds a law to one joint"),
-            Self::Place(causes) => {
-                let said: Vec<String> = causes.iter().map(ToString::to_string).collect();
-                write!(f, "{}", said.join("; "))
-            }
-            Self::Bake(error) => write!(f, "{error}"),
-            Self::Lower(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl std::error::Error for RobotEffectError {}
 
 /// What an effect at one place adds to the torques of all joints of a robot.
 #[derive(Clone, Debug)]
@@ -87,10 +56,9 @@ impl RobotEffect {
         effect: &Effect,
         at: EffectPlace,
         numbers: &[String],
-    ) -> Result<Self, RobotEffectError> {
+    ) -> Result<Self, Error> {
         let numbers = if is_of_numbers(&effect.law) { numbers } else { &[] };
-        let mut rigid = bake_where(robot, |parameter| !numbers.contains(&parameter.name))
-            .map_err(RobotEffectError::Bake)?;
+        let mut rigid = bake_where(robot, |parameter| !numbers.contains(&parameter.name))?;
         rigid.laws.clear();
         rigid.terms = Terms { friction: false, rotor: false, ..rigid.terms };
         match effect.law {
@@ -107,12 +75,10 @@ impl RobotEffect {
                     place: 0,
                 };
                 rigid.effects = vec![added];
-                attach(&mut rigid, effect, 0).map_err(RobotEffectError::Place)?;
+                attach(&mut rigid, effect, 0).map_err(Cause::Place)?;
                 Self::of_moved(effect, &rigid, at, numbers)
             }
-            Law::Torque(_) | Law::Measured(_) => {
-                Err(RobotEffectError::OneJoint(effect.name.clone()))
-            }
+            Law::Torque(_) | Law::Measured(_) => Err(Cause::OneJoint(effect.name.clone()).into()),
         }
     }
 
@@ -120,7 +86,7 @@ impl RobotEffect {
         effect: &Effect,
         [with, without]: [&Robot; 2],
         numbers: &[String],
-    ) -> Result<Self, RobotEffectError> {
+    ) -> Result<Self, Error> {
         // both from one graph: what they share is computed once
         let first = derived(with)?;
         let second = derived(&Robot { dag: first.dag.clone(), ..without.clone() })?;
@@ -128,8 +94,7 @@ impl RobotEffect {
         let entries: Vec<ExprId> =
             first.entries.iter().zip(&second.entries).map(|(&a, &b)| dag.sub(a, b)).collect();
         let joints = entries.len();
-        let program = LawProgram::new(&dag, numbers, first.inputs, entries)
-            .map_err(RobotEffectError::Lower)?;
+        let program = LawProgram::new(&dag, numbers, first.inputs, entries)?;
         let follows_accelerations = is_of_accelerations(&effect.law);
         let (name, parameters) = (effect.name.clone(), Vec::new());
         Ok(Self { name, parameters, joints, program, follows_accelerations })
@@ -140,7 +105,7 @@ impl RobotEffect {
         moved: &Robot,
         at: EffectPlace,
         numbers: &[String],
-    ) -> Result<Self, RobotEffectError> {
+    ) -> Result<Self, Error> {
         let Derived { mut dag, entries, inputs } = derived(moved)?;
         // the effect's own parameters were added last
         let count = effect.parameters.len();
@@ -163,8 +128,7 @@ impl RobotEffect {
             all.extend(slopes.iter().map(|row| row[parameter]));
         }
         names.extend_from_slice(numbers);
-        let program =
-            LawProgram::new(&dag, &names, inputs, all).map_err(RobotEffectError::Lower)?;
+        let program = LawProgram::new(&dag, &names, inputs, all)?;
         let joint = match at {
             EffectPlace::Link(link) => moved.links[link].joint.kind,
             _ => JointKind::Revolute,
@@ -214,9 +178,8 @@ struct Derived {
     inputs: Vec<ExprId>,
 }
 
-fn derived(robot: &Robot) -> Result<Derived, RobotEffectError> {
-    let derivation = derive(robot, Flavour::Tunable, &[FunctionName::InverseDynamics])
-        .map_err(RobotEffectError::Bake)?;
+fn derived(robot: &Robot) -> Result<Derived, Error> {
+    let derivation = derive(robot, Flavour::Tunable, &[FunctionName::InverseDynamics])?;
     let function = &derivation.functions[0];
     let arguments = function.arguments.iter();
     let inputs = arguments.flat_map(|argument| argument.symbols.clone()).collect();

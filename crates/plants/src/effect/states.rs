@@ -8,7 +8,8 @@
 //! of two integrations.
 
 use super::program::LawProgram;
-use super::{EffectError, gradient, names};
+use super::{gradient, names};
+use crate::error::Error;
 use denavit_codegen::effect::Effect;
 use denavit_codegen::expr::{Dag, ExprId};
 use nalgebra::DMatrix;
@@ -66,11 +67,7 @@ impl Rates<'_> {
 
 impl StateLaw {
     /// The rates of `effect`, as functions of `inputs`: columns, then states.
-    pub(super) fn new(
-        dag: &mut Dag,
-        effect: &Effect,
-        inputs: Vec<ExprId>,
-    ) -> Result<Self, EffectError> {
+    pub(super) fn new(dag: &mut Dag, effect: &Effect, inputs: Vec<ExprId>) -> Result<Self, Error> {
         let states: Vec<ExprId> = effect.states.iter().map(|state| state.symbol).collect();
         let parameters: Vec<ExprId> = effect.parameters.iter().map(|p| p.symbol).collect();
         let by: Vec<ExprId> = states.iter().chain(&parameters).copied().collect();

@@ -16,7 +16,8 @@
 //! stick while they turn around, which no model that takes the sign of a rate knows, is in both.
 
 use super::program::LawProgram;
-use super::{EffectError, EffectLaw, JointSamples, LawParameter, names};
+use super::{EffectLaw, JointSamples, LawParameter, names};
+use crate::error::Error;
 use crate::regression::{RegressionModel, RegressionRows};
 use denavit_codegen::effect::{Effect, Transmission};
 use denavit_codegen::expr::Dag;
@@ -82,7 +83,7 @@ const MOST_STEPS: f64 = 64.0;
 const DIFFERENCE: f64 = 0.02;
 
 impl TransmissionLaw {
-    pub(super) fn new(dag: &Dag, effect: &Effect, of: Transmission) -> Result<Self, EffectError> {
+    pub(super) fn new(dag: &Dag, effect: &Effect, of: Transmission) -> Result<Self, Error> {
         let entries = vec![of.swing_s, of.play, of.damping];
         Ok(Self(LawProgram::new(dag, &names(effect), Vec::new(), entries)?))
     }

@@ -1,7 +1,8 @@
 //! Bezier polynomials.
 
 use super::Setpoint;
-use super::error::{TrajectoryError, check_finite, check_times};
+use super::numbers::{check_finite, check_times};
+use crate::error::{Cause, Error};
 
 /// The Bezier polynomial of control values over a time range.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,11 +13,11 @@ pub struct Bezier {
 
 impl Bezier {
     /// Start and end \[s\], and at least one control value.
-    pub fn new(times: [f64; 2], controls: Vec<f64>) -> Result<Self, TrajectoryError> {
+    pub fn new(times: [f64; 2], controls: Vec<f64>) -> Result<Self, Error> {
         check_times(&times)?;
         check_finite(&controls)?;
         match controls.len() {
-            0 => Err(TrajectoryError::TooFew { needed: 1, found: 0 }),
+            0 => Err(Cause::TooFew { needed: 1, found: 0 }.into()),
             _ => Ok(Self { times, controls }),
         }
     }

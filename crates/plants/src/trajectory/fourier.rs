@@ -1,7 +1,8 @@
 //! Finite Fourier series.
 
 use super::Setpoint;
-use super::error::{TrajectoryError, check_finite, check_length};
+use super::numbers::{check_finite, check_length};
+use crate::error::{Cause, Error};
 use denavit_runtime::Scalar;
 
 /// offset + sum over k = 1 .. of a_k sin(w_k t) + b_k cos(w_k t): thesis 3.10 with one offset,
@@ -23,11 +24,11 @@ impl Fourier {
         offset: f64,
         sines: Vec<f64>,
         cosines: Vec<f64>,
-    ) -> Result<Self, TrajectoryError> {
+    ) -> Result<Self, Error> {
         check_finite(&[frequency])?;
         let multiple = |k: usize| (k + 1) as f64 * frequency;
         if frequency <= 0.0 {
-            return Err(TrajectoryError::NotPositive);
+            return Err(Cause::NotPositive.into());
         }
         Self::with_frequencies((0..sines.len()).map(multiple).collect(), offset, sines, cosines)
     }
@@ -38,14 +39,14 @@ impl Fourier {
         offset: f64,
         sines: Vec<f64>,
         cosines: Vec<f64>,
-    ) -> Result<Self, TrajectoryError> {
+    ) -> Result<Self, Error> {
         check_finite(&[offset])?;
         for list in [&frequencies, &sines, &cosines] {
             check_finite(list)?;
             check_length(frequencies.len(), list.len())?;
         }
         if frequencies.iter().any(|frequency| *frequency <= 0.0) {
-            return Err(TrajectoryError::NotPositive);
+            return Err(Cause::NotPositive.into());
         }
         Ok(Self { frequencies, offset, sines, cosines })
     }

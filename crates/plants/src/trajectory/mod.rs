@@ -4,8 +4,8 @@
 //! its time range a reference rests at its end value (Fourier series and polynomials have no end).
 
 mod bezier;
-mod error;
 mod fourier;
+mod numbers;
 mod polynomial;
 mod profile;
 mod samples;
@@ -13,7 +13,6 @@ mod sequence;
 mod spline;
 
 pub use bezier::Bezier;
-pub use error::TrajectoryError;
 pub use fourier::Fourier;
 pub use polynomial::Polynomial;
 pub use profile::CosineProfile;

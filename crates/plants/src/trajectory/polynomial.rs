@@ -1,7 +1,8 @@
 //! Polynomials in time.
 
 use super::Setpoint;
-use super::error::{TrajectoryError, check_finite};
+use super::numbers::check_finite;
+use crate::error::{Cause, Error};
 
 /// sum of c_k t^k.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,10 +12,10 @@ pub struct Polynomial {
 
 impl Polynomial {
     /// Coefficients from the constant one upwards.
-    pub fn new(coefficients: Vec<f64>) -> Result<Self, TrajectoryError> {
+    pub fn new(coefficients: Vec<f64>) -> Result<Self, Error> {
         check_finite(&coefficients)?;
         match coefficients.len() {
-            0 => Err(TrajectoryError::TooFew { needed: 1, found: 0 }),
+            0 => Err(Cause::TooFew { needed: 1, found: 0 }.into()),
             _ => Ok(Self { coefficients }),
         }
     }

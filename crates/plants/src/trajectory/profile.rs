@@ -1,7 +1,8 @@
 //! From rest to rest.
 
 use super::Setpoint;
-use super::error::{TrajectoryError, check_finite, check_times};
+use super::numbers::{check_finite, check_times};
+use crate::error::Error;
 use denavit_runtime::Scalar;
 use std::f64::consts::TAU;
 
@@ -15,7 +16,7 @@ pub struct CosineProfile {
 
 impl CosineProfile {
     /// Start and end, times \[s\] and positions.
-    pub fn new(times: [f64; 2], positions: [f64; 2]) -> Result<Self, TrajectoryError> {
+    pub fn new(times: [f64; 2], positions: [f64; 2]) -> Result<Self, Error> {
         check_times(&times)?;
         check_finite(&positions)?;
         Ok(Self { times, positions })

@@ -1,7 +1,8 @@
 //! Samples as they were taken.
 
 use super::Setpoint;
-use super::error::{TrajectoryError, check_finite, check_length, check_times};
+use super::numbers::{check_finite, check_length, check_times};
+use crate::error::Error;
 
 /// What is between two samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,11 +23,7 @@ pub struct Samples {
 
 impl Samples {
     /// The samples `values` at `times` \[s\], which increase; at least two.
-    pub fn new(
-        times: Vec<f64>,
-        values: Vec<f64>,
-        between: Between,
-    ) -> Result<Self, TrajectoryError> {
+    pub fn new(times: Vec<f64>, values: Vec<f64>, between: Between) -> Result<Self, Error> {
         check_times(&times)?;
         check_finite(&values)?;
         check_length(times.len(), values.len())?;

@@ -1,7 +1,8 @@
 //! References one after the other.
 
-use super::error::{TrajectoryError, check_finite};
+use super::numbers::check_finite;
 use super::{Reference, Setpoint};
+use crate::error::{Cause, Error};
 
 /// A reference that is followed for some time; its own time starts at 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,16 +24,16 @@ pub struct Sequence {
 
 impl Sequence {
     /// The parts, in order, once or again and again.
-    pub fn new(parts: Vec<Part>, repeat: bool) -> Result<Self, TrajectoryError> {
+    pub fn new(parts: Vec<Part>, repeat: bool) -> Result<Self, Error> {
         if parts.is_empty() {
-            return Err(TrajectoryError::TooFew { needed: 1, found: 0 });
+            return Err(Cause::TooFew { needed: 1, found: 0 }.into());
         }
         let mut end = 0.0;
         let mut ends = Vec::new();
         for part in &parts {
             check_finite(&[part.duration_s])?;
             if part.duration_s <= 0.0 {
-                return Err(TrajectoryError::NotPositive);
+                return Err(Cause::NotPositive.into());
             }
             end += part.duration_s;
             ends.push(end);

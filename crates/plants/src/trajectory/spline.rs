@@ -1,8 +1,9 @@
 //! Splines through given values.
 
 use super::Setpoint;
-use super::error::{TrajectoryError, check_finite, check_length, check_times};
+use super::numbers::{check_finite, check_length, check_times};
 use super::polynomial::horner;
+use crate::error::Error;
 
 /// What a cubic spline does at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +49,7 @@ impl<const N: usize> Spline<N> {
 
 impl CubicSpline {
     /// The spline through `values` at `times` \[s\] with conditions at its start and its end.
-    pub fn new(
-        times: Vec<f64>,
-        values: Vec<f64>,
-        ends: [EndCondition; 2],
-    ) -> Result<Self, TrajectoryError> {
+    pub fn new(times: Vec<f64>, values: Vec<f64>, ends: [EndCondition; 2]) -> Result<Self, Error> {
         check_times(&times)?;
         check_finite(&values)?;
         check_length(times.len(), values.len())?;
@@ -82,7 +79,7 @@ impl QuinticSpline {
         values: Vec<f64>,
         rates: &[f64],
         accelerations: &[f64],
-    ) -> Result<Self, TrajectoryError> {
+    ) -> Result<Self, Error> {
         check_times(&times)?;
         for list in [&values[..], rates, accelerations] {
             check_finite(list)?;

@@ -3,11 +3,10 @@
 
 use super::ranges::{Range, short};
 use crate::breakdown::Breakdown;
-use crate::log_fault::LogError;
+use crate::error::Error;
+use crate::log_fault::PlacedLogFault;
 use crate::start::StartError;
 use denavit_codegen::model::{self, Explained, FileError};
-use denavit_plants::PlantError;
-use denavit_plants::trajectory::TrajectoryError;
 use std::fmt;
 
 /// Everything that is wrong with a scenario, in the order of the file.
@@ -41,7 +40,7 @@ pub enum Cause {
     /// More rows of the log than there may be; holds the most.
     TooManyRows(f64),
     /// A log is wrong.
-    Log(LogError),
+    Log(PlacedLogFault),
     /// Rows of a log are nearer in time than any that is written; holds their distance \[s\].
     RowsTooNear(f64),
     /// A log has no such column; holds it and the one that was meant, perhaps.
@@ -53,7 +52,7 @@ pub enum Cause {
     /// A gait, where nothing plans gaits.
     NoPlanner,
     /// The run cannot begin.
-    Start(StartError),
+    Start(Error),
     /// The mass matrix is singular at the start, at this joint.
     Singular(String),
     /// The torque on this joint is not finite at the start.
@@ -61,9 +60,9 @@ pub enum Cause {
     /// A file that cannot be read; holds its name and the reason.
     File(String, String),
     /// The numbers make no reference.
-    Reference(TrajectoryError),
+    Reference(denavit_plants::Error),
     /// The model makes no plant.
-    Plant(PlantError),
+    Plant(denavit_plants::Error),
     /// The model file is wrong; holds what its reader says.
     Model(String),
     /// The trajectory file is wrong; holds what its reader says.
@@ -194,22 +193,13 @@ impl Cause {
             Self::EmptyCell(..) => "fill the gap, or cut the log before it",
             Self::Gait(_, hint) => hint,
             Self::NoPlanner => "`denavit_walk::read_scenario` reads scenarios with gaits",
-            Self::Start(error) => start_hint(error),
+            Self::Start(error) => start_hint(error.start()?),
             Self::Singular(_) => "give the link a mass and inertia, or start in another position",
             Self::TorqueNotFinite(_) => {
                 "gains times errors, or a reference, exceed what a number holds"
             }
             Self::File(..) => "paths are taken from the scenario's directory",
-            Self::Reference(error) => match error {
-                TrajectoryError::TooFew { .. } => "add values",
-                TrajectoryError::LengthMismatch { .. } => "give a value for every time",
-                TrajectoryError::NotIncreasing(_) => "list times in order, each once",
-                TrajectoryError::NotFinite => "a number is too large",
-                TrajectoryError::NotPositive => "give a number above 0",
-            },
-            Self::Plant(PlantError::Negative { .. }) => {
-                "masses, moments of inertia, stiffness and friction are not negative"
-            }
+            Self::Reference(error) | Self::Plant(error) => return error.hint(),
             Self::NoPlacing => "give the position itself, without `on_ground`",
             Self::NoJoints => "give a reference for each joint that moves",
             // what the readers of these say has its hint

@@ -22,7 +22,7 @@ use denavit_codegen::effect;
 use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::json::Value;
 use denavit_codegen::model::{self, Fields, Node, Robot};
-use denavit_plants::{Cradle, Override, Plant, PlantError, PlantModel, plant_of};
+use denavit_plants::{Cradle, Override, Plant, PlantModel, plant_of};
 
 /// Reads a model by what a scenario calls it: a shipped name, or a path beside the scenario. The
 /// error is a sentence.
@@ -214,7 +214,7 @@ fn plant(fields: &Fields<'_>, load: &Loader<'_>, report: &mut Report) -> Option<
             if robot.find_parameter(parameter).is_none() {
                 let names = robot.parameters.values().map(|parameter| parameter.name.as_str());
                 let meant = nearest(parameter, names).map(str::to_owned);
-                let error = PlantError::UnknownParameter(parameter.to_owned(), meant);
+                let error = denavit_plants::Error::unknown_parameter(parameter.to_owned(), meant);
                 report.push(node.at(), Cause::Plant(error));
             } else if let Some(value) = node.finite(report) {
                 overrides.push(Override { parameter: parameter.to_owned(), value });

@@ -9,7 +9,7 @@ use denavit_codegen::expr::text::nearest;
 use denavit_codegen::model::{Fields, Node};
 use denavit_plants::trajectory::{
     Between, Bezier, CosineProfile, CubicSpline, EndCondition, Fourier, Part, Polynomial,
-    QuinticSpline, Reference, Samples, Sequence, TrajectoryError,
+    QuinticSpline, Reference, Samples, Sequence,
 };
 use std::collections::BTreeMap;
 
@@ -49,7 +49,7 @@ impl<'a> Logs<'a> {
         self.read.entry(file.to_owned()).or_insert_with(|| {
             let bytes = load(file).map_err(|reason| Cause::File(file.to_owned(), reason))?;
             let log = Log::from_csv(file, &bytes)
-                .map_err(|faults| Cause::Log(faults.told()[0].clone()))?;
+                .map_err(|error| Cause::Log(error.first_log_fault().clone()))?;
             match row_distance(&log).filter(|distance_s| *distance_s < ranges::LOG_PERIOD_S.least) {
                 Some(distance_s) => Err(Cause::RowsTooNear(distance_s)),
                 None => Ok(log),
@@ -91,7 +91,7 @@ fn make(
     node: Node<'_>,
     logs: &mut Logs<'_>,
     report: &mut Report,
-) -> Option<Result<Reference, TrajectoryError>> {
+) -> Option<Result<Reference, denavit_plants::Error>> {
     Some(match kind {
         "constant" => Ok(Reference::Constant(node.finite(report)?)),
         "polynomial" => Polynomial::new(node.numbers(report)).map(Reference::Polynomial),
@@ -120,7 +120,10 @@ fn make(
     })
 }
 
-fn cubic(fields: &Fields<'_>, report: &mut Report) -> Option<Result<Reference, TrajectoryError>> {
+fn cubic(
+    fields: &Fields<'_>,
+    report: &mut Report,
+) -> Option<Result<Reference, denavit_plants::Error>> {
     let [times, values] = ["times", "values"].map(|key| fields.numbers(key, report));
     let ends = match fields.get("end_rates") {
         Some(_) => pair(fields, "end_rates", report)?.map(EndCondition::Rate),
@@ -129,7 +132,7 @@ fn cubic(fields: &Fields<'_>, report: &mut Report) -> Option<Result<Reference, T
     Some(CubicSpline::new(times, values, ends).map(Reference::Cubic))
 }
 
-fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
+fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, denavit_plants::Error> {
     let [times, values] = ["times", "values"].map(|key| fields.numbers(key, report));
     let still = |key: &str, report: &mut Report| match fields.get(key) {
         Some(node) => node.numbers(report),
@@ -140,7 +143,7 @@ fn quintic(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, Trajec
 }
 
 /// A series of multiples of one frequency, or of frequencies of its own.
-fn fourier(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, TrajectoryError> {
+fn fourier(fields: &Fields<'_>, report: &mut Report) -> Result<Reference, denavit_plants::Error> {
     let offset = fields.get("offset").and_then(|node| node.finite(report)).unwrap_or(0.0);
     let own = fields.get("frequencies_rad_s").map(|node| node.numbers(report));
     if let (true, Some(both)) = (own.is_some(), fields.get("frequency_rad_s")) {
@@ -170,7 +173,7 @@ fn logged(
     fields: &Fields<'_>,
     logs: &mut Logs<'_>,
     report: &mut Report,
-) -> Option<Result<Reference, TrajectoryError>> {
+) -> Option<Result<Reference, denavit_plants::Error>> {
     let [file, column] = ["file", "column"].map(|key| fields.require(key, report));
     let (file, column) = (file?, column?);
     let (file_name, name) = (file.text(report)?, column.text(report)?);
@@ -207,7 +210,7 @@ fn sequence(
     fields: &Fields<'_>,
     logs: &mut Logs<'_>,
     report: &mut Report,
-) -> Result<Reference, TrajectoryError> {
+) -> Result<Reference, denavit_plants::Error> {
     let items = fields.require("parts", report).map_or_else(Vec::new, |node| node.items(report));
     let mut parts = Vec::new();
     for item in items {

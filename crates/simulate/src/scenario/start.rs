@@ -6,6 +6,7 @@ use super::reader::Report;
 use crate::breakdown::Breakdown;
 use crate::contact::delassus::Delassus;
 use crate::control::ControlMemory;
+use crate::error::Error;
 use crate::start::{StartError, check_gaps, quarter_turn_left};
 use denavit_codegen::model::json::{self, Json};
 
@@ -15,7 +16,7 @@ pub(super) fn find_start_faults(scenario: &mut Scenario, root: &Json<'_>, report
     let (plant, state) = (scenario.plant.as_mut(), &scenario.initial);
     let n = state.q.len();
     if let Err(error) = check_gaps(plant, &state.q) {
-        report.push(root.offset(["initial"]), Cause::Start(error));
+        report.push(root.offset(["initial"]), Cause::Start(error.into()));
     }
     let mut mass = vec![0.0; n * n];
     plant.mass_matrix(&state.q, &mut mass);
@@ -23,7 +24,7 @@ pub(super) fn find_start_faults(scenario: &mut Scenario, root: &Json<'_>, report
     if roll.is_some_and(|roll| quarter_turn_left(roll) <= 0.0) {
         // rounding decides whether that shows in the masses
         let pose = StartError::Breakdown(Breakdown::SingularPose);
-        report.push(root.offset(["initial"]), Cause::Start(pose));
+        report.push(root.offset(["initial"]), Cause::Start(pose.into()));
     } else if let Err(error) = Delassus::new().factor(&mass, n) {
         let joint = plant.model().joints[error.coordinate].name.clone();
         report.push(root.offset(["model"]), Cause::Singular(joint));
@@ -49,13 +50,13 @@ pub(super) struct Origin {
 
 impl Origin {
     /// What keeps the run from beginning, at the place in the file that is to blame.
-    pub(super) fn place(&self, error: StartError) -> ScenarioError {
-        let path: &[&str] = match error {
-            StartError::EventSchemeOnly(_) => &["contact", "scuffing"],
-            StartError::MoreauOnly(_) => &["contact", "restitution"],
-            StartError::Penetration(..) | StartError::Breakdown(_) => &["initial"],
-            StartError::Steps(part, ..) => &[part],
-            StartError::Length(..) | StartError::Number(_) => &[],
+    pub(super) fn place(&self, error: Error) -> ScenarioError {
+        let path: &[&str] = match error.start() {
+            Some(StartError::EventSchemeOnly(_)) => &["contact", "scuffing"],
+            Some(StartError::MoreauOnly(_)) => &["contact", "restitution"],
+            Some(StartError::Penetration(..) | StartError::Breakdown(_)) => &["initial"],
+            Some(StartError::Steps(part, ..)) => &[part],
+            Some(StartError::Length(..) | StartError::Number(_)) | None => &[],
         };
         let root = json::parse(&self.source).ok();
         let at = root.as_ref().map_or(0, |root| root.offset(path.iter().copied()));

@@ -7,6 +7,7 @@ use crate::breakdown::{Breakdown, Stop};
 use crate::contact::{ContactFailure, Friction};
 use crate::control::Control;
 use crate::drive::Drives;
+use crate::error::Error;
 use crate::ground::Ground;
 use crate::integrate::Statistics;
 use crate::measure::Instrument;
@@ -28,7 +29,7 @@ pub fn simulate_by_steps(
     initial: &State,
     simulation: &Simulation,
     stepping: &Stepping,
-) -> Result<Run, StartError> {
+) -> Result<Run, Error> {
     simulate_by_steps_told(plant, control, initial, simulation, stepping, &mut |_| true)
 }
 
@@ -43,18 +44,19 @@ pub fn simulate_by_steps_told(
     simulation: &Simulation,
     stepping: &Stepping,
     told: &mut Told<'_>,
-) -> Result<Run, StartError> {
+) -> Result<Run, Error> {
     let mut state = initial.clone();
     let drives = Drives::new(plant.model(), simulation.drives);
     check(plant, control, &mut state, simulation, &drives)?;
     if control.planning.is_some() {
-        return Err(StartError::EventSchemeOnly("references that are planned during a run"));
+        let what = "references that are planned during a run";
+        return Err(StartError::EventSchemeOnly(what).into());
     }
     check_stepping(simulation, stepping)?;
     check_steps(&state, simulation, "time_stepping", stepping.step_s, 1.0)?;
     if plant.law_states() > 0 || plant.has_accelerated_laws() {
         let what = "effects with states, or that depend on the load";
-        return Err(StartError::EventSchemeOnly(what));
+        return Err(StartError::EventSchemeOnly(what).into());
     }
     check_gaps(plant, &state.q)?;
     let falls = FallWatch::new(plant.model());

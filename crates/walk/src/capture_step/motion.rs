@@ -7,7 +7,7 @@ use super::torques::torques;
 use crate::fading::{FADES_PER_S, Moving};
 use crate::gait_plan::{Height, Pose, Sought, Walker};
 use denavit_plants::Plant;
-use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference, TrajectoryError};
+use denavit_plants::trajectory::{CubicSpline, EndCondition, Reference};
 use denavit_runtime::Scalar;
 use denavit_simulate::JointPlan;
 use std::f64::consts::PI;
@@ -126,7 +126,7 @@ impl Motion<'_> {
         let knots = self.postures(plant)?;
         let start_s = self.measured.t_s;
         let times: Vec<f64> = knots.iter().map(|(t_s, _)| start_s + t_s).collect();
-        let spline = |values: Vec<f64>, start: EndCondition| -> Result<_, TrajectoryError> {
+        let spline = |values: Vec<f64>, start: EndCondition| -> Result<_, denavit_plants::Error> {
             let ends = [start, EndCondition::Natural];
             Ok(Reference::Cubic(CubicSpline::new(times.clone(), values, ends)?))
         };

@@ -1,6 +1,6 @@
 //! Why there is no course of balance.
 
-use denavit_simulate::{LogFaults, StartError};
+use denavit_simulate::LogFaults;
 use std::fmt;
 
 /// Why there is no course.
@@ -13,7 +13,7 @@ pub(crate) enum BalanceError {
     /// The robot has no contact points, or its base is fixed: no point of the ground tells of it.
     NotWalking,
     /// The run does not begin.
-    Start(StartError),
+    Start(denavit_simulate::Error),
     /// The mass matrix is singular at this time \[s\].
     Singular(f64),
 }

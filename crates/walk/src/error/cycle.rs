@@ -1,13 +1,13 @@
 //! Why there is no cycle, or no analysis of one.
 
-use denavit_simulate::{StartError, Stop, VariationError};
+use denavit_simulate::Stop;
 use std::fmt;
 
 /// Why there is no cycle, or no analysis of one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum CycleError {
     /// The run does not begin.
-    Start(StartError),
+    Start(denavit_simulate::Error),
     /// It ended before the cycle did, at this time \[s\].
     Stopped(Stop, f64),
     /// The event of the section did not happen in time; holds the time \[s\].
@@ -17,7 +17,7 @@ pub(crate) enum CycleError {
     /// Newton's method does not find one; holds the least residual.
     NotFound(f64),
     /// The cycle has no first-order changes.
-    Variation(VariationError),
+    Variation(denavit_simulate::Error),
     /// A reference does not repeat itself; holds the joint's name.
     NotPeriodic(String),
     /// The swing foot does not strike in time \[s\].

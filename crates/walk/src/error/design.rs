@@ -1,7 +1,5 @@
 //! Why there is no limit cycle.
 
-use denavit_plants::trajectory::TrajectoryError;
-use denavit_simulate::StartError;
 use std::fmt;
 
 /// The constraint that is violated most.
@@ -59,9 +57,9 @@ pub(crate) enum DesignError {
     /// No gains keep the largest multiplier below its bound; holds the least that was found.
     Unstable(Option<f64>),
     /// The plan makes no references.
-    Reference(TrajectoryError),
+    Reference(denavit_plants::Error),
     /// The run of a plan cannot begin.
-    Start(StartError),
+    Start(denavit_simulate::Error),
 }
 
 impl fmt::Display for DesignError {

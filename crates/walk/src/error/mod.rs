@@ -13,7 +13,6 @@ pub(crate) use design::{DesignError, NoStep};
 pub(crate) use plan::PlanError;
 pub(crate) use posture::PostureError;
 
-use denavit_plants::trajectory::TrajectoryError;
 use denavit_simulate::LogFaults;
 use std::fmt;
 
@@ -216,7 +215,6 @@ impl std::error::Error for Error {
             | Cause::Cycle(CycleError::Start(error))
             | Cause::Balance(BalanceError::Start(error)) => Some(error),
             Cause::Cycle(CycleError::Variation(error)) => Some(error),
-            Cause::Balance(BalanceError::Log(faults)) => Some(faults),
             _ => None,
         }
     }
@@ -241,8 +239,8 @@ causes!(
 );
 
 /// The knots of a plan make no curve.
-impl From<TrajectoryError> for Error {
-    fn from(error: TrajectoryError) -> Self {
+impl From<denavit_plants::Error> for Error {
+    fn from(error: denavit_plants::Error) -> Self {
         PlanError::Curve(error).into()
     }
 }

@@ -1,6 +1,5 @@
 //! Why there is no plan of a gait.
 
-use denavit_plants::trajectory::TrajectoryError;
 use std::fmt;
 
 /// Why there is no plan; what is named is at fault.
@@ -108,7 +107,7 @@ pub(crate) enum PlanError {
     /// The plan would have more knots than this.
     TooManyKnots(usize),
     /// The knots make no curve.
-    Curve(TrajectoryError),
+    Curve(denavit_plants::Error),
 }
 
 impl fmt::Display for PlanError {

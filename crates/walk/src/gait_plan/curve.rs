@@ -2,7 +2,7 @@
 
 use crate::scenario_file::list;
 use denavit_plants::trajectory::{
-    Bezier, CosineProfile, CubicSpline, EndCondition, Part, Reference, Sequence, TrajectoryError,
+    Bezier, CosineProfile, CubicSpline, EndCondition, Part, Reference, Sequence,
 };
 
 /// A function of time on its own clock, which begins at 0 \[s\]; values in rad or m.
@@ -36,7 +36,7 @@ impl Curve {
     ///
     /// # Errors
     /// Times that do not increase, numbers that are not finite.
-    pub fn reference(&self) -> Result<Reference, TrajectoryError> {
+    pub fn reference(&self) -> Result<Reference, denavit_plants::Error> {
         Ok(match self {
             Self::Cubic { times_s, values } => {
                 let ends = [EndCondition::Rate(0.0); 2];
@@ -97,11 +97,12 @@ impl JointPath {
     ///
     /// # Errors
     /// Those of its curves.
-    pub fn reference(&self, repeats: bool) -> Result<Reference, TrajectoryError> {
+    pub fn reference(&self, repeats: bool) -> Result<Reference, denavit_plants::Error> {
         let part = |piece: &Piece| {
             Ok(Part { duration_s: piece.duration_s, reference: piece.curve.reference()? })
         };
-        let parts = self.pieces.iter().map(part).collect::<Result<Vec<_>, TrajectoryError>>()?;
+        let parts =
+            self.pieces.iter().map(part).collect::<Result<Vec<_>, denavit_plants::Error>>()?;
         Ok(Reference::Sequence(Sequence::new(parts, repeats)?))
     }
 }

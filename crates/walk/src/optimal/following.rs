@@ -5,7 +5,7 @@ use super::planned::{PlannedPhase, PlannedStep};
 use super::stance_foot::StanceFoot;
 use crate::error::{DesignError, Error};
 use denavit_plants::Plant;
-use denavit_plants::trajectory::{Reference, TrajectoryError};
+use denavit_plants::trajectory::Reference;
 use denavit_simulate::integrate::{Accuracy, Method};
 use denavit_simulate::{Control, JointControl, Run, Simulation, State, simulate};
 
@@ -92,7 +92,7 @@ pub fn control(
     plant: &dyn Plant,
     step: &PlannedStep,
     gains: &Gains,
-) -> Result<Control, TrajectoryError> {
+) -> Result<Control, denavit_plants::Error> {
     let mut control = Control::passive(plant.model().joints.len());
     for joint in &step.legs.driven {
         let law = joint_gains(step, gains, *joint);

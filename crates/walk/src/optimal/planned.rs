@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::legs::{Legs, Role};
 use super::step::Step;
 use denavit_plants::trajectory::{
-    CubicSpline, EndCondition, Part, QuinticSpline, Reference, Sequence, TrajectoryError,
+    CubicSpline, EndCondition, Part, QuinticSpline, Reference, Sequence,
 };
 
 /// A phase of a planned step, by points in time. The right leg stands.
@@ -68,7 +68,7 @@ impl PlannedStep {
 
     /// Position, velocity and acceleration of all coordinates at a time since the beginning of
     /// the step.
-    pub fn motion(&self, t_s: f64) -> Result<[Vec<f64>; 3], TrajectoryError> {
+    pub fn motion(&self, t_s: f64) -> Result<[Vec<f64>; 3], denavit_plants::Error> {
         let mut since = t_s;
         let mut number = 0;
         while number + 1 < self.phases.len() && since > self.phases[number].duration_s {
@@ -87,12 +87,12 @@ impl PlannedStep {
 
     /// What a driven joint follows, over two steps again and again: phase by phase, its own motion
     /// and then that of its mirror image.
-    pub fn reference(&self, joint: usize) -> Result<Reference, TrajectoryError> {
+    pub fn reference(&self, joint: usize) -> Result<Reference, denavit_plants::Error> {
         self.two_steps(|phase, step| self.phases[phase].position(self.role_of(joint, step)))
     }
 
     /// The torque that goes with it.
-    pub fn feed_forward(&self, joint: usize) -> Result<Reference, TrajectoryError> {
+    pub fn feed_forward(&self, joint: usize) -> Result<Reference, denavit_plants::Error> {
         self.two_steps(|phase, step| {
             let coordinate = self.role_of(joint, step);
             let drive = self.legs.driven.iter().position(|driven| *driven == coordinate);
@@ -108,8 +108,8 @@ impl PlannedStep {
     /// A function of time over two steps, made phase by phase.
     pub fn two_steps(
         &self,
-        make: impl Fn(usize, usize) -> Result<Reference, TrajectoryError>,
-    ) -> Result<Reference, TrajectoryError> {
+        make: impl Fn(usize, usize) -> Result<Reference, denavit_plants::Error>,
+    ) -> Result<Reference, denavit_plants::Error> {
         let mut parts = Vec::new();
         for step in 0..2 {
             for (number, phase) in self.phases.iter().enumerate() {
@@ -122,14 +122,14 @@ impl PlannedStep {
 
 impl PlannedPhase {
     /// The motion of a coordinate.
-    pub fn position(&self, coordinate: usize) -> Result<Reference, TrajectoryError> {
+    pub fn position(&self, coordinate: usize) -> Result<Reference, denavit_plants::Error> {
         let column = |rows: &[Vec<f64>]| rows.iter().map(|row| row[coordinate]).collect::<Vec<_>>();
         let [q, qd, qdd] = [&self.q, &self.qd, &self.qdd].map(|rows| column(rows));
         QuinticSpline::new(self.times_s.clone(), q, &qd, &qdd).map(Reference::Quintic)
     }
 
     /// The torque of a drive: a cubic spline with the slopes of the parabolas at both ends.
-    pub fn torque(&self, drive: usize) -> Result<Reference, TrajectoryError> {
+    pub fn torque(&self, drive: usize) -> Result<Reference, denavit_plants::Error> {
         let values: Vec<f64> = self.torques_nm.iter().map(|row| row[drive]).collect();
         let ends = self.torque_rates(&values).map(EndCondition::Rate);
         CubicSpline::new(self.times_s.clone(), values, ends).map(Reference::Cubic)

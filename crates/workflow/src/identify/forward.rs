@@ -13,7 +13,7 @@ use denavit_identify::forward::{
 use denavit_identify::{ErrorKind, UpdatedModel};
 use denavit_measure::condition::Conditioned;
 use denavit_numerics::short;
-use denavit_plants::{PlantError, plant_of, shipped};
+use denavit_plants::{plant_of, shipped};
 use denavit_simulate::scenario::{Controller, read_controller};
 use std::fmt;
 use std::path::Path;
@@ -79,7 +79,7 @@ pub enum NotMoved {
     /// What was found makes no model.
     Update(denavit_identify::Error),
     /// A model has no plant.
-    Plant(PlantError),
+    Plant(denavit_plants::Error),
     /// A log cannot be simulated; holds its file.
     Forward(String, denavit_identify::Error),
     /// The observer stopped the work before.

@@ -301,7 +301,7 @@ fn limit_cycle(
     found: LimitCycle,
     plant: &mut dyn Plant,
     head: &ScenarioHead<'_>,
-) -> Result<Designed, denavit_plants::trajectory::TrajectoryError> {
+) -> Result<Designed, denavit_plants::Error> {
     let model = plant.model().clone();
     let step = &found.step;
     let mut references = vec![None; model.joints.len()];

@@ -3,7 +3,7 @@
 use crate::error::{Cause, Error};
 use crate::files::Files;
 use denavit_codegen::model::Robot;
-use denavit_plants::{PlantError, PlantModel, plant_of};
+use denavit_plants::{ErrorKind, PlantModel, plant_of};
 use denavit_simulate::scenario::{RunScheme, Scenario};
 use denavit_walk::balance::{Course, Grid, course_of_log, course_on_grid};
 use std::path::Path;
@@ -66,15 +66,15 @@ pub fn judge_log(robot: &Robot, log: &Path, files: &Files) -> Result<Judged, Err
     let name = log.display().to_string();
     let file = files.log(log)?;
     let parameters = file.parameters(&robot.name, robot.hash).map_err(Cause::Log)?;
-    let mut plant = plant_of(robot, &parameters).map_err(|error| match error {
-        PlantError::UnknownParameter(parameter, _) => {
-            Cause::Log(file.unknown_parameter(&parameter))
+    let mut plant = plant_of(robot, &parameters).map_err(|error| {
+        match error.parameter().filter(|_| error.kind() == ErrorKind::UnknownParameter) {
+            Some(parameter) => Cause::Log(file.unknown_parameter(parameter)),
+            None => Cause::Walk(robot.name.clone(), error.to_string()),
         }
-        error => Cause::Walk(robot.name.clone(), error.to_string()),
     })?;
     let course =
         course_of_log(plant.as_mut(), &file).map_err(|error| match error.log_faults() {
-            Some(faults) => Cause::Log(faults.clone()),
+            Some(faults) => Cause::Log(faults.clone().into()),
             None => Cause::Walk(name.clone(), error.to_string()),
         })?;
     let model = plant.model().clone();

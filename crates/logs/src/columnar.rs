@@ -173,7 +173,7 @@ impl Rows for Columnar {
         Ok(table(&read, &used, places))
     }
 
-    fn batches<'a>(self: Box<Self>, places: &[usize]) -> Result<source::Batches<'a>, Vec<FileFault>>
+    fn batches<'a>(self: Box<Self>, places: &[usize]) -> Result<source::Tables<'a>, Vec<FileFault>>
     where
         Self: 'a,
     {

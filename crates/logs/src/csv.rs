@@ -3,7 +3,7 @@
 use super::error::Error;
 use super::fault::{FileFault, of_io};
 use super::remark::FileRemark;
-use super::source::{Batches, Column, Log, Rows};
+use super::source::{Column, Log, Rows, Tables};
 use super::table::{Places, Table};
 use std::io::{BufRead, Read};
 use std::ops::Range;
@@ -39,7 +39,7 @@ impl<R: BufRead> Rows for Text<R> {
         Ok(read_rows(&mut self.lines, &self.head, places, 0..usize::MAX)?.0)
     }
 
-    fn batches<'a>(self: Box<Self>, places: &[usize]) -> Result<Batches<'a>, Vec<FileFault>>
+    fn batches<'a>(self: Box<Self>, places: &[usize]) -> Result<Tables<'a>, Vec<FileFault>>
     where
         Self: 'a,
     {

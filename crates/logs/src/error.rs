@@ -28,7 +28,9 @@ impl Error {
     pub fn kind(&self) -> ErrorKind {
         match &self.0[0] {
             FileFault::Unreadable(_) => ErrorKind::Unreadable,
-            FileFault::NoFeature { .. } | FileFault::OtherFormat { .. } => ErrorKind::Format,
+            FileFault::NoFeature { .. }
+            | FileFault::NotInBatches
+            | FileFault::OtherFormat { .. } => ErrorKind::Format,
             FileFault::Damaged { .. } => ErrorKind::Damaged,
             FileFault::NotUtf8 { .. }
             | FileFault::LongLine { .. }

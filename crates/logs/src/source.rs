@@ -42,7 +42,7 @@ pub(crate) trait Rows {
     fn read(self: Box<Self>, places: &[usize], clocks: &[usize]) -> Result<Table, Vec<FileFault>>;
 
     /// Reads the columns of `places`, some rows at a time.
-    fn batches<'a>(self: Box<Self>, _: &[usize]) -> Result<Batches<'a>, Vec<FileFault>>
+    fn batches<'a>(self: Box<Self>, _: &[usize]) -> Result<Tables<'a>, Vec<FileFault>>
     where
         Self: 'a,
     {
@@ -51,7 +51,10 @@ pub(crate) trait Rows {
 }
 
 /// Rows of a log, some at a time, in their order.
-pub type Batches<'a> = Box<dyn Iterator<Item = Result<Table, Vec<FileFault>>> + 'a>;
+pub type Batches<'a> = Box<dyn Iterator<Item = Result<Table, Error>> + 'a>;
+
+/// The same, as formats have them.
+pub(crate) type Tables<'a> = Box<dyn Iterator<Item = Result<Table, Vec<FileFault>>> + 'a>;
 
 /// A log that is open.
 pub struct Log<'a> {
@@ -75,8 +78,9 @@ impl<'a> Log<'a> {
     ///
     /// # Errors
     /// The format has no order of rows in its file, as messages have not, or a column no numbers.
-    pub fn batches(self, places: &[usize]) -> Result<Batches<'a>, Vec<FileFault>> {
-        self.rows.batches(places)
+    pub fn batches(self, places: &[usize]) -> Result<Batches<'a>, Error> {
+        let tables = self.rows.batches(places)?;
+        Ok(Box::new(tables.map(|table| Ok(table?))))
     }
 
     /// Reads the columns of `places`, in this order. Where columns have clocks of their own, as

@@ -230,7 +230,9 @@ impl Error {
 
     /// Whether all that is wrong with a log is that nothing moves.
     pub(crate) fn is_of_rest(&self) -> bool {
-        let rests = |one: &MeasuredFaults| one.faults == [LogFault::NothingMoves];
+        let rests = |one: &denavit_measure::Error| {
+            one.log_faults().is_some_and(|all| all.faults == [LogFault::NothingMoves])
+        };
         matches!(&*self.0, Cause::Logs(faults) if faults.iter().all(rests))
     }
 

@@ -6,7 +6,7 @@ use crate::mistaken::{FileKind, Mistaken};
 use denavit_codegen::model::Robot;
 use denavit_logs::{self as logs, MemoryLog, Opening};
 use denavit_measure::log::{
-    ColumnMapping, LogFaults, LogOf, MeasuredLog, UsedColumns, of_file, read_opened, used_columns,
+    ColumnMapping, LogOf, MeasuredLog, UsedColumns, of_file, read_opened, used_columns,
 };
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
 use std::fmt;
@@ -159,7 +159,7 @@ impl Logs {
         &self,
         path: &Path,
         file: &str,
-    ) -> Result<Result<logs::Log<'static>, LogFaults>, Error> {
+    ) -> Result<Result<logs::Log<'static>, denavit_measure::Error>, Error> {
         // a folder is opened by its metadata
         let opened = match path.is_dir() {
             true => None,

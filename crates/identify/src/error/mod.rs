@@ -2,14 +2,12 @@
 
 mod estimate;
 mod forward;
-mod piece;
 mod statics;
 mod two_stage;
 mod update;
 
 pub(crate) use estimate::EstimateError;
 pub(crate) use forward::ForwardError;
-pub(crate) use piece::PieceError;
 pub(crate) use statics::{MisreadPostures, StaticFault};
 pub(crate) use two_stage::TwoStageError;
 pub(crate) use update::UpdateError;
@@ -47,7 +45,7 @@ pub enum ErrorKind {
     BrokeOff,
     /// Values make no model.
     NoModel,
-    /// Rows of a long log are none of this model.
+    /// A text is no piece of a log of the model.
     Piece,
 }
 
@@ -59,7 +57,7 @@ enum Cause {
     TwoStage(TwoStageError),
     Statics(Vec<StaticFault>),
     Update(UpdateError),
-    Piece(PieceError),
+    Piece(String),
 }
 
 impl Error {
@@ -71,6 +69,11 @@ impl Error {
     /// The file of a model, of this name, has no place for values.
     pub fn no_place(model: &str) -> Self {
         UpdateError::NoPlace(model.to_owned()).into()
+    }
+
+    /// A text is no piece of a log of the model; holds why.
+    pub(crate) fn of_piece(why: String) -> Self {
+        Self(Box::new(Cause::Piece(why)))
     }
 
     /// What kind of reason it is.
@@ -173,7 +176,7 @@ impl fmt::Display for Error {
                 f.write_str(&all.join("\n"))
             }
             Cause::Update(error) => write!(f, "{error}"),
-            Cause::Piece(error) => write!(f, "{error}"),
+            Cause::Piece(why) => f.write_str(why),
         }
     }
 }
@@ -216,12 +219,6 @@ impl From<Vec<StaticFault>> for Error {
 impl From<UpdateError> for Error {
     fn from(error: UpdateError) -> Self {
         Self(Box::new(Cause::Update(error)))
-    }
-}
-
-impl From<PieceError> for Error {
-    fn from(error: PieceError) -> Self {
-        Self(Box::new(Cause::Piece(error)))
     }
 }
 

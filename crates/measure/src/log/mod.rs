@@ -246,8 +246,8 @@ pub fn used_columns(
     log: &Log<'_>,
     robot: LogOf<'_>,
     mapping: &ColumnMapping,
-) -> Result<UsedColumns, LogFaults> {
-    let failed = |faults| LogFaults { file: file.to_owned(), faults };
+) -> Result<UsedColumns, Error> {
+    let failed = |faults| Error::from(LogFaults { file: file.to_owned(), faults });
     let wanted = Wanted::new(log, robot, mapping).map_err(failed)?;
     let is_time = |column: &&WantedColumn| matches!(column.goes_to, Target::Time);
     let time = wanted.columns.iter().find(is_time).expect("it is always needed");

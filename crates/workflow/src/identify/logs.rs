@@ -10,7 +10,8 @@ use denavit_identify::forward::{LONGEST_S, MotionLog};
 use denavit_identify::{
     Ground, leave_out_idle_motors, take_out, undo_logged_torques, undo_readings,
 };
-use denavit_measure::condition::{ConditionError, Conditioned, Conditioning, Filter, Stretch};
+use denavit_measure::ErrorKind;
+use denavit_measure::condition::{Conditioned, Conditioning, Filter, Stretch};
 use denavit_measure::log::{LogFault, LogFaults, LogRemark, MeasuredLog};
 use denavit_measure::{JointIndex, Split};
 use denavit_plants::regression::CoulombLaw;
@@ -252,11 +253,11 @@ impl<'a, 'r, 'w, 'o> Reader<'a, 'r, 'w, 'o> {
         }
         let wrong = clock.set(&mut log, stretch.read.start);
         if !wrong.is_empty() {
-            return Err(Cause::Logs(vec![faults(wrong)]).into());
+            return Err(Cause::Logs(vec![faults(wrong).into()]).into());
         }
         match Conditioned::new(log, &self.names, how) {
             Ok(log) => Ok(Some(self.without_known(log.of_stretch(stretch)).0)),
-            Err(ConditionError::NothingMoves) => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NothingMoves => Ok(None),
             Err(error) => Err(Cause::Condition(source.to_string(), error).into()),
         }
     }

@@ -13,7 +13,7 @@ use super::left_out::LeftOut;
 use super::rows::BlockMaker;
 use super::triangle::Triangle;
 use super::validate::{JointResidual, Validation};
-use crate::error::EstimateError;
+use crate::error::Error;
 use denavit_measure::condition::{Conditioned, Piece};
 use denavit_measure::{JointIndex, LogIndex, SampleIndex};
 use denavit_plants::regression::{RegressionJoint, RegressionModel};
@@ -253,7 +253,7 @@ impl Estimate {
         model: &RegressionModel,
         rows: &LongRows,
         options: &Options,
-    ) -> Result<Self, EstimateError> {
+    ) -> Result<Self, Error> {
         let start = model.model_axes().unwrap_or_else(|| vec![0.0; model.rank()]);
         let fit = Fit { options, start: &start };
         let has_torque = rows.all.iter().any(|one| one.rows() > 0);

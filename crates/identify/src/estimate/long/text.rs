@@ -4,14 +4,14 @@
 use super::super::condensed::Condensed;
 use super::super::triangle::Triangle;
 use super::LongRows;
-use crate::error::{Error, PieceError};
+use crate::error::Error;
 use denavit_measure::LogIndex;
 use denavit_plants::regression::RegressionModel;
 use serde_json::{Value, json};
 use std::fmt;
 
-fn wrong(reason: impl fmt::Display) -> PieceError {
-    PieceError { reason: reason.to_string() }
+fn wrong(reason: impl fmt::Display) -> Error {
+    Error::of_piece(reason.to_string())
 }
 
 impl LongRows {
@@ -39,7 +39,7 @@ impl LongRows {
             condensed: condensed_of_json(model, &value["counted"])?,
             all: of_joints(model, &value["all"])?,
             torque_squares: numbers(&value["torque_squares"], joints, "`torque_squares`")?,
-            samples: usize::try_from(samples).map_err(|error| wrong(error))?,
+            samples: usize::try_from(samples).map_err(wrong)?,
             halved: [half(0)?, half(1)?],
         })
     }
@@ -58,7 +58,7 @@ fn condensed_json(condensed: &Condensed) -> Value {
     })
 }
 
-fn condensed_of_json(model: &RegressionModel, value: &Value) -> Result<Condensed, PieceError> {
+fn condensed_of_json(model: &RegressionModel, value: &Value) -> Result<Condensed, Error> {
     let parts = list(&value["parts"], "`parts`")?.iter().map(|part| of_joints(model, part));
     let parts = parts.collect::<Result<Vec<_>, _>>()?;
     let number = |key: &str| {
@@ -76,7 +76,7 @@ fn condensed_of_json(model: &RegressionModel, value: &Value) -> Result<Condensed
     })
 }
 
-fn of_joints(model: &RegressionModel, value: &Value) -> Result<Vec<Triangle>, PieceError> {
+fn of_joints(model: &RegressionModel, value: &Value) -> Result<Vec<Triangle>, Error> {
     let (joints, pattern) = (list(value, "a triangle for each joint")?, model.pattern());
     if joints.len() != pattern.len() {
         let (its, own) = (joints.len(), pattern.len());
@@ -86,11 +86,11 @@ fn of_joints(model: &RegressionModel, value: &Value) -> Result<Vec<Triangle>, Pi
     both.map(|(one, places)| Triangle::of_json(one, places.len())).collect()
 }
 
-fn list<'a>(value: &'a Value, what: &str) -> Result<&'a Vec<Value>, PieceError> {
+fn list<'a>(value: &'a Value, what: &str) -> Result<&'a Vec<Value>, Error> {
     value.as_array().ok_or_else(|| wrong(format!("{what} is no list")))
 }
 
-fn numbers(value: &Value, count: usize, what: &str) -> Result<Vec<f64>, PieceError> {
+fn numbers(value: &Value, count: usize, what: &str) -> Result<Vec<f64>, Error> {
     let all: Option<Vec<f64>> = list(value, what)?.iter().map(Value::as_f64).collect();
     let all = all.filter(|all| all.iter().all(|one| one.is_finite()));
     let all = all.ok_or_else(|| wrong(format!("{what} has something that is no number")))?;
@@ -112,7 +112,7 @@ impl Triangle {
         })
     }
 
-    fn of_json(value: &Value, width: usize) -> Result<Self, PieceError> {
+    fn of_json(value: &Value, width: usize) -> Result<Self, Error> {
         let size = width + 1;
         let rows = value["rows"].as_u64().and_then(|rows| usize::try_from(rows).ok());
         let rows = rows.ok_or_else(|| wrong("`rows` is no count"))?;

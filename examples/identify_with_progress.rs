@@ -1,4 +1,4 @@
-//! Identifies a robot from one log, judges it by another, with a progress line and a time limit:
+//! Identifies a robot from one log, judges it by another, with a progress bar and a time limit:
 //! `cargo run --release --example identify_with_progress -- MODEL TRAIN.csv HELD_OUT.csv`.
 
 use denavit::workflow::{IdentifyOptions, Logs, Progress, RobotFile, identify};
@@ -12,7 +12,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let robot = RobotFile::open(model)?;
     let started = Instant::now();
     let mut watch = |at: &Progress<'_>| {
-        eprint!("\r\x1b[2K{} ({:.0} s)", at.stage, started.elapsed().as_secs_f64());
+        let bar = "#".repeat((20.0 * at.share.unwrap_or(0.0)) as usize);
+        eprint!("\r\x1b[2K{:<40} [{bar:<20}]", at.stage.to_string());
         started.elapsed() < Duration::from_secs(60)
     };
     let logs = Logs::new([train], [held_out]);

@@ -1,23 +1,50 @@
 //! Symbolic robot dynamics: from a Denavit-Hartenberg table to exact equations and optimised Rust.
 //!
-//! - everything of [`denavit_codegen`], the symbolic compiler
-//! - [`shipped`]: robots whose model files are part of the library
-//! - [`tulip`], [`puma560`], [`planar_biped`]: what the compiler made of three of them when this
-//!   library was built
-//! - [`batch`]: emitted functions on many samples, on all processors
-//! - [`simulate`]: robots in motion, on the ground
-//! - [`diagnose`]: what a model lacks, from measurements
-//! - [`plants`]: robots as numbers, generated or interpreted
-//! - [`excite`]: motion that shows the parameters of a robot
+//! # Use cases
+//!
+//! Files in, an answer out: [`workflow`] has each as one call, with options that have defaults, an
+//! observer that hears of progress and may stop the work, and one error with kinds and hints.
+//!
+//! | to | call |
+//! |---|---|
+//! | read a robot (model file, URDF, MJCF) | [`workflow::RobotFile::open`], [`workflow::Files`] |
+//! | identify parameters from logs | [`workflow::identify()`], [`workflow::Logs`] |
+//! | name what a model lacks, from logs | [`workflow::diagnose()`] |
+//! | find a motion that shows parameters | [`workflow::excite()`] |
+//! | simulate a scenario | [`workflow::simulate()`] |
+//! | design a gait, judge a walk | [`workflow::design_gait`], [`workflow::judge_run`] |
+//! | follow progress, or stop after some time | [`workflow::Observer`], [`workflow::Progress`] |
+//! | derive equations of motion | [`derive::MotionEquations`] |
+//! | emit Rust, C, C++ | [`emit::Sources`]; in a build script [`build_script`] |
+//! | find base parameters | [`regressor::ProvenBase`] |
+//!
+//! # The laboratory
+//!
 //! - [`identify`]: parameters from measured motion
-//! - [`import`]: URDF and MJCF as model files, and back
-//! - [`logs`]: files of logs of any format as tables
-//! - [`measure`]: logs: read, checked, filtered; noise of their positions
-//! - [`trajectory`]: references for their joints
+//! - [`diagnose`]: what a model lacks, from measurements
+//! - [`excite`]: motion that shows the parameters of a robot
+//! - [`simulate`]: robots in motion, on the ground
 //! - [`walk`]: postures and gaits
-//! - [`workflow`]: use cases as single calls: a robot and logs in, an answer out
-//! - [`report`]: tables and pictures of robots
+//! - [`measure`]: logs: read, checked, filtered; noise of their positions
+//! - [`logs`]: files of logs of any format as tables
+//! - [`import`]: URDF and MJCF as model files, and back
+//! - [`plants`]: robots as numbers, generated or interpreted; [`trajectory`]: references for their
+//!   joints; [`batch`]: functions on many samples, on all processors
+//! - [`report`]: answers as text, JSON, pictures and pages
+//! - [`numerics`]: random numbers, systems of any rank
+//! - [`shipped`]: robots whose model files are part of the library; [`tulip`], [`puma560`],
+//!   [`planar_biped`]: what the compiler made of three of them when this library was built
 //! - [`demo`]: what the command shows of all that on shipped robots
+//!
+//! # The compiler
+//!
+//! All of [`denavit_codegen`], in the order of its stages: [`arena`], [`expr`], [`number`],
+//! [`fundamental`], [`model`], [`effect`], [`function`], [`spatial`], [`kinematics`], [`regroup`],
+//! [`dynamics`], [`regressor`], [`derive`], [`program`], [`emit`], [`build_script`].
+//!
+//! # Errors
+//!
+//! Each package has one: `Error`, with its `kind()`, its `source()`, and what helps as data.
 
 // The command is part of the library, so that other programs have it in their own process; its
 // files name the library as its users do.

@@ -303,17 +303,18 @@ def push(
     *,
     link: str | None = None,
     times: int = 12,
+    only: int | None = None,
     most_ns: float = 20.0,
     resolution_ns: float | None = None,
     after_s: float = 4.0,
     svg: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Pushes:
-    """The least impulse that fells a robot, over the time in its step and the direction. ``svg`` is
-    where the map goes.
+    """The least impulse that fells a robot, over the time in its step and the direction. ``only``
+    is the one of the ``times`` that is tried, from 0; ``svg`` is where the map goes.
     """
     chosen = _options.flags(
-        link=link, times=times, most=most_ns, resolution=resolution_ns, after=after_s, svg=svg
+        link=link, times=times, only=only, most=most_ns, resolution=resolution_ns, after=after_s, svg=svg
     )
     return answer(Pushes, _answered("push", scenario, chosen, progress))
 

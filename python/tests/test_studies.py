@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from denavit import studies
+from denavit import studies, walk
 from denavit.__main__ import main
 from denavit.studies.cases import plain
 from denavit.studies.here import in_processes
@@ -211,3 +211,20 @@ def test_a_study_of_ray_has_the_same_rows(study_file, tmp_path):
     studies.run(study, tmp_path / "ray.parquet", runner=on_ray())
     studies.run(study, tmp_path / "here.parquet")
     assert Path(tmp_path / "ray.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
+def test_a_push_map_is_a_study_of_its_times():
+    name = "planar_biped_limit_cycle_gait"
+    scenario = (Path(__file__).parents[2] / f"models/scenarios/{name}.json").read_bytes()
+    options = {"times": 2, "most_ns": 20.0, "resolution_ns": 2.0, "after_s": 1.0}
+    whole = walk.push(json.loads(scenario), **options)
+    inputs = {"scenario": scenario}
+    study = studies.Study("push", studies.ready.push, 2, inputs=inputs, options=options)
+    rows = studies.computed(study)
+    assert [row["failure"] for row in rows] == [None, None]
+    for row in rows:
+        own = [one for one in whole.pushes if one.at_s == row["at_s"]]
+        assert [one.direction for one in own] == row["directions"]
+        least = {one.direction: one.least_impulse_ns for one in own if one.least_impulse_ns}
+        assert dict(zip(row["felled"], row["least_ns"])) == least
+

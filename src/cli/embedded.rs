@@ -13,7 +13,7 @@ use denavit::import::nothing_included;
 use denavit::logs::MemoryLog;
 use denavit::model::Robot;
 use denavit::simulate::Log;
-use denavit::workflow::{LogSource, WholeRobot, described};
+use denavit::workflow::{LogSource, PlacedFault, WholeRobot, described, faults_of};
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -48,26 +48,11 @@ pub enum Unanswered {
     /// The arguments are wrong, as the command says it.
     Usage(String),
     /// Inputs are wrong; holds the subcommand.
-    Input(&'static str, Vec<Wrong>),
+    Input(&'static str, Vec<PlacedFault>),
     /// The observer did not want to go on.
     Stopped,
     /// A fault of denavit itself.
     Internal(String),
-}
-
-/// One thing that is wrong.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Wrong {
-    /// The file, or the name of a model or scenario, that is to blame.
-    pub file: Option<String>,
-    /// Line, from 1.
-    pub line: Option<usize>,
-    /// Column in characters, from 1.
-    pub column: Option<usize>,
-    /// What is wrong.
-    pub cause: String,
-    /// What to do about it.
-    pub hint: Option<String>,
 }
 
 thread_local! {
@@ -243,7 +228,7 @@ fn observed_run<T>(
     set_loudness(Loudness::default());
     match ran {
         Ok(Ok(answer)) => Ok(answer),
-        Ok(Err(failure)) => Err(Unanswered::Input(command, wrongs(&failure.to_string()))),
+        Ok(Err(failure)) => Err(Unanswered::Input(command, faults_of(&failure.to_string()))),
         Err(payload) if payload.is::<Stopped>() => Err(Unanswered::Stopped),
         Err(payload) => Err(Unanswered::Internal(panic_text(payload.as_ref()))),
     }
@@ -253,152 +238,4 @@ fn panic_text(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
     text.unwrap_or("no reason is given").to_owned()
-}
-
-/// What is wrong, of the form in which every failure is printed: `FILE:LINE:COLUMN: CAUSE`, with
-/// less of a place perhaps, and below it `  hint: HINT`.
-fn wrongs(printed: &str) -> Vec<Wrong> {
-    let mut all: Vec<Wrong> = Vec::new();
-    for line in printed.lines() {
-        match (line.strip_prefix("  hint: "), all.last_mut()) {
-            // several ways out
-            (Some(hint), Some(Wrong { hint: Some(before), .. })) => {
-                before.push('\n');
-                before.push_str(hint);
-            }
-            (Some(hint), Some(last)) => last.hint = Some(hint.to_owned()),
-            // what goes on below a hint goes on with it
-            (None, Some(last)) if line.starts_with("  ") => {
-                let text = last.hint.as_mut().unwrap_or(&mut last.cause);
-                text.push('\n');
-                text.push_str(line.trim());
-            }
-            _ => all.push(wrong(line)),
-        }
-    }
-    all
-}
-
-fn wrong(line: &str) -> Wrong {
-    let bare = || Wrong { cause: line.to_owned(), ..Wrong::default() };
-    let number = |text: &str| {
-        let (rest, number) = text.rsplit_once(':')?;
-        Some((rest.to_owned(), number.parse::<usize>().ok()?))
-    };
-    let Some((place, cause)) = line.split_once(": ") else { return bare() };
-    let cause = cause.to_owned();
-    if let Some((rest, last)) = number(place) {
-        return match number(&rest) {
-            Some((file, line)) => {
-                let (file, line, column) = (Some(file), Some(line), Some(last));
-                Wrong { file, line, column, cause, hint: None }
-            }
-            None => Wrong { file: Some(rest), line: Some(last), cause, ..Wrong::default() },
-        };
-    }
-    // a name, or a file with blanks in its name; else a sentence with a colon
-    let is_name = !place.is_empty() && !place.contains(char::is_whitespace);
-    match is_name && !place.starts_with("--") || Path::new(place).exists() {
-        true => Wrong { file: Some(place.to_owned()), cause, ..Wrong::default() },
-        false => bare(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::sync::Mutex;
-
-    /// Hears everything, and stops at a stage.
-    #[derive(Default)]
-    struct Heard {
-        notes: Mutex<Vec<String>>,
-        stages: Mutex<Vec<String>>,
-        stops_at: Option<&'static str>,
-    }
-
-    impl Observer for Heard {
-        fn note(&self, text: &str) {
-            self.notes.lock().unwrap().push(text.to_owned());
-        }
-
-        fn progress(&self, stage: &str, _: Option<f64>) -> bool {
-            self.stages.lock().unwrap().push(stage.to_owned());
-            !self.stops_at.is_some_and(|stop| stage.contains(stop))
-        }
-    }
-
-    fn run(line: &str, heard: Heard) -> (Result<Answered, Unanswered>, Arc<Heard>) {
-        let heard = Arc::new(heard);
-        let arguments: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
-        (answer(&arguments, heard.clone()), heard)
-    }
-
-    #[test]
-    fn an_answer_is_that_of_the_command() {
-        let (found, _) = run("base double_pendulum --json", Heard::default());
-        let found = found.unwrap();
-        let json: serde_json::Value = serde_json::from_slice(&found.output).unwrap();
-        assert!(found.is_good);
-        assert_eq!(json["model"], "double_pendulum");
-    }
-
-    #[test]
-    fn failures_have_place_and_hint() {
-        let (found, _) = run("inspect puma650", Heard::default());
-        let Err(Unanswered::Input("inspect", wrong)) = found else { panic!("{found:?}") };
-        assert_eq!(wrong[0].file.as_deref(), Some("puma650"));
-        assert!(wrong[0].hint.as_ref().unwrap().contains("puma560"));
-        let (found, _) = run("inspect --no-such-flag", Heard::default());
-        assert!(matches!(found, Err(Unanswered::Usage(text)) if text.contains("--no-such-flag")));
-    }
-
-    #[test]
-    fn logs_in_memory_stand_in_place_of_files() {
-        let words = ["identify", "planar_2r", "--train", "train[0]"];
-        let arguments = words.map(OsString::from);
-        let given = |at| {
-            let log = MemoryLog {
-                columns: vec![("t".to_owned(), vec![0.0, 1.0])],
-                ..MemoryLog::default()
-            };
-            GivenLog { option: "train".to_owned(), at, name: "mine[0]".to_owned(), log }
-        };
-        let found = answer_of_logs(&arguments, vec![given(0)], Arc::new(Heard::default()));
-        let Err(Unanswered::Input("identify", wrong)) = found else { panic!("{found:?}") };
-        let is_of_log = |one: &Wrong| one.file.as_deref() == Some("mine[0]");
-        assert!(wrong.iter().all(is_of_log) && wrong[0].cause.contains("q_link1"), "{wrong:?}");
-        let found = answer_of_logs(&arguments, vec![given(1)], Arc::new(Heard::default()));
-        assert!(matches!(found, Err(Unanswered::Internal(_))), "{found:?}");
-    }
-
-    #[test]
-    fn an_observer_stops_a_run() {
-        let heard = Heard { stops_at: Some("reading"), ..Heard::default() };
-        let (found, heard) = run("identify tulip_leg --train none.csv --json", heard);
-        assert_eq!(found, Err(Unanswered::Stopped));
-        assert_eq!(heard.stages.lock().unwrap().len(), 1);
-    }
-
-    #[test]
-    fn places_are_read_as_they_are_printed() {
-        let printed = "a/b.json:2:20: /x: nothing\n  hint: declare it:\n  more\nc.csv:7: a gap\n\
-                       --prior: no\ntulip: none: of it\nthe model:3:4: wrong\nit is: so\n  \
-                       hint: one way\n  hint: another";
-        let found = wrongs(printed);
-        let places: Vec<_> = found.iter().map(|one| (one.file.as_deref(), one.line)).collect();
-        let expected = [
-            (Some("a/b.json"), Some(2)),
-            (Some("c.csv"), Some(7)),
-            (None, None),
-            (Some("tulip"), None),
-            (Some("the model"), Some(3)),
-            (None, None),
-        ];
-        assert_eq!(places, expected);
-        assert_eq!(found[0].column, Some(20));
-        assert_eq!(found[0].hint.as_deref(), Some("declare it:\nmore"));
-        assert_eq!(found[3].cause, "none: of it");
-        assert_eq!(found[5].hint.as_deref(), Some("one way\nanother"));
-    }
 }

@@ -3,20 +3,19 @@
 use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
-use super::files::{FILES, load_beside, read_robot};
+use super::files::{FILES, read_robot};
 use super::json::write_json;
 use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
-use denavit::excite::{Check, Columns, Ends, ExciteOptions, Family, Objective, check_trajectory};
+use denavit::excite::{Check, Columns, Ends, ExciteOptions, Family, Objective};
 use denavit::model::Robot;
 use denavit::report::answer::{
     ExcitationAnswer, drawn_excitation, excited_json, excited_text, excited_trajectory,
 };
-use denavit::simulate::scenario::read_trajectory;
-use denavit::workflow::{EffectUse, FileKind, excite};
+use denavit::workflow::{check_excitation, excite};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Find a trajectory that excites what is to be identified
 ///
@@ -238,7 +237,15 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let (effects, robot) = (model.left_out(), model.apart.robot);
     let options = arguments.options(&robot)?;
     if let Some(path) = &arguments.check {
-        return checked(arguments, &robot, &effects, &options, path, out);
+        let (check, stack) = check_excitation(&FILES, &robot, &options, path)?;
+        let (stack, check) = (&stack, &check);
+        let shown =
+            ExcitationAnswer { robot: &robot, effects: &effects, stack, check, excited: None };
+        match arguments.json {
+            true => write_json(out, &excited_json(&shown))?,
+            false => write!(out, "{}", excited_text(&shown))?,
+        }
+        return Ok(verdict(check));
     }
     let progress = Progress::new();
     let found = excite(&robot, &options, &mut progress.observer())?;
@@ -274,25 +281,4 @@ fn verdict(check: &Check) -> Answer {
         true => Answer::Done,
         false => Answer::Negative,
     }
-}
-
-fn checked(
-    arguments: &Arguments,
-    robot: &Robot,
-    effects: &[EffectUse],
-    options: &ExciteOptions,
-    path: &Path,
-    out: &mut dyn Write,
-) -> Result<Answer, Failure> {
-    let name = path.display().to_string();
-    let load = |log: &str| load_beside(path, log);
-    let bytes = FILES.wanted(path, FileKind::Trajectory)?;
-    let trajectory = read_trajectory(&name, &bytes, &load)?;
-    let (check, stack) = check_trajectory(robot, options, &trajectory)?;
-    let shown = ExcitationAnswer { robot, effects, stack: &stack, check: &check, excited: None };
-    match arguments.json {
-        true => write_json(out, &excited_json(&shown))?,
-        false => write!(out, "{}", excited_text(&shown))?,
-    }
-    Ok(verdict(&check))
 }

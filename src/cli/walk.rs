@@ -16,10 +16,6 @@ use clap::{Args, Subcommand};
 use denavit::report::answer::BalanceCriterion;
 use std::io::Write;
 
-/// Friction that stands in where the no-slip law has no answer to an impact: disturbed robots
-/// scuff, and runs would end there.
-const FALLBACK_FRICTION: f64 = 0.8;
-
 /// Walk: design gaits, and say whether they are stable
 ///
 /// The criteria are those of the thesis's chapter 4; docs/reference/walking.md says what each

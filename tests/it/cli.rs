@@ -8,6 +8,7 @@ mod diagnose;
 mod diagnose_emps;
 mod diagnose_excitation;
 mod effects;
+mod embedded;
 mod emit_languages;
 mod errors;
 mod excite;

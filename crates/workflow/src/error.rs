@@ -1,5 +1,6 @@
 //! Why work has no answer.
 
+use crate::faults::{PlacedFault, faults_of};
 use crate::files::reason;
 use crate::mistaken::Mistaken;
 use denavit_codegen::model::{FileError, ModelError};
@@ -179,6 +180,11 @@ impl Error {
             Cause::Import(error) => error.description().map(RobotFaults::Description),
             _ => None,
         }
+    }
+
+    /// What is wrong, one by one, with file, place and hint where these are known.
+    pub fn faults(&self) -> Vec<PlacedFault> {
+        faults_of(&self.to_string())
     }
 
     /// What to do about it.

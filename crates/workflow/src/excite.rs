@@ -1,10 +1,14 @@
 //! Trajectories that excite what is to be identified.
 
 use crate::error::{Cause, Error};
+use crate::files::Files;
+use crate::mistaken::FileKind;
 use crate::observer::{Observer, Progress, Stage, Watched};
 use denavit_codegen::model::Robot;
-use denavit_excite::{self as excite, ExciteOptions, Excited};
+use denavit_excite::{self as excite, Check, ExciteOptions, Excited, Stack};
+use denavit_simulate::scenario::read_trajectory;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -50,4 +54,21 @@ pub fn excite(
     });
     let found = found.unwrap_or_else(|panicked| std::panic::resume_unwind(panicked));
     Ok(found.map_err(Cause::Excite)?)
+}
+
+/// Checks the trajectory of a file against the limits of a robot, and says what it excites.
+///
+/// # Errors
+/// All that is wrong with the trajectory or the options, or why it is not read.
+pub fn check_excitation(
+    files: &Files,
+    robot: &Robot,
+    options: &ExciteOptions,
+    path: &Path,
+) -> Result<(Check, Stack), Error> {
+    let load = |log: &str| files.beside(path, log);
+    let bytes = files.wanted(path, FileKind::Trajectory)?;
+    let trajectory = read_trajectory(&path.display().to_string(), &bytes, &load);
+    let checked = excite::check_trajectory(robot, options, &trajectory.map_err(Cause::Scenario)?);
+    Ok(checked.map_err(Cause::Excite)?)
 }

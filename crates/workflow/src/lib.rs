@@ -9,7 +9,10 @@
 //! - [`diagnose()`]: what a model lacks, by [`DiagnoseOptions`]
 //! - [`excite()`]: a trajectory that shows the parameters; [`simulate()`]: a run of a scenario
 //! - [`LogBeside`]: a log to be looked at beside a run
+//! - [`check_excitation`]: a trajectory that there is, against limits
 //! - [`design_gait`], [`judge_run`], [`judge_log`]: gaits, and balance along runs and logs
+//! - [`gait_basin`], [`push_gait`], [`push_stepping_robot`]: what gaits endure;
+//!   [`compare_criteria`]: what each criterion says of a run
 //! - [`Observer`]: hears of progress as data, and may stop the work, which then returns what it has
 //! - [`Error`]: why there is no answer, with its kind and hints
 //!
@@ -19,6 +22,7 @@ mod beside;
 mod diagnose;
 mod error;
 mod excite;
+mod faults;
 mod files;
 mod identify;
 mod logs;
@@ -32,7 +36,8 @@ mod walk;
 pub use beside::LogBeside;
 pub use diagnose::{Completed, DiagnoseOptions, Diagnosed, NamedEffect, diagnose};
 pub use error::{Error, ErrorKind, Hint, RobotFaults};
-pub use excite::excite;
+pub use excite::{check_excitation, excite};
+pub use faults::{PlacedFault, faults_of};
 pub use files::{Files, Input, ModelText, described, effects_folder, reason};
 pub use identify::{
     Conditions, Controlled, FilterChoice, Identified, IdentifyOptions, LongLog, LongPlan, NotMoved,
@@ -45,6 +50,7 @@ pub use observer::{Observer, Progress, Silent, Stage};
 pub use robot_file::{EffectUse, RobotFile, WholeRobot};
 pub use simulate::simulate;
 pub use walk::{
-    Designed, Gait, GaitCurves, GaitQuantity, JudgeOptions, Judged, design_gait, judge_log,
-    judge_run,
+    Designed, Gait, GaitBasin, GaitCurves, GaitQuantity, JudgeOptions, Judged, PushQuestion,
+    PushedGait, Starts, compare_criteria, design_gait, gait_basin, judge_log, judge_run, push_gait,
+    push_stepping_robot,
 };

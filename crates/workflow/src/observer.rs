@@ -32,6 +32,12 @@ pub enum Stage {
     Simulating,
     /// Trajectories are searched that excite a robot; holds of how many starts.
     Exciting(usize),
+    /// The cycle of a gait is looked for.
+    FollowingCycle,
+    /// A gait is walked from starts off its cycle.
+    Starts,
+    /// A robot is pushed.
+    Pushes,
 }
 
 impl fmt::Display for Stage {
@@ -53,6 +59,9 @@ impl fmt::Display for Stage {
             Self::EffectsFound(1) => write!(f, "one effect found"),
             Self::EffectsFound(count) => write!(f, "{count} effects found"),
             Self::Simulating => write!(f, "simulating"),
+            Self::FollowingCycle => write!(f, "following the cycle"),
+            Self::Starts => write!(f, "starts"),
+            Self::Pushes => write!(f, "pushes"),
             Self::Exciting(1) => write!(f, "searching from one start"),
             Self::Exciting(starts) => write!(f, "searching from {starts} starts"),
         }
@@ -65,7 +74,8 @@ pub struct Progress<'a> {
     /// What is being done.
     pub stage: Stage,
     /// The share of the stage that is done, from 0 to 1, where that is known: where logs are read
-    /// or simulated again, effects evaluated, a scenario simulated, or trajectories searched.
+    /// or simulated again, effects evaluated, a scenario simulated, trajectories searched, or gaits
+    /// disturbed.
     pub share: Option<f64>,
     /// The best answer so far: effects that are missing, each with its place.
     pub best: &'a [[String; 2]],

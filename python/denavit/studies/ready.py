@@ -138,3 +138,25 @@ def basin(case: Case) -> Row:
     )
     outcome = max(found.outcomes, key=lambda name: found.outcomes[name])
     return {"walks": found.walks == 1, "outcome": outcome}
+
+
+@rows(at_s=float, directions=list[str], felled=list[str], least_ns=list[float])
+def push(case: Case) -> Row:
+    """The least pushes that fell a robot at the time of this index, of as many times in its step as
+    the study has indices: a row of a push map. ``least_ns`` has those of ``felled``; from the other
+    ``directions`` the strongest push does not fell it.
+
+    Input: ``scenario``. Options: ``times``, how many there are; ``most_ns``, ``resolution_ns``,
+    ``after_s`` and ``link`` as of :func:`denavit.walk.push`.
+    """
+    names = ("most_ns", "resolution_ns", "after_s", "link")
+    chosen = {name: case.options[name] for name in names if name in case.options}
+    scenario, times = json.loads(case.inputs["scenario"]), int(case.options["times"])
+    found = walk.push(scenario, times=times, only=case.index, **chosen)
+    felled = [one for one in found.pushes if one.least_impulse_ns is not None]
+    return {
+        "at_s": found.pushes[0].at_s,
+        "directions": [one.direction for one in found.pushes],
+        "felled": [one.direction for one in felled],
+        "least_ns": [one.least_impulse_ns for one in felled],
+    }

@@ -8,10 +8,7 @@ use super::super::progress::Progress;
 use super::number::{impulse, within};
 use clap::Args;
 use denavit::report::answer::{capture_steps_json, capture_steps_text};
-use denavit::simulate::scenario::Scenario;
-use denavit::walk::capturability::Capturability;
-use denavit::walk::capture_step::{law_of, step_limits};
-use denavit::walk::robustness::{CapturePushOptions, capture_pushes};
+use denavit::workflow::push_stepping_robot;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -64,46 +61,22 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, Failure> {
-    let mut scenario = FILES.scenario(&arguments.scenario)?;
-    let name = scenario.name.clone();
-    let options = options(arguments, &scenario)?;
-    let failure = |why: String| Failure::Walk(name.clone(), why);
-    let limits = step_limits(&mut scenario).map_err(|error| failure(error.to_string()))?;
-    let found = Capturability::new(limits).map_err(|error| failure(error.to_string()))?;
+    let last = f64::from(arguments.pushes - 1);
+    let graded = (0..arguments.pushes)
+        .map(|index| arguments.most * (2.0 * f64::from(index) / last - 1.0))
+        .collect();
+    let impulses_ns = match arguments.impulses.is_empty() {
+        true => graded,
+        false => arguments.impulses.clone(),
+    };
+    let (path, after_s) = (&arguments.scenario, arguments.after);
     let progress = Progress::new();
-    let pushes = capture_pushes(
-        &|| FILES.scenario(&arguments.scenario).ok(),
-        &found,
-        &options,
-        &|done, all| progress.show_count("pushes", done, all),
-    );
+    let (name, pushes) =
+        push_stepping_robot(&FILES, path, &impulses_ns, after_s, &mut progress.observer())?;
     progress.clear();
     match arguments.json {
         true => write_json(out, &capture_steps_json(&name, &pushes))?,
         false => write!(out, "{}", capture_steps_text(&name, &pushes))?,
     }
     Ok(Answer::Done)
-}
-
-/// The pushes, in place of those of the scenario.
-fn options(arguments: &Arguments, scenario: &Scenario) -> Result<CapturePushOptions, Failure> {
-    let lacks = |what: &str| Failure::Walk(scenario.name.clone(), what.to_owned());
-    if law_of(scenario).is_none() {
-        return Err(lacks("no controller that steps: `\"gait\": {\"capture_step\": {..}}`"));
-    }
-    let push = scenario.simulation.pushes.first();
-    let push = push.ok_or_else(|| lacks("no push, whose point and time are taken: `pushes`"))?;
-    let last = f64::from(arguments.pushes - 1);
-    let graded = (0..arguments.pushes)
-        .map(|index| arguments.most * (2.0 * f64::from(index) / last - 1.0))
-        .collect();
-    Ok(CapturePushOptions {
-        point: push.point.clone(),
-        at_s: push.at_s - scenario.initial.t_s,
-        impulses_ns: match arguments.impulses.is_empty() {
-            true => graded,
-            false => arguments.impulses.clone(),
-        },
-        after_s: arguments.after,
-    })
 }

@@ -8,9 +8,10 @@ use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{comparison_json, comparison_page, comparison_text};
-use denavit::walk::comparison::{CASES, Compared, compare};
+use denavit::walk::comparison::CASES;
+use denavit::workflow::compare_criteria;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Compare the criteria of stability on runs: what each misses (thesis 4.2, 4.4.6)
 ///
@@ -56,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     for (index, path) in scenarios.iter().enumerate() {
         let share = index as f64 / scenarios.len() as f64;
         progress.show_part("comparing", Some(share), &path.display().to_string());
-        all.push(compared(path, arguments.period)?);
+        all.push(compare_criteria(&FILES, path, arguments.period)?);
     }
     progress.clear();
     if let Some(path) = &arguments.html {
@@ -71,11 +72,4 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         }
     }
     Ok(Answer::Done)
-}
-
-fn compared(path: &Path, period_s: f64) -> Result<Compared, Failure> {
-    let mut scenario = FILES.scenario(path)?;
-    scenario.simulation.touching.fallback_friction.get_or_insert(super::FALLBACK_FRICTION);
-    compare(&mut scenario, period_s)
-        .map_err(|error| Failure::Walk(path.display().to_string(), error.to_string()))
 }

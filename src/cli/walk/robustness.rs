@@ -8,18 +8,13 @@ use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
 use super::super::progress::Progress;
 use super::number::within;
 use clap::Args;
-use denavit::plants::{PlantModel, PointModel};
 use denavit::report::answer::{
     BasinAnswer, PushAnswer, basin_json, basin_log, basin_picture, basin_text, push_json,
     push_picture, push_text,
 };
-use denavit::simulate::Simulation;
-use denavit::simulate::scenario::Scenario;
-use denavit::walk::balance::check_walker;
-use denavit::walk::poincare::{PoincareAnalysis, PoincareOptions, analyse};
-use denavit::walk::robustness::{BasinOptions, PushOptions, basin, grid, least_pushes, noise};
+use denavit::workflow::{PushQuestion, PushedGait, Starts, gait_basin, push_gait};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Walk from starts around the cycle of a gait: its basin of attraction as a map
 ///
@@ -124,6 +119,9 @@ pub(crate) struct PushArguments {
         value_parser = clap::value_parser!(u32).range(1..=1000)
     )]
     times: u32,
+    /// The one of these times that is tried, from 0, as a study of them does
+    #[arg(long, value_name = "K")]
+    only: Option<u32>,
     /// The strongest impulse that is tried [N s]
     #[arg(long, value_name = "NS", default_value = "20", value_parser = within(1e-6..=1e6, "N s"))]
     most: f64,
@@ -146,39 +144,6 @@ pub(crate) struct PushArguments {
     json: bool,
 }
 
-/// The scenario as it is pushed: its own pushes are others.
-fn pushable(path: &Path) -> Result<Scenario, Failure> {
-    let mut scenario = disturbed(path)?;
-    scenario.simulation.pushes.clear();
-    Ok(scenario)
-}
-
-/// The scenario as disturbed runs need it.
-fn disturbed(path: &Path) -> Result<Scenario, Failure> {
-    let mut scenario = FILES.scenario(path)?;
-    scenario.simulation.touching.fallback_friction.get_or_insert(super::FALLBACK_FRICTION);
-    Ok(scenario)
-}
-
-/// The cycle of a gait.
-fn cycle(scenario: &mut Scenario) -> Result<PoincareAnalysis, String> {
-    let options = PoincareOptions { checks: false, ..PoincareOptions::default() };
-    analyse(scenario, &options).map_err(|error| error.to_string())
-}
-
-/// The number of a coordinate: of q, or beyond these of qd.
-fn coordinate(model: &PlantModel, name: &str) -> Result<usize, Failure> {
-    let n = model.joints.len();
-    let of = |prefix: &str, first: usize| {
-        let joint = name.strip_prefix(prefix)?;
-        model.find_joint(joint).map(|joint| first + joint)
-    };
-    of("qd_", n).or_else(|| of("q_", 0)).ok_or_else(|| {
-        let why = format!("--vary: `{name}` is no q_JOINT or qd_JOINT of {}", model.name);
-        Failure::Walk(model.name.clone(), why)
-    })
-}
-
 /// Two of a list, or what is wrong.
 fn pair<T: Clone>(values: &[T], flag: &str) -> Result<[T; 2], Failure> {
     match values {
@@ -193,44 +158,26 @@ pub(crate) fn run_basin(
 ) -> Result<Answer, Failure> {
     let outputs = [arguments.output.as_ref(), arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let mut scenario = disturbed(&arguments.scenario)?;
-    let name = scenario.name.clone();
-    let model = scenario.plant.model().clone();
-    let (names, reach) = (pair(&arguments.vary, "--vary")?, pair(&arguments.reach, "--reach")?);
-    let deviations = match arguments.noise {
+    let (vary, reach) = (pair(&arguments.vary, "--vary")?, pair(&arguments.reach, "--reach")?);
+    let count = arguments.grid as usize;
+    let starts = match arguments.noise {
         Some(deviation) => {
-            let count = arguments.starts as usize;
-            noise(scenario.plant.as_ref(), deviation, count, arguments.seed)
+            Starts::Noise { deviation, count: arguments.starts as usize, seed: arguments.seed }
         }
-        None => {
-            let entries = [coordinate(&model, &names[0])?, coordinate(&model, &names[1])?];
-            if entries[0] == entries[1] {
-                let why = format!("`{}` twice\n  hint: name two coordinates", names[0]);
-                return Err(Failure::Walk("--vary".to_owned(), why));
-            }
-            grid(model.joints.len(), entries, reach, arguments.grid as usize)
-        }
+        None => Starts::Grid { vary: vary.clone(), reach, count },
     };
     check_outputs(&outputs)?;
-    let progress = Progress::new();
-    progress.show("following the cycle");
-    let found = cycle(&mut scenario).map_err(|why| Failure::Walk(name.clone(), why))?;
-    let starts = basin(
-        &|| disturbed(&arguments.scenario).ok(),
-        &found.cycle,
-        &deviations,
-        &BasinOptions { cycles: arguments.steps as usize },
-        &|done, all| progress.show_count("starts", done, all),
-    );
+    let (progress, cycles) = (Progress::new(), arguments.steps);
+    let path = &arguments.scenario;
+    let found = gait_basin(&FILES, path, &starts, cycles as usize, &mut progress.observer())?;
     progress.clear();
-    let (cycles, starts) = (arguments.steps, &starts[..]);
-    let answer = BasinAnswer { name: &name, model: &model, cycles, starts };
+    let (name, model, starts) = (&found.name, &found.model, &found.starts[..]);
+    let answer = BasinAnswer { name, model, cycles, starts };
     if let Some(path) = &arguments.output {
         write_whole(path, basin_log(&answer).to_csv().as_bytes())?;
     }
     if let Some(path) = &arguments.svg {
-        let grid = arguments.grid as usize;
-        let map = basin_picture(&answer, [&names[0], &names[1]], reach, grid);
+        let map = basin_picture(&answer, [&vary[0], &vary[1]], reach, count);
         write_whole(path, map.as_bytes())?;
     }
     match (is_answered, arguments.json) {
@@ -247,42 +194,20 @@ pub(crate) fn run_basin(
 pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result<Answer, Failure> {
     let outputs = [arguments.svg.as_ref()];
     let is_answered = on_stdout(&outputs, arguments.json)?;
-    let mut scenario = pushable(&arguments.scenario)?;
-    let name = scenario.name.clone();
-    check_walker(scenario.plant.as_mut())
-        .map_err(|error| Failure::Walk(name.clone(), error.to_string()))?;
-    let model = scenario.plant.model().clone();
-    let link = pushed_link(&model, arguments.link.as_deref())?;
-    check_outputs(&outputs)?;
-    let (start, period_s) = match cycle(&mut scenario) {
-        Ok(found) => (found.cycle.chart.base, found.cycle.period_s),
-        Err(_) => {
-            let Simulation { end_s, .. } = scenario.simulation;
-            (scenario.initial.clone(), end_s - scenario.initial.t_s)
-        }
-    };
-    let count = arguments.times as usize;
-    let directions = if model.planar {
-        vec![[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
-    } else {
-        vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]
-    };
-    let options = PushOptions {
-        point: PointModel { name: "pushed".to_owned(), link, position: [0.0; 3] },
-        times_s: (0..count).map(|k| period_s * k as f64 / count as f64).collect(),
-        directions,
+    let question = PushQuestion {
+        link: arguments.link.clone(),
+        times: arguments.times as usize,
+        only: arguments.only.map(|only| only as usize),
         most_ns: arguments.most,
-        coarse: 8,
-        resolution_ns: arguments.resolution.unwrap_or(arguments.most / 256.0),
+        resolution_ns: arguments.resolution,
         after_s: arguments.after,
     };
+    check_outputs(&outputs)?;
     let progress = Progress::new();
-    let found =
-        least_pushes(&|| pushable(&arguments.scenario).ok(), &start, &options, &|done, all| {
-            progress.show_count("pushes", done, all);
-        });
+    let pushed = push_gait(&FILES, &arguments.scenario, &question, &mut progress.observer())?;
     progress.clear();
-    let answer = PushAnswer { name: &name, model: &model, options: &options, found: &found };
+    let PushedGait { name, model, options, found, .. } = &pushed;
+    let answer = PushAnswer { name, model, options, found };
     if let Some(path) = &arguments.svg {
         write_whole(path, push_picture(&answer).as_bytes())?;
     }
@@ -295,17 +220,4 @@ pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result
         }
     }
     Ok(Answer::Done)
-}
-
-fn pushed_link(model: &PlantModel, name: Option<&str>) -> Result<usize, Failure> {
-    let Some(name) = name else {
-        // the frame of the base's last generated joint is that of its body
-        let base = model.joints.iter().rposition(|joint| !joint.drivable);
-        let is_base = |link: &String| base.is_some_and(|base| *link == model.joints[base].name);
-        return Ok(model.links.iter().position(is_base).unwrap_or(0));
-    };
-    let found = model.links.iter().position(|link| link == name);
-    found.ok_or_else(|| {
-        Failure::Walk(model.name.clone(), format!("--link: no link is called `{name}`"))
-    })
 }

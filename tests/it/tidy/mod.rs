@@ -4,6 +4,7 @@ mod circles;
 mod command_page;
 mod documents;
 mod errata;
+mod errors;
 mod exports;
 mod flags;
 mod ignored;
@@ -20,6 +21,8 @@ use std::path::{Path, PathBuf};
 const MAX_FILE_LINES: usize = 500;
 const MAX_FUNCTION_LINES: usize = 70;
 const MAX_COLUMNS: usize = 100;
+/// The command parses, calls the library and prints.
+const MAX_COMMAND_LINES: usize = 6000;
 
 /// The stages of the compiler, in pipeline order: a stage uses only itself and those before it.
 const STAGES: [&str; 16] = [
@@ -76,6 +79,13 @@ fn shown(path: &Path) -> String {
 
 fn assert_none(faults: &[String], rule: &str) {
     assert!(faults.is_empty(), "{rule}:\n  {}", faults.join("\n  "));
+}
+
+#[test]
+fn the_command_is_short() {
+    let lines = |path: &PathBuf| fs::read_to_string(path).unwrap().lines().count();
+    let count: usize = rust_files("src/cli").iter().map(lines).sum();
+    assert!(count > 1000 && count <= MAX_COMMAND_LINES, "src/cli has {count} lines");
 }
 
 #[test]

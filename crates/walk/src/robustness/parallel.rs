@@ -2,11 +2,12 @@
 
 use denavit_simulate::scenario::Scenario;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
-/// Sees how far work has come: done, of all.
-pub type Observer<'a> = dyn Fn(usize, usize) + Sync + 'a;
+/// Sees how far work has come: done, of all. Says whether to go on; if not, what is done is the
+/// answer.
+pub type Observer<'a> = dyn Fn(usize, usize) -> bool + Sync + 'a;
 
 /// Makes the same scenario anew, for each processor; none where its files are there no more.
 pub type Opener<'a> = dyn Fn() -> Option<Scenario> + Sync + 'a;
@@ -21,6 +22,7 @@ pub(super) fn each<W, R: Send>(
 ) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let done = AtomicUsize::new(0);
+    let is_stopped = AtomicBool::new(false);
     let results: Mutex<Vec<Option<R>>> = Mutex::new((0..count).map(|_| None).collect());
     let processors = thread::available_parallelism().map_or(1, usize::from).min(count.max(1));
     thread::scope(|scope| {
@@ -29,14 +31,16 @@ pub(super) fn each<W, R: Send>(
                 let mut own = worker();
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
-                    if index >= count {
+                    if index >= count || is_stopped.load(Ordering::Relaxed) {
                         return;
                     }
                     let result = work(&mut own, index);
                     if let Ok(mut results) = results.lock() {
                         results[index] = Some(result);
                     }
-                    observer(done.fetch_add(1, Ordering::Relaxed) + 1, count);
+                    if !observer(done.fetch_add(1, Ordering::Relaxed) + 1, count) {
+                        is_stopped.store(true, Ordering::Relaxed);
+                    }
                 }
             });
         }

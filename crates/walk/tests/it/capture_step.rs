@@ -21,7 +21,7 @@ fn pushed(impulses_ns: &[f64]) -> Vec<CapturePush> {
         impulses_ns: impulses_ns.to_vec(),
         after_s: 4.0,
     };
-    capture_pushes(&|| Some(scenario(NAME)), &capturability(), &options, &|_, _| {})
+    capture_pushes(&|| Some(scenario(NAME)), &capturability(), &options, &|_, _| true)
 }
 
 #[test]

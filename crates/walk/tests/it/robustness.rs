@@ -30,7 +30,7 @@ fn starts_near_the_cycle_return_to_it_as_its_multipliers_say() {
     let open = || Some(disturbed());
     let distances = |cycles: usize| -> Vec<f64> {
         let options = BasinOptions { cycles };
-        let starts = basin(&open, &found.cycle, &deviations, &options, &|_, _| {});
+        let starts = basin(&open, &found.cycle, &deviations, &options, &|_, _| true);
         assert!(starts.iter().all(|start| start.outcome.walks() && start.cycles == cycles));
         starts.iter().map(|start| start.distance).collect()
     };
@@ -60,11 +60,11 @@ fn the_least_push_fells_and_less_does_not() {
     };
     let open = || Some(disturbed());
     let start = found.cycle.chart.base;
-    let push = &least_pushes(&open, &start, &options, &|_, _| {})[0];
+    let push = &least_pushes(&open, &start, &options, &|_, _| true)[0];
     let least = push.impulse_ns.expect("20 N s fell it");
     assert!(matches!(push.outcome, Outcome::Fell(..)), "{push:?}");
     // the same search, told that nothing stronger is tried, finds none
     let weaker = PushOptions { most_ns: least - 0.1, coarse: 1, ..options };
-    let push = &least_pushes(&open, &start, &weaker, &|_, _| {})[0];
+    let push = &least_pushes(&open, &start, &weaker, &|_, _| true)[0];
     assert_eq!(push.impulse_ns, None, "{push:?}");
 }

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::files::read_input;
 use super::json::write_json;
 use super::options::{EffectsOption, Term, terms};
-use super::outputs::{check_outputs, on_stdout, write_whole};
+use super::outputs::{check_outputs, on_stdout, write_given};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::fundamental::{DEFAULT_MEMORY_BYTES, Expansion};
@@ -119,16 +119,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     };
     let found = ProvenBase::find(robot, &options)
         .map_err(|error| Failure::Base(arguments.model.display().to_string(), Box::new(error)))?;
-    if let Some(path) = &arguments.certificate {
-        write_whole(path, found.certificate.to_text().as_bytes())?;
-    }
+    write_given(&arguments.certificate, || found.certificate.to_text())?;
     let report = BaseReport::new(&found);
-    if let Some(path) = &arguments.latex {
-        write_whole(path, report.latex().as_bytes())?;
-    }
-    if let Some(path) = &arguments.markdown {
-        write_whole(path, report.markdown().as_bytes())?;
-    }
+    write_given(&arguments.latex, || report.latex())?;
+    write_given(&arguments.markdown, || report.markdown())?;
     match (arguments.json, is_answered) {
         (true, _) => write_json(out, &report.json(&effects))?,
         (false, true) => {}
@@ -159,12 +153,8 @@ fn of_equations(
         .map_err(DecomposedError::Equations)?;
     progress.clear();
     let report = GivenBaseReport::new(equations, &found);
-    if let Some(path) = &arguments.latex {
-        write_whole(path, report.latex().as_bytes())?;
-    }
-    if let Some(path) = &arguments.markdown {
-        write_whole(path, report.markdown().as_bytes())?;
-    }
+    write_given(&arguments.latex, || report.latex())?;
+    write_given(&arguments.markdown, || report.markdown())?;
     match (arguments.json, is_answered) {
         (true, _) => write_json(out, &report.json())?,
         (false, true) => {}

@@ -4,14 +4,13 @@ mod page;
 
 use super::Answer;
 use super::failure::Failure;
-use super::files::{effects_folder, mapping, read_file, read_robot};
+use super::files::{FILES, effects_folder, mapping, read_robot};
 use super::flags::by_flag;
 use super::json::write_json;
 use super::logs::{log_source, note_logs};
 use super::outputs::{NewDirectory, check_outputs, write_together};
 use super::progress::Progress;
 use clap::{Args, ValueHint};
-use denavit::effect;
 use denavit::report::answer::{DIAGNOSIS_FILES, DiagnosisFolder, diagnosed_json, diagnosed_text};
 use denavit::workflow::{self, DiagnoseOptions, Diagnosed, LogSource, Logs, diagnose};
 use std::io::Write;
@@ -179,7 +178,7 @@ fn write_folder(
     if written.has_model() {
         let own = effects_folder(&arguments.model, arguments.effects.as_deref());
         if let Some(own) = own.filter(|own| own.is_dir()) {
-            files = definitions(&own, folder, shown)?;
+            files = shown.definitions(&FILES, &own, &folder.join("effects"))?;
         }
         if let Some((path, _)) = files.first() {
             _effects_made = path.parent().map(NewDirectory::make).transpose()?;
@@ -189,29 +188,6 @@ fn write_folder(
     files.extend(written.contents(shown, page)?);
     write_together(&files)?;
     Ok(written)
-}
-
-/// The definitions of the user's own effects that were found, as files of a folder `effects` beside
-/// the model, where commands look for them.
-fn definitions(
-    own: &Path,
-    folder: &Path,
-    shown: &Diagnosed,
-) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
-    let beside = folder.join("effects");
-    let mut files = Vec::new();
-    if beside.canonicalize().is_ok_and(|beside| own.canonicalize().is_ok_and(|own| own == beside)) {
-        return Ok(files);
-    }
-    let failure = |error| Failure::Read { file: own.display().to_string(), error };
-    for path in effect::files(own).map_err(failure)? {
-        let bytes = read_file(&path)?;
-        let known = effect::read(&path.display().to_string(), &bytes).map_err(Failure::Model)?;
-        if shown.has_effect(&known.name) {
-            files.push((beside.join(format!("{}.json", known.name)), bytes));
-        }
-    }
-    Ok(files)
 }
 
 /// A number above 0.

@@ -5,7 +5,7 @@ use super::base::{With, regressor_options};
 use super::failure::Failure;
 use super::files::{FILES, read_robot};
 use super::json::write_json;
-use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::outputs::{check_outputs, on_stdout, say_written, write_given, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::excite::{Check, Columns, Ends, ExciteOptions, Family, Objective};
@@ -255,9 +255,7 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let (Some(path), Answer::Done) = (&arguments.output, answer) {
         write_whole(path, excited_trajectory(&found, &options).as_bytes())?;
     }
-    if let Some(path) = &arguments.svg {
-        write_whole(path, drawn_excitation(&found).as_bytes())?;
-    }
+    write_given(&arguments.svg, || drawn_excitation(&found))?;
     let (stack, check) = (&found.stack, &found.found().ended);
     let excited = Some(&found);
     let shown = ExcitationAnswer { robot: &robot, effects: &effects, stack, check, excited };

@@ -8,7 +8,6 @@ use denavit::derive::MotionError;
 use denavit::emit::SourceError;
 use denavit::emit::latex::TooLongToSet;
 use denavit::import;
-use denavit::model::ModelError;
 use denavit::program::{CodeError, StatesError};
 use denavit::regressor::{DecomposedError, ProvenBaseError};
 use denavit::report::html::FormulaError;
@@ -20,16 +19,12 @@ use std::io;
 /// Why a command stops before its answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// The model file is wrong.
-    Model(ModelError),
     /// A description of a robot in another format is wrong.
     Import(import::Error),
     /// A model is not described in another format; holds the model.
     Export(String, import::Error),
     /// A file of states is wrong; holds the file and why.
     States(String, StatesError),
-    /// A file cannot be read.
-    Read { file: String, error: io::Error },
     /// An output is not written.
     Output(OutputFailure),
     /// The library has no answer, and says why.
@@ -178,12 +173,6 @@ impl Failure {
 
     fn hint(&self) -> Option<String> {
         Some(match self {
-            Self::Read { error, .. } if error.kind() == io::ErrorKind::IsADirectory => {
-                "give the path of one model file in it".to_owned()
-            }
-            Self::Read { error, .. } if error.kind() == io::ErrorKind::PermissionDenied => {
-                "check the permissions of the file and of its directories".to_owned()
-            }
             Self::ModelledAndMore => "the others add those of all joints".to_owned(),
             Self::Effect(..) => "see \"effects\" in docs/reference/model-file.md".to_owned(),
             Self::NotOfEquations(_) => "write the terms into the equations".to_owned(),
@@ -196,8 +185,7 @@ impl Failure {
                 return (!hints.is_empty()).then(|| hints.join("\n  hint: "));
             }
             Self::Window(_) => "choose two times of the run".to_owned(),
-            Self::Model(_)
-            | Self::Import(_)
+            Self::Import(_)
             | Self::Export(..)
             | Self::States(..)
             | Self::Output(_)
@@ -208,7 +196,6 @@ impl Failure {
             | Self::Serve(..)
             | Self::Base(..)
             | Self::Library(_)
-            | Self::Read { .. }
             | Self::Stdout(_) => return None,
         })
     }
@@ -237,7 +224,6 @@ impl Failure {
     fn cause(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             // place and hint are part of these
-            Self::Model(error) => write!(f, "{error}")?,
             Self::Import(_) | Self::Export(..) | Self::States(..) => self.of_others(f)?,
             Self::Library(error) => write!(f, "{error}")?,
             Self::Output(error) => write!(f, "{error}")?,
@@ -245,7 +231,6 @@ impl Failure {
                 f,
                 "{name}: equations have no --with, --terms, --basis, --numeric or --certificate"
             )?,
-            Self::Read { file, error } => write!(f, "{file}: cannot be read: {}", reason(error))?,
             Self::ModelledAndMore => write!(f, "--with modelled stands alone")?,
             Self::Base(file, error) if error.is_inexact() => {
                 write!(f, "{file}: {error} (`--numeric`)")?;

@@ -48,12 +48,6 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(FILES.bytes(path)?)
 }
 
-/// A model or a log that another file refers to: a shipped model, or a path from that file's
-/// directory. The error is a sentence.
-pub(crate) fn load_beside(file: &Path, model: &str) -> Result<Vec<u8>, String> {
-    FILES.beside(file, model)
-}
-
 /// Whether this run has read the file of this path, which has no links in it.
 pub(crate) fn is_input(path: &PathBuf) -> bool {
     FILES.has_read(path)

@@ -2,8 +2,10 @@
 
 use super::failure::Failure;
 use super::files::is_input;
+use super::json::write_json;
 use super::output_failure::OutputFailure;
 use super::unfinished;
+use serde::Serialize;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -47,6 +49,33 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         return Ok(io::stdout().lock().write_all(bytes)?);
     }
     write_together(&[(path.to_owned(), bytes.to_owned())])
+}
+
+/// Writes the document of an option, if it is asked for.
+pub(crate) fn write_given(
+    path: &Option<PathBuf>,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    path.as_ref().map_or(Ok(()), |path| write_whole(path, text().as_bytes()))
+}
+
+/// Prints an answer: as JSON, or as text with the files that were written; nothing where a document
+/// on standard output stands for it.
+pub(crate) fn print_answer<J: Serialize>(
+    out: &mut dyn Write,
+    (is_answered, json): (bool, bool),
+    as_json: impl FnOnce() -> J,
+    text: impl FnOnce() -> String,
+    outputs: &[Option<&PathBuf>],
+) -> Result<(), Failure> {
+    match (is_answered, json) {
+        (true, _) => Ok(()),
+        (_, true) => write_json(out, &as_json()),
+        (_, false) => {
+            write!(out, "{}", text())?;
+            say_written(out, outputs)
+        }
+    }
 }
 
 /// Writes files whole, as [`write_whole`] does: all are there before one takes its name.

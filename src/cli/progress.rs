@@ -98,12 +98,6 @@ impl Progress {
         self.show_part(stage, None, "");
     }
 
-    /// The same with the parts of it that are done.
-    pub(crate) fn show_count(&self, stage: &str, done: usize, all: usize) {
-        let share = done as f64 / all.max(1) as f64;
-        self.show_part(stage, Some(share), &format!("{done} of {all}"));
-    }
-
     /// Says what is being done now, how much of it is done where that is known, and a detail of
     /// this moment, which makes no stage of its own.
     pub(crate) fn show_part(&self, stage: &str, share: Option<f64>, detail: &str) {

@@ -3,9 +3,8 @@
 use super::Answer;
 use super::failure::Failure;
 use super::files::{FILES, mapping};
-use super::json::write_json;
 use super::logs::{log_source, note_logs, run_file};
-use super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::outputs::{check_outputs, on_stdout, print_answer, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum, ValueHint};
 use denavit::report::answer::{drawn_run, run_json, run_page, run_text};
@@ -151,14 +150,14 @@ pub(super) fn run_kept(
         let page = run_page(&mut scenario, &run, &broken, beside.as_ref(), facts);
         write_whole(path, page.render().as_bytes())?;
     }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &run_json(&scenario, &run, &broken))?,
-        (_, false) => {
-            write!(out, "{}", run_text(&scenario, &run, &broken, took))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    let shown = (is_answered, arguments.json);
+    print_answer(
+        out,
+        shown,
+        || run_json(&scenario, &run, &broken),
+        || run_text(&scenario, &run, &broken, took),
+        &outputs,
+    )?;
     let good = run.stop == Stop::End && broken.is_empty();
     Ok((if good { Answer::Done } else { Answer::Negative }, run.log))
 }

@@ -4,8 +4,7 @@ use super::{Arguments, page};
 use crate::cli::Answer;
 use crate::cli::failure::{Failure, Misuse};
 use crate::cli::flags::by_flag;
-use crate::cli::json::write_json;
-use crate::cli::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use crate::cli::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use crate::cli::progress::Progress;
 use denavit::report::answer::{two_stage_json, two_stage_text};
 use denavit::report::{TorquePicture, TwoStagePage, torque_picture};
@@ -24,20 +23,18 @@ pub(super) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     if let Some(path) = &arguments.output {
         write_whole(path, found.updated()?.as_bytes())?;
     }
-    if let Some(path) = &arguments.svg {
-        write_whole(path, picture(&found).as_bytes())?;
-    }
+    write_given(&arguments.svg, || picture(&found))?;
     if let Some(path) = &arguments.html {
         write_whole(path, html(arguments, &logs, &found)?.as_bytes())?;
     }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &two_stage_json(&found))?,
-        (_, false) => {
-            write!(out, "{}", by_flag(&two_stage_text(&found)))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    let shown = (is_answered, arguments.json);
+    print_answer(
+        out,
+        shown,
+        || two_stage_json(&found),
+        || by_flag(&two_stage_text(&found)).into_owned(),
+        &outputs,
+    )?;
     Ok(if found.is_good() { Answer::Done } else { Answer::Negative })
 }
 

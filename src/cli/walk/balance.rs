@@ -4,8 +4,7 @@ use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::{FILES, read_model_with_effects};
 use super::super::flags::by_flag;
-use super::super::json::write_json;
-use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::outputs::{check_outputs, on_stdout, print_answer, write_given};
 use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{
@@ -57,23 +56,17 @@ pub(crate) fn run(
     let is_answered = on_stdout(&outputs, arguments.json)?;
     let judged = judge(arguments)?;
     check_outputs(&outputs)?;
-    if let Some(path) = &arguments.output {
-        write_whole(path, balance_series(&judged).to_csv().as_bytes())?;
-    }
-    if let Some(path) = &arguments.events {
-        write_whole(path, balance_events(&judged).to_csv().as_bytes())?;
-    }
-    if let Some(path) = &arguments.svg {
-        write_whole(path, balance_picture(what, &judged).as_bytes())?;
-    }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &balance_json(what, &judged))?,
-        (_, false) => {
-            write!(out, "{}", by_flag(&balance_text(what, &judged)))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    write_given(&arguments.output, || balance_series(&judged).to_csv())?;
+    write_given(&arguments.events, || balance_events(&judged).to_csv())?;
+    write_given(&arguments.svg, || balance_picture(what, &judged))?;
+    let shown = (is_answered, arguments.json);
+    print_answer(
+        out,
+        shown,
+        || balance_json(what, &judged),
+        || by_flag(&balance_text(what, &judged)).into_owned(),
+        &outputs,
+    )?;
     // a criterion that is not met is no fall: only a run that ends is
     let stopped = judged.course.run.as_ref().is_some_and(|run| run.stop.word() != "end");
     Ok(if stopped { Answer::Negative } else { Answer::Done })

@@ -3,8 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
-use super::super::json::write_json;
-use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::outputs::{check_outputs, on_stdout, print_answer, write_given};
 use super::number::within;
 use clap::Args;
 use denavit::report::answer::{
@@ -80,16 +79,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     check_outputs(&outputs)?;
     let (steps, capture_m) = (arguments.steps, arguments.capture);
     let answer = CapturabilityAnswer { name: &name, found: &found, steps, capture_m };
-    if let Some(path) = &arguments.svg {
-        write_whole(path, capturability_picture(&answer).as_bytes())?;
-    }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &capturability_json(&answer))?,
-        (_, false) => {
-            write!(out, "{}", capturability_text(&answer))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    write_given(&arguments.svg, || capturability_picture(&answer))?;
+    let shown = (is_answered, arguments.json);
+    print_answer(
+        out,
+        shown,
+        || capturability_json(&answer),
+        || capturability_text(&answer),
+        &outputs,
+    )?;
     Ok(Answer::Done)
 }

@@ -3,8 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
-use super::super::json::write_json;
-use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::outputs::{check_outputs, on_stdout, print_answer, write_given};
 use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{comparison_json, comparison_page, comparison_text};
@@ -60,16 +59,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         all.push(compare_criteria(&FILES, path, arguments.period)?);
     }
     progress.clear();
-    if let Some(path) = &arguments.html {
-        write_whole(path, comparison_page(&all).render().as_bytes())?;
-    }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &comparison_json(&all))?,
-        (_, false) => {
-            write!(out, "{}", comparison_text(&all))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    write_given(&arguments.html, || comparison_page(&all).render())?;
+    let shown = (is_answered, arguments.json);
+    print_answer(out, shown, || comparison_json(&all), || comparison_text(&all), &outputs)?;
     Ok(Answer::Done)
 }

@@ -3,8 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
-use super::super::json::write_json;
-use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{designed_json, designed_picture, designed_text};
@@ -57,24 +56,14 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     progress.show(&format!("designing {}", arguments.gait.display()));
     let designed = design_gait(&FILES, &gait, &arguments.gait, arguments.output.as_deref())?;
     progress.clear();
-    if let Some(path) = &arguments.output {
-        write_whole(path, designed.scenario.as_bytes())?;
-    }
+    write_given(&arguments.output, || designed.scenario.clone())?;
     if let Some(path) = &arguments.trajectory {
         let text = designed.trajectory.as_ref().ok_or_else(refused)?;
         write_whole(path, text.as_bytes())?;
     }
-    if let Some(path) = &arguments.svg {
-        write_whole(path, designed_picture(&designed).as_bytes())?;
-    }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &designed_json(&designed))?,
-        (_, false) => {
-            write!(out, "{}", designed_text(&designed))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    write_given(&arguments.svg, || designed_picture(&designed))?;
+    let shown = (is_answered, arguments.json);
+    print_answer(out, shown, || designed_json(&designed), || designed_text(&designed), &outputs)?;
     Ok(Answer::Done)
 }
 

@@ -3,8 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
-use super::super::json::write_json;
-use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::super::progress::Progress;
 use clap::Args;
 use denavit::report::answer::{
@@ -105,20 +104,18 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         Failure::Walk(scenario.name.clone(), format!("{error}{hint}"))
     })?;
     progress.clear();
-    if let Some(path) = &arguments.svg {
-        write_whole(path, multipliers_picture(&scenario, &found).as_bytes())?;
-    }
+    write_given(&arguments.svg, || multipliers_picture(&scenario, &found))?;
     if let (Some(path), Some(convergence)) = (&arguments.map, &found.convergence) {
         write_whole(path, returns_picture(&scenario, &found, convergence).as_bytes())?;
     }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &cycle_json(&scenario, &found))?,
-        (_, false) => {
-            write!(out, "{}", cycle_text(&scenario, &found))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    let shown = (is_answered, arguments.json);
+    print_answer(
+        out,
+        shown,
+        || cycle_json(&scenario, &found),
+        || cycle_text(&scenario, &found),
+        &outputs,
+    )?;
     let good = is_stable(&found) && found.contradiction().is_none();
     Ok(if good { Answer::Done } else { Answer::Negative })
 }

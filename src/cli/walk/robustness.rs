@@ -3,8 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
-use super::super::json::write_json;
-use super::super::outputs::{check_outputs, on_stdout, say_written, write_whole};
+use super::super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::super::progress::Progress;
 use super::number::within;
 use clap::Args;
@@ -173,21 +172,13 @@ pub(crate) fn run_basin(
     progress.clear();
     let (name, model, starts) = (&found.name, &found.model, &found.starts[..]);
     let answer = BasinAnswer { name, model, cycles, starts };
-    if let Some(path) = &arguments.output {
-        write_whole(path, basin_log(&answer).to_csv().as_bytes())?;
-    }
+    write_given(&arguments.output, || basin_log(&answer).to_csv())?;
     if let Some(path) = &arguments.svg {
         let map = basin_picture(&answer, [&vary[0], &vary[1]], reach, count);
         write_whole(path, map.as_bytes())?;
     }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &basin_json(&answer))?,
-        (_, false) => {
-            write!(out, "{}", basin_text(&answer))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    let shown = (is_answered, arguments.json);
+    print_answer(out, shown, || basin_json(&answer), || basin_text(&answer), &outputs)?;
     Ok(Answer::Done)
 }
 
@@ -208,16 +199,8 @@ pub(crate) fn run_push(arguments: &PushArguments, out: &mut dyn Write) -> Result
     progress.clear();
     let PushedGait { name, model, options, found, .. } = &pushed;
     let answer = PushAnswer { name, model, options, found };
-    if let Some(path) = &arguments.svg {
-        write_whole(path, push_picture(&answer).as_bytes())?;
-    }
-    match (is_answered, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &push_json(&answer))?,
-        (_, false) => {
-            write!(out, "{}", push_text(&answer))?;
-            say_written(out, &outputs)?;
-        }
-    }
+    write_given(&arguments.svg, || push_picture(&answer))?;
+    let shown = (is_answered, arguments.json);
+    print_answer(out, shown, || push_json(&answer), || push_text(&answer), &outputs)?;
     Ok(Answer::Done)
 }

@@ -55,7 +55,8 @@ fn logs_in_memory_stand_in_place_of_files() {
     let words = ["identify", "planar_2r", "--train", "train[0]"];
     let arguments = words.map(OsString::from);
     let given = |at| {
-        let log = MemoryLog { columns: vec![("t".to_owned(), vec![0.0, 1.0])] };
+        let columns = vec![("t".to_owned(), vec![0.0, 1.0])];
+        let log = MemoryLog { columns, ..MemoryLog::default() };
         GivenLog { option: "train".to_owned(), at, name: "mine[0]".to_owned(), log }
     };
     let found = answer_of_logs(&arguments, vec![given(0)], Arc::new(Heard::default()));

@@ -83,7 +83,11 @@ fn assert_none(faults: &[String], rule: &str) {
 
 #[test]
 fn the_command_is_short() {
-    let lines = |path: &PathBuf| fs::read_to_string(path).unwrap().lines().count();
+    // tests of its parts stand below them
+    let lines = |path: &PathBuf| {
+        let text = fs::read_to_string(path).unwrap();
+        text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default().lines().count()
+    };
     let count: usize = rust_files("src/cli").iter().map(lines).sum();
     assert!(count > 1000 && count <= MAX_COMMAND_LINES, "src/cli has {count} lines");
 }

@@ -1,10 +1,13 @@
 //! The model with the effects that were found, as a file; and what was found, by name.
 
 use super::Diagnosed;
+use crate::error::{Cause, Error};
+use crate::files::Files;
 use denavit_codegen::effect::{self, EffectSite};
 use denavit_identify::{EffectValues, NewEffect, NewPlace, with_effects};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// What became of the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,10 +53,36 @@ impl Diagnosed {
     }
 
     /// Whether an effect is among those that were found, or that the model has.
-    pub fn has_effect(&self, name: &str) -> bool {
+    fn has_effect(&self, name: &str) -> bool {
         let found = self.found.effects.iter().map(|one| one.candidate);
         let given = self.found.given.iter().map(|one| one.candidate);
         found.chain(given).any(|candidate| self.candidates[candidate].effect == name)
+    }
+
+    /// The definitions of a user's own effects, of the folder `own`, that were found: as files of
+    /// the folder `beside`, where commands look for them. None if that is the same folder.
+    ///
+    /// # Errors
+    /// A definition that is wrong, or not read.
+    pub fn definitions(
+        &self,
+        files: &Files,
+        own: &Path,
+        beside: &Path,
+    ) -> Result<Vec<(PathBuf, Vec<u8>)>, Error> {
+        let place = own.canonicalize();
+        if place.is_ok_and(|own| beside.canonicalize().is_ok_and(|beside| own == beside)) {
+            return Ok(Vec::new());
+        }
+        let mut found = Vec::new();
+        for path in effect::files(own).map_err(|error| Error::read(own, error))? {
+            let bytes = files.bytes(&path)?;
+            let known = effect::read(&path.display().to_string(), &bytes).map_err(Cause::Model)?;
+            if self.has_effect(&known.name) {
+                found.push((beside.join(format!("{}.json", known.name)), bytes));
+            }
+        }
+        Ok(found)
     }
 
     /// The model's file with what was found. Numbers that it has stay as they are: those of the

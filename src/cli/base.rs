@@ -3,9 +3,8 @@
 use super::Answer;
 use super::failure::Failure;
 use super::files::read_input;
-use super::json::write_json;
 use super::options::{EffectsOption, Term, terms};
-use super::outputs::{check_outputs, on_stdout, write_given};
+use super::outputs::{check_outputs, on_stdout, print_answer, write_given};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::fundamental::{DEFAULT_MEMORY_BYTES, Expansion};
@@ -123,11 +122,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let report = BaseReport::new(&found);
     write_given(&arguments.latex, || report.latex())?;
     write_given(&arguments.markdown, || report.markdown())?;
-    match (arguments.json, is_answered) {
-        (true, _) => write_json(out, &report.json(&effects))?,
-        (false, true) => {}
-        (false, false) => write!(out, "{}", report.text(&effects))?,
-    }
+    let how = (is_answered, arguments.json);
+    print_answer(out, how, || report.json(&effects), || report.text(&effects), &[])?;
     Ok(answer(found.verified))
 }
 
@@ -155,11 +151,8 @@ fn of_equations(
     let report = GivenBaseReport::new(equations, &found);
     write_given(&arguments.latex, || report.latex())?;
     write_given(&arguments.markdown, || report.markdown())?;
-    match (arguments.json, is_answered) {
-        (true, _) => write_json(out, &report.json())?,
-        (false, true) => {}
-        (false, false) => write!(out, "{}", report.text())?,
-    }
+    let how = (is_answered, arguments.json);
+    print_answer(out, how, || report.json(), || report.text(), &[])?;
     Ok(answer(found.verified))
 }
 

@@ -4,8 +4,7 @@ use super::Answer;
 use super::base::{With, regressor_options};
 use super::failure::Failure;
 use super::files::{FILES, read_robot};
-use super::json::write_json;
-use super::outputs::{check_outputs, on_stdout, say_written, write_given, write_whole};
+use super::outputs::{check_outputs, on_stdout, print_answer, write_given, write_whole};
 use super::progress::Progress;
 use clap::{Args, ValueEnum};
 use denavit::excite::{Check, Columns, Ends, ExciteOptions, Family, Objective};
@@ -241,10 +240,8 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
         let (stack, check) = (&stack, &check);
         let shown =
             ExcitationAnswer { robot: &robot, effects: &effects, stack, check, excited: None };
-        match arguments.json {
-            true => write_json(out, &excited_json(&shown))?,
-            false => write!(out, "{}", excited_text(&shown))?,
-        }
+        let json = arguments.json;
+        print_answer(out, (false, json), || excited_json(&shown), || excited_text(&shown), &[])?;
         return Ok(verdict(check));
     }
     let progress = Progress::new();
@@ -261,15 +258,10 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let shown = ExcitationAnswer { robot: &robot, effects: &effects, stack, check, excited };
     let is_withheld = answer == Answer::Negative
         && arguments.output.as_ref().is_some_and(|path| path.as_os_str() == "-");
-    match (is_answered && !is_withheld, arguments.json) {
-        (true, _) => {}
-        (_, true) => write_json(out, &excited_json(&shown))?,
-        (_, false) => {
-            write!(out, "{}", excited_text(&shown))?;
-            let output = arguments.output.as_ref().filter(|_| answer == Answer::Done);
-            say_written(out, &[output, arguments.svg.as_ref()])?;
-        }
-    }
+    let output = arguments.output.as_ref().filter(|_| answer == Answer::Done);
+    let (written, how) =
+        ([output, arguments.svg.as_ref()], (is_answered && !is_withheld, arguments.json));
+    print_answer(out, how, || excited_json(&shown), || excited_text(&shown), &written)?;
     Ok(answer)
 }
 

@@ -3,7 +3,7 @@
 use super::super::Answer;
 use super::super::failure::Failure;
 use super::super::files::FILES;
-use super::super::json::write_json;
+use super::super::outputs::print_answer;
 use super::super::progress::Progress;
 use super::number::{impulse, within};
 use clap::Args;
@@ -74,9 +74,9 @@ pub(crate) fn run(arguments: &Arguments, out: &mut dyn Write) -> Result<Answer, 
     let (name, pushes) =
         push_stepping_robot(&FILES, path, &impulses_ns, after_s, &mut progress.observer())?;
     progress.clear();
-    match arguments.json {
-        true => write_json(out, &capture_steps_json(&name, &pushes))?,
-        false => write!(out, "{}", capture_steps_text(&name, &pushes))?,
-    }
+    let how = (false, arguments.json);
+    let (json, text) =
+        (|| capture_steps_json(&name, &pushes), || capture_steps_text(&name, &pushes));
+    print_answer(out, how, json, text, &[])?;
     Ok(Answer::Done)
 }

@@ -129,17 +129,20 @@ def simulate(
     svg: PathLike | None = None,
     window_s: tuple[float, float] | None = None,
     html: PathLike | None = None,
+    beside: PathLike | None = None,
     progress: Progress | None = None,
 ) -> Run:
     """Runs a scenario: a path, a shipped name (:func:`denavit.shipped_scenarios`), or a scenario as
     a dict, whose ``model`` may be a :class:`Model`.
 
     ``log`` is where the log goes, as CSV or, of that ending, as MCAP; ``svg`` where a picture goes,
-    of the part ``window_s`` of the run; ``html`` where a page goes, with the run in motion.
+    of the part ``window_s`` of the run; ``html`` where a page goes, with the run in motion, and
+    with that of the log ``beside`` of the same robot, if there is one.
     """
     with _options.folder() as inside:
         chosen = _options.flags(
-            scheme=scheme, step=step_s, output=log, svg=svg, window=window_s, html=html
+            scheme=scheme, step=step_s, output=log, svg=svg, window=window_s, html=html,
+            beside=beside,
         )
         place = _options.file_of(scenario, "scenario", inside)
         arguments = ["simulate", place, *chosen, "--json"]

@@ -73,6 +73,26 @@ def test_scenarios_that_are_wrong():
         denavit.simulate("bouncing_ball", scheme="euler")  # type: ignore[arg-type]
 
 
+def test_a_run_is_a_page(tmp_path):
+    page, log = tmp_path / "ball.html", tmp_path / "ball.csv"
+    run = denavit.simulate("bouncing_ball", html=page, log=log)
+    text = page.read_text()
+    assert text.startswith("<!DOCTYPE html>") and 'figure class="scene"' in text
+    # as many as the page lists: a start is none
+    assert run.events > 5 and "touches the ground" in text
+    assert "Measured beside simulated" not in text
+
+
+def test_a_page_has_two_runs_over_each_other(tmp_path):
+    page, log = tmp_path / "both.html", tmp_path / "ball.csv"
+    denavit.simulate("bouncing_ball", log=log)
+    denavit.simulate("bouncing_ball", scheme="time-stepping", html=page, beside=log)
+    text = page.read_text()
+    assert "Measured beside simulated" in text and "ball.csv" in text
+    with pytest.raises(denavit.Error):
+        denavit.simulate("tulip_step", html=page, beside=log)
+
+
 def test_excitation_keeps_limits():
     found = denavit.excite("tulip_leg_table34", harmonics=3, starts=1, evaluations=60)
     assert found.feasible and found.condition > 1

@@ -52,8 +52,8 @@ pub(crate) struct Arguments {
     /// audit; - is standard output
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// Show a log of the same robot on the page: as a second robot, and in the curves. Its times are
-    /// those of the run
+    /// Show a log of the same robot on the page: as a second robot, and in the curves. Its times
+    /// are those of the run
     #[arg(long, value_name = "LOG", value_parser = log_source(), requires = "html",
         value_hint = ValueHint::AnyPath)]
     beside: Option<LogSource>,

@@ -25,6 +25,8 @@ WIDTHS = (1280, 1920, 400)
 MOST_BYTES = 4_000_000
 MOST_LIBRARIES = 1_500_000
 MOST_SECONDS = 1.5
+# a dozen lines: more are words that are broken at letters [px]
+TALLEST_ROW = 250
 
 # the last column of each table that scrolls lies within its frame when it is scrolled there
 COLUMNS = """() => [...document.querySelectorAll('.wide')].filter(box => box.querySelector('table')
@@ -54,6 +56,11 @@ PIXELS = """canvas => {
   }
   return [seen, sum, canvas.width * canvas.height];
 }"""
+
+# elements that words of a file could have made, and a mark that their scripts leave
+FOREIGN = """() => document.querySelectorAll('img, iframe, object, embed, base, form').length
+  + [...document.scripts].filter(script => script.type !== 'application/json').length
+  - document.querySelectorAll('body > script').length + (window.hit === undefined ? 0 : 1)"""
 
 # tasks that keep a page from answering
 LONG_TASKS = """
@@ -112,14 +119,19 @@ class Checked:
         return page.evaluate(READY)
 
     def layout(self, page, width):
+        # names and words of files stay text
+        foreign = page.evaluate(FOREIGN)
+        self.expect(foreign == 0, f"{foreign} elements that no page has, or a script of a name ran")
         overflow = page.evaluate("document.documentElement.scrollWidth - innerWidth")
         self.expect(overflow <= 0, f"{width} px: the page is {overflow} px too wide")
         tabs = page.query_selector_all("[role=tab]")
         for tab in [None, *tabs]:
             if tab:
                 tab.click()
-            for fits, name, _ in page.evaluate(COLUMNS):
+            for fits, name, tallest in page.evaluate(COLUMNS):
                 self.expect(fits, f"{width} px: columns of `{name}` cannot be reached")
+                told = f"{width} px: a row of `{name}` is {tallest} px high"
+                self.expect(tallest <= TALLEST_ROW, told)
         if tabs:
             tabs[0].click()
         for tag in ("h1", "main", "h2"):

@@ -57,10 +57,12 @@ def reference(about, phase):
 def scenario(name, phase, seed):
     joint = lambda about, own: {"kp": 400, "kd": 12, "reference": reference(about, own)}
     return {
-        "format": "denavit-scenario/1", "name": name, "description": "Small motions about a posture.",
+        "format": "denavit-scenario/1", "name": name,
+        "description": "Small motions about a posture.",
         "model": "truth.json", "duration_s": 20, "initial": {"on_reference": True},
         "control": {"period_s": 0.001, "compensation": "gravity",
-                    "joints": {"shoulder": joint(0.0, phase), "elbow": joint(0.3, 0.7 + 1.9 * phase)}},
+                    "joints": {"shoulder": joint(0.0, phase),
+                               "elbow": joint(0.3, 0.7 + 1.9 * phase)}},
         "measurement": {"resolution": 1e-6, "logged": True, "torque_noise": 0.02},
         "seed": seed,
     }
@@ -74,7 +76,8 @@ def main():
     for name, text in files.items():
         (folder / f"{name}.json").write_text(json.dumps(text, indent=1), encoding="utf-8")
     for name in ("train", "validate"):
-        subprocess.run([denavit, "simulate", f"{name}.json", "-o", f"{name}.csv"], cwd=folder, check=True)
+        command = [denavit, "simulate", f"{name}.json", "-o", f"{name}.csv"]
+        subprocess.run(command, cwd=folder, check=True)
     found = subprocess.run(
         [denavit, "diagnose", "arm.json", "--train", "train.csv", "--validate", "validate.csv",
          "--out", "found"], cwd=folder, check=False)

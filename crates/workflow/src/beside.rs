@@ -24,8 +24,8 @@ pub struct LogBeside {
 }
 
 impl LogBeside {
-    /// Reads a log of a plant's joints. It is looked at, and nothing is computed from it: what looks
-    /// wrong is a remark.
+    /// Reads a log of a plant's joints. It is looked at, and nothing is computed from it: what
+    /// looks wrong is a remark.
     ///
     /// # Errors
     /// All that is wrong with it.

@@ -125,8 +125,8 @@ struct ReplayEvent {
 }
 
 impl Replay {
-    /// A run with what is shown beside it, another motion if there is one, and what happened; `data`
-    /// is what the script draws.
+    /// A run with what is shown beside it, another motion if there is one, and what happened;
+    /// `data` is what the script draws.
     pub(crate) fn new(
         [name, caption]: [String; 2],
         marks: &[Mark],

@@ -314,8 +314,9 @@ def push(
     is the one of the ``times`` that is tried, from 0; ``svg`` is where the map goes.
     """
     chosen = _options.flags(
-        link=link, times=times, only=only, most=most_ns, resolution=resolution_ns, after=after_s, svg=svg
-    )
+        link=link, times=times, only=only, most=most_ns, resolution=resolution_ns,
+        after=after_s, svg=svg,
+    )  # fmt: skip
     return answer(Pushes, _answered("push", scenario, chosen, progress))
 
 

@@ -62,11 +62,15 @@ fn every_subcommand_has_a_manual_page() {
     let directory = Directory::new("man");
     let run = run_in(&directory.path, &["man", "--out", "man"]);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
-    let of_walk = listed(&["walk"]).into_iter().map(|name| format!("denavit-walk-{name}.1"));
+    let of = |parent: &str| {
+        let names = listed(&[parent]).into_iter();
+        names.map(|name| format!("denavit-{parent}-{name}.1")).collect::<Vec<_>>()
+    };
     let mut expected: Vec<String> = listed(&[])
         .into_iter()
         .map(|name| format!("denavit-{name}.1"))
-        .chain(of_walk)
+        .chain(of("walk"))
+        .chain(of("long"))
         .chain(["denavit.1".to_owned()])
         .collect();
     expected.sort();

@@ -230,8 +230,8 @@ fn off_clock(f: &mut fmt::Formatter<'_>, steps: f64) -> fmt::Result {
 fn repaired(f: &mut fmt::Formatter<'_>, how: &LogRemark) -> fmt::Result {
     write!(
         f,
-        "{how}: a log that is read piece by piece is not repaired\n  hint: cut it before and behind \
-         these rows, or resample it"
+        "{how}: a log that is read piece by piece is not repaired\n  hint: cut it before and \
+         behind these rows, or resample it"
     )
 }
 

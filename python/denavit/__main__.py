@@ -82,7 +82,13 @@ def _run(given: argparse.Namespace) -> int:
     if sys.stderr.isatty():
         print(file=sys.stderr)
     print(f"{given.output}: {all_rows} rows, {computed} computed now")
-    return 0
+    table = studies.read_part(given.output).select(["index", "failure"])
+    failed = [row for row in table.to_pylist() if row["failure"]]
+    if failed:
+        first = failed[0]
+        said = f"{len(failed)} without an answer; the first, of index {first['index']}:"
+        print(f"{said} {first['failure']}", file=sys.stderr)
+    return 1 if all_rows and len(failed) == all_rows else 0
 
 
 def _merge(given: argparse.Namespace) -> int:

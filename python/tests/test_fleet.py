@@ -339,6 +339,14 @@ def test_the_command_makes_and_judges_an_example(tmp_path, capsys):
     assert main(["fleet-example", str(tmp_path / "c"), "--robots", "0"]) == 2
 
 
+def test_an_example_is_not_mixed_with_another(tmp_path, capsys):
+    for robots, code in ((11, 0), (2, 2)):
+        arguments = [f"--robots={robots}", "--nights=1", "--changed=0"]
+        assert main(["fleet-example", str(tmp_path), *arguments]) == code
+    assert "robots of another fleet: arm-00" in capsys.readouterr().err
+    assert len(list((tmp_path / "logs").iterdir())) == 11
+
+
 def test_the_page_of_an_example_is_opened_in_the_browser(tmp_path):
     """As `BROWSER` names it: here a script that copies the page it is sent to."""
     copied_page, browser = tmp_path / "opened.html", tmp_path / "browser"

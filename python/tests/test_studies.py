@@ -228,3 +228,11 @@ def test_a_push_map_is_a_study_of_its_times():
         least = {one.direction: one.least_impulse_ns for one in own if one.least_impulse_ns}
         assert dict(zip(row["felled"], row["least_ns"])) == least
 
+
+def test_rows_without_an_answer_are_told(study_file, tmp_path, capsys):
+    out = tmp_path / "p.parquet"
+    assert main(["study", "run", str(study_file), "-o", str(out)]) == 0
+    assert "1 without an answer; the first, of index 5: no such model" in capsys.readouterr().err
+    # all of them: nothing was computed
+    assert main(["study", "run", str(study_file), "--range", "5:6", "-o", str(tmp_path / "q")]) == 1
+

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..studies.here import Runner, in_process, in_processes
-from ..studies.on_ray import connected, on_ray
+from ..studies.on_ray import connected, on_ray, ray_package
 from .engine import Options
 from .sources import FleetError, fault
 
@@ -35,7 +35,8 @@ def add(commands: Any) -> None:
     for name, default in (("robots", 12), ("nights", 4), ("changed", 2), ("since", 3), ("seed", 1)):
         example.add_argument(f"--{name}", type=int, default=default, metavar="N",
                              help=f"{default} if it is left out")  # fmt: skip
-    example.add_argument("--run", action="store_true", dest="judges", help="judge it, too")
+    example.add_argument("--run", action="store_true", dest="judges",
+                         help="judge it, too; its alarms are meant, and no failure")  # fmt: skip
     _judging(example)
     example.set_defaults(run=_example)
 
@@ -114,6 +115,9 @@ def _judged(
 
 def _example(given: argparse.Namespace) -> int:
     from .example import write_example
+
+    if given.judges and given.ray is not None:
+        ray_package()  # before anything is written
 
     def show(done: int, count: int) -> None:
         if sys.stderr.isatty():

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import Error, Fault
 from ..excite import Excitation, excite
 from ..model import load
 from ..simulate import Run, simulate
@@ -133,6 +134,14 @@ def logged(arm: Arm, random: np.random.Generator, *, has_effect: bool) -> list[R
     return runs
 
 
+def _refuse_others(logs: Path, names: set[str]) -> None:
+    """Sees to it that robots of another fleet are not mixed with these."""
+    others = sorted(one.name for one in logs.glob("*") if one.name not in names)
+    if others:
+        cause = f"has robots of another fleet: {', '.join(others[:3])}"
+        raise Error([Fault(str(logs), None, None, cause, "give another folder")])
+
+
 def write_example(
     out: str | Path,
     *,
@@ -149,14 +158,15 @@ def write_example(
     if not (0 <= changed <= robots and robots > 0 and nights > 0 and 0 < since and seed >= 0):
         raise ValueError("robots and nights are positive, and no more robots change than there are")
     out = Path(out)
+    order = np.random.default_rng([seed]).permutation(robots)[:changed]
+    numbers = {int(number): at for at, number in enumerate(order)}
+    arms = [_arm(number, robots, numbers, seed) for number in range(robots)]
+    _refuse_others(out / "logs", {arm.name for arm in arms})
     out.mkdir(parents=True, exist_ok=True)
     (out / "arm.json").write_text(json.dumps(NOMINAL, indent=2) + "\n")
     motions = {name: (out / f"{name}_motion.json").resolve() for name in LOGS}
     for path, motion in zip(motions.values(), _motions()):
         motion.save(path)
-    order = np.random.default_rng([seed]).permutation(robots)[:changed]
-    numbers = {int(number): at for at, number in enumerate(order)}
-    arms = [_arm(number, robots, numbers, seed) for number in range(robots)]
     answer = {
         arm.name: {"effect": arm.effect[0], "at": arm.effect[1], "since": _date(since)}
         for arm in arms

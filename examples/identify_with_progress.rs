@@ -18,9 +18,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let logs = Logs::new([train], [held_out]);
     let identified = identify(&robot, &logs, &IdentifyOptions::default(), &mut watch)?;
+    eprintln!();
     for one in &identified.found.parameters {
         let error = one.std.map_or("not excited".to_owned(), |std| format!("+- {std:.1e}"));
         println!("{} = {:.4} {error} {}", one.name, one.value, one.unit);
     }
-    Ok(())
+    let is_answer = identified.is_good(false) && !identified.is_stopped;
+    if is_answer { Ok(()) } else { Err("the logs are not explained, or the time was up".into()) }
 }
